@@ -1,0 +1,33 @@
+# Flags and helpers shared by every target of the project.
+
+add_library(adamas_flags INTERFACE)
+add_library(adamas::flags ALIAS adamas_flags)
+target_compile_features(adamas_flags INTERFACE cxx_std_20)
+# One rounding per operation: the same input gives the same bytes everywhere.
+target_compile_options(adamas_flags INTERFACE -ffp-contract=off)
+target_compile_options(adamas_flags INTERFACE
+  $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Werror>)
+if(ADAMAS_SANITIZE)
+  target_compile_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE})
+  if(ADAMAS_SANITIZE MATCHES "undefined")
+    target_compile_options(adamas_flags INTERFACE -fno-sanitize-recover=undefined)
+  endif()
+endif()
+
+# adamas_library(name folder...): the library adamas_<name> (alias adamas::<name>) of all sources in the folders.
+function(adamas_library name)
+  set(sources)
+  foreach(folder IN LISTS ARGN)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp
+                                              ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.h)
+    list(APPEND sources ${found})
+  endforeach()
+  add_library(adamas_${name} STATIC ${sources})
+  add_library(adamas::${name} ALIAS adamas_${name})
+  set_target_properties(adamas_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(adamas_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                   $<INSTALL_INTERFACE:include/adamas>)
+  target_link_libraries(adamas_${name} PUBLIC adamas_flags)
+  set_property(GLOBAL APPEND PROPERTY ADAMAS_LIBRARIES adamas_${name})
+endfunction()

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+
+/// A broken invariant of the program itself; checked in debug and test builds only.
+#ifdef NDEBUG
+#define ADAMAS_ASSERT(condition) static_cast<void>(sizeof(!(condition)))
+#else
+#define ADAMAS_ASSERT(condition)                                                                            \
+  do {                                                                                                      \
+    if (!(condition)) {                                                                                     \
+      std::fprintf(stderr, "%s:%d: broken invariant: %s\n", __FILE__, __LINE__, #condition);                \
+      std::abort();                                                                                         \
+    }                                                                                                       \
+  } while (false)
+#endif

@@ -1,0 +1,37 @@
+#include "core/base/output_file.h"
+
+#include <unistd.h>
+
+#include <system_error>
+
+#include "core/base/error.h"
+
+namespace adamas {
+
+OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+  const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
+  std::error_code code;
+  if (!std::filesystem::is_directory(folder, code)) {
+    fail("{}: expected an existing output folder, found none at {}", path_.string(), folder.string());
+  }
+  if (std::filesystem::is_directory(path_, code)) fail("{}: expected an output file, found a folder", path_.string());
+  if (::access(folder.c_str(), W_OK) != 0) {
+    fail("{}: expected a writable output folder, found {} read-only", path_.string(), folder.string());
+  }
+  temporary_ = folder / (".partial-" + std::to_string(::getpid()) + "-" + path_.filename().string());
+}
+
+OutputFile::~OutputFile() {
+  std::error_code code;
+  if (!committed_) std::filesystem::remove(temporary_, code);
+}
+
+void OutputFile::commit() {
+  std::error_code code;
+  if (!std::filesystem::exists(temporary_, code)) fail("{}: nothing was written", path_.string());
+  std::filesystem::rename(temporary_, path_, code);
+  if (code) fail("{}: could not be given its final name: {}", path_.string(), code.message());
+  committed_ = true;
+}
+
+}  // namespace adamas

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+
+namespace adamas {
+
+/// A file that gets its final name only when it is whole: write to `temporary()`, then `commit()`. Without a commit the
+/// temporary file is removed. The temporary name keeps the extension, since libraries choose formats by it.
+class OutputFile {
+ public:
+  /// Throws Error when the folder is missing or cannot be written.
+  explicit OutputFile(std::filesystem::path path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Throws Error when the temporary file is missing or cannot be renamed.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  bool committed_ = false;
+};
+
+}  // namespace adamas

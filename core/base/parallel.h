@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace adamas {
+
+/// Runs `body(begin, end)` over disjoint chunks of [0, count) on the threads allowed by set_thread_limit, at most
+/// `grain` items a chunk. Chunk borders depend on `count` and `grain` alone, so results that are kept per item or per
+/// chunk are the same on any number of threads. An exception of one chunk is rethrown here.
+void parallel_chunks(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+/// Runs `body(i)` for every i in [0, count).
+template <class Body>
+void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
+  parallel_chunks(count, grain, [&body](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// Bounds the number of threads of all later parallel loops; 0 means all cores.
+void set_thread_limit(unsigned threads);
+
+}  // namespace adamas

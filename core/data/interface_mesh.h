@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// A triangle with a material on either side; by the right-hand rule its normal points to the front.
+struct InterfaceTriangle {
+  std::array<std::uint32_t, 3> points;
+  MaterialId front, back;
+  bool operator==(const InterfaceTriangle&) const = default;
+};
+
+/// A network of material interfaces: triangles on shared points, three or more of which may meet at an edge.
+struct InterfaceMesh {
+  std::string source;  ///< the file or generator, for messages
+  std::vector<Vec3> points;
+  std::vector<InterfaceTriangle> triangles;
+  IdVector<MaterialId, std::string> materials;
+};
+
+}  // namespace adamas

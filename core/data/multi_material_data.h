@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/data/rectilinear_grid.h"
+
+namespace adamas {
+
+/// A field on the sites of a grid: scalar or vector, mixed (one value per site whatever the material) or with values of
+/// its own for each material.
+struct Field {
+  std::string name;
+  std::string unit;  ///< empty where the source states none
+  int components = 1;
+  /// Mixed: `values[site * components + c]`. Empty for a field per material.
+  std::vector<float> values;
+  /// Per material: the same layout for each material; empty for a material that has no such field.
+  IdVector<MaterialId, std::vector<float>> material_values;
+
+  [[nodiscard]] bool per_material() const { return values.empty(); }
+};
+
+/// What was found and mended in volume fractions while reading them.
+struct FractionReport {
+  double sum_min = 1, sum_max = 1;   ///< of the sums over materials, before normalisation
+  std::size_t negative = 0;          ///< fractions below zero, set to zero
+  std::size_t traces = 0;            ///< fractions too small to matter, set to zero
+  std::size_t renormalised = 0;      ///< sites whose fractions did not add up to one
+};
+
+/// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a label per
+/// site, and fields.
+struct MultiMaterialData {
+  std::string source;  ///< the file or generator, for messages
+  RectilinearGrid grid;
+  IdVector<MaterialId, std::string> materials;
+  /// `fractions[m][site]` in [0, 1], adding up to 1 at each site; empty where `labels` is given.
+  IdVector<MaterialId, std::vector<float>> fractions;
+  /// Index of the one material at each site; empty where `fractions` is given.
+  std::vector<std::uint16_t> labels;
+  std::vector<Field> fields;
+  FractionReport report;
+
+  [[nodiscard]] float fraction(MaterialId m, std::size_t site) const {
+    return labels.empty() ? fractions[m][site] : (labels[site] == m.value ? 1.0f : 0.0f);
+  }
+  /// Sets negative fractions and traces to zero and scales each site to 1; fills `report`. Throws Error, naming the
+  /// source, at NaN, at sites whose fractions are all zero, and where sums are off by more than `tolerance`.
+  void normalise(double tolerance = 0.05);
+  /// Throws Error that names the first array whose length is not that of the grid, a grid without volume, unsorted or
+  /// non-finite nodes, non-finite field values, no material.
+  void check() const;
+};
+
+}  // namespace adamas

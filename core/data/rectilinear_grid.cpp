@@ -1,0 +1,22 @@
+#include "core/data/rectilinear_grid.h"
+
+#include <algorithm>
+
+namespace adamas {
+
+namespace {
+
+double extent(const std::vector<double>& nodes, Centering centering, std::size_t i) {
+  if (centering == Centering::kCells) return nodes[i + 1] - nodes[i];
+  const double low = i == 0 ? nodes[0] : 0.5 * (nodes[i - 1] + nodes[i]);
+  const double high = i + 1 == nodes.size() ? nodes.back() : 0.5 * (nodes[i] + nodes[i + 1]);
+  return high - low;
+}
+
+}  // namespace
+
+double RectilinearGrid::site_volume(std::size_t i, std::size_t j, std::size_t k) const {
+  return extent(nodes[0], centering, i) * extent(nodes[1], centering, j) * extent(nodes[2], centering, k);
+}
+
+}  // namespace adamas

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace adamas {
+
+/// A linear function on a tetrahedron, by its values at the four vertices. `key` identifies the function across cells:
+/// exact ties between two functions are decided in favour of the smaller key.
+struct LinearFunction {
+  std::array<double, 4> values;
+  std::uint64_t key;
+};
+
+/// Who owns a point of a tetrahedron (SPEC 2.3): each candidate is the least of its linear functions, and the owner of a
+/// point is the candidate with the greatest value there.
+struct OwnershipProblem {
+  struct Candidate {
+    std::uint32_t owner;  ///< a body or material index
+    std::uint32_t first;  ///< its functions are functions[first, first + count)
+    std::uint32_t count;
+  };
+  std::vector<LinearFunction> functions;
+  std::vector<Candidate> candidates;
+
+  void clear() {
+    functions.clear();
+    candidates.clear();
+  }
+  /// Starts a new candidate; functions added later belong to it.
+  void add_candidate(std::uint32_t owner) {
+    candidates.push_back({owner, static_cast<std::uint32_t>(functions.size()), 0});
+  }
+  void add_function(const std::array<double, 4>& values, std::uint64_t key) {
+    functions.push_back({values, key});
+    ++candidates.back().count;
+  }
+  /// Value of a candidate at a point given by barycentric weights.
+  [[nodiscard]] double value(const Candidate& candidate, const std::array<double, 4>& weights) const;
+  /// Owner of the point: greatest value, ties by key.
+  [[nodiscard]] std::uint32_t owner(const std::array<double, 4>& weights) const;
+};
+
+/// Barycentric weights of a point with respect to the tetrahedron of the problem.
+using Weights = std::array<double, 4>;
+
+/// A part of a tetrahedron that has one owner.
+struct OwnedTetrahedron {
+  std::uint32_t owner;
+  std::array<Weights, 4> corners;
+};
+
+/// A convex polygon with one owner.
+struct OwnedPolygon {
+  std::uint32_t owner;
+  std::vector<Weights> corners;
+};
+
+/// A convex polygon where the regions of two owners touch; seen from `front`'s side it runs counter-clockwise when the
+/// tetrahedron is positively oriented.
+struct ContactPolygon {
+  struct Corner {
+    Weights weights;
+    /// The functions that are equal here and the faces it lies on, in canonical order: the same on every cell.
+    std::array<std::uint64_t, 4> functions;
+    std::uint8_t zero_weights;  ///< bit i: weight i is zero by construction
+  };
+  std::uint32_t front, back;
+  std::vector<Corner> corners;
+};
+
+/// Divides the unit weights tetrahedron into parts of one owner. The parts' volumes add up to the whole.
+void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTetrahedron>& parts);
+
+/// Divides a convex polygon, given by weights, into convex parts of one owner.
+void partition_polygon(const OwnershipProblem& problem, const std::vector<Weights>& polygon,
+                       std::vector<OwnedPolygon>& parts);
+
+/// The polygons where two owners touch inside the tetrahedron.
+void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
+
+/// Volume of a part as a fraction of the tetrahedron's.
+double volume_fraction(const std::array<Weights, 4>& corners);
+
+}  // namespace adamas

@@ -1,0 +1,2 @@
+// Until the first source of this folder lands.
+namespace adamas {}
