@@ -1,0 +1,163 @@
+#include "interfaces/network/closest_point_tree.h"
+
+#include <emmintrin.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/assert.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "interfaces/network/closest_point_tree_builder.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
+
+/// A float not greater than x; finite for finite x.
+float round_down(double x) {
+  const float f = static_cast<float>(std::clamp(x, -3e38, 3e38));
+  return static_cast<double>(f) > x ? std::nextafter(f, -kFloatInfinity) : f;
+}
+
+/// Bound for squared distances to boxes in float: above every rounding error of computing them.
+float box_bound(double squared_distance, double scale) {
+  const double scaled = squared_distance * scale * scale;
+  return scaled < 1e38 ? static_cast<float>(scaled * (1 + 1e-6) + 1e-44) : kFloatInfinity;
+}
+
+}  // namespace
+
+ClosestPointTree::ClosestPointTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
+  if (triangles.empty()) return;
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t v : t) {
+      ADAMAS_ASSERT(v < points.size());
+      bounds_.extend(points[v]);
+    }
+  }
+  center_ = 0.5 * bounds_.min + 0.5 * bounds_.max;
+  const Vec3 half = 0.5 * bounds_.max - 0.5 * bounds_.min;
+  const double reach = std::max({half.x, half.y, half.z});
+  if (reach > 0) scale_ = std::ldexp(1.0, -std::clamp(std::ilogb(reach), -1000, 1000));
+
+  ClosestPointTreeBuilder(*this, points, triangles).build();
+  corners_.resize(index_.size());
+  place_.resize(index_.size());
+  parallel_for(index_.size(), 16384, [&](std::size_t i) {
+    const Triangle& t = triangles[index_[i]];
+    corners_[i] = {points[t[0]], points[t[1]], points[t[2]]};
+    place_[index_[i]] = static_cast<std::uint32_t>(i);
+  });
+}
+
+std::size_t ClosestPointTree::memory_bytes() const {
+  return nodes_.capacity() * sizeof(Node) + corners_.capacity() * sizeof(corners_[0]) +
+         (index_.capacity() + place_.capacity()) * sizeof(std::uint32_t);
+}
+
+std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_distance) const {
+  if (nodes_.empty() || !(max_distance >= 0)) return std::nullopt;
+  const Vec3 local = to_tree(q);
+  if (!std::isfinite(local.x) || !std::isfinite(local.y) || !std::isfinite(local.z)) return std::nullopt;
+  __m128 low[3], high[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = _mm_set1_ps(round_down(local[axis]));
+    high[axis] = _mm_set1_ps(-round_down(-local[axis]));
+  }
+
+  ClosestPoint best;
+  best.squared_distance = max_distance * max_distance;
+  float bound = box_bound(best.squared_distance, scale_);
+  struct Entry {
+    float squared_distance;
+    std::uint32_t first, count;
+  };
+  Entry stack[kStackSize];
+  std::size_t top = 0;
+  Entry entry{0, 0, 0};
+  while (true) {
+    if (entry.count == 0) {
+      const Node& node = nodes_[entry.first];
+      const __m128 zero = _mm_setzero_ps();
+      __m128 sum = zero;
+      for (int axis = 0; axis < 3; ++axis) {
+        const __m128 under = _mm_sub_ps(_mm_load_ps(node.lower[axis]), high[axis]);
+        const __m128 over = _mm_sub_ps(low[axis], _mm_load_ps(node.upper[axis]));
+        const __m128 gap = _mm_max_ps(_mm_max_ps(under, over), zero);
+        sum = _mm_add_ps(sum, _mm_mul_ps(gap, gap));
+      }
+      alignas(16) float distances[kWidth];
+      _mm_store_ps(distances, sum);
+      auto hits = static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(sum, _mm_set1_ps(bound))));
+      const std::size_t base = top;
+      for (; hits != 0; hits &= hits - 1) {
+        const auto i = static_cast<unsigned>(__builtin_ctz(hits));
+        if (node.count[i] == kEmptySlot) continue;
+        // Kept with the farthest first.
+        std::size_t place = top++;
+        for (; place > base && stack[place - 1].squared_distance < distances[i]; --place) {
+          stack[place] = stack[place - 1];
+        }
+        stack[place] = {distances[i], node.first[i], node.count[i]};
+      }
+      ADAMAS_ASSERT(top + kWidth <= kStackSize);
+    } else {
+      for (std::uint32_t i = entry.first; i < entry.first + entry.count; ++i) {
+        const TrianglePoint p = closest_on_triangle(q, corners_[i]);
+        if (p.squared_distance > best.squared_distance) continue;
+        if (p.squared_distance == best.squared_distance && index_[i] > best.triangle) continue;
+        best = {p.point, p.squared_distance, index_[i], p.feature};
+        bound = box_bound(best.squared_distance, scale_);
+      }
+    }
+    do {
+      if (top == 0) {
+        if (best.triangle == kNoTriangle) return std::nullopt;
+        return best;
+      }
+      entry = stack[--top];
+    } while (entry.squared_distance > bound);
+  }
+}
+
+void ClosestPointTree::validate() const {
+  std::vector<char> seen(size(), 0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  if (!nodes_.empty()) {
+    validate_node(0, {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}}, seen);
+  }
+  const auto missing = std::find(seen.begin(), seen.end(), 0);
+  if (missing != seen.end()) fail("closest-point tree: place {} is in no leaf", missing - seen.begin());
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (place_[index_[i]] != i) fail("closest-point tree: place {} has the wrong triangle index", i);
+  }
+}
+
+void ClosestPointTree::validate_node(std::uint32_t id, const Box3& within, std::vector<char>& seen) const {
+  const Node& node = nodes_[id];
+  for (int i = 0; i < kWidth; ++i) {
+    if (node.count[i] == kEmptySlot) continue;
+    Box3 box;
+    box.extend({node.lower[0][i], node.lower[1][i], node.lower[2][i]});
+    box.extend({node.upper[0][i], node.upper[1][i], node.upper[2][i]});
+    if (!within.contains(box.min) || !within.contains(box.max)) {
+      fail("closest-point tree: child {} of node {} is outside its node's box", i, id);
+    }
+    if (node.count[i] == 0) {
+      validate_node(node.first[i], box, seen);
+      continue;
+    }
+    for (std::uint32_t k = node.first[i]; k < node.first[i] + node.count[i]; ++k) {
+      if (seen[k] != 0) fail("closest-point tree: place {} is in two leaves", k);
+      seen[k] = 1;
+      for (const Vec3& corner : corners_[k]) {
+        if (!box.contains(to_tree(corner))) fail("closest-point tree: place {} is outside its box", k);
+      }
+    }
+  }
+}
+
+}  // namespace adamas

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "interfaces/network/triangle_distance.h"
+
+namespace adamas {
+
+/// The closest point of a set of triangles.
+struct ClosestPoint {
+  Vec3 point;
+  double squared_distance = std::numeric_limits<double>::infinity();
+  std::uint32_t triangle = 0xffffffffu;
+  TriangleFeature feature = TriangleFeature::kFace;
+};
+
+/// Where a ray meets a triangle: at `origin + t direction`.
+struct RayHit {
+  double t = std::numeric_limits<double>::infinity();
+  std::uint32_t triangle = 0xffffffffu;
+  /// Weights of the three corners at the hit; one near zero means a hit close to an edge.
+  std::array<double, 3> weights{};
+};
+
+/// A bounding-volume hierarchy over triangles, for closest points, rays and boxes. Nodes have four children
+/// whose boxes are floats, rounded outwards; triangles are kept and tested in double. Results are those of
+/// testing every triangle in order, bit for bit; among triangles at equal distance the one of the lowest
+/// index is found.
+class ClosestPointTree {
+ public:
+  using Triangle = std::array<std::uint32_t, 3>;
+  static constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+
+  ClosestPointTree() = default;
+  /// Copies the corners. Points must be finite and indices within range; triangles may be degenerate.
+  ClosestPointTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
+
+  [[nodiscard]] std::size_t size() const { return corners_.size(); }
+  [[nodiscard]] bool empty() const { return corners_.empty(); }
+  /// Box of all triangles.
+  [[nodiscard]] const Box3& bounds() const { return bounds_; }
+  /// Corners of the triangle of that index.
+  [[nodiscard]] const std::array<Vec3, 3>& triangle(std::uint32_t index) const {
+    return corners_[place_[index]];
+  }
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+  /// The closest point with a distance of at most `max_distance`; none where there is none, or q is not
+  /// finite.
+  [[nodiscard]] std::optional<ClosestPoint> closest(
+      const Vec3& q, double max_distance = std::numeric_limits<double>::infinity()) const;
+  /// Hit with the least t in [0, max_t], not counting `ignore`. Watertight: no ray slips between two
+  /// triangles that share an edge. Rays within the plane of a triangle do not meet it.
+  [[nodiscard]] std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction,
+                                                double max_t = std::numeric_limits<double>::infinity(),
+                                                std::uint32_t ignore = kNoTriangle) const;
+  /// Whether a triangle touches the closed box.
+  [[nodiscard]] bool any_overlap(const Box3& box) const;
+  /// The triangles that touch the closed box, in ascending order; replaces `out`.
+  void overlapping(const Box3& box, std::vector<std::uint32_t>& out) const;
+
+  /// Throws Error naming the first broken law: every triangle in exactly one leaf and inside all boxes above
+  /// it.
+  void validate() const;
+
+ private:
+  friend class ClosestPointTreeBuilder;
+
+  static constexpr int kWidth = 4;
+  static constexpr std::uint32_t kLeafSize = 2;
+  static constexpr std::size_t kStackSize = 512;
+  static constexpr std::uint32_t kEmptySlot = 0xffffffffu;
+
+  /// Child i is the node `first[i]` where `count[i]` is 0, and else the triangles at places [first, first +
+  /// count).
+  struct alignas(64) Node {
+    float lower[3][kWidth];
+    float upper[3][kWidth];
+    std::uint32_t first[kWidth];
+    std::uint32_t count[kWidth];
+  };
+
+  template <class Visit>
+  bool visit_overlapping(const Box3& box, Visit&& visit) const;
+  void validate_node(std::uint32_t node, const Box3& within, std::vector<char>& seen) const;
+  [[nodiscard]] Vec3 to_tree(const Vec3& p) const { return scale_ * (p - center_); }
+
+  std::vector<Node> nodes_;
+  std::vector<std::array<Vec3, 3>> corners_;  ///< in leaf order
+  std::vector<std::uint32_t> index_;          ///< of the triangle at each place
+  std::vector<std::uint32_t> place_;          ///< of the triangle of each index
+  Box3 bounds_;
+  Vec3 center_;
+  double scale_ = 1;  ///< a power of two: boxes are of scale (p - center)
+};
+
+/// Whether a triangle and a closed box have a point in common (separating axes; touching counts).
+bool overlaps(const std::array<Vec3, 3>& corners, const Box3& box);
+
+}  // namespace adamas

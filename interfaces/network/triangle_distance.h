@@ -1,0 +1,92 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// Part of a triangle. Edge i runs from corner i to corner i + 1 (mod 3).
+enum class TriangleFeature : std::uint8_t { kFace, kEdge0, kEdge1, kEdge2, kVertex0, kVertex1, kVertex2 };
+
+constexpr bool is_edge(TriangleFeature f) {
+  return f >= TriangleFeature::kEdge0 && f <= TriangleFeature::kEdge2;
+}
+constexpr bool is_vertex(TriangleFeature f) { return f >= TriangleFeature::kVertex0; }
+/// Number of the edge or of the corner.
+constexpr unsigned feature_index(TriangleFeature f) {
+  return static_cast<unsigned>(f) -
+         static_cast<unsigned>(is_vertex(f) ? TriangleFeature::kVertex0 : TriangleFeature::kEdge0);
+}
+constexpr TriangleFeature edge_feature(unsigned i) {
+  return static_cast<TriangleFeature>(static_cast<unsigned>(TriangleFeature::kEdge0) + i);
+}
+constexpr TriangleFeature vertex_feature(unsigned i) {
+  return static_cast<TriangleFeature>(static_cast<unsigned>(TriangleFeature::kVertex0) + i);
+}
+
+/// Closest point of one triangle, and the part of the triangle that it lies on.
+struct TrianglePoint {
+  Vec3 point;
+  double squared_distance = std::numeric_limits<double>::infinity();
+  TriangleFeature feature = TriangleFeature::kFace;
+};
+
+namespace detail {
+
+/// Closest point of the edge that starts at `corner[i]`.
+inline TrianglePoint closest_on_edge(const Vec3& q, const std::array<Vec3, 3>& corner, unsigned i) {
+  const Vec3& a = corner[i];
+  const Vec3& b = corner[(i + 1) % 3];
+  const Vec3 edge = b - a;
+  const double along = dot(q - a, edge);
+  const double length = squared_norm(edge);
+  if (!(along > 0)) return {a, squared_norm(q - a), vertex_feature(i)};
+  if (along >= length) return {b, squared_norm(q - b), vertex_feature((i + 1) % 3)};
+  const Vec3 p = a + (along / length) * edge;
+  return {p, squared_norm(q - p), edge_feature(i)};
+}
+
+inline TrianglePoint closest_on_edges(const Vec3& q, const std::array<Vec3, 3>& corner) {
+  TrianglePoint best = closest_on_edge(q, corner, 0);
+  for (unsigned i = 1; i < 3; ++i) {
+    const TrianglePoint p = closest_on_edge(q, corner, i);
+    if (p.squared_distance < best.squared_distance) best = p;
+  }
+  return best;
+}
+
+}  // namespace detail
+
+/// Closest point of a triangle by the Voronoi regions of its features (Ericson, Real-Time Collision
+/// Detection, 5.1.5). A triangle without area counts as its edges.
+inline TrianglePoint closest_on_triangle(const Vec3& q, const std::array<Vec3, 3>& corner) {
+  const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+  const Vec3 ap = q - corner[0];
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return {corner[0], squared_norm(ap), TriangleFeature::kVertex0};
+  const Vec3 bp = q - corner[1];
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return {corner[1], squared_norm(bp), TriangleFeature::kVertex1};
+  const Vec3 cp = q - corner[2];
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return {corner[2], squared_norm(cp), TriangleFeature::kVertex2};
+
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  const double area = va + vb + vc;  // the squared length of the normal
+  const double spread = std::max(squared_norm(ab), squared_norm(ac));
+  // The weights of a sliver are made of rounding errors: its edges are as good.
+  if (!(area > 1e-20 * spread * spread)) return detail::closest_on_edges(q, corner);
+
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return detail::closest_on_edge(q, corner, 0);
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return detail::closest_on_edge(q, corner, 1);
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return detail::closest_on_edge(q, corner, 2);
+  if (va <= 0 || vb <= 0 || vc <= 0) return detail::closest_on_edges(q, corner);
+  const double scale = 1 / area;
+  const Vec3 p = corner[0] + (vb * scale) * ab + (vc * scale) * ac;
+  return {p, squared_norm(q - p), TriangleFeature::kFace};
+}
+
+}  // namespace adamas
