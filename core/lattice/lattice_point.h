@@ -1,0 +1,50 @@
+#pragma once
+
+#include <bit>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace adamas {
+
+/// The side of a root cube is 2^kRootBits lattice units.
+inline constexpr int kRootBits = 24;
+
+/// A point of the integer lattice that spans a domain, or the difference of two such points.
+struct LatticePoint {
+  std::int32_t i, j, k;
+
+  constexpr std::int32_t& operator[](int axis) { return axis == 0 ? i : axis == 1 ? j : k; }
+  constexpr std::int32_t operator[](int axis) const { return axis == 0 ? i : axis == 1 ? j : k; }
+  constexpr auto operator<=>(const LatticePoint&) const = default;
+};
+
+constexpr LatticePoint operator+(LatticePoint a, LatticePoint b) { return {a.i + b.i, a.j + b.j, a.k + b.k}; }
+constexpr LatticePoint operator-(LatticePoint a, LatticePoint b) { return {a.i - b.i, a.j - b.j, a.k - b.k}; }
+constexpr LatticePoint operator-(LatticePoint a) { return {-a.i, -a.j, -a.k}; }
+constexpr LatticePoint operator*(std::int32_t s, LatticePoint a) { return {s * a.i, s * a.j, s * a.k}; }
+
+/// The least number of trailing zero bits of the three coordinates; 32 for the origin.
+constexpr int trailing_zeros(LatticePoint p) {
+  return std::countr_zero(static_cast<std::uint32_t>(p.i | p.j | p.k));
+}
+
+/// A 64-bit hash; its high bits are good for points of every scale.
+constexpr std::uint64_t hash_value(LatticePoint p) {
+  std::uint64_t h = static_cast<std::uint32_t>(p.i) * 0x9e3779b97f4a7c15ull;
+  h += static_cast<std::uint32_t>(p.j) * 0xc2b2ae3d27d4eb4full;
+  h += static_cast<std::uint32_t>(p.k) * 0x165667b19e3779f9ull;
+  h ^= h >> 32;
+  return h * 0xd6e8feb86659fd93ull;
+}
+
+}  // namespace adamas
+
+template <>
+struct std::hash<adamas::LatticePoint> {
+  std::size_t operator()(adamas::LatticePoint p) const noexcept {
+    const std::uint64_t h = adamas::hash_value(p);
+    return h ^ (h >> 29);
+  }
+};

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/error.h"
+#include "interfaces/hierarchy/chunked_array.h"
+
+namespace adamas {
+
+/// Elements with 32-bit indices and stable addresses; slots of released elements are reused, the last
+/// released first. A default Element is a free slot, and `is_free()` tells.
+template <class Element>
+class ElementPool {
+ public:
+  /// Index of a free slot, which the caller fills at once. Throws Error when there are `limit` elements
+  /// already.
+  std::uint32_t allocate(std::uint32_t limit) {
+    if (!free_.empty()) {
+      const std::uint32_t index = free_.back();
+      free_.pop_back();
+      return index;
+    }
+    if (slots_ >= limit) fail("hierarchy: expected at most {} elements of a kind, found more", limit);
+    elements_.grow(slots_ + std::size_t{1});
+    return slots_++;
+  }
+  void release(std::uint32_t index) {
+    elements_[index] = Element{};
+    free_.push_back(index);
+  }
+
+  Element& operator[](std::uint32_t index) { return elements_[index]; }
+  const Element& operator[](std::uint32_t index) const { return elements_[index]; }
+
+  /// Number of elements.
+  [[nodiscard]] std::size_t size() const { return slots_ - free_.size(); }
+  /// Indices are below this.
+  [[nodiscard]] std::uint32_t slots() const { return slots_; }
+  [[nodiscard]] std::size_t bytes() const {
+    return elements_.bytes() + free_.capacity() * sizeof(std::uint32_t);
+  }
+
+  /// Calls fn(index) for all elements, by index.
+  template <class Fn>
+  void for_each(Fn&& fn) const {
+    for (std::uint32_t index = 0; index < slots_; ++index) {
+      if (!elements_[index].is_free()) fn(index);
+    }
+  }
+
+ private:
+  ChunkedArray<Element> elements_;
+  std::vector<std::uint32_t> free_;
+  std::uint32_t slots_ = 0;
+};
+
+}  // namespace adamas

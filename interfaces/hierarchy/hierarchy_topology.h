@@ -1,0 +1,200 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/geometry/vec3.h"
+#include "core/lattice/diamond.h"
+#include "core/lattice/domain.h"
+#include "core/lattice/lattice_map.h"
+#include "interfaces/hierarchy/element_pool.h"
+
+namespace adamas {
+
+/// One bisection of a tetrahedron.
+struct Split {
+  TetrahedronId parent;
+  std::array<TetrahedronId, 2> children;
+  VertexId vertex;  ///< the new vertex, shared by all bisections of the diamond
+};
+
+/// The linked vertices, tetrahedra and diamonds of a pointer-based hierarchy (SPEC 1, D 2): a binary tree of
+/// tetrahedra per root, whose leaves are a conforming mesh of the domain. It reads as a whole; Hierarchy adds
+/// payloads and changes it. Ids are reused after a merge. Diamonds are those that have a tetrahedron in the
+/// tree.
+class HierarchyTopology {
+ public:
+  [[nodiscard]] const Domain& domain() const { return domain_; }
+
+  [[nodiscard]] LatticePoint lattice(VertexId v) const { return vertices_[v.value].point; }
+  [[nodiscard]] Vec3 position(VertexId v) const { return domain_.position(lattice(v)); }
+
+  /// Six for each root cube; cubes by x, then y, then z.
+  [[nodiscard]] const std::vector<TetrahedronId>& roots() const { return roots_; }
+  /// Positively oriented; the split edge comes first.
+  [[nodiscard]] std::array<VertexId, 4> vertices(TetrahedronId t) const { return node(t).vertices; }
+  [[nodiscard]] std::array<VertexId, 2> split_edge(TetrahedronId t) const {
+    return {node(t).vertices[0], node(t).vertices[1]};
+  }
+  [[nodiscard]] bool is_leaf(TetrahedronId t) const { return node(t).children == kNoPair; }
+  /// Invalid for a root.
+  [[nodiscard]] TetrahedronId parent(TetrahedronId t) const { return pairs_[t.value / 2].parent; }
+  /// Of a tetrahedron that is no leaf; the first keeps the first end of the split edge.
+  [[nodiscard]] std::array<TetrahedronId, 2> children(TetrahedronId t) const {
+    ADAMAS_ASSERT(!is_leaf(t));
+    return tetrahedra_of(node(t).children);
+  }
+  /// The diamond that bisects the tetrahedron.
+  [[nodiscard]] DiamondId diamond(TetrahedronId t) const { return node(t).diamond; }
+  [[nodiscard]] int level(TetrahedronId t) const { return kRootBits - 1 - record(diamond(t)).bits; }
+  [[nodiscard]] int phase(TetrahedronId t) const { return record(diamond(t)).type().phase; }
+  /// Whether the lattice is deep enough.
+  [[nodiscard]] bool can_split(TetrahedronId t) const {
+    return record(diamond(t)).bits >= kRootBits - domain_.depth();
+  }
+
+  [[nodiscard]] LatticePoint lattice(DiamondId d) const { return record(d).point; }
+  [[nodiscard]] bool is_split(DiamondId d) const { return record(d).vertex.valid(); }
+  /// Invalid for a diamond that is not split.
+  [[nodiscard]] VertexId split_vertex(DiamondId d) const { return record(d).vertex; }
+  /// Whether all its tetrahedra are there, that is, all its parents are split.
+  [[nodiscard]] bool is_complete(DiamondId d) const { return record(d).count == record(d).full_count; }
+  /// Those that are there, leaves or, in a split diamond, bisected.
+  [[nodiscard]] SmallList<TetrahedronId, 8> tetrahedra(DiamondId d) const;
+  /// Whether it is split and none of its children is.
+  [[nodiscard]] bool can_merge(DiamondId d) const;
+
+  /// The diamond at a lattice point; invalid where it has no tetrahedron in the tree.
+  [[nodiscard]] DiamondId find(LatticePoint p) const {
+    const DiamondId* found = diamond_at_.find(p);
+    return found != nullptr ? *found : DiamondId();
+  }
+  [[nodiscard]] bool is_split(LatticePoint p) const {
+    const DiamondId d = find(p);
+    return d.valid() && is_split(d);
+  }
+
+  [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
+  /// Of all tetrahedra of the tree.
+  [[nodiscard]] std::size_t tetrahedron_count() const { return 2 * pairs_.size(); }
+  [[nodiscard]] std::size_t vertex_count() const { return vertices_.size(); }
+  [[nodiscard]] std::size_t diamond_count() const { return diamonds_.size(); }
+  /// Vertex ids are below this; for arrays indexed by VertexId.
+  [[nodiscard]] std::size_t vertex_slots() const { return vertices_.slots(); }
+  /// Tetrahedron ids are below this.
+  [[nodiscard]] std::size_t tetrahedron_slots() const { return std::size_t{2} * pairs_.slots(); }
+  /// Memory held, payloads apart.
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// Calls fn(TetrahedronId) for the leaves, depth first from the roots: the same order for the same mesh,
+  /// whatever its history. The hierarchy must not change meanwhile.
+  template <class Fn>
+  void for_each_leaf(Fn&& fn) const;
+  /// Calls fn(VertexId), by id.
+  template <class Fn>
+  void for_each_vertex(Fn&& fn) const {
+    vertices_.for_each([&fn](std::uint32_t i) { fn(VertexId(i)); });
+  }
+  /// Calls fn(DiamondId), by id.
+  template <class Fn>
+  void for_each_diamond(Fn&& fn) const {
+    diamonds_.for_each([&fn](std::uint32_t i) { fn(DiamondId(i)); });
+  }
+
+  /// Throws std::logic_error that names the first broken law of SPEC 1: links, orientation, diamonds complete
+  /// where split, no hanging vertex, integer volumes that add up to the domain's.
+  void validate() const;
+  /// Of the mesh of leaves alone: the same whatever the order of elements and the history of ids.
+  [[nodiscard]] std::uint64_t checksum() const;
+
+ protected:
+  explicit HierarchyTopology(const Domain& domain);
+  ~HierarchyTopology() = default;
+
+  /// Splits the leaf's diamond, its missing ancestors first, and appends all bisections. Does nothing for a
+  /// tetrahedron that is no leaf or that can_split() refuses.
+  void split_leaf(TetrahedronId leaf, std::vector<Split>& done);
+  /// Removes the children of a diamond that can_merge(), and its split vertex.
+  void merge_diamond(DiamondId d);
+
+ private:
+  friend struct HierarchyTestAccess;
+  static constexpr std::uint32_t kNoPair = 0xffffffffu;
+  static constexpr LatticePoint kNowhere{-1, -1, -1};
+
+  struct Vertex {
+    LatticePoint point = kNowhere;
+    [[nodiscard]] bool is_free() const { return point == kNowhere; }
+  };
+  struct Node {
+    std::array<VertexId, 4> vertices;
+    DiamondId diamond;
+    std::uint32_t children = kNoPair;
+  };
+  /// Two siblings: tetrahedra 2 i and 2 i + 1 of pair i.
+  struct Pair {
+    std::array<Node, 2> nodes;
+    TetrahedronId parent;
+    std::array<std::uint8_t, 2> slots{};  ///< places in the diamonds' lists
+    [[nodiscard]] bool is_free() const { return !nodes[0].diamond.valid(); }
+  };
+  struct Record {
+    LatticePoint point = kNowhere;
+    VertexId vertex;
+    std::array<TetrahedronId, 8> tetrahedra;
+    std::uint8_t count = 0;
+    std::uint8_t full_count = 0;
+    std::uint8_t type_index = 0;
+    std::uint8_t bits = 0;
+    [[nodiscard]] bool is_free() const { return point == kNowhere; }
+    [[nodiscard]] const DiamondType& type() const { return kDiamondTypes[type_index]; }
+  };
+
+  static std::array<TetrahedronId, 2> tetrahedra_of(std::uint32_t pair) {
+    return {TetrahedronId(2 * pair), TetrahedronId(2 * pair + 1)};
+  }
+  Node& node(TetrahedronId t) { return pairs_[t.value / 2].nodes[t.value % 2]; }
+  [[nodiscard]] const Node& node(TetrahedronId t) const { return pairs_[t.value / 2].nodes[t.value % 2]; }
+  Record& record(DiamondId d) { return diamonds_[d.value]; }
+  [[nodiscard]] const Record& record(DiamondId d) const { return diamonds_[d.value]; }
+
+  VertexId make_vertex(LatticePoint p);
+  void make_root_cube(LatticePoint cube);
+  DiamondId find_or_make_diamond(LatticePoint p, std::size_t type_index, int bits);
+  void attach(TetrahedronId t, DiamondId d, std::uint8_t slot);
+  void detach(TetrahedronId t);
+  void split_complete(DiamondId d, std::vector<Split>& done);
+  void link_children(const Record& diamond, const std::array<std::uint32_t, 8>& pairs);
+
+  void validate_tree() const;
+  void validate_tetrahedron(TetrahedronId t) const;
+  void validate_diamond(DiamondId d) const;
+  void validate_mesh() const;
+
+  Domain domain_;
+  ElementPool<Vertex> vertices_;
+  ElementPool<Pair> pairs_;
+  ElementPool<Record> diamonds_;
+  LatticeMap<DiamondId> diamond_at_;
+  std::vector<TetrahedronId> roots_;
+  std::size_t leaf_count_ = 0;
+};
+
+template <class Fn>
+void HierarchyTopology::for_each_leaf(Fn&& fn) const {
+  for (const TetrahedronId root : roots_) {
+    TetrahedronId t = root;
+    for (;;) {
+      while (!is_leaf(t)) t = children(t)[0];
+      fn(t);
+      while (t != root && t.value % 2 == 1) t = parent(t);
+      if (t == root) break;
+      t = TetrahedronId(t.value + 1);
+    }
+  }
+}
+
+}  // namespace adamas
