@@ -1,0 +1,50 @@
+#include "core/lattice/lattice_map.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+namespace adamas {
+namespace {
+
+TEST(LatticeMap, AgreesWithAnOrderedMapUnderRandomInsertionsAndRemovals) {
+  std::mt19937 random(7);
+  LatticeMap<int> table;
+  std::map<LatticePoint, int> expected;
+  for (int step = 0; step < 200000; ++step) {
+    // Few distinct points at several scales, so that they collide and come again; fewer and fewer are kept at
+    // the end.
+    const int shift = static_cast<int>(random() % 3) * 10;
+    const auto coordinate = [&] { return static_cast<std::int32_t>(random() % 11) << shift; };
+    const LatticePoint p{coordinate(), coordinate(), coordinate()};
+    if (random() % 100 < (step < 100000 ? 60u : 30u)) {
+      const auto [value, is_new] = table.insert(p);
+      ASSERT_EQ(is_new, expected.find(p) == expected.end());
+      *value = expected[p] = step;
+    } else {
+      ASSERT_EQ(table.erase(p), expected.erase(p) == 1);
+    }
+    ASSERT_EQ(table.size(), expected.size());
+    const LatticePoint q{coordinate(), coordinate(), coordinate()};
+    const int* found = table.find(q);
+    const auto wanted = expected.find(q);
+    ASSERT_EQ(found != nullptr, wanted != expected.end());
+    if (found != nullptr) {
+      ASSERT_EQ(*found, wanted->second);
+    }
+  }
+  std::map<LatticePoint, int> listed;
+  table.for_each([&](LatticePoint p, int value) { EXPECT_TRUE(listed.emplace(p, value).second); });
+  EXPECT_EQ(listed, expected);
+}
+
+TEST(LatticeMap, NewEntriesHaveDefaultValues) {
+  LatticeMap<int> table;
+  *table.insert({1, 2, 3}).first = 5;
+  table.erase({1, 2, 3});
+  EXPECT_EQ(*table.insert({1, 2, 3}).first, 0);
+}
+
+}  // namespace
+}  // namespace adamas
