@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// Random numbers that are the same on every platform: a Weyl sequence through a mixing function.
+class RandomNumbers {
+ public:
+  explicit RandomNumbers(std::uint64_t seed) : state_(mix(seed + kIncrement)) {}
+
+  std::uint64_t bits() { return mix(state_ += kIncrement); }
+  /// In [0, 1).
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// In [0, count).
+  std::uint64_t below(std::uint64_t count) { return bits() % count; }
+  bool chance(double probability) { return uniform() < probability; }
+  /// Uniform in a box.
+  Vec3 point(const Box3& box) {
+    const double x = uniform(box.min.x, box.max.x), y = uniform(box.min.y, box.max.y);
+    return {x, y, uniform(box.min.z, box.max.z)};
+  }
+  /// Uniform on the unit sphere.
+  Vec3 direction() {
+    const double z = uniform(-1, 1), around = uniform(0, 2 * std::numbers::pi);
+    const double r = std::sqrt(1 - z * z);
+    return {r * std::cos(around), r * std::sin(around), z};
+  }
+
+ private:
+  static constexpr std::uint64_t kIncrement = 0x9e3779b97f4a7c15u;
+  static std::uint64_t mix(std::uint64_t z) {
+    z = (z ^ (z >> 32)) * 0xd6e8feb86659fd93u;
+    z = (z ^ (z >> 32)) * 0xd6e8feb86659fd93u;
+    return z ^ (z >> 32);
+  }
+  std::uint64_t state_;
+};
+
+}  // namespace adamas

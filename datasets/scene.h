@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/geometry/vec3.h"
+#include "datasets/scene_function.h"
+
+namespace adamas {
+
+/// One part of a material's region: where the least of its functions is the greatest over all candidates.
+struct SceneCandidate {
+  MaterialId owner;
+  std::vector<std::uint32_t> functions;  ///< indices, ascending
+};
+
+/// A whole sphere that is a true interface; used where a scene's interfaces are spheres only.
+struct SceneSphere {
+  Vec3 center;
+  double radius = 0;
+  MaterialId inside, outside;
+};
+
+/// What a scene is made of.
+struct SceneDescription {
+  std::string name;
+  Box3 box;
+  IdVector<MaterialId, std::string> materials;
+  std::vector<SceneFunction> functions;
+  std::vector<SceneCandidate> candidates;
+  /// Known volumes; empty where they have to be integrated.
+  IdVector<MaterialId, double> volumes;
+  /// All interfaces, where they are whole spheres inside the box.
+  std::vector<SceneSphere> spheres;
+
+  std::uint32_t add(const SceneFunction& function) {
+    functions.push_back(function);
+    return static_cast<std::uint32_t>(functions.size() - 1);
+  }
+};
+
+/// The analytic fields of each material; all have jumps at every interface.
+enum class SceneField { kConstant, kLinear, kSmooth };
+
+/// All fields with their names: "constant", "linear", "smooth".
+const std::array<std::pair<SceneField, std::string_view>, 3>& scene_fields();
+
+/// A domain divided among materials by an analytic rule: each candidate is the least of its functions, and
+/// the owner of a point is the owner of the candidate with the greatest value there (SPEC 2.3). Immutable.
+class Scene {
+ public:
+  /// Throws Error where the description has no volume, no candidate or an index out of range.
+  explicit Scene(SceneDescription description);
+
+  [[nodiscard]] const std::string& name() const { return data_.name; }
+  [[nodiscard]] const Box3& box() const { return data_.box; }
+  [[nodiscard]] const IdVector<MaterialId, std::string>& materials() const { return data_.materials; }
+  [[nodiscard]] const std::vector<SceneFunction>& functions() const { return data_.functions; }
+  [[nodiscard]] const std::vector<SceneCandidate>& candidates() const { return data_.candidates; }
+  [[nodiscard]] const std::vector<SceneSphere>& spheres() const { return data_.spheres; }
+
+  /// Owner of a point: greatest candidate, exact ties by the smaller index of the binding function.
+  [[nodiscard]] MaterialId owner(const Vec3& p) const;
+  /// Greatest value of the material's candidates.
+  [[nodiscard]] double value(MaterialId m, const Vec3& p) const;
+  /// Lipschitz bound of value(m, .).
+  [[nodiscard]] double lipschitz(MaterialId m) const;
+  /// Are all functions linear, so that cutting tetrahedra gives the exact regions?
+  [[nodiscard]] bool planar() const { return planar_; }
+
+  /// Volume of the material's region: analytic where the description knows it, else integrated on first need.
+  [[nodiscard]] double volume(MaterialId m) const;
+  /// Estimated absolute error of volume(m); round-off for known volumes.
+  [[nodiscard]] double volume_error(MaterialId m) const;
+
+  /// Value of a material's field; the field extends beyond the material's region.
+  [[nodiscard]] double field(SceneField field, MaterialId m, const Vec3& p) const;
+  [[nodiscard]] Vec3 field_gradient(SceneField field, MaterialId m, const Vec3& p) const;
+  /// By name; throws Error for a name that is not in scene_fields().
+  [[nodiscard]] double field(std::string_view name, MaterialId m, const Vec3& p) const;
+  [[nodiscard]] Vec3 field_gradient(std::string_view name, MaterialId m, const Vec3& p) const;
+
+ private:
+  struct Integrated {
+    std::once_flag once;
+    IdVector<MaterialId, double> volumes, errors;
+  };
+  const Integrated& integrated() const;
+  [[nodiscard]] SceneField field_by_name(std::string_view name) const;
+
+  SceneDescription data_;
+  bool planar_ = true;
+  std::shared_ptr<Integrated> integrated_;
+};
+
+/// How a named scene is placed.
+struct SceneOptions {
+  Box3 box{{0, 0, 0}, {1, 1, 1}};
+};
+
+/// Names make_scene knows (TARGETS, "Interfaces").
+std::vector<std::string> scene_names();
+
+/// A named scene. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`;
+/// other scenes ignore it. Lengths scale with the shortest side of the box. Throws Error for an unknown name
+/// and a box without volume.
+Scene make_scene(std::string_view name, std::uint64_t seed = 0, const SceneOptions& options = {});
+
+}  // namespace adamas

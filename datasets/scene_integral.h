@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/data/rectilinear_grid.h"
+#include "datasets/scene.h"
+
+namespace adamas {
+
+/// A grid of equal cells over a box. Throws Error where a dimension is zero.
+RectilinearGrid uniform_grid(const Box3& box, const std::array<std::size_t, 3>& cells);
+
+/// Volumes of a scene's materials in its box.
+struct SceneIntegral {
+  IdVector<MaterialId, double> volumes;
+  /// Sum over the cells of the differences between the last two depths: zero to round-off for planes.
+  IdVector<MaterialId, double> errors;
+};
+
+/// Integrates the materials' volume fractions over each cell of a grid (see CellFractions) and hands them to
+/// `sink(site, fractions)`; calls for different sites come from several threads. The same result on any
+/// number of threads.
+SceneIntegral integrate_scene(const Scene& scene, const RectilinearGrid& grid, int depth,
+                              const std::function<void(std::size_t, const std::vector<double>&)>& sink,
+                              Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/interface_mesh.h"
+#include "datasets/scene.h"
+
+namespace adamas {
+
+/// The interfaces of a scene as a welded triangle network that ends on the box. Exact, to round-off, for
+/// planar scenes. Others are extracted on a lattice of spacing at most `resolution`, six tetrahedra to a
+/// cube, with functions interpolated linearly, which is off by about resolution^2 times the curvature; where
+/// the interfaces are whole spheres the vertices are then moved onto them. Throws Error where the resolution
+/// is not positive or gives more than 4096 cells along an axis.
+InterfaceMesh scene_interfaces(const Scene& scene, double resolution,
+                               Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas

@@ -1,0 +1,106 @@
+#include "datasets/scene_sampling.h"
+
+#include <unistd.h>
+
+#include "core/base/error.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr double kRoundOff = 1e-12;
+constexpr int kGreatestDepth = 8;
+constexpr double kGibibyte = 1024.0 * 1024 * 1024;
+
+void check_options(const Scene& scene, const std::array<std::size_t, 3>& dims,
+                   const SamplingOptions& options) {
+  if (dims[0] == 0 || dims[1] == 0 || dims[2] == 0) {
+    fail("scene {}: expected at least one cell along each axis, found {}x{}x{}", scene.name(), dims[0],
+         dims[1], dims[2]);
+  }
+  if (options.depth < 1 || options.depth > kGreatestDepth) {
+    fail("scene {}: expected a depth from 1 to {}, found {}", scene.name(), kGreatestDepth, options.depth);
+  }
+  double cells = 1;
+  for (const std::size_t n : dims) cells *= static_cast<double>(n);
+  const double materials = static_cast<double>(scene.materials().size());
+  const double fields = options.fields ? static_cast<double>(scene_fields().size()) : 0;
+  const double needed = cells * sizeof(float) * (materials + fields * (materials + 1));
+  const double memory =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (needed > memory) {
+    fail(
+        "scene {}: expected dimensions that fit in memory ({:.0f} GiB), found {}x{}x{}, which need {:.0f} "
+        "GiB",
+        scene.name(), memory / kGibibyte, dims[0], dims[1], dims[2], needed / kGibibyte);
+  }
+}
+
+/// The data under construction: one cell's part at a time.
+class Sampler {
+ public:
+  Sampler(const Scene& scene, MultiMaterialData& data, bool fields) : scene_(scene), data_(data) {
+    const std::size_t count = data.grid.site_count();
+    data.fractions.assign(scene.materials().size(), std::vector<float>(count));
+    if (!fields) return;
+    for (const auto& [field, name] : scene_fields()) {
+      Field own;
+      own.name = name;
+      own.material_values.assign(scene.materials().size(), std::vector<float>(count));
+      data.fields.push_back(std::move(own));
+    }
+    for (const auto& [field, name] : scene_fields()) {
+      Field mixed;
+      mixed.name = "mixed " + std::string(name);
+      mixed.values.resize(count);
+      data.fields.push_back(std::move(mixed));
+    }
+  }
+
+  void set(std::size_t site, const std::vector<double>& fractions) {
+    for (std::size_t m = 0; m < fractions.size(); ++m) {
+      data_.fractions[MaterialId(m)][site] =
+          fractions[m] < kRoundOff ? 0.0f : static_cast<float>(fractions[m]);
+    }
+    if (data_.fields.empty()) return;
+    const RectilinearGrid& grid = data_.grid;
+    const std::size_t nx = grid.sites(0), ny = grid.sites(1);
+    const Vec3 center = grid.site(site % nx, site / nx % ny, site / (nx * ny));
+    const auto& fields = scene_fields();
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      double sum = 0, weights = 0;
+      for (MaterialId m(0); m.value < fractions.size(); ++m.value) {
+        if (fractions[m.value] < kRoundOff) continue;
+        const double value = scene_.field(fields[f].first, m, center);
+        data_.fields[f].material_values[m][site] = static_cast<float>(value);
+        sum += fractions[m.value] * value;
+        weights += fractions[m.value];
+      }
+      data_.fields[fields.size() + f].values[site] = static_cast<float>(sum / weights);
+    }
+  }
+
+ private:
+  const Scene& scene_;
+  MultiMaterialData& data_;
+};
+
+}  // namespace
+
+MultiMaterialData sample_scene(const Scene& scene, const std::array<std::size_t, 3>& dims,
+                               const SamplingOptions& options, Progress& progress, SceneIntegral* integral) {
+  check_options(scene, dims, options);
+  MultiMaterialData data;
+  data.source = "scene " + scene.name();
+  data.grid = uniform_grid(scene.box(), dims);
+  data.materials = scene.materials();
+  Sampler sampler(scene, data, options.fields);
+  SceneIntegral sums = integrate_scene(
+      scene, data.grid, options.depth,
+      [&sampler](std::size_t site, const std::vector<double>& fractions) { sampler.set(site, fractions); },
+      progress);
+  if (integral != nullptr) *integral = std::move(sums);
+  return data;
+}
+
+}  // namespace adamas

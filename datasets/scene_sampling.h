@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/base/progress.h"
+#include "core/data/multi_material_data.h"
+#include "datasets/scene.h"
+#include "datasets/scene_integral.h"
+
+namespace adamas {
+
+struct SamplingOptions {
+  /// Divisions of a cell that curved interfaces cross, 1 to 8: errors fall by sixteen with each (see
+  /// CellFractions).
+  int depth = 3;
+  /// Whether to add the fields besides the volume fractions.
+  bool fields = true;
+};
+
+/// Volume fractions of a scene on dims[0] x dims[1] x dims[2] equal cells, and its fields: "constant",
+/// "linear" and "smooth" per material, with the value at the cell's centre wherever the material has a
+/// fraction (zero elsewhere), and "mixed constant", "mixed linear" and "mixed smooth", averaged by volume.
+/// Fractions below 1e-12 are round-off and set to zero. `integral`, where given, receives the volumes before
+/// rounding to float, and their errors. Throws Error for zero dimensions, a depth out of range and more data
+/// than the machine's memory.
+MultiMaterialData sample_scene(const Scene& scene, const std::array<std::size_t, 3>& dims,
+                               const SamplingOptions& options = {},
+                               Progress& progress = SilentProgress::instance(),
+                               SceneIntegral* integral = nullptr);
+
+}  // namespace adamas
