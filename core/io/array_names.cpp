@@ -1,0 +1,133 @@
+#include "core/io/array_names.h"
+
+#include <cctype>
+
+namespace adamas {
+
+namespace {
+
+bool is_separator(char c) { return c == ' ' || c == '_' || c == '-' || c == ':' || c == '.' || c == '/'; }
+
+std::string trimmed(std::string_view text) {
+  while (!text.empty() && is_separator(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_separator(text.back())) text.remove_suffix(1);
+  return std::string(text);
+}
+
+char plain(char c) { return c == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+bool alike(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (plain(a[i]) != plain(b[i])) return false;
+  }
+  return true;
+}
+
+/// Position of `word` in the text, spelt alike; npos where there is none.
+std::size_t find_alike(std::string_view text, std::string_view word) {
+  for (std::size_t at = 0; at + word.size() <= text.size(); ++at) {
+    if (alike(text.substr(at, word.size()), word)) return at;
+  }
+  return std::string_view::npos;
+}
+
+/// Removes "for", "of", "in" at the text's end or start.
+std::string without_preposition(std::string text) {
+  for (const std::string_view word : {"for", "of", "in"}) {
+    const std::size_t n = word.size();
+    if (text.size() > n && alike(std::string_view(text).substr(0, n), word) && is_separator(text[n])) {
+      return trimmed(std::string_view(text).substr(n));
+    }
+    if (text.size() > n && alike(std::string_view(text).substr(text.size() - n), word) &&
+        is_separator(text[text.size() - n - 1])) {
+      return trimmed(std::string_view(text).substr(0, text.size() - n));
+    }
+  }
+  return text;
+}
+
+/// Moves a unit at the name's end, "(m/s)" or "[m/s]", out of the name.
+std::string split_unit(std::string& name) {
+  if (name.size() < 3 || (name.back() != ')' && name.back() != ']')) return {};
+  const std::size_t open = name.rfind(name.back() == ')' ? '(' : '[');
+  if (open == std::string::npos || open == 0 || (name.back() == ')' && name[open - 1] != ' ')) return {};
+  std::string unit = name.substr(open + 1, name.size() - open - 2);
+  name = trimmed(std::string_view(name).substr(0, open));
+  return unit;
+}
+
+/// Takes a material's name off either end of the text.
+std::optional<std::string> without_material(std::string_view text, std::string_view material) {
+  const std::size_t n = material.size();
+  if (n == 0 || text.size() <= n + 1) return {};
+  if (alike(text.substr(text.size() - n), material) && is_separator(text[text.size() - n - 1])) {
+    return without_preposition(trimmed(text.substr(0, text.size() - n)));
+  }
+  if (alike(text.substr(0, n), material) && is_separator(text[n])) return trimmed(text.substr(n));
+  return {};
+}
+
+std::optional<int> split_axis(std::string& name) {
+  if (name.size() < 3) return {};
+  const auto axis_of = [](char c) -> std::optional<int> {
+    const char lower = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return lower >= 'x' && lower <= 'z' ? std::optional<int>(lower - 'x') : std::nullopt;
+  };
+  std::optional<int> axis;
+  if (is_separator(name[1])) axis = axis_of(name[0]);
+  if (axis) {
+    name = trimmed(std::string_view(name).substr(2));
+  } else if (is_separator(name[name.size() - 2])) {
+    axis = axis_of(name.back());
+    if (axis) name = trimmed(std::string_view(name).substr(0, name.size() - 2));
+  }
+  return axis;
+}
+
+}  // namespace
+
+std::string plain_name(std::string_view name) {
+  std::string result;
+  for (const char c : name) {
+    const char p = plain(c);
+    if (p != ' ' || (!result.empty() && result.back() != ' ')) result += p;
+  }
+  while (!result.empty() && result.back() == ' ') result.pop_back();
+  return result;
+}
+
+std::optional<std::string> fraction_material(const std::string& array) {
+  for (const std::string_view pattern :
+       {"volume fractions", "volume fraction", "volumefraction", "vol frac"}) {
+    const std::size_t at = find_alike(array, pattern);
+    if (at == std::string::npos) continue;
+    const std::string before = trimmed(std::string_view(array).substr(0, at));
+    const std::string after = trimmed(std::string_view(array).substr(at + pattern.size()));
+    if (!before.empty() && after.empty()) return without_preposition(before);
+    if (before.empty() && !after.empty()) return without_preposition(after);
+    if (!before.empty()) return before + " " + without_preposition(after);
+  }
+  return {};
+}
+
+FieldName parse_field_name(const std::string& array, const std::vector<std::string>& materials) {
+  FieldName field;
+  field.name = array;
+  field.unit = split_unit(field.name);
+  std::size_t longest = 0;
+  const std::string whole = field.name;
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    if (materials[m].size() <= longest) continue;
+    const auto rest = without_material(whole, materials[m]);
+    if (!rest || rest->empty()) continue;
+    longest = materials[m].size();
+    field.name = *rest;
+    field.material = m;
+  }
+  if (field.material && field.unit.empty()) field.unit = split_unit(field.name);
+  field.axis = split_axis(field.name);
+  return field;
+}
+
+}  // namespace adamas

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace adamas {
+
+/// Lower case, with '_' as ' ' and runs of spaces as one: names that differ in these only are alike.
+std::string plain_name(std::string_view name);
+
+/// "Volume Fraction for Armor Plate", "Void Volume Fraction", "volume_fraction_steel": the material's name,
+/// as it is written; nothing for another array.
+std::optional<std::string> fraction_material(const std::string& array);
+
+/// What an array's name says: "Mass for Steel [g]" is the field "Mass", of material index 0, in "g".
+struct FieldName {
+  std::string name;
+  std::string unit;                     ///< empty where none is stated
+  std::optional<std::size_t> material;  ///< index into the materials given; nothing for a mixed field
+  std::optional<int> axis;              ///< of "X Velocity" or "velocity_x"; the name is then without it
+};
+FieldName parse_field_name(const std::string& array, const std::vector<std::string>& materials);
+
+}  // namespace adamas

@@ -1,0 +1,186 @@
+#include "core/io/field_assembly.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/io/array_names.h"
+#include "core/io/centering.h"
+
+namespace adamas {
+
+namespace {
+
+/// An array with what its name says.
+struct Part {
+  FieldName name;
+  int components = 1;
+  std::vector<float> values;
+};
+
+/// Joins x, y and z parts of one name and material to vectors; a part that lacks the others keeps its full
+/// name.
+std::vector<Part> join_axes(std::vector<Part> parts) {
+  std::map<std::pair<std::string, std::size_t>, std::array<int, 3>> triples;
+  const auto key = [](const Part& part) {
+    return std::pair(plain_name(part.name.name), part.name.material.value_or(static_cast<std::size_t>(-1)));
+  };
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!parts[i].name.axis) continue;
+    auto& slots = triples.try_emplace(key(parts[i]), std::array<int, 3>{-1, -1, -1}).first->second;
+    slots[static_cast<std::size_t>(*parts[i].name.axis)] = static_cast<int>(i);
+  }
+  std::vector<Part> result;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Part& part = parts[i];
+    if (part.name.axis) {
+      const auto& slots = triples.at(key(part));
+      const bool whole = std::all_of(slots.begin(), slots.end(), [](int slot) { return slot >= 0; });
+      if (whole) {
+        const int first = *std::min_element(slots.begin(), slots.end());
+        if (static_cast<int>(i) != first) continue;
+        Part vector{part.name, 3, std::vector<float>(part.values.size() * 3)};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const auto& values = parts[static_cast<std::size_t>(slots[axis])].values;
+          for (std::size_t site = 0; site < values.size(); ++site)
+            vector.values[3 * site + axis] = values[site];
+        }
+        result.push_back(std::move(vector));
+        continue;
+      }
+      part.name.name = std::string(1, "XYZ"[*part.name.axis]) + " " + part.name.name;
+    }
+    result.push_back(std::move(part));
+  }
+  return result;
+}
+
+Field& field_for(const Part& part, MultiMaterialData& data) {
+  const std::string name = plain_name(part.name.name);
+  if (part.name.material) {
+    for (Field& field : data.fields) {
+      if (field.per_material() && plain_name(field.name) == name && field.components == part.components &&
+          field.material_values[MaterialId(*part.name.material)].empty()) {
+        return field;
+      }
+    }
+  }
+  Field field;
+  field.name = part.name.name;
+  field.unit = part.name.unit;
+  field.components = part.components;
+  if (part.name.material) field.material_values.resize(data.materials.size());
+  data.fields.push_back(std::move(field));
+  return data.fields.back();
+}
+
+template <class T>
+std::vector<T> cropped(const std::vector<T>& values, const RectilinearGrid& grid,
+                       const std::array<std::size_t, 3>& begin, const std::array<std::size_t, 3>& end) {
+  const std::size_t components = values.size() / grid.site_count();
+  std::vector<T> result;
+  result.reserve((end[0] - begin[0]) * (end[1] - begin[1]) * (end[2] - begin[2]) * components);
+  for (std::size_t k = begin[2]; k < end[2]; ++k) {
+    for (std::size_t j = begin[1]; j < end[1]; ++j) {
+      const auto row =
+          values.begin() + static_cast<std::ptrdiff_t>(grid.site_index(begin[0], j, k) * components);
+      result.insert(result.end(), row, row + static_cast<std::ptrdiff_t>((end[0] - begin[0]) * components));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data) {
+  std::vector<Part> parts;
+  for (GridArray& array : arrays) {
+    Part part{parse_field_name(array.name, data.materials), array.components, {}};
+    if (array.components != 1 && part.name.axis) {
+      part.name.name = std::string(1, "XYZ"[*part.name.axis]) + " " + part.name.name;
+      part.name.axis.reset();
+    }
+    const RectilinearGrid from{data.grid.nodes, array.centering};
+    const Centering to = data.grid.centering;
+    part.values = array.take_floats();
+    if (to != from.centering) {
+      part.values = average_to(to, from, static_cast<std::size_t>(array.components), part.values);
+    }
+    parts.push_back(std::move(part));
+  }
+  for (Part& part : join_axes(std::move(parts))) {
+    Field& field = field_for(part, data);
+    if (part.name.material) {
+      field.material_values[MaterialId(*part.name.material)] = std::move(part.values);
+    } else {
+      field.values = std::move(part.values);
+    }
+  }
+}
+
+void make_intensive(const std::string& name, MultiMaterialData& data) {
+  bool found = false;
+  for (Field& field : data.fields) {
+    if (plain_name(field.name) != plain_name(name)) continue;
+    found = true;
+    const auto divide = [&](std::vector<float>& values, const auto& fraction) {
+      if (values.empty()) return;
+      const auto components = static_cast<std::size_t>(field.components);
+      const RectilinearGrid& grid = data.grid;
+      for (std::size_t k = 0; k < grid.sites(2); ++k) {
+        for (std::size_t j = 0; j < grid.sites(1); ++j) {
+          for (std::size_t i = 0; i < grid.sites(0); ++i) {
+            const std::size_t site = grid.site_index(i, j, k);
+            const double volume = grid.site_volume(i, j, k) * fraction(site);
+            for (std::size_t c = 0; c < components; ++c) {
+              float& value = values[site * components + c];
+              value = volume > 0 ? static_cast<float>(static_cast<double>(value) / volume) : 0.0f;
+            }
+          }
+        }
+      }
+    };
+    divide(field.values, [](std::size_t) { return 1.0; });
+    for (MaterialId m(0); m.value < field.material_values.size(); ++m.value) {
+      divide(field.material_values[m],
+             [&data, m](std::size_t site) { return static_cast<double>(data.fraction(m, site)); });
+    }
+  }
+  if (!found)
+    fail("{}: expected a field '{}' to divide by volume, found none of that name", data.source, name);
+}
+
+void crop(const std::array<double, 6>& box, MultiMaterialData& data) {
+  const RectilinearGrid& grid = data.grid;
+  std::array<std::size_t, 3> begin{}, end{};
+  RectilinearGrid result;
+  result.centering = grid.centering;
+  const std::size_t least = grid.centering == Centering::kCells ? 1 : 2;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int a = static_cast<int>(axis);
+    const double low = box[2 * axis], high = box[2 * axis + 1];
+    while (begin[axis] < grid.sites(a) && !(grid.site_coordinate(a, begin[axis]) >= low)) ++begin[axis];
+    end[axis] = begin[axis];
+    while (end[axis] < grid.sites(a) && grid.site_coordinate(a, end[axis]) <= high) ++end[axis];
+    if (end[axis] - begin[axis] < least) {
+      fail("{}: region: expected at least {} site(s) in [{}, {}] along {}, found {}", data.source, least, low,
+           high, "xyz"[axis], end[axis] - begin[axis]);
+    }
+    const std::size_t last = grid.centering == Centering::kCells ? end[axis] + 1 : end[axis];
+    const auto nodes = grid.nodes[axis].begin();
+    result.nodes[axis].assign(nodes + static_cast<std::ptrdiff_t>(begin[axis]),
+                              nodes + static_cast<std::ptrdiff_t>(last));
+  }
+  const auto cut = [&](auto& values) {
+    if (!values.empty()) values = cropped(values, grid, begin, end);
+  };
+  cut(data.labels);
+  for (auto& values : data.fractions) cut(values);
+  for (Field& field : data.fields) {
+    cut(field.values);
+    for (auto& values : field.material_values) cut(values);
+  }
+  data.grid = std::move(result);
+}
+
+}  // namespace adamas

@@ -1,0 +1,122 @@
+#include "core/io/file_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/io/array_names.h"
+#include "core/io/grid_file.h"
+#include "core/io/input_file.h"
+#include "core/io/interface_mesh_io.h"
+#include "core/io/polygon_soup.h"
+#include "core/io/unstructured_mesh_io.h"
+
+namespace adamas {
+
+namespace {
+
+template <class T>
+void set_range(const std::vector<T>& values, ArraySummary& summary) {
+  summary.count = values.size();
+  summary.min = std::numeric_limits<double>::infinity();
+  summary.max = -summary.min;
+  if constexpr (std::is_arithmetic_v<T>) {
+    for (const T v : values) {
+      const auto value = static_cast<double>(v);
+      if (!std::isfinite(value)) continue;
+      summary.min = std::min(summary.min, value);
+      summary.max = std::max(summary.max, value);
+    }
+  }
+}
+
+void set_points(const std::vector<Vec3>& points, FileSummary& summary) {
+  summary.points = points.size();
+  for (const Vec3& p : points) summary.box.extend(p);
+}
+
+FileSummary summarize_grid(const std::filesystem::path& path) {
+  const GridFile file = read_grid_file(path);
+  FileSummary summary;
+  summary.kind = file.kind;
+  summary.points = summary.cells = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& nodes = file.nodes[axis];
+    summary.nodes[axis] = nodes.size();
+    summary.points *= nodes.size();
+    summary.cells *= nodes.size() - std::min<std::size_t>(nodes.size(), 1);
+  }
+  if (summary.points > 0) {
+    const auto corner = [&file](bool last) {
+      const auto at = [&](std::size_t axis) {
+        return last ? file.nodes[axis].back() : file.nodes[axis].front();
+      };
+      return Vec3{at(0), at(1), at(2)};
+    };
+    summary.box.extend(corner(false));
+    summary.box.extend(corner(true));
+  }
+  summary.materials = file.material_names;
+  for (const GridArray& array : file.arrays) {
+    ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
+                      array.components};
+    std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
+    summary.arrays.push_back(std::move(item));
+    if (const auto material = fraction_material(array.name)) summary.materials.push_back(*material);
+  }
+  return summary;
+}
+
+void add_arrays(const char* of, const std::vector<NamedArray>& arrays, FileSummary& summary) {
+  constexpr std::array kTypes{"float64", "float32", "int32", "uint8", "string"};
+  for (const NamedArray& array : arrays) {
+    ArraySummary item{array.name, kTypes.at(array.values.index()), of, array.components};
+    std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
+    summary.arrays.push_back(std::move(item));
+    const auto* names = std::get_if<std::vector<std::string>>(&array.values);
+    if (names != nullptr && array.name == "material_names") summary.materials = *names;
+  }
+}
+
+FileSummary summarize_mesh(const std::filesystem::path& path) {
+  const UnstructuredMesh mesh = read_unstructured_mesh(path);
+  FileSummary summary;
+  summary.kind = mesh.kind == CellKind::kTetrahedra ? "tetrahedra"
+                 : mesh.kind == CellKind::kPolygons ? "polygons"
+                                                    : "lines";
+  set_points(mesh.points, summary);
+  summary.cells = mesh.cell_count();
+  add_arrays("points", mesh.point_arrays, summary);
+  add_arrays("cells", mesh.cell_arrays, summary);
+  add_arrays("mesh", mesh.field_arrays, summary);
+  return summary;
+}
+
+}  // namespace
+
+FileSummary summarize_file(const std::filesystem::path& path) {
+  const std::string extension = file_extension(path);
+  const auto one_of = [&extension](std::initializer_list<const char*> list) {
+    return std::find(list.begin(), list.end(), extension) != list.end();
+  };
+  if (one_of({".vtu", ".vtp"})) return summarize_mesh(path);
+  FileSummary summary;
+  if (one_of({".arec", ".txt"})) {
+    const InterfaceMesh mesh = read_labelled_network(path);
+    summary.kind = "labelled network";
+    set_points(mesh.points, summary);
+    summary.cells = mesh.triangles.size();
+    summary.materials = mesh.materials;
+    return summary;
+  }
+  if (one_of({".obj", ".off", ".ply", ".stl"})) {
+    const PolygonSoup soup = read_polygon_soup(path);
+    summary.kind = "surface";
+    set_points(soup.points, summary);
+    summary.cells = soup.offsets.size() - 1;
+    return summary;
+  }
+  return summarize_grid(path);
+}
+
+}  // namespace adamas

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// One array of a file. The range is over all components' finite values; min > max where there is none.
+struct ArraySummary {
+  std::string name;
+  std::string type;  ///< "uint8", "float32", "string"
+  std::string of;    ///< "cells", "points" or "mesh"
+  int components = 1;
+  std::size_t count = 0;  ///< values in all
+  double min = 0, max = 0;
+};
+
+/// What a file of any kind that can be read holds.
+struct FileSummary {
+  std::string kind;                    ///< "NRRD", "tetrahedra", "labelled network", ...
+  std::array<std::size_t, 3> nodes{};  ///< per axis, for a grid; else zeros
+  std::size_t points = 0, cells = 0;   ///< cells: of a grid, tetrahedra, polygons, lines, triangles
+  Box3 box;                            ///< of all points
+  std::vector<ArraySummary> arrays;
+  std::vector<std::string> materials;  ///< names, where the file itself has them
+};
+
+/// Reads a grid or image (read_grid_file), mesh (.vtu, .vtp), labelled network (.arec, .txt) or surface
+/// (.obj, .off, .ply, .stl) and says what is in it. Throws Error at unusable files.
+FileSummary summarize_file(const std::filesystem::path& path);
+
+}  // namespace adamas

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "core/data/interface_mesh.h"
+
+namespace adamas {
+
+/// Reads a labelled network (LabelledNetwork); `region_names` is an optional file of "LABEL NAME" lines. All
+/// readers here throw Error, with the file's name, at missing, corrupt or truncated files.
+InterfaceMesh read_labelled_network(const std::filesystem::path& path,
+                                    const std::filesystem::path& region_names = {});
+
+/// Reads a surface without materials (.obj, .off, .ply, .stl) as the interface between two; its right-hand
+/// normals point to the front. Polygons are triangulated, equal points welded, triangles with fewer than
+/// three points left out.
+InterfaceMesh read_surface(const std::filesystem::path& path, const std::string& front_material,
+                           const std::string& back_material);
+
+/// Reads what write_interface_mesh wrote as .vtp, or a labelled network.
+InterfaceMesh read_interface_mesh(const std::filesystem::path& path);
+
+/// One network of several: equal points become one, materials of equal names too.
+InterfaceMesh merge(std::span<const InterfaceMesh> meshes);
+
+/// Merges points with equal coordinates; points keep the order of their first use in `mesh.points`. Triangles
+/// that lose a corner are left out.
+void weld(InterfaceMesh& mesh);
+
+/// Writes by extension: .vtp (cell arrays "front" and "back", names in the field array "material_names"),
+/// .ply (binary, doubles, per-face front and back), .obj (a group per interface), .off, .stl (binary,
+/// floats), .arec or .txt (labelled network with the materials' indices). Throws Error where the file cannot
+/// be written in full.
+void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh& mesh);
+
+}  // namespace adamas

@@ -1,0 +1,159 @@
+#include "core/io/legacy_vtk_check.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+
+namespace adamas {
+
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Bits of a value; 0 for a type that is not known.
+std::uint64_t type_bits(const std::string& type) {
+  if (type == "bit") return 1;
+  if (type == "char" || type == "unsigned_char" || type == "signed_char") return 8;
+  if (type == "short" || type == "unsigned_short") return 16;
+  if (type == "int" || type == "unsigned_int" || type == "float") return 32;
+  if (type == "long" || type == "unsigned_long" || type == "double" || type == "vtktypeint64" ||
+      type == "vtkidtype") {
+    return type == "vtkidtype" ? 32 : 64;
+  }
+  return 0;
+}
+
+class Walker {
+ public:
+  Walker(const std::filesystem::path& path, std::uint64_t size)
+      : name_(path.string()), size_(size), stream_(path, std::ios::binary) {}
+
+  void run() {
+    std::string line;
+    for (int i = 0; i < 3; ++i) {
+      if (!std::getline(stream_, line)) fail("{}: expected a legacy VTK header, found {} line(s)", name_, i);
+      if (i == 0 && lower(line).rfind("# vtk datafile", 0) != 0) {
+        fail("{}: expected a legacy VTK header, found something else", name_);
+      }
+    }
+    if (lower(line).rfind("binary", 0) != 0) return check_last_line();
+    while (std::getline(stream_, line)) {
+      if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+      if (!step(line)) return;
+    }
+    if (data_ == 0) fail("{}: expected data, found the file's end", name_);
+  }
+
+ private:
+  /// A number that was cut off looks like another number: a text file has to end its last line.
+  void check_last_line() {
+    stream_.seekg(-1, std::ios::end);
+    if (std::isspace(stream_.get()) == 0)
+      fail("{}: expected a line end after the last number, found none", name_);
+  }
+
+  /// False at a keyword that this walk does not know.
+  bool step(const std::string& line) {
+    std::istringstream words(line);
+    std::string keyword, array, type;
+    words >> keyword;
+    keyword = lower(keyword);
+    if (keyword == "dataset" || keyword == "dimensions" || keyword == "spacing" ||
+        keyword == "aspect_ratio" || keyword == "origin") {
+      return true;
+    }
+    if (keyword == "metadata") return skip_metadata();
+    if (keyword == "point_data" || keyword == "cell_data") {
+      words >> count_;
+      ++data_;
+      return static_cast<bool>(words);
+    }
+    if (keyword.size() == 13 && keyword.compare(1, 12, "_coordinates") == 0) {
+      std::uint64_t count = 0;
+      words >> count >> type;
+      return words && skip(keyword, type, count, 1);
+    }
+    if (keyword == "field") return fields(words);
+    words >> array >> type;
+    if (!words) return false;
+    if (keyword == "vectors" || keyword == "normals") return skip(array, type, count_, 3);
+    if (keyword == "tensors") return skip(array, type, count_, 9);
+    if (keyword != "scalars") return false;
+    std::uint64_t components = 1;
+    if (!(words >> components)) components = 1;
+    const auto before = stream_.tellg();
+    std::string table;
+    std::getline(stream_, table);
+    if (lower(table).rfind("lookup_table", 0) != 0) stream_.seekg(before);
+    return skip(array, type, count_, components);
+  }
+
+  bool fields(std::istringstream& words) {
+    std::string array, line, type;
+    std::uint64_t arrays = 0;
+    if (!(words >> array >> arrays)) return false;
+    for (std::uint64_t i = 0; i < arrays; ++i) {
+      do {
+        if (!std::getline(stream_, line)) fail("{}: expected {} field arrays, found {}", name_, arrays, i);
+      } while (line.find_first_not_of(" \t\r") == std::string::npos);
+      std::uint64_t components = 0, tuples = 0;
+      std::istringstream header(line);
+      header >> array >> components >> tuples >> type;
+      if (lower(array) == "metadata") {
+        skip_metadata();
+        --i;
+        continue;
+      }
+      if (!header || !skip(array, type, tuples, components)) return false;
+    }
+    return true;
+  }
+
+  bool skip_metadata() {
+    std::string line;
+    while (std::getline(stream_, line) && !line.empty()) {
+    }
+    return true;
+  }
+
+  bool skip(const std::string& array, const std::string& type, std::uint64_t tuples,
+            std::uint64_t components) {
+    const std::uint64_t bits = type_bits(lower(type));
+    if (bits == 0) return false;
+    const auto at = static_cast<std::uint64_t>(stream_.tellg());
+    const std::uint64_t left = size_ - std::min(at, size_);
+    const bool whole = components == 0 || tuples <= (left * 8 + 7) / components / bits;
+    const std::uint64_t bytes = whole ? (tuples * components * bits + 7) / 8 : 0;
+    if (!whole || bytes > left) {
+      fail("{}: array '{}': expected {} x {} values of type {}, found {} bytes before the file's end", name_,
+           array, tuples, components, type, left);
+    }
+    stream_.seekg(static_cast<std::streamoff>(bytes), std::ios::cur);
+    return true;
+  }
+
+  std::string name_;
+  std::uint64_t size_;
+  std::ifstream stream_;
+  std::uint64_t count_ = 0;
+  int data_ = 0;
+};
+
+}  // namespace
+
+void check_legacy_vtk(const std::filesystem::path& path) {
+  Walker walker(path, check_input_file(path));
+  walker.run();
+}
+
+}  // namespace adamas

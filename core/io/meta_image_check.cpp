@@ -1,0 +1,131 @@
+#include "core/io/meta_image_check.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+
+namespace adamas {
+
+namespace {
+
+using Header = std::map<std::string, std::string>;
+
+/// "Key = value" lines up to ElementDataFile, which is always the last; leaves the stream behind that line.
+Header read_header(std::ifstream& stream, const std::string& name) {
+  constexpr std::size_t kLines = 1000;
+  Header header;
+  std::string line;
+  for (std::size_t i = 0; i < kLines && std::getline(stream, line); ++i) {
+    const std::size_t equal = line.find('=');
+    if (equal == std::string::npos) continue;
+    std::string key, value;
+    std::istringstream(line.substr(0, equal)) >> key;
+    std::istringstream(line.substr(equal + 1)) >> std::ws >> value;
+    if (key == "DimSize") value = line.substr(equal + 1);
+    header[key] = value;
+    if (key == "ElementDataFile") return header;
+  }
+  fail("{}: expected a MetaImage header with ElementDataFile, found none", name);
+}
+
+std::uint64_t element_bytes(const std::string& type) {
+  if (type == "MET_CHAR" || type == "MET_UCHAR") return 1;
+  if (type == "MET_SHORT" || type == "MET_USHORT") return 2;
+  if (type == "MET_INT" || type == "MET_UINT" || type == "MET_FLOAT") return 4;
+  if (type == "MET_DOUBLE" || type == "MET_LONG_LONG" || type == "MET_ULONG_LONG") return 8;
+  return 0;
+}
+
+bool is_true(const Header& header, const std::string& key) {
+  const auto found = header.find(key);
+  return found != header.end() && !found->second.empty() &&
+         (found->second[0] == 'T' || found->second[0] == 't');
+}
+
+/// Bytes that the header promises; 0 where it does not say.
+std::uint64_t promised_bytes(const Header& header, const std::string& name) {
+  if (!header.contains("DimSize") || !header.contains("ElementType")) return 0;
+  std::uint64_t bytes = element_bytes(header.at("ElementType"));
+  if (header.contains("ElementNumberOfChannels")) {
+    std::uint64_t channels = 0;
+    std::istringstream(header.at("ElementNumberOfChannels")) >> channels;
+    bytes *= std::min<std::uint64_t>(channels, 1'000'000);
+  }
+  std::istringstream sizes(header.at("DimSize"));
+  std::int64_t size = 0;
+  while (sizes >> size) {
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 46;
+    if (size < 1 || static_cast<std::uint64_t>(size) > kMost / std::max<std::uint64_t>(bytes, 1)) {
+      fail("{}: expected sizes that can be, found DimSize {}", name, header.at("DimSize"));
+    }
+    bytes *= static_cast<std::uint64_t>(size);
+  }
+  return bytes;
+}
+
+struct Inflater {
+  z_stream zip{};
+  Inflater() { inflateInit2(&zip, 15 + 32); }
+  ~Inflater() { inflateEnd(&zip); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+};
+
+/// Size of a zlib or gzip stream once decompressed; throws where it is corrupt or ends early.
+std::uint64_t inflated_bytes(std::ifstream& stream, const std::string& name) {
+  Inflater inflater;
+  std::vector<char> in(std::size_t{1} << 16), out(std::size_t{1} << 18);
+  std::uint64_t total = 0;
+  int state = Z_OK;
+  while (state == Z_OK) {
+    stream.read(in.data(), static_cast<std::streamsize>(in.size()));
+    inflater.zip.next_in = reinterpret_cast<Bytef*>(in.data());
+    inflater.zip.avail_in = static_cast<uInt>(stream.gcount());
+    if (stream.gcount() == 0) break;
+    do {
+      inflater.zip.next_out = reinterpret_cast<Bytef*>(out.data());
+      inflater.zip.avail_out = static_cast<uInt>(out.size());
+      state = inflate(&inflater.zip, Z_NO_FLUSH);
+      total += out.size() - inflater.zip.avail_out;
+    } while (state == Z_OK && (inflater.zip.avail_in > 0 || inflater.zip.avail_out == 0));
+    if (state == Z_BUF_ERROR) state = Z_OK;
+  }
+  if (state != Z_STREAM_END)
+    fail("{}: expected whole compressed data, found corrupt or truncated ones", name);
+  return total;
+}
+
+}  // namespace
+
+void check_meta_image(const std::filesystem::path& path) {
+  std::string name = path.string();
+  std::ifstream stream(path, std::ios::binary);
+  const Header header = read_header(stream, name);
+  const std::uint64_t expected = promised_bytes(header, name);
+  const std::string& file = header.at("ElementDataFile");
+  const bool text = header.contains("BinaryData") && !is_true(header, "BinaryData");
+  if (expected == 0 || text || file == "LIST" || file.find('%') != std::string::npos) return;
+  std::uint64_t at = 0, size = 0;
+  if (file == "LOCAL" || file == "Local" || file == "local") {
+    at = static_cast<std::uint64_t>(stream.tellg());
+    size = std::filesystem::file_size(path);
+  } else {
+    const std::filesystem::path beside = path.parent_path() / file;
+    name += ": " + beside.string();
+    size = check_input_file(beside);
+    stream = std::ifstream(beside, std::ios::binary);
+  }
+  const std::uint64_t found = is_true(header, "CompressedData") ? inflated_bytes(stream, name) : size - at;
+  if (found < expected) fail("{}: expected {} bytes of data, found {}", name, expected, found);
+}
+
+}  // namespace adamas

@@ -1,0 +1,231 @@
+#include "core/io/multi_material_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/io/array_names.h"
+#include "core/io/centering.h"
+#include "core/io/field_assembly.h"
+#include "core/io/grid_file.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::size_t kMostLabels = 65535;
+
+/// Throws where two grids differ by more than a millionth of their size.
+void check_same_grid(const std::string& name, const GridFile& file, const std::string& main_name,
+                     const GridFile& main) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto &a = file.nodes[axis], &b = main.nodes[axis];
+    if (a.size() != b.size()) {
+      fail("{}: expected the grid of {} with {} nodes along {}, found {}", name, main_name, b.size(),
+           "xyz"[axis], a.size());
+    }
+    const double tolerance = b.empty() ? 0 : 1e-6 * std::max(std::abs(b.back() - b.front()), 1e-300);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (!(std::abs(a[i] - b[i]) <= tolerance)) {
+        fail("{}: expected the grid of {}, {} = {} at node {}, found {}", name, main_name, "xyz"[axis], b[i],
+             i, a[i]);
+      }
+    }
+  }
+}
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, const MaterialDataOptions& options, Progress& progress)
+      : path_(path), options_(options), progress_(progress) {}
+
+  MultiMaterialData run() {
+    progress_.step("read " + path_.filename().string(), 0);
+    main_ = read_grid_file(path_);
+    data_.source = path_.string();
+    data_.grid.nodes = main_.nodes;
+    if (!(options_.fraction_scale > 0)) {
+      fail("{}: expected a positive scale of volume fractions, found {}", data_.source,
+           options_.fraction_scale);
+    }
+    read_materials();
+    read_fields();
+    progress_.step("check materials", 0.9);
+    if (options_.region) crop(*options_.region, data_);
+    data_.normalise();
+    for (const std::string& field : options_.extensive) make_intensive(field, data_);
+    data_.check();
+    progress_.step("check materials", 1);
+    return std::move(data_);
+  }
+
+ private:
+  void read_materials() {
+    if (!options_.labels.empty()) return read_labels(resolve("labels", options_.labels));
+    for (const auto& [name, value] : options_.fractions)
+      add_fraction(name, resolve("fraction " + name, value));
+    for (std::size_t i = 0; options_.fractions.empty() && i < main_.arrays.size();) {
+      const auto name = fraction_material(main_.arrays[i].name);
+      if (name) {
+        add_fraction(*name, take(i));
+      } else {
+        ++i;
+      }
+    }
+    if (data_.materials.empty()) return read_labels_unasked();
+    if (!options_.rest.empty()) add_rest();
+  }
+
+  void read_labels_unasked() {
+    const bool one = main_.arrays.size() == 1;
+    const bool whole = one && main_.arrays[0].integral() && main_.arrays[0].components == 1;
+    if (whole && options_.labels_auto) return read_labels(take(0));
+    if (whole) {
+      fail(
+          "{}: expected volume fractions or labels, found one array of whole numbers, '{}': pass it as "
+          "labels if its "
+          "values name materials, or as the fraction of a material",
+          data_.source, main_.arrays[0].name);
+    }
+    fail("{}: expected arrays named \"Volume Fraction for ...\", found {}: name labels or fractions",
+         data_.source, main_.array_names());
+  }
+
+  GridArray take(std::size_t i) {
+    GridArray array = std::move(main_.arrays[i]);
+    main_.arrays.erase(main_.arrays.begin() + static_cast<std::ptrdiff_t>(i));
+    return array;
+  }
+
+  /// The array that FILE-or-ARRAY names; one of the main file is taken out of it.
+  GridArray resolve(const std::string& option, const std::string& value) {
+    for (std::size_t i = 0; i < main_.arrays.size(); ++i) {
+      if (main_.arrays[i].name == value) return take(i);
+    }
+    std::error_code code;
+    std::filesystem::path file = value;
+    if (!std::filesystem::exists(file, code)) file = path_.parent_path() / value;
+    if (!std::filesystem::exists(file, code)) {
+      fail("{}: {}: expected an array or a file, found neither called '{}' (arrays: {})", data_.source,
+           option, value, main_.array_names());
+    }
+    if (std::filesystem::equivalent(file, path_, code)) {
+      if (main_.arrays.size() != 1) {
+        fail("{}: {}: expected a file of one array, found {}", data_.source, option, main_.array_names());
+      }
+      return take(0);
+    }
+    progress_.step("read " + file.filename().string(), 0.5);
+    GridFile other = read_grid_file(file);
+    check_same_grid(file.string(), other, data_.source, main_);
+    if (other.arrays.size() != 1) {
+      fail("{}: {}: expected a file of one array, found {}", file.string(), option, other.array_names());
+    }
+    return std::move(other.arrays[0]);
+  }
+
+  void require_scalar(const GridArray& array) const {
+    if (array.components != 1) {
+      fail("{}: array '{}': expected one component, found {}", data_.source, array.name, array.components);
+    }
+  }
+
+  void add_material(const std::string& name) {
+    if (name.empty()) fail("{}: expected a material's name, found none", data_.source);
+    if (std::find(data_.materials.begin(), data_.materials.end(), name) != data_.materials.end()) {
+      fail("{}: expected materials of different names, found '{}' twice", data_.source, name);
+    }
+    data_.materials.push_back(name);
+  }
+
+  void add_fraction(const std::string& name, GridArray array) {
+    require_scalar(array);
+    add_material(name);
+    if (data_.materials.size() == 1) data_.grid.centering = array.centering;
+    const RectilinearGrid from{main_.nodes, array.centering};
+    std::vector<float> values = array.take_floats();
+    if (from.centering != data_.grid.centering) values = average_to(data_.grid.centering, from, 1, values);
+    if (options_.fraction_scale != 1) {
+      const double scale = options_.fraction_scale;
+      for (float& v : values) v = static_cast<float>(static_cast<double>(v) / scale);
+    }
+    data_.fractions.push_back(std::move(values));
+  }
+
+  void add_rest() {
+    std::vector<float> rest(data_.grid.site_count());
+    for (std::size_t site = 0; site < rest.size(); ++site) {
+      double left = 1;
+      for (const auto& fraction : data_.fractions) left -= static_cast<double>(fraction[site]);
+      rest[site] = left < 0 ? 0.0f : static_cast<float>(left);
+    }
+    add_material(options_.rest);
+    data_.fractions.push_back(std::move(rest));
+  }
+
+  void read_labels(GridArray array) {
+    if (!options_.fractions.empty() || !options_.rest.empty()) {
+      fail("{}: expected labels or volume fractions, found both", data_.source);
+    }
+    require_scalar(array);
+    if (!array.integral()) make_integral(array);
+    const auto& values = std::get<1>(array.values);
+    std::vector<std::int32_t> distinct = values;
+    std::sort(distinct.begin(), distinct.end());
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    if (distinct.size() > kMostLabels) {
+      fail("{}: labels '{}': expected at most {} materials, found {}", data_.source, array.name, kMostLabels,
+           distinct.size());
+    }
+    data_.grid.centering = array.centering;
+    data_.labels.reserve(values.size());
+    for (const std::int32_t v : values) {
+      const auto at = std::lower_bound(distinct.begin(), distinct.end(), v);
+      data_.labels.push_back(static_cast<std::uint16_t>(at - distinct.begin()));
+    }
+    for (const std::int32_t v : distinct) add_material(label_name(v));
+  }
+
+  void make_integral(GridArray& array) const {
+    std::vector<std::int32_t> labels;
+    for (const float v : std::get<0>(array.values)) {
+      if (!(std::abs(v) < 1e9f) || v != std::floor(v)) {
+        fail("{}: labels '{}': expected whole numbers, found {} at index {}", data_.source, array.name, v,
+             labels.size());
+      }
+      labels.push_back(static_cast<std::int32_t>(v));
+    }
+    array.values = std::move(labels);
+  }
+
+  [[nodiscard]] std::string label_name(std::int32_t label) const {
+    const auto index = static_cast<std::size_t>(label);
+    return label >= 0 && index < main_.material_names.size() ? main_.material_names[index]
+                                                             : std::to_string(label);
+  }
+
+  void read_fields() {
+    std::vector<GridArray> arrays;
+    for (const auto& [name, value] : options_.fields) {
+      arrays.push_back(resolve("field " + name, value));
+      arrays.back().name = name;
+    }
+    std::move(main_.arrays.begin(), main_.arrays.end(), std::back_inserter(arrays));
+    add_fields(std::move(arrays), data_);
+  }
+
+  const std::filesystem::path& path_;
+  const MaterialDataOptions& options_;
+  Progress& progress_;
+  GridFile main_;
+  MultiMaterialData data_;
+};
+
+}  // namespace
+
+MultiMaterialData read_multi_material_data(const std::filesystem::path& path,
+                                           const MaterialDataOptions& options, Progress& progress) {
+  return Reader(path, options, progress).run();
+}
+
+}  // namespace adamas

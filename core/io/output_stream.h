@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <vector>
+
+#include "core/base/output_file.h"
+
+namespace adamas {
+
+/// A file written in one go: every byte is accounted for, and it gets its name at `finish()` alone.
+class OutputStream {
+ public:
+  /// Throws Error when the file cannot be made.
+  explicit OutputStream(const std::filesystem::path& path);
+
+  /// Throw Error when the bytes cannot be written (a full disk).
+  void write(const void* data, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  template <class T>
+  void put(const T& value) {
+    write(&value, sizeof(T));
+  }
+  void finish();
+
+ private:
+  void check();
+
+  OutputFile file_;
+  std::vector<char> buffer_;
+  std::ofstream stream_;
+  std::size_t written_ = 0;
+};
+
+}  // namespace adamas

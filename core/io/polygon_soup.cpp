@@ -1,0 +1,126 @@
+#include "core/io/polygon_soup.h"
+
+#include <CGAL/IO/OBJ.h>
+#include <CGAL/IO/OFF.h>
+#include <CGAL/IO/PLY.h>
+#include <CGAL/IO/STL.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/io/child_process.h"
+#include "core/io/input_file.h"
+
+namespace adamas {
+
+namespace {
+
+using Point = CGAL::Simple_cartesian<double>::Point_3;
+
+struct CgalSoup {
+  std::vector<Point> points;
+  std::vector<std::vector<std::size_t>> polygons;
+};
+
+/// In text, a number that was cut off looks like another number.
+void check_last_line(const std::string& name, const std::string& text) {
+  if (std::isspace(static_cast<unsigned char>(text.back())) == 0) {
+    fail("{}: expected a line end after the last number, found none", name);
+  }
+}
+
+/// A binary file states its number of triangles; in text the solid has to be ended.
+void check_stl(const std::string& name, const std::string& content) {
+  std::uint32_t triangles = 0;
+  if (content.size() >= 84) std::memcpy(&triangles, content.data() + 80, sizeof(triangles));
+  if (content.size() == 84 + std::size_t{50} * triangles) return;
+  const bool text = content.compare(0, 5, "solid") == 0 && content.find("facet") != std::string::npos;
+  if (!text) fail("{}: expected STL of {} triangles, found {} bytes", name, triangles, content.size());
+  if (content.find("endsolid") == std::string::npos)
+    fail("{}: expected 'endsolid', found the file's end", name);
+}
+
+CgalSoup read_with_cgal(const std::string& name, const std::string& extension) {
+  CgalSoup soup;
+  const std::string content = read_file(name);
+  const auto quiet = CGAL::parameters::verbose(false);
+  bool whole = false;
+  if (extension == ".obj") {
+    check_last_line(name, content);
+    whole = CGAL::IO::read_OBJ(name, soup.points, soup.polygons, quiet);
+  } else if (extension == ".off") {
+    if (content.find("BINARY") == std::string::npos) check_last_line(name, content);
+    whole = CGAL::IO::read_OFF(name, soup.points, soup.polygons, quiet);
+  } else if (extension == ".ply") {
+    if (content.compare(0, 3, "ply") != 0) fail("{}: expected PLY, found something else", name);
+    if (content.find("format ascii") != std::string::npos) check_last_line(name, content);
+    whole = CGAL::IO::read_PLY(name, soup.points, soup.polygons, quiet);
+  } else if (extension == ".stl") {
+    check_stl(name, content);
+    whole = CGAL::IO::read_STL(name, soup.points, soup.polygons, quiet);
+  } else {
+    fail("{}: expected a surface as .obj, .off, .ply or .stl, found '{}'", name, extension);
+  }
+  if (!whole)
+    fail("{}: expected a whole {} file, found a corrupt or truncated one", name, extension.substr(1));
+  return soup;
+}
+
+void send(const std::string& name, const CgalSoup& soup, ByteSink& sink) {
+  if (soup.points.size() >= 0xffffffffu) fail("{}: expected fewer than 2^32 points", name);
+  PolygonSoup result;
+  for (const Point& p : soup.points) result.points.push_back({p.x(), p.y(), p.z()});
+  for (const auto& polygon : soup.polygons) {
+    for (const std::size_t corner : polygon) {
+      result.corners.push_back(static_cast<std::uint32_t>(std::min<std::size_t>(corner, 0xffffffffu)));
+    }
+    result.offsets.push_back(result.corners.size());
+  }
+  sink.put(result.points);
+  sink.put(result.corners);
+  sink.put(result.offsets);
+}
+
+void check(const std::string& name, const PolygonSoup& soup) {
+  for (std::size_t i = 0; i < soup.points.size(); ++i) {
+    const Vec3& p = soup.points[i];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      fail("{}: point {}: expected finite coordinates, found {} {} {}", name, i, p.x, p.y, p.z);
+    }
+  }
+  if (soup.offsets.size() < 2) fail("{}: expected a surface, found no polygon", name);
+  for (std::size_t f = 0; f + 1 < soup.offsets.size(); ++f) {
+    if (soup.offsets[f + 1] < soup.offsets[f] || soup.offsets[f + 1] > soup.corners.size()) {
+      fail("{}: polygon {}: expected ascending offsets", name, f);
+    }
+    for (std::size_t i = soup.offsets[f]; i < soup.offsets[f + 1]; ++i) {
+      if (soup.corners[i] >= soup.points.size()) {
+        fail("{}: polygon {}: expected indices below {}, found {}", name, f, soup.points.size(),
+             soup.corners[i]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+PolygonSoup read_polygon_soup(const std::filesystem::path& path) {
+  const std::size_t size = check_input_file(path);
+  const std::string name = path.string(), extension = file_extension(path);
+  PolygonSoup soup;
+  read_in_child(
+      name, size, [&](ByteSink& sink) { send(name, read_with_cgal(name, extension), sink); },
+      [&soup](ByteSource& source) {
+        soup.points = source.get_vector<Vec3>();
+        soup.corners = source.get_vector<std::uint32_t>();
+        soup.offsets = source.get_vector<std::size_t>();
+      });
+  check(name, soup);
+  return soup;
+}
+
+}  // namespace adamas

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// Points and polygons of any size.
+struct PolygonSoup {
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> corners;
+  std::vector<std::size_t> offsets{0};  ///< polygon p has the corners [offsets[p], offsets[p + 1])
+};
+
+/// Reads .obj, .off, .ply or .stl in a child process. Throws Error at what is not a whole file of its kind,
+/// at points that are not finite and at indices out of range.
+PolygonSoup read_polygon_soup(const std::filesystem::path& path);
+
+/// Triangles of a polygon by ear clipping in the plane of its mean normal: the corners' indices, as the
+/// polygon turns. A polygon that is not simple gets a fan.
+std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<Vec3>& points,
+                                                              const std::uint32_t* corners,
+                                                              std::size_t count);
+
+}  // namespace adamas

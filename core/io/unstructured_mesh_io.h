@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/data/unstructured_mesh.h"
+
+namespace adamas {
+
+/// Writes .vtu or .vtp (polygons and lines alone), binary and compressed; equal meshes give equal bytes.
+/// Throws Error where the mesh does not suit the extension or the file cannot be written in full.
+void write_unstructured_mesh(const std::filesystem::path& path, const UnstructuredMesh& mesh);
+
+/// Reads .vtu or .vtp with cells of one kind: tetrahedra, polygons (triangles and quadrilaterals too) or
+/// lines. Arrays of other types become int32 where they are whole and fit, else double. Throws Error, with
+/// the file's name, at corrupt files, indices out of range and other cells.
+UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path);
+
+}  // namespace adamas

@@ -1,0 +1,217 @@
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/io/child_process.h"
+#include "core/io/input_file.h"
+#include "core/io/unstructured_mesh_io.h"
+#include "core/io/vtk_array.h"
+#include "core/io/vtk_messages.h"
+
+namespace adamas {
+
+namespace {
+
+std::optional<CellKind> kind_of(int type) {
+  if (type == VTK_TETRA) return CellKind::kTetrahedra;
+  if (type == VTK_TRIANGLE || type == VTK_QUAD || type == VTK_POLYGON) return CellKind::kPolygons;
+  if (type == VTK_LINE || type == VTK_POLY_LINE) return CellKind::kLines;
+  return {};
+}
+
+void take_cells(const std::string& name, vtkCellArray* cells, UnstructuredMesh& mesh) {
+  vtkDataArray* offsets = cells->GetOffsetsArray();
+  vtkDataArray* connectivity = cells->GetConnectivityArray();
+  const auto points = static_cast<double>(mesh.points.size());
+  for (vtkIdType i = 0; i < connectivity->GetNumberOfTuples(); ++i) {
+    const double p = connectivity->GetComponent(i, 0);
+    if (!(p >= 0 && p < points)) fail("{}: cells: expected indices below {}, found {}", name, points, p);
+    mesh.connectivity.push_back(static_cast<std::uint32_t>(p));
+  }
+  for (vtkIdType i = 1; i < offsets->GetNumberOfTuples(); ++i) {
+    const double offset = offsets->GetComponent(i, 0);
+    if (!(offset >= static_cast<double>(mesh.offsets.back()) &&
+          offset <= static_cast<double>(mesh.connectivity.size()))) {
+      fail("{}: cells: expected ascending offsets up to {}, found {} after {}", name,
+           mesh.connectivity.size(), offset, mesh.offsets.back());
+    }
+    mesh.offsets.push_back(static_cast<std::size_t>(offset));
+  }
+  if (mesh.offsets.back() != mesh.connectivity.size()) {
+    fail("{}: cells: expected {} indices, found {}", name, mesh.offsets.back(), mesh.connectivity.size());
+  }
+}
+
+void take_arrays(const std::string& name, const char* of, vtkFieldData& source, std::size_t items,
+                 std::vector<NamedArray>& arrays) {
+  for (int i = 0; i < source.GetNumberOfArrays(); ++i) {
+    vtkAbstractArray* array = source.GetAbstractArray(i);
+    const auto found = static_cast<std::size_t>(array->GetNumberOfTuples());
+    if (items != static_cast<std::size_t>(-1) && found != items) {
+      fail("{}: {} array '{}': expected {} tuples, found {}", name, of, array->GetName(), items, found);
+    }
+    arrays.push_back(from_vtk(*array));
+  }
+}
+
+void take_common(const std::string& name, vtkPointSet& source, UnstructuredMesh& mesh) {
+  take_arrays(name, "point", *source.GetPointData(), mesh.points.size(), mesh.point_arrays);
+  take_arrays(name, "cell", *source.GetCellData(), mesh.cell_count(), mesh.cell_arrays);
+  take_arrays(name, "field", *source.GetFieldData(), static_cast<std::size_t>(-1), mesh.field_arrays);
+}
+
+void take_points(vtkPointSet& source, UnstructuredMesh& mesh) {
+  for (vtkIdType i = 0; i < source.GetNumberOfPoints(); ++i) {
+    std::array<double, 3> p{};
+    source.GetPoints()->GetPoint(i, p.data());
+    mesh.points.push_back({p[0], p[1], p[2]});
+  }
+}
+
+UnstructuredMesh from_grid(const std::string& name, vtkUnstructuredGrid& grid) {
+  UnstructuredMesh mesh;
+  take_points(grid, mesh);
+  std::optional<CellKind> kind;
+  const vtkUnsignedCharArray* types = grid.GetCellTypesArray();
+  for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
+    const int type = const_cast<vtkUnsignedCharArray*>(types)->GetValue(c);
+    const auto next = kind_of(type);
+    if (!next)
+      fail("{}: cell {}: expected a tetrahedron, polygon or line, found VTK's type {}", name, c, type);
+    if (kind && kind != next) fail("{}: cell {}: expected cells of one kind, found another", name, c);
+    kind = next;
+  }
+  mesh.kind = kind.value_or(CellKind::kTetrahedra);
+  if (grid.GetNumberOfCells() > 0) take_cells(name, grid.GetCells(), mesh);
+  for (std::size_t c = 0; mesh.kind == CellKind::kTetrahedra && c < mesh.cell_count(); ++c) {
+    if (mesh.offsets[c + 1] - mesh.offsets[c] != 4)
+      fail("{}: cell {}: expected four points of a tetrahedron", name, c);
+  }
+  take_common(name, grid, mesh);
+  return mesh;
+}
+
+UnstructuredMesh from_surface(const std::string& name, vtkPolyData& surface) {
+  UnstructuredMesh mesh;
+  take_points(surface, mesh);
+  const bool lines = surface.GetNumberOfLines() > 0;
+  if (surface.GetNumberOfVerts() > 0 || surface.GetNumberOfStrips() > 0 ||
+      (lines && surface.GetNumberOfPolys() > 0)) {
+    fail("{}: expected polygons or lines alone, found {} vertices, {} lines, {} polygons, {} strips", name,
+         surface.GetNumberOfVerts(), surface.GetNumberOfLines(), surface.GetNumberOfPolys(),
+         surface.GetNumberOfStrips());
+  }
+  mesh.kind = lines ? CellKind::kLines : CellKind::kPolygons;
+  take_cells(name, lines ? surface.GetLines() : surface.GetPolys(), mesh);
+  take_common(name, surface, mesh);
+  return mesh;
+}
+
+template <class Reader>
+vtkSmartPointer<Reader> run(const std::string& name, const char* kind, const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<Reader>::New();
+  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected {}, found something else", name, kind);
+  reader->SetFileName(name.c_str());
+  reader->Update();
+  messages.check(name);
+  if (reader->GetErrorCode() != 0 || reader->GetOutput() == nullptr) {
+    fail("{}: expected a whole file, found a corrupt one", name);
+  }
+  return reader;
+}
+
+UnstructuredMesh read_with_vtk(const std::string& name, const std::string& extension) {
+  const VtkMessages messages;
+  if (extension == ".vtu") {
+    const auto reader = run<vtkXMLUnstructuredGridReader>(name, "a VTK XML unstructured grid", messages);
+    return from_grid(name, *reader->GetOutput());
+  }
+  if (extension == ".vtp") {
+    const auto reader = run<vtkXMLPolyDataReader>(name, "VTK XML polygonal data", messages);
+    return from_surface(name, *reader->GetOutput());
+  }
+  fail("{}: expected a mesh as .vtu or .vtp, found '{}'", name, extension);
+}
+
+void send(const std::vector<NamedArray>& arrays, ByteSink& sink) {
+  sink.put(static_cast<std::uint64_t>(arrays.size()));
+  for (const NamedArray& array : arrays) {
+    sink.put(array.name);
+    sink.put(array.components);
+    sink.put(static_cast<std::uint8_t>(array.values.index()));
+    if (const auto* strings = std::get_if<std::vector<std::string>>(&array.values)) {
+      sink.put(static_cast<std::uint64_t>(strings->size()));
+      for (const std::string& text : *strings) sink.put(text);
+    }
+    if (const auto* v = std::get_if<std::vector<double>>(&array.values)) sink.put(*v);
+    if (const auto* v = std::get_if<std::vector<float>>(&array.values)) sink.put(*v);
+    if (const auto* v = std::get_if<std::vector<std::int32_t>>(&array.values)) sink.put(*v);
+    if (const auto* v = std::get_if<std::vector<std::uint8_t>>(&array.values)) sink.put(*v);
+  }
+}
+
+std::vector<NamedArray> receive_arrays(ByteSource& source) {
+  std::vector<NamedArray> arrays;
+  const auto count = source.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    NamedArray array;
+    array.name = source.get_string();
+    array.components = source.get<int>();
+    const auto type = source.get<std::uint8_t>();
+    if (type == 0) array.values = source.get_vector<double>();
+    if (type == 1) array.values = source.get_vector<float>();
+    if (type == 2) array.values = source.get_vector<std::int32_t>();
+    if (type == 3) array.values = source.get_vector<std::uint8_t>();
+    if (type == 4) {
+      std::vector<std::string> strings;
+      const auto size = source.get<std::uint64_t>();
+      for (std::uint64_t k = 0; k < size; ++k) strings.push_back(source.get_string());
+      array.values = std::move(strings);
+    }
+    arrays.push_back(std::move(array));
+  }
+  return arrays;
+}
+
+}  // namespace
+
+UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path) {
+  const std::size_t size = check_input_file(path);
+  const std::string name = path.string(), extension = file_extension(path);
+  UnstructuredMesh mesh;
+  read_in_child(
+      name, size,
+      [&](ByteSink& sink) {
+        const UnstructuredMesh read = read_with_vtk(name, extension);
+        sink.put(read.kind);
+        sink.put(read.points);
+        sink.put(read.connectivity);
+        sink.put(read.offsets);
+        send(read.point_arrays, sink);
+        send(read.cell_arrays, sink);
+        send(read.field_arrays, sink);
+      },
+      [&mesh](ByteSource& source) {
+        mesh.kind = source.get<CellKind>();
+        mesh.points = source.get_vector<Vec3>();
+        mesh.connectivity = source.get_vector<std::uint32_t>();
+        mesh.offsets = source.get_vector<std::size_t>();
+        mesh.point_arrays = receive_arrays(source);
+        mesh.cell_arrays = receive_arrays(source);
+        mesh.field_arrays = receive_arrays(source);
+      });
+  return mesh;
+}
+
+}  // namespace adamas

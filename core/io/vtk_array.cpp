@@ -1,0 +1,115 @@
+#include "core/io/vtk_array.h"
+
+#include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace adamas {
+
+namespace {
+
+template <class Array, class T>
+vtkSmartPointer<vtkAbstractArray> numbers(const std::vector<T>& values, int components) {
+  const auto array = vtkSmartPointer<Array>::New();
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size() / static_cast<std::size_t>(components)));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
+vtkSmartPointer<vtkAbstractArray> strings(const std::vector<std::string>& values, int components) {
+  const auto array = vtkSmartPointer<vtkStringArray>::New();
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), values[i]);
+  return array;
+}
+
+template <class T>
+std::vector<T> copied(vtkDataArray& array) {
+  const auto* data = static_cast<const T*>(array.GetVoidPointer(0));
+  return {data, data + array.GetNumberOfValues()};
+}
+
+/// Values of another type: int32 where they are whole and fit, else double.
+NamedArray converted(vtkDataArray& source, NamedArray array) {
+  std::vector<double> values;
+  bool whole = source.GetDataType() != VTK_FLOAT && source.GetDataType() != VTK_DOUBLE;
+  for (vtkIdType i = 0; i < source.GetNumberOfTuples(); ++i) {
+    for (int c = 0; c < array.components; ++c) values.push_back(source.GetComponent(i, c));
+  }
+  whole = whole &&
+          std::all_of(values.begin(), values.end(), [](double v) { return std::abs(v) <= 2147483647.0; });
+  if (whole) {
+    array.values = std::vector<std::int32_t>(values.begin(), values.end());
+  } else {
+    array.values = std::move(values);
+  }
+  return array;
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkAbstractArray> to_vtk(const NamedArray& array) {
+  vtkSmartPointer<vtkAbstractArray> result;
+  switch (array.values.index()) {
+    case 0:
+      result = numbers<vtkDoubleArray>(std::get<0>(array.values), array.components);
+      break;
+    case 1:
+      result = numbers<vtkFloatArray>(std::get<1>(array.values), array.components);
+      break;
+    case 2:
+      result = numbers<vtkIntArray>(std::get<2>(array.values), array.components);
+      break;
+    case 3:
+      result = numbers<vtkUnsignedCharArray>(std::get<3>(array.values), array.components);
+      break;
+    default:
+      result = strings(std::get<4>(array.values), array.components);
+  }
+  result->SetName(array.name.c_str());
+  return result;
+}
+
+NamedArray from_vtk(vtkAbstractArray& source) {
+  NamedArray array;
+  array.name = source.GetName() != nullptr ? source.GetName() : "";
+  array.components = source.GetNumberOfComponents();
+  if (auto* texts = vtkStringArray::SafeDownCast(&source)) {
+    std::vector<std::string> values;
+    for (vtkIdType i = 0; i < texts->GetNumberOfValues(); ++i) values.push_back(texts->GetValue(i));
+    array.values = std::move(values);
+    return array;
+  }
+  auto* data = vtkDataArray::SafeDownCast(&source);
+  if (data == nullptr)
+    fail("array '{}': expected numbers or strings, found {}", array.name, source.GetClassName());
+  if (!data->HasStandardMemoryLayout()) return converted(*data, std::move(array));
+  switch (data->GetDataType()) {
+    case VTK_DOUBLE:
+      array.values = copied<double>(*data);
+      return array;
+    case VTK_FLOAT:
+      array.values = copied<float>(*data);
+      return array;
+    case VTK_INT:
+      array.values = copied<std::int32_t>(*data);
+      return array;
+    case VTK_UNSIGNED_CHAR:
+      array.values = copied<std::uint8_t>(*data);
+      return array;
+    default:
+      return converted(*data, std::move(array));
+  }
+}
+
+}  // namespace adamas

@@ -1,0 +1,277 @@
+#include "core/io/vtk_grid_reader.h"
+
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDataSetReader.h>
+#include <vtkFieldData.h>
+#include <vtkImageData.h>
+#include <vtkImageReader2Factory.h>
+#include <vtkMatrix3x3.h>
+#include <vtkMatrix4x4.h>
+#include <vtkMetaImageReader.h>
+#include <vtkNIFTIImageReader.h>
+#include <vtkNrrdReader.h>
+#include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLRectilinearGridReader.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/tiff_reader.h"
+#include "core/io/vtk_messages.h"
+
+namespace adamas {
+
+namespace {
+
+std::string type_name(int type, int bytes) {
+  switch (type) {
+    case VTK_FLOAT:
+      return "float32";
+    case VTK_DOUBLE:
+      return "float64";
+    case VTK_BIT:
+      return "bit";
+    case VTK_UNSIGNED_CHAR:
+    case VTK_UNSIGNED_SHORT:
+    case VTK_UNSIGNED_INT:
+    case VTK_UNSIGNED_LONG:
+    case VTK_UNSIGNED_LONG_LONG:
+      return "uint" + std::to_string(8 * bytes);
+    default:
+      return "int" + std::to_string(8 * bytes);
+  }
+}
+
+template <class T>
+bool fits_int32(const T* values, std::size_t count) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return false;
+  } else if constexpr (sizeof(T) < 4 || std::is_same_v<T, std::int32_t>) {
+    return true;
+  } else {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!std::in_range<std::int32_t>(values[i])) return false;
+    }
+    return true;
+  }
+}
+
+template <class T>
+void convert(const T* values, std::size_t count, GridArray& array) {
+  if (fits_int32(values, count)) {
+    std::vector<std::int32_t> result(count);
+    for (std::size_t i = 0; i < count; ++i) result[i] = static_cast<std::int32_t>(values[i]);
+    array.values = std::move(result);
+  } else {
+    std::vector<float> result(count);
+    for (std::size_t i = 0; i < count; ++i) result[i] = static_cast<float>(values[i]);
+    array.values = std::move(result);
+  }
+}
+
+GridArray convert(vtkDataArray& source, Centering centering) {
+  GridArray array;
+  array.name = source.GetName() != nullptr ? source.GetName() : "";
+  array.type = type_name(source.GetDataType(), source.GetDataTypeSize());
+  array.centering = centering;
+  array.components = source.GetNumberOfComponents();
+  const auto count = static_cast<std::size_t>(source.GetNumberOfValues());
+  if (source.GetDataType() == VTK_BIT || !source.HasStandardMemoryLayout()) {
+    std::vector<double> values(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto components = static_cast<std::size_t>(array.components);
+      values[i] =
+          source.GetComponent(static_cast<vtkIdType>(i / components), static_cast<int>(i % components));
+    }
+    convert(values.data(), count, array);
+    return array;
+  }
+  switch (source.GetDataType()) {
+    vtkTemplateMacro(convert(static_cast<const VTK_TT*>(source.GetVoidPointer(0)), count, array));
+    default:
+      fail("array '{}': expected numbers, found {}", array.name, source.GetDataTypeAsString());
+  }
+  return array;
+}
+
+void add_arrays(vtkDataSetAttributes& attributes, Centering centering, GridFile& file) {
+  for (int i = 0; i < attributes.GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = attributes.GetArray(i);
+    if (array == nullptr || attributes.GetAbstractArray(i)->GetName() == std::string("vtkGhostType"))
+      continue;
+    file.arrays.push_back(convert(*array, centering));
+  }
+}
+
+void add_axes(const std::string& name, vtkImageData& image, GridFile& file) {
+  if (!image.GetDirectionMatrix()->IsIdentity())
+    fail("{}: expected axes along x, y and z, found turned ones", name);
+  const int* extent = image.GetExtent();
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& nodes = file.nodes[static_cast<std::size_t>(axis)];
+    for (int i = extent[2 * axis]; i <= extent[2 * axis + 1]; ++i) {
+      nodes.push_back(image.GetOrigin()[axis] + i * image.GetSpacing()[axis]);
+    }
+  }
+}
+
+void add_axes(vtkRectilinearGrid& grid, GridFile& file) {
+  const std::array<vtkDataArray*, 3> axes{grid.GetXCoordinates(), grid.GetYCoordinates(),
+                                          grid.GetZCoordinates()};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (vtkIdType i = 0; axes[axis] != nullptr && i < axes[axis]->GetNumberOfTuples(); ++i) {
+      file.nodes[axis].push_back(axes[axis]->GetComponent(i, 0));
+    }
+  }
+}
+
+void add_data(const std::string& name, vtkDataObject* data, GridFile& file) {
+  if (auto* image = vtkImageData::SafeDownCast(data)) {
+    add_axes(name, *image, file);
+  } else if (auto* grid = vtkRectilinearGrid::SafeDownCast(data)) {
+    add_axes(*grid, file);
+  } else {
+    fail("{}: expected an image or a rectilinear grid, found {}", name,
+         data ? data->GetClassName() : "nothing");
+  }
+  auto* set = vtkDataSet::SafeDownCast(data);
+  if (set->GetNumberOfPoints() == 0) fail("{}: expected a grid, found no point", name);
+  add_arrays(*set->GetCellData(), Centering::kCells, file);
+  add_arrays(*set->GetPointData(), Centering::kPoints, file);
+  auto* names = vtkStringArray::SafeDownCast(set->GetFieldData()->GetAbstractArray("material_names"));
+  for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i) {
+    file.material_names.push_back(names->GetValue(i));
+  }
+}
+
+template <class Reader>
+vtkSmartPointer<vtkDataObject> run(Reader& reader, const std::string& name, const VtkMessages& messages) {
+  reader.SetFileName(name.c_str());
+  reader.Update();
+  messages.check(name);
+  if (reader.GetErrorCode() != 0) fail("{}: expected a whole file, found a corrupt one", name);
+  return reader.GetOutputDataObject(0);
+}
+
+template <class Reader>
+vtkSmartPointer<vtkDataObject> run_if_readable(const std::string& name, const char* kind,
+                                               const VtkMessages& messages) {
+  const auto reader = vtkSmartPointer<Reader>::New();
+  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected {}, found something else", name, kind);
+  return run(*reader, name, messages);
+}
+
+/// The header's scaling, and its origin where the axes of the voxels are those of space.
+void place_nifti(vtkNIFTIImageReader& reader, GridFile& file) {
+  const double slope = reader.GetRescaleSlope(), intercept = reader.GetRescaleIntercept();
+  if (slope != 0 && (slope != 1 || intercept != 0)) {
+    for (GridArray& array : file.arrays) {
+      std::vector<float> values = array.take_floats();
+      for (float& v : values) v = static_cast<float>(slope * static_cast<double>(v) + intercept);
+      array.values = std::move(values);
+    }
+  }
+  vtkMatrix4x4* matrix =
+      reader.GetSFormMatrix() != nullptr ? reader.GetSFormMatrix() : reader.GetQFormMatrix();
+  if (matrix == nullptr) return;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      const double entry = matrix->GetElement(row, column);
+      if (row == column ? !(entry > 0) : std::abs(entry) > 1e-6) return;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    for (double& node : file.nodes[static_cast<std::size_t>(axis)]) node += matrix->GetElement(axis, 3);
+  }
+}
+
+GridFile read_nifti(const std::string& name, const VtkMessages& messages) {
+  GridFile file;
+  file.kind = "NIfTI";
+  const auto reader = vtkSmartPointer<vtkNIFTIImageReader>::New();
+  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected NIfTI, found something else", name);
+  add_data(name, run(*reader, name, messages), file);
+  place_nifti(*reader, file);
+  return file;
+}
+
+GridFile read_legacy(const std::string& name, const VtkMessages& messages) {
+  GridFile file;
+  file.kind = "legacy VTK";
+  const auto reader = vtkSmartPointer<vtkDataSetReader>::New();
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllNormalsOn();
+  reader->ReadAllTensorsOn();
+  reader->ReadAllColorScalarsOn();
+  reader->ReadAllTCoordsOn();
+  reader->ReadAllFieldsOn();
+  add_data(name, run(*reader, name, messages), file);
+  return file;
+}
+
+/// Whether a list like ".png .jpg" has the extension.
+bool lists_extension(const char* list, const std::string& extension) {
+  return list != nullptr && !extension.empty() &&
+         (" " + std::string(list) + " ").find(" " + extension + " ") != std::string::npos;
+}
+
+/// A format of plain images, whose one array has no name of its own.
+GridFile read_image(const std::filesystem::path& path, const std::string& extension,
+                    const VtkMessages& messages) {
+  const std::string name = path.string();
+  GridFile file;
+  vtkSmartPointer<vtkDataObject> data;
+  if (extension == ".nrrd" || extension == ".nhdr") {
+    file.kind = "NRRD";
+    data = run_if_readable<vtkNrrdReader>(name, "NRRD", messages);
+  } else if (extension == ".mhd" || extension == ".mha") {
+    file.kind = "MetaImage";
+    data = run_if_readable<vtkMetaImageReader>(name, "MetaImage", messages);
+  } else if (extension == ".nii" || extension == ".nii.gz") {
+    file = read_nifti(name, messages);
+  } else if (extension == ".tif" || extension == ".tiff") {
+    return read_tiff_stack(path);
+  } else {
+    const auto reader = vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(name.c_str()));
+    // Some readers claim files of any kind: the extension has to agree as well.
+    if (reader == nullptr || !lists_extension(reader->GetFileExtensions(), extension))
+      fail("{}: expected a grid or image format that is known, found none", name);
+    file.kind = reader->GetDescriptiveName();
+    data = run(*reader, name, messages);
+  }
+  if (data != nullptr) add_data(name, data, file);
+  if (file.arrays.size() == 1) file.arrays[0].name = file_stem(path);
+  return file;
+}
+
+}  // namespace
+
+GridFile read_grid_with_vtk(const std::filesystem::path& path) {
+  const VtkMessages messages;
+  const std::string name = path.string(), extension = file_extension(path);
+  GridFile file;
+  if (extension == ".vti") {
+    file.kind = "VTK XML image";
+    add_data(name, run_if_readable<vtkXMLImageDataReader>(name, "VTK XML image data", messages), file);
+  } else if (extension == ".vtr") {
+    file.kind = "VTK XML rectilinear grid";
+    add_data(name, run_if_readable<vtkXMLRectilinearGridReader>(name, "a VTK XML rectilinear grid", messages),
+             file);
+  } else if (extension == ".vtk") {
+    file = read_legacy(name, messages);
+  } else {
+    file = read_image(path, extension, messages);
+  }
+  messages.check(name);
+  return file;
+}
+
+}  // namespace adamas
