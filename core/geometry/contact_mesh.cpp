@@ -14,6 +14,16 @@ namespace {
 /// Weights below this are zero: the point lies on the smaller feature.
 constexpr double kZeroWeight = 1e-12;
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
+constexpr std::array<std::uint64_t, 4> kNoFunctions{kNone, kNone, kNone, kNone};
+
+/// The ids of the feature that is left when the vertices in `zeros` are taken away.
+std::array<std::uint64_t, 4> feature(std::array<std::uint64_t, 4> ids, unsigned zeros) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    if ((zeros >> i & 1u) != 0u) ids[i] = kNone;
+  }
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
 
 std::uint64_t mix(std::uint64_t x) {
   x ^= x >> 30;
@@ -57,9 +67,10 @@ ContactBuffer::Corner ContactBuffer::make_corner(const ContactPolygon::Corner& c
   Vec3 position;
   double total = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    if ((corner.zero_weights >> i & 1u) != 0u) continue;
-    if (corner.weights[i] < kZeroWeight) {
-      result.crowded = true;
+    const bool by_construction = (corner.zero_weights >> i & 1u) != 0u;
+    if (by_construction || corner.weights[i] < kZeroWeight) {
+      result.zeros = static_cast<std::uint8_t>(result.zeros | 1u << i);
+      result.crowded = result.crowded || !by_construction;
       continue;
     }
     support[count++] = ids[i];
@@ -71,11 +82,7 @@ ContactBuffer::Corner ContactBuffer::make_corner(const ContactPolygon::Corner& c
   std::array<std::uint64_t, 4> functions = corner.functions;
   if (count == 1) functions.fill(kNone);
   result.key = digest(support, functions);
-  if (count == 3) {
-    std::array<std::uint64_t, 4> none;
-    none.fill(kNone);
-    result.own_face = digest(support, none);
-  }
+  if (count == 2 || count == 3) result.own = digest(support, kNoFunctions);
   return result;
 }
 
@@ -98,26 +105,23 @@ void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const st
   contact_polygons(sorted, contacts);
   const bool mirrored = signed_volume(places[0], places[1], places[2], places[3]) < 0;
   const bool crowded = problem.candidates.size() > 2 || problem.functions.size() > 2;
-  std::array<std::uint64_t, 4> none;
-  none.fill(kNone);
   const std::size_t first_polygon = polygons_.size();
   for (ContactPolygon& contact : contacts) {
     if (mirrored) std::reverse(contact.corners.begin(), contact.corners.end());
     const auto first = static_cast<std::uint32_t>(corners_.size());
-    for (std::size_t c = 0; c < contact.corners.size(); ++c) {
-      const auto& here = contact.corners[c];
-      const auto& next = contact.corners[(c + 1) % contact.corners.size()];
-      Corner corner = make_corner(here, ids, places);
-      corner.crowded = corner.crowded || crowded;
-      if (const unsigned faces = here.zero_weights & next.zero_weights; faces != 0) {
-        std::array<std::uint64_t, 4> face = ids;
-        face[static_cast<std::size_t>(std::countr_zero(faces))] = kNone;
-        std::sort(face.begin(), face.end());
-        corner.leaving_face = digest(face, none);
-      }
-      corners_.push_back(corner);
+    for (const auto& corner : contact.corners) {
+      corners_.push_back(make_corner(corner, ids, places));
+      corners_.back().crowded = corners_.back().crowded || crowded;
     }
-    polygons_.push_back({contact.front, contact.back, first, static_cast<std::uint32_t>(contact.corners.size())});
+    for (std::size_t c = 0; c < contact.corners.size(); ++c) {
+      Corner& here = corners_[first + c];
+      const Corner& next = corners_[first + (c + 1) % contact.corners.size()];
+      if (const unsigned zeros = here.zeros & next.zeros; zeros != 0)
+        here.leaving = digest(feature(ids, zeros), kNoFunctions);
+      if (!here.crowded) here.own = {};
+    }
+    polygons_.push_back(
+        {contact.front, contact.back, first, static_cast<std::uint32_t>(contact.corners.size())});
   }
   if (crowded && polygons_.size() - first_polygon > 1) {
     double size = 0;
@@ -144,7 +148,7 @@ void ContactBuffer::insert_passed_points(std::size_t first_polygon, double toler
         if (other.key == here.key || other.key == next.key) continue;
         if (!passes(other.position, here.position, next.position, tolerance, position)) continue;
         passed.emplace_back(position, other);
-        passed.back().second.leaving_face = here.leaving_face;
+        passed.back().second.leaving = here.leaving;
       }
       std::sort(passed.begin(), passed.end(), [](const auto& a, const auto& b) {
         return std::tuple(a.first, a.second.key.low) < std::tuple(b.first, b.second.key.low);
@@ -158,25 +162,27 @@ void ContactBuffer::insert_passed_points(std::size_t first_polygon, double toler
 }
 
 std::uint32_t ContactMeshBuilder::point_of(const ContactBuffer::Corner& corner) {
-  const auto [entry, fresh] = point_by_key_.try_emplace(corner.key, static_cast<std::uint32_t>(points_.size()));
+  const auto [entry, fresh] =
+      point_by_key_.try_emplace(corner.key, static_cast<std::uint32_t>(points_.size()));
   if (fresh) points_.push_back(corner.position);
   if (corner.crowded) crowded_.push_back(entry->second);
-  if (corner.own_face != ContactBuffer::Key{}) points_in_face_[corner.own_face].push_back(entry->second);
+  if (corner.own != ContactBuffer::Key{}) points_in_feature_[corner.own].push_back(entry->second);
   return entry->second;
 }
 
 void ContactMeshBuilder::append(const ContactBuffer& buffer) {
   for (const auto& polygon : buffer.polygons_) {
-    polygons_.push_back({polygon.front, polygon.back, static_cast<std::uint32_t>(corners_.size()), polygon.count});
+    polygons_.push_back(
+        {polygon.front, polygon.back, static_cast<std::uint32_t>(corners_.size()), polygon.count});
     for (std::uint32_t c = polygon.first; c < polygon.first + polygon.count; ++c) {
       corners_.push_back(point_of(buffer.corners_[c]));
-      leaving_faces_.push_back(buffer.corners_[c].leaving_face);
+      leaving_.push_back(buffer.corners_[c].leaving);
     }
   }
 }
 
-void ContactMeshBuilder::add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
-                             const OwnershipProblem& problem) {
+void ContactMeshBuilder::add(const std::array<std::uint64_t, 4>& vertex_ids,
+                             const std::array<Vec3, 4>& positions, const OwnershipProblem& problem) {
   ContactBuffer buffer;
   buffer.add(vertex_ids, positions, problem);
   append(buffer);
@@ -188,7 +194,8 @@ void ContactMeshBuilder::weld_crowded_points() {
   std::sort(crowded_.begin(), crowded_.end());
   crowded_.erase(std::unique(crowded_.begin(), crowded_.end()), crowded_.end());
   const auto box_of = [](std::int64_t i, std::int64_t j, std::int64_t k) {
-    return mix(mix(mix(static_cast<std::uint64_t>(i)) + static_cast<std::uint64_t>(j)) + static_cast<std::uint64_t>(k));
+    return mix(mix(mix(static_cast<std::uint64_t>(i)) + static_cast<std::uint64_t>(j)) +
+               static_cast<std::uint64_t>(k));
   };
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> boxes;
   for (const std::uint32_t p : crowded_) {
@@ -222,11 +229,12 @@ void ContactMeshBuilder::emit(const Polygon& polygon, InterfaceMesh& mesh) {
   std::vector<std::uint32_t> loop;
   for (std::uint32_t c = 0; c < polygon.count; ++c) {
     const std::size_t here = polygon.first + c;
-    const std::uint32_t a = welded_[corners_[here]], b = welded_[corners_[polygon.first + (c + 1) % polygon.count]];
+    const std::uint32_t a = welded_[corners_[here]],
+                        b = welded_[corners_[polygon.first + (c + 1) % polygon.count]];
     loop.push_back(a);
-    if (a == b || leaving_faces_[here] == ContactBuffer::Key{}) continue;
-    const auto face = points_in_face_.find(leaving_faces_[here]);
-    if (face == points_in_face_.end()) continue;
+    if (a == b || leaving_[here] == ContactBuffer::Key{}) continue;
+    const auto face = points_in_feature_.find(leaving_[here]);
+    if (face == points_in_feature_.end()) continue;
     std::vector<std::pair<double, std::uint32_t>> passed;
     for (const std::uint32_t raw : face->second) {
       const std::uint32_t p = welded_[raw];
@@ -249,7 +257,7 @@ void ContactMeshBuilder::emit(const Polygon& polygon, InterfaceMesh& mesh) {
 InterfaceMesh ContactMeshBuilder::finish() {
   weld_crowded_points();
   point_by_key_.clear();
-  for (auto& [face, points] : points_in_face_) {
+  for (auto& [face, points] : points_in_feature_) {
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
   }

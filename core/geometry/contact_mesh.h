@@ -11,12 +11,12 @@
 
 namespace adamas {
 
-/// Contact polygons of some tetrahedra with keys that are the same in every tetrahedron that shares a corner. Buffers
-/// can be filled on several threads and appended to one builder in a fixed order.
+/// Contact polygons of some tetrahedra with keys that are the same in every tetrahedron that shares a corner.
+/// Buffers can be filled on several threads and appended to one builder in a fixed order.
 class ContactBuffer {
  public:
-  /// Finds the contact polygons of one tetrahedron. `vertex_ids` identify its vertices across cells, in any order and
-  /// orientation; the problem's functions follow that order.
+  /// Finds the contact polygons of one tetrahedron. `vertex_ids` identify its vertices across cells, in any
+  /// order and orientation; the problem's functions follow that order.
   void add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
            const OwnershipProblem& problem);
   [[nodiscard]] bool empty() const { return polygons_.empty(); }
@@ -34,9 +34,10 @@ class ContactBuffer {
   struct Corner {
     Key key;
     Vec3 position;
-    Key leaving_face;      ///< the mesh face along which the edge to the next corner runs; zero inside the cell
-    Key own_face;          ///< the mesh face in whose inside the point lies; zero elsewhere
-    bool crowded = false;  ///< other points may coincide with it
+    Key leaving;  ///< the mesh face or edge along which the way to the next corner runs; zero in the cell
+    Key own;      ///< the mesh face or edge in whose inside the point lies, where crowded; zero elsewhere
+    std::uint8_t zeros = 0;  ///< bit i: the weight of vertex i is zero, by construction or nearly
+    bool crowded = false;    ///< other points may coincide with it
   };
   struct Polygon {
     std::uint32_t front, back;
@@ -52,11 +53,12 @@ class ContactBuffer {
   std::vector<Polygon> polygons_;
 };
 
-/// Welds the contact polygons of a conforming tetrahedral mesh into a network of triangles: no cracks, no T-junctions,
-/// and round every inner edge the sides of the triangles match up.
+/// Welds the contact polygons of a conforming tetrahedral mesh into a network of triangles: no cracks, no
+/// T-junctions, and round every inner edge the sides of the triangles match up.
 class ContactMeshBuilder {
  public:
-  /// `tolerance`: points nearer than this that stem from different features are one (a length; far below any cell).
+  /// `tolerance`: points nearer than this that stem from different features are one (a length; far below any
+  /// cell).
   explicit ContactMeshBuilder(double tolerance) : tolerance_(tolerance) {}
 
   void append(const ContactBuffer& buffer);
@@ -80,10 +82,11 @@ class ContactMeshBuilder {
   std::vector<std::uint32_t> crowded_;  ///< points that may coincide with others
   std::vector<std::uint32_t> welded_;   ///< point -> the point it became
   std::vector<std::uint32_t> corners_;
-  std::vector<ContactBuffer::Key> leaving_faces_;
+  std::vector<ContactBuffer::Key> leaving_;
   std::vector<Polygon> polygons_;
   std::unordered_map<ContactBuffer::Key, std::uint32_t, ContactBuffer::KeyHash> point_by_key_;
-  std::unordered_map<ContactBuffer::Key, std::vector<std::uint32_t>, ContactBuffer::KeyHash> points_in_face_;
+  std::unordered_map<ContactBuffer::Key, std::vector<std::uint32_t>, ContactBuffer::KeyHash>
+      points_in_feature_;
 };
 
 }  // namespace adamas

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::uint32_t kFaceTag = 0x80000000u;
 
-/// A corner of the polygon under construction and the line of the edge that leaves it: `line` is a function that equals
-/// the two that make the polygon, or kFaceTag + the face opposite to a vertex.
+/// A corner of the polygon under construction and the line of the edge that leaves it: `line` is a function
+/// that equals the two that make the polygon, or kFaceTag + the face opposite to a vertex.
 struct Corner {
   ContactPolygon::Corner data;
   std::uint32_t line;
@@ -21,7 +21,8 @@ using Polygon = std::vector<Corner>;
 
 class ContactFinder {
  public:
-  ContactFinder(const OwnershipProblem& problem, std::vector<ContactPolygon>& out) : problem_(problem), out_(out) {}
+  ContactFinder(const OwnershipProblem& problem, std::vector<ContactPolygon>& out)
+      : problem_(problem), out_(out) {}
 
   void run() {
     const auto& cs = problem_.candidates;
@@ -43,7 +44,8 @@ class ContactFinder {
   }
   /// Whether f counts as greater than g where they differ by d; exact ties go to the smaller key.
   [[nodiscard]] bool greater(std::uint32_t f, std::uint32_t g, double d) const {
-    return d > 0 || (d == 0 && (function(f).key < function(g).key || (function(f).key == function(g).key && f < g)));
+    return d > 0 ||
+           (d == 0 && (function(f).key < function(g).key || (function(f).key == function(g).key && f < g)));
   }
 
   void contact(std::size_t a, std::size_t b, std::uint32_t f, std::uint32_t g) {
@@ -146,7 +148,8 @@ class ContactFinder {
 
   /// Orientation seen from corner `apex` of a positively oriented tetrahedron.
   static bool seen_counter_clockwise(const Polygon& polygon, std::size_t apex) {
-    // Combinatorial, so that it does not depend on the cut's position: corners moved to their edges' midpoints.
+    // Combinatorial, so that it does not depend on the cut's position: corners moved to their edges'
+    // midpoints.
     const auto vertex = [&](std::size_t c) {
       std::array<double, 3> x{};
       for (std::size_t i = 0; i < 4; ++i) {
@@ -158,7 +161,9 @@ class ContactFinder {
     std::array<double, 3> top{};
     if (apex > 0) top[apex - 1] = 1;
     const auto a = vertex(0), b = vertex(1), c = vertex(2);
-    const auto minus = [](const auto& u, const auto& v) { return std::array{u[0] - v[0], u[1] - v[1], u[2] - v[2]}; };
+    const auto minus = [](const auto& u, const auto& v) {
+      return std::array{u[0] - v[0], u[1] - v[1], u[2] - v[2]};
+    };
     const auto u = minus(b, a), v = minus(c, a), w = minus(top, a);
     return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) +
                u[2] * (v[0] * w[1] - v[1] * w[0]) >
@@ -215,8 +220,8 @@ class ContactFinder {
     return {corner(w, static_cast<std::uint8_t>(1u << face), equal), line};
   }
 
-  /// Where three functions are equal on a face, worked out the same way from either cell. None if that is no point of
-  /// the face to the accuracy of the arithmetic.
+  /// Where three functions are equal on a face, worked out the same way from either cell. None if that is no
+  /// point of the face to the accuracy of the arithmetic.
   [[nodiscard]] std::optional<Weights> on_face(std::array<std::uint32_t, 3> equal, std::uint32_t face) const {
     std::sort(equal.begin(), equal.end(), [&](auto x, auto y) { return function(x).key < function(y).key; });
     std::array<std::size_t, 3> v{};
@@ -228,7 +233,8 @@ class ContactFinder {
       p[i] = function(equal[0]).values[v[i]] - function(equal[1]).values[v[i]];
       q[i] = function(equal[0]).values[v[i]] - function(equal[2]).values[v[i]];
     }
-    const std::array<double, 3> x{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+    const std::array<double, 3> x{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
+                                  p[0] * q[1] - p[1] * q[0]};
     const double sum = x[0] + x[1] + x[2];
     const double size = std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
     if (!(std::abs(sum) >= 0.999999 * size) || size == 0) return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace adamas {
 
@@ -50,7 +51,9 @@ class ValueTable {
     }
   }
   [[nodiscard]] std::size_t corners() const { return corners_; }
-  [[nodiscard]] double operator()(std::uint32_t f, std::size_t corner) const { return values_[f * corners_ + corner]; }
+  [[nodiscard]] double operator()(std::uint32_t f, std::size_t corner) const {
+    return values_[f * corners_ + corner];
+  }
   /// Whether g <= f all over the piece; equal functions are ordered by `first`.
   [[nodiscard]] bool at_most(std::uint32_t g, std::uint32_t f, bool first) const {
     bool strict = false;
@@ -66,14 +69,16 @@ class ValueTable {
   std::vector<double> values_;
 };
 
-/// Drops functions that are nowhere the least of their contender and contenders that are nowhere the greatest.
+/// Drops functions that are nowhere the least of their contender and contenders that are nowhere the
+/// greatest.
 void prune(const OwnershipProblem& problem, const ValueTable& values, Contenders& contenders) {
   const auto key = [&](std::uint32_t f) { return problem.functions[f].key; };
   for (auto& contender : contenders.list) {
     auto& fs = contender.functions;
     for (std::size_t i = 0; i < fs.size() && fs.size() > 1;) {
       const bool redundant = std::any_of(fs.begin(), fs.end(), [&](std::uint32_t g) {
-        return g != fs[i] && values.at_most(g, fs[i], key(g) < key(fs[i]) || (key(g) == key(fs[i]) && g < fs[i]));
+        return g != fs[i] &&
+               values.at_most(g, fs[i], key(g) < key(fs[i]) || (key(g) == key(fs[i]) && g < fs[i]));
       });
       if (redundant) {
         fs.erase(fs.begin() + static_cast<std::ptrdiff_t>(i));
@@ -105,19 +110,19 @@ bool distinct(const TetrahedronCorners& t) {
   return t[0] != t[1] && t[0] != t[2] && t[0] != t[3] && t[1] != t[2] && t[1] != t[3] && t[2] != t[3];
 }
 
-/// The prism between triangles u and v as three tetrahedra; the diagonals of its sides run from the earlier column of u
-/// to the later one of v.
+/// The prism between triangles u and v as three tetrahedra; the diagonals of its sides run from the earlier
+/// column of u to the later one of v.
 void add_prism(const std::array<Weights, 3>& u, const std::array<Weights, 3>& v,
                std::vector<TetrahedronCorners>& out) {
-  for (const TetrahedronCorners& t : {TetrahedronCorners{u[0], u[1], u[2], v[2]},
-                                      TetrahedronCorners{u[0], u[1], v[1], v[2]},
-                                      TetrahedronCorners{u[0], v[0], v[1], v[2]}}) {
+  for (const TetrahedronCorners& t :
+       {TetrahedronCorners{u[0], u[1], u[2], v[2]}, TetrahedronCorners{u[0], u[1], v[1], v[2]},
+        TetrahedronCorners{u[0], v[0], v[1], v[2]}}) {
     if (distinct(t)) out.push_back(t);
   }
 }
 
-/// Cuts a tetrahedron where `d` changes sign; `positive` tells the side of each corner. Diagonals follow the order of
-/// the corners, so that two cells whose corners are in one global order agree on their face.
+/// Cuts a tetrahedron where `d` changes sign; `positive` tells the side of each corner. Diagonals follow the
+/// order of the corners, so that two cells whose corners are in one global order agree on their face.
 void cut(const TetrahedronCorners& piece, const std::vector<double>& d, const std::vector<bool>& positive,
          std::vector<TetrahedronCorners>& above, std::vector<TetrahedronCorners>& below) {
   std::array<std::size_t, 4> p{}, n{};
@@ -129,8 +134,8 @@ void cut(const TetrahedronCorners& piece, const std::vector<double>& d, const st
   };
   if (np == 2) {
     const auto side = [&](const auto& s, const auto& o, auto& out) {
-      add_prism({point(s[0], o[0]), point(s[0], o[1]), piece[s[0]]}, {point(s[1], o[0]), point(s[1], o[1]), piece[s[1]]},
-                out);
+      add_prism({point(s[0], o[0]), point(s[0], o[1]), piece[s[0]]},
+                {point(s[1], o[0]), point(s[1], o[1]), piece[s[1]]}, out);
     };
     side(p, n, above);
     side(n, p, below);
@@ -181,7 +186,8 @@ class Divider {
 
  private:
   /// Which of its two first functions is the least of contender i.
-  void cut_within(const Corners& corners, const ValueTable& values, const Contenders& contenders, std::size_t i) {
+  void cut_within(const Corners& corners, const ValueTable& values, const Contenders& contenders,
+                  std::size_t i) {
     const auto& fs = contenders.list[i].functions;
     const auto without = [&](std::uint32_t f) {
       Contenders rest = contenders;
@@ -202,15 +208,18 @@ class Divider {
       rest.list.erase(rest.list.begin() + static_cast<std::ptrdiff_t>(gone));
       return rest;
     };
-    split(corners, values, contenders.list[x].functions[0], contenders.list[y].functions[0], without(y), without(x));
+    split(corners, values, contenders.list[x].functions[0], contenders.list[y].functions[0], without(y),
+          without(x));
   }
 
-  [[nodiscard]] std::size_t greatest_at(const ValueTable& values, const Contenders& contenders, std::size_t c) const {
+  [[nodiscard]] std::size_t greatest_at(const ValueTable& values, const Contenders& contenders,
+                                        std::size_t c) const {
     std::size_t best = 0;
     for (std::size_t i = 1; i < contenders.list.size(); ++i) {
       const std::uint32_t f = contenders.list[i].functions[0], g = contenders.list[best].functions[0];
       const double difference = values(f, c) - values(g, c);
-      if (difference > 0 || (difference == 0 && problem_.functions[f].key < problem_.functions[g].key)) best = i;
+      if (difference > 0 || (difference == 0 && problem_.functions[f].key < problem_.functions[g].key))
+        best = i;
     }
     return best;
   }
@@ -269,7 +278,8 @@ std::uint32_t OwnershipProblem::owner(const Weights& weights) const {
     double least = evaluate(functions[best].values, weights);
     for (std::uint32_t f = candidate.first + 1; f < candidate.first + candidate.count; ++f) {
       const double value_f = evaluate(functions[f].values, weights);
-      if (value_f < least || (value_f == least && functions[f].key > functions[best].key)) best = f, least = value_f;
+      if (value_f < least || (value_f == least && functions[f].key > functions[best].key))
+        best = f, least = value_f;
     }
     return std::pair(least, functions[best].key);
   };
@@ -284,17 +294,45 @@ std::uint32_t OwnershipProblem::owner(const Weights& weights) const {
   return owner;
 }
 
+void drop_hopeless(OwnershipProblem& problem) {
+  const auto least_at = [&](const OwnershipProblem::Candidate& candidate, std::size_t corner) {
+    double least = problem.functions[candidate.first].values[corner];
+    for (std::uint32_t f = 1; f < candidate.count; ++f) {
+      least = std::min(least, problem.functions[candidate.first + f].values[corner]);
+    }
+    return least;
+  };
+  // Each candidate is concave: nowhere below the least of its corner values, nowhere above the greatest
+  // corner value of any of its functions.
+  double surely = -std::numeric_limits<double>::infinity();
+  for (const auto& candidate : problem.candidates) {
+    surely = std::max(surely, std::min({least_at(candidate, 0), least_at(candidate, 1),
+                                        least_at(candidate, 2), least_at(candidate, 3)}));
+  }
+  std::erase_if(problem.candidates, [&](const OwnershipProblem::Candidate& candidate) {
+    double at_most = std::numeric_limits<double>::infinity();
+    for (std::uint32_t f = 0; f < candidate.count; ++f) {
+      const auto& values = problem.functions[candidate.first + f].values;
+      at_most = std::min(at_most, *std::max_element(values.begin(), values.end()));
+    }
+    return at_most < surely;
+  });
+}
+
 void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTetrahedron>& parts) {
-  const TetrahedronCorners whole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0}, Weights{0, 0, 0, 1}};
-  divide(problem, whole,
-         [&](std::uint32_t owner, const TetrahedronCorners& corners) { parts.push_back({owner, corners}); });
+  const TetrahedronCorners whole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0},
+                                 Weights{0, 0, 0, 1}};
+  divide(problem, whole, [&](std::uint32_t owner, const TetrahedronCorners& corners) {
+    parts.push_back({owner, corners});
+  });
 }
 
 void partition_polygon(const OwnershipProblem& problem, const std::vector<Weights>& polygon,
                        std::vector<OwnedPolygon>& parts) {
   if (polygon.size() < 3) return;
-  divide(problem, polygon,
-         [&](std::uint32_t owner, const PolygonCorners& corners) { parts.push_back({owner, corners}); });
+  divide(problem, polygon, [&](std::uint32_t owner, const PolygonCorners& corners) {
+    parts.push_back({owner, corners});
+  });
 }
 
 double volume_fraction(const std::array<Weights, 4>& c) {
@@ -303,7 +341,8 @@ double volume_fraction(const std::array<Weights, 4>& c) {
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t i = 0; i < 3; ++i) m[r][i] = c[r + 1][i + 1] - c[0][i + 1];
   }
-  return std::abs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+  return std::abs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                  m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                   m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
 }
 

@@ -6,15 +6,15 @@
 
 namespace adamas {
 
-/// A linear function on a tetrahedron, by its values at the four vertices. `key` identifies the function across cells:
-/// exact ties between two functions are decided in favour of the smaller key.
+/// A linear function on a tetrahedron, by its values at the four vertices. `key` identifies the function
+/// across cells: exact ties between two functions are decided in favour of the smaller key.
 struct LinearFunction {
   std::array<double, 4> values;
   std::uint64_t key;
 };
 
-/// Who owns a point of a tetrahedron (SPEC 2.3): each candidate is the least of its linear functions, and the owner of a
-/// point is the candidate with the greatest value there.
+/// Who owns a point of a tetrahedron (SPEC 2.3): each candidate is the least of its linear functions, and the
+/// owner of a point is the candidate with the greatest value there.
 struct OwnershipProblem {
   struct Candidate {
     std::uint32_t owner;  ///< a body or material index
@@ -57,12 +57,13 @@ struct OwnedPolygon {
   std::vector<Weights> corners;
 };
 
-/// A convex polygon where the regions of two owners touch; seen from `front`'s side it runs counter-clockwise when the
-/// tetrahedron is positively oriented.
+/// A convex polygon where the regions of two owners touch; seen from `front`'s side it runs counter-clockwise
+/// when the tetrahedron is positively oriented.
 struct ContactPolygon {
   struct Corner {
     Weights weights;
-    /// The functions that are equal here and the faces it lies on, in canonical order: the same on every cell.
+    /// The functions that are equal here and the faces it lies on, in canonical order: the same on every
+    /// cell.
     std::array<std::uint64_t, 4> functions;
     std::uint8_t zero_weights;  ///< bit i: weight i is zero by construction
   };
@@ -76,6 +77,9 @@ void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTet
 /// Divides a convex polygon, given by weights, into convex parts of one owner.
 void partition_polygon(const OwnershipProblem& problem, const std::vector<Weights>& polygon,
                        std::vector<OwnedPolygon>& parts);
+
+/// Leaves out candidates that own no point by far, so that the others can be divided faster.
+void drop_hopeless(OwnershipProblem& problem);
 
 /// The polygons where two owners touch inside the tetrahedron.
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);

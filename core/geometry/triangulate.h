@@ -8,8 +8,9 @@
 
 namespace adamas {
 
-/// Triangulates a (weakly) convex polygon, given by indices into `points`, by cutting off the best-shaped ear again and
-/// again; collinear corners make no triangle without area unless all are collinear. `emit(a, b, c)` keeps orientation.
+/// Triangulates a (weakly) convex polygon, given by indices into `points`, by cutting off the best-shaped ear
+/// again and again; collinear corners make no triangle without area unless all are collinear. `emit(a, b, c)`
+/// keeps orientation.
 template <class Emit>
 void triangulate_convex(const std::vector<Vec3>& points, std::vector<std::uint32_t> loop, Emit&& emit) {
   const auto quality = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {

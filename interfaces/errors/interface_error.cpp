@@ -1,0 +1,116 @@
+#include "interfaces/errors/interface_error.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace adamas {
+
+namespace {
+
+/// A cell that knows more bodies than this is split before its partition is worked out.
+constexpr std::size_t kCrowd = 16;
+/// From this many triangles on, a first look takes every so manyth.
+constexpr std::size_t kManyTriangles = 256;
+
+class Estimator {
+ public:
+  Estimator(const InterfaceNetwork& network, const Tetrahedron& cell, const CellOwnership& ownership)
+      : network_(network), cell_(cell), ownership_(ownership), diameter_(cell.diameter()) {}
+
+  [[nodiscard]] double diameter() const { return diameter_; }
+
+  /// Greatest distance of the given triangles' parts from the cell's interfaces.
+  double of_triangles(std::span<const std::uint32_t> triangles, std::size_t stride) {
+    double greatest = 0;
+    for (std::size_t i = 0; i < triangles.size() && greatest < diameter_; i += stride) {
+      greatest = std::max(greatest, of_triangle(triangles[i]));
+    }
+    return std::min(greatest, diameter_);
+  }
+
+  /// Greatest distance of the cell's interfaces from the input's; notes which interfaces the cell shows.
+  double of_contacts() {
+    contacts_.clear();
+    contact_polygons(ownership_.problem, contacts_);
+    double greatest = 0;
+    for (const ContactPolygon& contact : contacts_) {
+      const auto id = network_.table().find(BodyId(contact.front), BodyId(contact.back));
+      if (!id) return diameter_;
+      for (const auto& corner : contact.corners) {
+        const auto closest = network_.tree(*id).closest(cell_.point(corner.weights), diameter_);
+        greatest = std::max(greatest, closest ? std::sqrt(closest->squared_distance) : diameter_);
+      }
+    }
+    return std::min(greatest, diameter_);
+  }
+
+  [[nodiscard]] bool shows(InterfaceId id) const {
+    const auto& [a, b] = network_.table().sides(id);
+    return std::any_of(contacts_.begin(), contacts_.end(),
+                       [&, first = a, second = b](const ContactPolygon& c) {
+                         return (c.front == first.value && c.back == second.value) ||
+                                (c.front == second.value && c.back == first.value);
+                       });
+  }
+
+ private:
+  double of_triangle(std::uint32_t triangle) {
+    const InterfaceId id = network_.interface_of(triangle);
+    const auto known = std::lower_bound(ownership_.interfaces.begin(), ownership_.interfaces.end(), id,
+                                        [](const auto& i, InterfaceId other) { return i.id < other; });
+    if (known == ownership_.interfaces.end() || known->id != id) return diameter_;
+    const auto& [a, b] = network_.table().sides(id);
+    const auto& problem = ownership_.problem;
+    const auto& first = problem.candidates[ownership_.candidate(a)];
+    const auto& second = problem.candidates[ownership_.candidate(b)];
+    const auto& towards_first = problem.functions[known->towards_first].values;
+    const auto& towards_second = problem.functions[known->towards_second].values;
+    std::array<double, 4> phi{};
+    for (std::size_t v = 0; v < 4; ++v) phi[v] = 0.5 * (towards_first[v] - towards_second[v]);
+    const double slope = norm(cell_.gradient(phi));
+    const auto& corners = network_.triangle_corners(triangle);
+    double greatest = 0;
+    for (const Weights& w : ClippedTriangle(cell_, corners[0], corners[1], corners[2])) {
+      double highest = -std::numeric_limits<double>::infinity();
+      for (const auto& candidate : problem.candidates)
+        highest = std::max(highest, problem.value(candidate, w));
+      const double gap = highest - std::min(problem.value(first, w), problem.value(second, w));
+      greatest = std::max(greatest, gap <= 0                      ? 0
+                                    : gap < 2 * slope * diameter_ ? gap / (2 * slope)
+                                                                  : diameter_);
+    }
+    return greatest;
+  }
+
+  const InterfaceNetwork& network_;
+  const Tetrahedron& cell_;
+  const CellOwnership& ownership_;
+  double diameter_;
+  std::vector<ContactPolygon> contacts_;
+};
+
+}  // namespace
+
+InterfaceError estimate_interface_error(const InterfaceNetwork& network, const Tetrahedron& cell,
+                                        const CellOwnership& ownership,
+                                        std::span<const std::uint32_t> triangles, double target) {
+  Estimator estimator(network, cell, ownership);
+  if (ownership.pure()) return {triangles.empty() ? 0 : estimator.diameter(), !triangles.empty()};
+  if (ownership.problem.candidates.size() > kCrowd && estimator.diameter() > target)
+    return {estimator.diameter(), false};
+  InterfaceError error;
+  if (triangles.size() >= kManyTriangles) {
+    error.distance = estimator.of_triangles(triangles, triangles.size() / (kManyTriangles / 4));
+    if (error.distance > target) return error;
+  }
+  error.distance = estimator.of_triangles(triangles, 1);
+  const double back = estimator.of_contacts();
+  if (error.distance > target) {
+    error.lost = std::any_of(triangles.begin(), triangles.end(),
+                             [&](std::uint32_t t) { return !estimator.shows(network.interface_of(t)); });
+  }
+  error.distance = std::max(error.distance, back);
+  return error;
+}
+
+}  // namespace adamas

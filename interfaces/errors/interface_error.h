@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/tetrahedron.h"
+#include "interfaces/network/interface_network.h"
+#include "interfaces/ownership/cell_ownership.h"
+
+namespace adamas {
+
+/// How far the approximation of the interfaces in one cell is from the input's (SPEC 2.5); an estimate.
+struct InterfaceError {
+  double distance = 0;  ///< at most the cell's diameter
+  bool lost = false;    ///< the input has an interface here, further than the target from any the cell shows
+};
+
+/// Estimates both ways: at the corners of the input's triangles clipped to the cell, by the linear functions;
+/// and at the corners of the cell's own interfaces, by the distance to the input's. `triangles`: of the
+/// network, those that meet the cell. Of very many only some are looked at, which can make the estimate of a
+/// coarse cell smaller but not less than `target` where that matters: all are looked at before an error
+/// within the target is returned.
+InterfaceError estimate_interface_error(const InterfaceNetwork& network, const Tetrahedron& cell,
+                                        const CellOwnership& ownership,
+                                        std::span<const std::uint32_t> triangles, double target);
+
+}  // namespace adamas

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// Name, unit and size of a field; its values stand in a row of all fields' components from `offset` on.
+struct FieldInfo {
+  std::string name;
+  std::string unit;
+  int components = 1;
+  std::size_t offset = 0;
+  double min = 0, max = 0;  ///< of the native values (of their lengths, for vectors)
+};
+
+/// A place where the input states values: the unit in which field errors are measured (D 3.6).
+struct NativeElement {
+  Vec3 position;
+  MaterialId material;
+  std::size_t site;  ///< for the source's own use
+};
+
+/// The fields of the input at any point, per material and from its own side (D 3.3, SPEC 2).
+class FieldSource {
+ public:
+  virtual ~FieldSource() = default;
+  [[nodiscard]] virtual const std::vector<FieldInfo>& fields() const = 0;
+  /// Components of all fields together: the length of the rows below.
+  [[nodiscard]] virtual std::size_t row_size() const = 0;
+  /// Values of a material's fields at p; NaN for a field that the material has not.
+  virtual void values(MaterialId material, const Vec3& p, std::span<double> row) const = 0;
+  /// Values and one-sided derivatives: `gradients[c]` of component c.
+  virtual void values_and_gradients(MaterialId material, const Vec3& p, std::span<double> row,
+                                    std::span<Vec3> gradients) const = 0;
+  [[nodiscard]] virtual const std::vector<NativeElement>& native_elements() const = 0;
+  /// The values the input states at a native element; NaN where it states none for the element's material.
+  virtual void native_values(const NativeElement& element, std::span<double> row) const = 0;
+};
+
+}  // namespace adamas

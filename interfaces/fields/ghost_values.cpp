@@ -1,0 +1,67 @@
+#include "interfaces/fields/ghost_values.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/assert.h"
+
+namespace adamas {
+
+namespace {
+
+/// Closest point of a body's interfaces.
+Vec3 closest_on_body(const InterfaceNetwork& network, const Vec3& position, const VertexRecord& vertex,
+                     BodyId body) {
+  Vec3 best = position;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < vertex.closest.size(); ++i) {
+    const auto& [a, b] = network.table().sides(vertex.distances.near[i].interface);
+    if (a != body && b != body) continue;
+    const double d = squared_norm(vertex.closest[i] - position);
+    if (d < least) least = d, best = vertex.closest[i];
+  }
+  if (least < std::numeric_limits<double>::infinity()) return best;
+  for (const auto& [other, id] : network.table().neighbours(body)) {
+    const auto closest = network.tree(id).closest(position, std::sqrt(least));
+    if (closest && closest->squared_distance < least)
+      least = closest->squared_distance, best = closest->point;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<GhostMode> parse_ghost_mode(std::string_view name) {
+  if (name == "constant") return GhostMode::kConstant;
+  if (name == "linear") return GhostMode::kLinear;
+  return std::nullopt;
+}
+
+std::span<const double> VertexRecord::row(BodyId body) const {
+  const auto found =
+      std::lower_bound(rows.begin(), rows.end(), body, [](const BodyRow& r, BodyId b) { return r.body < b; });
+  ADAMAS_ASSERT(found != rows.end() && found->body == body);
+  return found->row;
+}
+
+std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode mode, const Vec3& position,
+                                     const VertexRecord& vertex, BodyId body) {
+  const FieldSource& fields = *source.fields;
+  std::vector<double> row(fields.row_size());
+  const MaterialId material = source.network->table().material(body);
+  if (vertex.distances.body == body) {
+    fields.values(material, position, row);
+    return row;
+  }
+  const Vec3 closest = closest_on_body(*source.network, position, vertex, body);
+  if (mode == GhostMode::kConstant) {
+    fields.values(material, closest, row);
+    return row;
+  }
+  std::vector<Vec3> gradients(row.size());
+  fields.values_and_gradients(material, closest, row, gradients);
+  for (std::size_t c = 0; c < row.size(); ++c) row[c] += dot(gradients[c], position - closest);
+  return row;
+}
+
+}  // namespace adamas

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "interfaces/ownership/cell_ownership.h"
+#include "interfaces/source.h"
+
+namespace adamas {
+
+/// How a material's field is continued to vertices outside of the material (SPEC 2.4).
+enum class GhostMode {
+  kConstant,  ///< the value at the closest point of the material's interfaces (D 3.5.1)
+  kLinear,    ///< that, plus the one-sided gradient there times the offset
+};
+std::optional<GhostMode> parse_ghost_mode(std::string_view name);
+
+/// What the resampled mesh knows at one vertex.
+struct VertexRecord {
+  VertexDistances distances;
+  std::vector<Vec3> closest;  ///< the closest points that belong to `distances.near`
+  /// Fields of the bodies that the cells round the vertex need, by body.
+  struct BodyRow {
+    BodyId body;
+    std::vector<double> row;
+  };
+  std::vector<BodyRow> rows;
+
+  [[nodiscard]] std::span<const double> row(BodyId body) const;
+};
+
+/// Values of a body's fields at a vertex: the input's where the vertex lies in the body, ghost values
+/// elsewhere. One row per vertex and body, the same for all cells round the vertex.
+std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode mode, const Vec3& position,
+                                     const VertexRecord& vertex, BodyId body);
+
+}  // namespace adamas

@@ -1,0 +1,238 @@
+#include "interfaces/fields/grid_field_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <unordered_map>
+
+#include "core/base/parallel.h"
+#include "interfaces/fields/linear_fit.h"
+
+namespace adamas {
+
+namespace {
+
+/// A site states a value of a field per material where the material's fraction is at least this,
+constexpr float kPresent = 1e-3f;
+/// and of a mixed field where it is at least this.
+constexpr float kPure = 0.99f;
+/// Sites looked at for a fit lie within this many steps.
+constexpr std::int32_t kReach = 6;
+/// A fit takes sites from the smallest window that has this many.
+constexpr std::size_t kWanted = 8;
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+/// Fitted values, kept from first need. Values depend on the site alone, so the order of needs does not
+/// matter.
+struct GridFieldSource::Cache {
+  static constexpr std::size_t kShards = 64;
+  struct Shard {
+    std::mutex mutex;
+    std::unordered_map<std::uint64_t, std::vector<double>> rows;
+  };
+  std::array<Shard, kShards> shards;
+};
+
+struct GridFieldSource::Cell {
+  Site low;
+  std::array<double, 3> local;
+  std::array<double, 3> size;
+};
+
+GridFieldSource::~GridFieldSource() = default;
+
+GridFieldSource::GridFieldSource(const MultiMaterialData& data,
+                                 const std::function<MaterialId(const Vec3&)>& material_at)
+    : data_(data), cache_(std::make_unique<Cache>()) {
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& x = coordinates_[static_cast<std::size_t>(axis)];
+    const std::size_t n = data.grid.sites(axis);
+    for (std::size_t i = 0; i < n; ++i) x.push_back(data.grid.site_coordinate(axis, i));
+    const double step_low = n > 1 ? x[1] - x[0] : data.grid.domain().size()[axis];
+    const double step_high = n > 1 ? x[n - 1] - x[n - 2] : step_low;
+    x.insert(x.begin(), x.front() - step_low);
+    x.push_back(x.back() + step_high);
+  }
+  for (const Field& field : data.fields) {
+    fields_.push_back({field.name, field.unit, field.components, row_size_, 0, 0});
+    row_size_ += static_cast<std::size_t>(field.components);
+  }
+  const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1), nz = data.grid.sites(2);
+  elements_.resize(nx * ny * nz);
+  owner_.resize(elements_.size());
+  parallel_for(nz, 1, [&](std::size_t k) {
+    for (std::size_t j = 0; j < ny; ++j) {
+      for (std::size_t i = 0; i < nx; ++i) {
+        const std::size_t site = data.grid.site_index(i, j, k);
+        const Vec3 position = data.grid.site(i, j, k);
+        const MaterialId material = material_at(position);
+        elements_[site] = {position, material, site};
+        owner_[site] = static_cast<std::uint16_t>(material.value);
+      }
+    }
+  });
+  std::vector<double> row(row_size_);
+  std::vector<bool> seen(fields_.size());
+  for (const NativeElement& element : elements_) {
+    native_values(element, row);
+    for (std::size_t f = 0; f < fields_.size(); ++f) {
+      FieldInfo& info = fields_[f];
+      double value = row[info.offset];
+      if (info.components > 1) {
+        value = 0;
+        for (std::size_t c = 0; c < static_cast<std::size_t>(info.components); ++c)
+          value = std::hypot(value, row[info.offset + c]);
+      }
+      if (std::isnan(value)) continue;
+      info.min = seen[f] ? std::min(info.min, value) : value;
+      info.max = seen[f] ? std::max(info.max, value) : value;
+      seen[f] = true;
+    }
+  }
+}
+
+bool GridFieldSource::inside(const Site& s) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (s[a] < 0 || s[a] >= sites(a)) return false;
+  }
+  return true;
+}
+
+std::size_t GridFieldSource::index(const Site& s) const {
+  return data_.grid.site_index(static_cast<std::size_t>(s[0]), static_cast<std::size_t>(s[1]),
+                               static_cast<std::size_t>(s[2]));
+}
+
+bool GridFieldSource::states(std::size_t field, MaterialId material, std::size_t site) const {
+  const Field& f = data_.fields[field];
+  const bool fractions = data_.labels.empty() && !data_.fractions.empty();
+  if (f.per_material()) {
+    if (material.value >= f.material_values.size() || f.material_values[material].empty()) return false;
+    return fractions ? data_.fractions[material][site] >= kPresent : owner_[site] == material.value;
+  }
+  return fractions ? data_.fractions[material][site] >= kPure : owner_[site] == material.value;
+}
+
+double GridFieldSource::stated(std::size_t field, MaterialId material, std::size_t site,
+                               int component) const {
+  const Field& f = data_.fields[field];
+  const auto& values = f.per_material() ? f.material_values[material] : f.values;
+  return static_cast<double>(
+      values[site * static_cast<std::size_t>(f.components) + static_cast<std::size_t>(component)]);
+}
+
+void GridFieldSource::native_values(const NativeElement& element, std::span<double> row) const {
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    const bool known = states(f, element.material, element.site);
+    for (int c = 0; c < fields_[f].components; ++c) {
+      row[fields_[f].offset + static_cast<std::size_t>(c)] =
+          known ? stated(f, element.material, element.site, c) : kNothing;
+    }
+  }
+}
+
+void GridFieldSource::site_values(std::size_t field, MaterialId material, const Site& site,
+                                  std::span<double> out) const {
+  if (inside(site) && states(field, material, index(site))) {
+    for (int c = 0; c < fields_[field].components; ++c)
+      out[static_cast<std::size_t>(c)] = stated(field, material, index(site), c);
+    return;
+  }
+  std::uint64_t key = material.value * 4096ull + field;
+  for (std::size_t a = 0; a < 3; ++a)
+    key = key * static_cast<std::uint64_t>(sites(a) + 2) + static_cast<std::uint64_t>(site[a] + 1);
+  auto& shard = cache_->shards[(key * 0x9e3779b97f4a7c15ull) >> 58];
+  {
+    const std::lock_guard lock(shard.mutex);
+    if (const auto found = shard.rows.find(key); found != shard.rows.end()) {
+      std::copy(found->second.begin(), found->second.end(), out.begin());
+      return;
+    }
+  }
+  fit(field, material, site, out);
+  const std::lock_guard lock(shard.mutex);
+  shard.rows.try_emplace(key, out.begin(), out.begin() + fields_[field].components);
+}
+
+void GridFieldSource::fit(std::size_t field, MaterialId material, const Site& site,
+                          std::span<double> out) const {
+  const auto components = static_cast<std::size_t>(fields_[field].components);
+  const Vec3 here{coordinate(0, site[0]), coordinate(1, site[1]), coordinate(2, site[2])};
+  std::vector<Vec3> offsets;
+  std::vector<double> values;
+  for (std::int32_t reach = 1; reach <= kReach && offsets.size() < kWanted; ++reach) {
+    // The shell of sites `reach` steps away.
+    for (std::int32_t dk = -reach; dk <= reach; ++dk) {
+      for (std::int32_t dj = -reach; dj <= reach; ++dj) {
+        const bool face = std::abs(dk) == reach || std::abs(dj) == reach;
+        for (std::int32_t di = -reach; di <= reach; di += face ? 1 : 2 * reach) {
+          const Site other{site[0] + di, site[1] + dj, site[2] + dk};
+          if (!inside(other) || !states(field, material, index(other))) continue;
+          offsets.push_back(Vec3{coordinate(0, other[0]), coordinate(1, other[1]), coordinate(2, other[2])} -
+                            here);
+          for (std::size_t c = 0; c < components; ++c)
+            values.push_back(stated(field, material, index(other), static_cast<int>(c)));
+        }
+      }
+    }
+  }
+  fit_linear_at_origin(offsets, values, components, out.subspan(0, components));
+}
+
+GridFieldSource::Cell GridFieldSource::locate(const Vec3& p) const {
+  Cell cell{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto& x = coordinates_[a];
+    const double q = std::clamp(p[static_cast<int>(a)], x.front(), x.back());
+    const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, q);
+    const auto i = static_cast<std::size_t>(above - x.begin()) - 1;
+    cell.low[a] = static_cast<std::int32_t>(i) - 1;
+    cell.size[a] = x[i + 1] - x[i];
+    cell.local[a] = (q - x[i]) / cell.size[a];
+  }
+  return cell;
+}
+
+void GridFieldSource::values_and_gradients(MaterialId material, const Vec3& p, std::span<double> row,
+                                           std::span<Vec3> gradients) const {
+  const Cell cell = locate(p);
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    const auto components = static_cast<std::size_t>(fields_[f].components);
+    std::array<double, 8> weight{};
+    std::array<Vec3, 8> slope;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      std::array<double, 3> w{}, d{};
+      for (std::size_t a = 0; a < 3; ++a) {
+        const bool high = (corner >> a & 1u) != 0;
+        w[a] = high ? cell.local[a] : 1 - cell.local[a];
+        d[a] = (high ? 1 : -1) / cell.size[a];
+      }
+      weight[corner] = w[0] * w[1] * w[2];
+      slope[corner] = {d[0] * w[1] * w[2], w[0] * d[1] * w[2], w[0] * w[1] * d[2]};
+    }
+    std::vector<double> at(components);
+    for (std::size_t c = 0; c < components; ++c) {
+      row[fields_[f].offset + c] = 0;
+      if (!gradients.empty()) gradients[fields_[f].offset + c] = {};
+    }
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      if (weight[corner] == 0 && gradients.empty()) continue;
+      Site site = cell.low;
+      for (std::size_t a = 0; a < 3; ++a) site[a] += static_cast<std::int32_t>(corner >> a & 1u);
+      site_values(f, material, site, at);
+      for (std::size_t c = 0; c < components; ++c) {
+        row[fields_[f].offset + c] += weight[corner] * at[c];
+        if (!gradients.empty()) gradients[fields_[f].offset + c] += at[c] * slope[corner];
+      }
+    }
+  }
+}
+
+void GridFieldSource::values(MaterialId material, const Vec3& p, std::span<double> row) const {
+  values_and_gradients(material, p, row, {});
+}
+
+}  // namespace adamas

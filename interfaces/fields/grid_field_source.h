@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/data/multi_material_data.h"
+#include "interfaces/fields/field_source.h"
+
+namespace adamas {
+
+/// Fields on the sites of a rectilinear grid. A material's field is trilinear between sites that state a
+/// value of its own: of a field per material where its fraction is no trace, of a mixed field where the site
+/// is (nearly) pure. Sites that state none get the weighted least-squares linear fit of the nearest that do,
+/// so that a linear field per material is reproduced exactly up to the interface and to the domain's
+/// boundary.
+class GridFieldSource final : public FieldSource {
+ public:
+  /// `material_at` owns each site's centre: native elements are of that material. `data` must outlive this.
+  GridFieldSource(const MultiMaterialData& data, const std::function<MaterialId(const Vec3&)>& material_at);
+  ~GridFieldSource() override;
+
+  [[nodiscard]] const std::vector<FieldInfo>& fields() const override { return fields_; }
+  [[nodiscard]] std::size_t row_size() const override { return row_size_; }
+  void values(MaterialId material, const Vec3& p, std::span<double> row) const override;
+  void values_and_gradients(MaterialId material, const Vec3& p, std::span<double> row,
+                            std::span<Vec3> gradients) const override;
+  [[nodiscard]] const std::vector<NativeElement>& native_elements() const override { return elements_; }
+  void native_values(const NativeElement& element, std::span<double> row) const override;
+
+ private:
+  struct Cache;
+  struct Cell;
+  using Site = std::array<std::int32_t, 3>;
+
+  [[nodiscard]] std::int32_t sites(std::size_t axis) const {
+    return static_cast<std::int32_t>(coordinates_[axis].size()) - 2;
+  }
+  [[nodiscard]] double coordinate(std::size_t axis, std::int32_t i) const {
+    return coordinates_[axis][static_cast<std::size_t>(i + 1)];
+  }
+  [[nodiscard]] bool inside(const Site& s) const;
+  [[nodiscard]] std::size_t index(const Site& s) const;
+  /// Whether the site states a value of the field for the material.
+  [[nodiscard]] bool states(std::size_t field, MaterialId material, std::size_t site) const;
+  [[nodiscard]] double stated(std::size_t field, MaterialId material, std::size_t site, int component) const;
+  /// Value at a site, stated or fitted; sites one step outside the grid are fitted.
+  void site_values(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
+  void fit(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
+  [[nodiscard]] Cell locate(const Vec3& p) const;
+
+  const MultiMaterialData& data_;
+  std::vector<FieldInfo> fields_;
+  std::size_t row_size_ = 0;
+  std::array<std::vector<double>, 3> coordinates_;  ///< of sites -1, 0, ..., n
+  std::vector<std::uint16_t> owner_;
+  std::vector<NativeElement> elements_;
+  std::unique_ptr<Cache> cache_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,52 @@
+#include "interfaces/grid_source.h"
+
+#include <algorithm>
+
+#include "interfaces/fields/grid_field_source.h"
+
+namespace adamas {
+
+ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progress) {
+  auto reconstruction = std::make_shared<Reconstruction>(data, progress);
+  ResamplingSource source;
+  source.name = data.source;
+  source.box = data.grid.domain();
+  source.materials = data.materials;
+  source.volumes = reconstruction->volume_input();
+  source.network = std::make_shared<InterfaceNetwork>(
+      reconstruction->mesh(), source.box, Bodies{reconstruction->bodies(), reconstruction->body_materials()});
+  source.body_at = [reconstruction](const Vec3& p, bool* flagged) {
+    if (flagged != nullptr) *flagged = false;
+    return reconstruction->body_at(p);
+  };
+  if (!data.fields.empty()) {
+    source.fields = std::make_shared<GridFieldSource>(
+        data, [&](const Vec3& p) { return source.network->table().material(reconstruction->body_at(p)); });
+  }
+  return source;
+}
+
+ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, const MultiMaterialData* data) {
+  ResamplingSource source;
+  source.name = mesh.source;
+  source.box = box;
+  source.materials = mesh.materials;
+  auto network = std::make_shared<InterfaceNetwork>(mesh, box);
+  source.network = network;
+  source.body_at = [network](const Vec3& p, bool* flagged) { return network->body_at(p, flagged); };
+  if (data == nullptr || data->fields.empty()) return source;
+  // The mesh's materials in the order of the data's.
+  std::vector<MaterialId> as_in_data;
+  for (const std::string& name : mesh.materials) {
+    const auto found = std::find(data->materials.begin(), data->materials.end(), name);
+    if (found == data->materials.end()) {
+      fail("{}: expected the materials of {}, found '{}'", mesh.source, data->source, name);
+    }
+    as_in_data.emplace_back(static_cast<std::size_t>(found - data->materials.begin()));
+  }
+  source.fields = std::make_shared<GridFieldSource>(
+      *data, [&](const Vec3& p) { return as_in_data[network->table().material(network->body_at(p)).value]; });
+  return source;
+}
+
+}  // namespace adamas

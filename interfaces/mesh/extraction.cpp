@@ -1,0 +1,79 @@
+#include "interfaces/mesh/extraction.h"
+
+#include "core/base/parallel.h"
+#include "core/geometry/contact_mesh.h"
+
+namespace adamas {
+
+namespace {
+constexpr std::size_t kChunk = 2048;
+}
+
+ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, double tolerance,
+                                       Progress& progress) {
+  ContactMeshBuilder builder(tolerance);
+  constexpr std::size_t kBatch = 64;
+  for (std::size_t begin = 0; begin < cells.count; begin += kBatch * kChunk) {
+    progress.step("extracting interfaces", static_cast<double>(begin) / static_cast<double>(cells.count));
+    std::vector<ContactBuffer> buffers(kBatch);
+    const std::size_t count = std::min(kBatch * kChunk, cells.count - begin);
+    parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
+      CellOwnership ownership;
+      for (std::size_t i = first; i < last; ++i) {
+        const auto vertices = cells.corners(begin + i);
+        cells.ownership(table, vertices, ownership);
+        if (ownership.pure()) continue;
+        drop_hopeless(ownership.problem);
+        buffers[first / kChunk].add({vertices[0], vertices[1], vertices[2], vertices[3]},
+                                    cells.positions(vertices), ownership.problem);
+      }
+    });
+    for (const ContactBuffer& buffer : buffers) builder.append(buffer);
+  }
+  ExtractedInterfaces result{builder.finish(), {}};
+  result.bodies.reserve(result.mesh.triangles.size());
+  for (InterfaceTriangle& t : result.mesh.triangles) {
+    result.bodies.push_back({BodyId(t.front.value), BodyId(t.back.value)});
+    t.front = table.material(result.bodies.back()[0]);
+    t.back = table.material(result.bodies.back()[1]);
+  }
+  return result;
+}
+
+IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells) {
+  const std::size_t chunks = (cells.count + kChunk - 1) / kChunk;
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> partial(chunks);
+  parallel_chunks(cells.count, kChunk, [&](std::size_t first, std::size_t last) {
+    CellOwnership ownership;
+    std::vector<OwnedTetrahedron> parts;
+    auto& sums = partial[first / kChunk];
+    const auto add = [&](std::uint32_t body, double volume) {
+      if (!sums.empty() && sums.back().first == body) {
+        sums.back().second += volume;
+      } else {
+        sums.emplace_back(body, volume);
+      }
+    };
+    for (std::size_t i = first; i < last; ++i) {
+      const auto vertices = cells.corners(i);
+      const auto x = cells.positions(vertices);
+      const double volume = signed_volume(x[0], x[1], x[2], x[3]);
+      cells.ownership(table, vertices, ownership);
+      if (ownership.pure()) {
+        add(ownership.problem.candidates[0].owner, volume);
+        continue;
+      }
+      drop_hopeless(ownership.problem);
+      parts.clear();
+      partition_tetrahedron(ownership.problem, parts);
+      for (const OwnedTetrahedron& part : parts) add(part.owner, volume * volume_fraction(part.corners));
+    }
+  });
+  IdVector<BodyId, double> volumes(table.body_count(), 0.0);
+  for (const auto& sums : partial) {
+    for (const auto& [body, volume] : sums) volumes[BodyId(body)] += volume;
+  }
+  return volumes;
+}
+
+}  // namespace adamas

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/data/interface_mesh.h"
+#include "interfaces/ownership/cell_ownership.h"
+
+namespace adamas {
+
+/// The cells whose interfaces are wanted: how many, their corners, and what the vertices know.
+struct CellSet {
+  std::size_t count = 0;
+  std::function<std::array<std::uint32_t, 4>(std::size_t)> corners;
+  std::function<Vec3(std::uint32_t)> position;
+  std::function<const VertexDistances&(std::uint32_t)> distances;
+
+  [[nodiscard]] std::array<Vec3, 4> positions(const std::array<std::uint32_t, 4>& vertices) const {
+    return {position(vertices[0]), position(vertices[1]), position(vertices[2]), position(vertices[3])};
+  }
+  void ownership(const InterfaceTable& table, const std::array<std::uint32_t, 4>& vertices,
+                 CellOwnership& result) const {
+    find_cell_ownership(
+        table,
+        {&distances(vertices[0]), &distances(vertices[1]), &distances(vertices[2]), &distances(vertices[3])},
+        result);
+  }
+};
+
+/// Triangles of the approximated interfaces, with the bodies in front and behind.
+struct ExtractedInterfaces {
+  InterfaceMesh mesh;
+  std::vector<std::array<BodyId, 2>> bodies;
+};
+
+/// The approximated interfaces of a conforming mesh, welded and closed up to the domain's boundary
+/// (SPEC 2.3). `tolerance`: a length far below any cell.
+ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, double tolerance,
+                                       Progress& progress = SilentProgress::instance());
+
+/// Volume of each body.
+IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells);
+
+}  // namespace adamas

@@ -1,0 +1,266 @@
+#include "interfaces/reconstruction/reconstruction.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "core/geometry/contact_mesh.h"
+
+namespace adamas {
+
+/// What one layer of lattice cells gives; layers are worked on in parallel and joined in order.
+struct Reconstruction::Layer {
+  ContactBuffer contacts;
+  IdVector<MaterialId, double> volume;
+  /// Parts that reach a face of a tetrahedron without holding one of its corners: face, material, part.
+  struct Reach {
+    std::array<std::uint32_t, 3> face;
+    std::uint32_t material;
+    Part part;
+    auto operator<=>(const Reach&) const = default;
+  };
+  std::vector<Reach> reaches;
+  std::vector<std::pair<Part, MaterialId>> pointless;
+};
+
+Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress) : lattice_(data) {
+  const std::uint32_t layers = lattice_.points(2) - 1;
+  mesh_.source = data.source;
+  ContactMeshBuilder builder(1e-11 * data.grid.domain().diagonal());
+  volume_reconstructed_.assign(data.materials.size(), 0);
+  std::vector<Layer::Reach> reaches;
+  join_points();
+  constexpr std::uint32_t kBatch = 8;
+  for (std::uint32_t begin = 0; begin < layers; begin += kBatch) {
+    progress.step("reconstructing interfaces", static_cast<double>(begin) / layers);
+    const std::uint32_t count = std::min(kBatch, layers - begin);
+    std::vector<Layer> batch(count);
+    parallel_for(count, 1,
+                 [&](std::size_t i) { extract_layer(begin + static_cast<std::uint32_t>(i), batch[i]); });
+    for (Layer& layer : batch) {
+      builder.append(layer.contacts);
+      for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
+        volume_reconstructed_[m] += layer.volume[m];
+      reaches.insert(reaches.end(), layer.reaches.begin(), layer.reaches.end());
+      pointless_.insert(pointless_.end(), layer.pointless.begin(), layer.pointless.end());
+    }
+  }
+  for (const auto& [part, material] : pointless_) pointless_parent_.emplace(part, part);
+  std::sort(reaches.begin(), reaches.end());
+  for (std::size_t i = 1; i < reaches.size(); ++i) {
+    if (reaches[i].face == reaches[i - 1].face && reaches[i].material == reaches[i - 1].material) {
+      join(reaches[i].part, reaches[i - 1].part);
+    }
+  }
+  number_bodies();
+
+  const auto body_of = [&](std::uint32_t part) {
+    return part < body_of_point_.size() ? body_of_point_[part] : body_of_pointless_.at(part);
+  };
+  InterfaceMesh extracted = builder.finish();
+  mesh_.points = std::move(extracted.points);
+  mesh_.triangles = std::move(extracted.triangles);
+  mesh_.materials = data.materials;
+  bodies_.reserve(mesh_.triangles.size());
+  for (InterfaceTriangle& t : mesh_.triangles) {
+    bodies_.push_back({body_of(t.front.value), body_of(t.back.value)});
+    t.front = body_materials_[bodies_.back()[0]];
+    t.back = body_materials_[bodies_.back()[1]];
+  }
+
+  volume_input_.assign(data.materials.size(), 0);
+  std::size_t site = 0;
+  for (std::size_t k = 0; k < data.grid.sites(2); ++k) {
+    for (std::size_t j = 0; j < data.grid.sites(1); ++j) {
+      for (std::size_t i = 0; i < data.grid.sites(0); ++i, ++site) {
+        const double volume = data.grid.site_volume(i, j, k);
+        if (!data.labels.empty()) {
+          volume_input_[MaterialId(data.labels[site])] += volume;
+          continue;
+        }
+        for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
+          volume_input_[m] += volume * static_cast<double>(data.fractions[m][site]);
+        }
+      }
+    }
+  }
+}
+
+void Reconstruction::extract_layer(std::uint32_t k, Layer& layer) const {
+  layer.volume.assign(lattice_.material_count(), 0);
+  for (std::uint32_t j = 0; j + 1 < lattice_.points(1); ++j) {
+    for (std::uint32_t i = 0; i + 1 < lattice_.points(0); ++i) extract_cell({i, j, k}, layer);
+  }
+}
+
+void Reconstruction::extract_cell(const FractionLattice::Index& cell, Layer& layer) const {
+  const Vec3 low = lattice_.position(cell), high = lattice_.position({cell[0] + 1, cell[1] + 1, cell[2] + 1});
+  const double volume = Box3{low, high}.volume();
+  const std::uint32_t first = lattice_.point_index(cell);
+  const MaterialId owner = lattice_.owner(first);
+  bool uniform = true;
+  for (std::uint32_t c = 0; c < 8 && uniform; ++c) {
+    const std::uint32_t p =
+        lattice_.point_index({cell[0] + (c & 1u), cell[1] + (c >> 1 & 1u), cell[2] + (c >> 2)});
+    uniform = lattice_.pure(p) && lattice_.owner(p) == owner;
+  }
+  if (uniform) {
+    layer.volume[owner] += volume;
+    return;
+  }
+  OwnershipProblem problem;
+  std::vector<OwnedTetrahedron> parts;
+  for (std::size_t path = 0; path < FractionLattice::kPaths.size(); ++path) {
+    const auto corners = lattice_.tetrahedron(cell, path);
+    std::array<std::uint32_t, 4> points{};
+    std::array<std::uint64_t, 4> ids{};
+    std::array<Vec3, 4> positions;
+    for (std::size_t c = 0; c < 4; ++c) {
+      ids[c] = points[c] = lattice_.point_index(corners[c]);
+      positions[c] = lattice_.position(corners[c]);
+    }
+    lattice_.ownership(points, problem);
+    parts.clear();
+    partition_tetrahedron(problem, parts);
+    for (const OwnedTetrahedron& part : parts) {
+      layer.volume[MaterialId(part.owner)] += volume / 6 * volume_fraction(part.corners);
+    }
+    if (problem.candidates.size() < 2) continue;
+    std::erase_if(problem.candidates, [&](const auto& candidate) {
+      return std::none_of(parts.begin(), parts.end(),
+                          [&](const auto& p) { return p.owner == candidate.owner; });
+    });
+    for (auto& candidate : problem.candidates) {
+      const MaterialId m(candidate.owner);
+      candidate.owner = part_in(cell, path, points, m);
+      if (candidate.owner >= lattice_.point_count()) layer.pointless.emplace_back(candidate.owner, m);
+    }
+    layer.contacts.add(ids, positions, problem);
+    if (problem.candidates.size() == 2) continue;
+    // Which faces does a part reach without holding one of their corners?
+    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+      std::array<std::uint32_t, 3> face{};
+      for (std::size_t c = 0, n = 0; c < 4; ++c) {
+        if (c != opposite) face[n++] = points[c];
+      }
+      std::vector<std::uint32_t> seen;
+      for (const OwnedTetrahedron& part : parts) {
+        const auto touching = std::count_if(part.corners.begin(), part.corners.end(),
+                                            [&](const Weights& w) { return w[opposite] <= 0; });
+        const bool holds = std::any_of(
+            face.begin(), face.end(), [&](std::uint32_t p) { return lattice_.owner(p).value == part.owner; });
+        if (touching < 3 || holds || std::find(seen.begin(), seen.end(), part.owner) != seen.end()) continue;
+        seen.push_back(part.owner);
+        layer.reaches.push_back({face, part.owner, part_in(cell, path, points, MaterialId(part.owner))});
+      }
+    }
+  }
+}
+
+Reconstruction::Part Reconstruction::part_in(const FractionLattice::Index& cell, std::size_t path,
+                                             const std::array<std::uint32_t, 4>& corners,
+                                             MaterialId m) const {
+  for (const std::uint32_t p : corners) {
+    if (lattice_.owner(p) == m) return p;
+  }
+  // A tetrahedron has at most four regions that hold a corner; those that hold none are told apart by the
+  // position of their material among the materials present, which is below 4 but for the most crowded
+  // tetrahedra.
+  OwnershipProblem problem;
+  lattice_.ownership(corners, problem);
+  std::uint32_t slot = 0;
+  for (const auto& candidate : problem.candidates) {
+    if (candidate.owner == m.value) break;
+    const bool holds = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t p) {
+      return lattice_.owner(p).value == candidate.owner;
+    });
+    if (!holds) slot = std::min(slot + 1, 3u);
+  }
+  const std::uint32_t tetrahedron = lattice_.point_index(cell) * 6 + static_cast<std::uint32_t>(path);
+  return lattice_.point_count() + tetrahedron * 4 + slot;
+}
+
+void Reconstruction::join_points() {
+  parent_.resize(lattice_.point_count());
+  std::iota(parent_.begin(), parent_.end(), 0u);
+  for (std::uint32_t k = 0; k < lattice_.points(2); ++k) {
+    for (std::uint32_t j = 0; j < lattice_.points(1); ++j) {
+      for (std::uint32_t i = 0; i < lattice_.points(0); ++i) {
+        const std::uint32_t p = lattice_.point_index({i, j, k});
+        for (std::uint32_t d = 1; d < 8; ++d) {
+          const FractionLattice::Index other{i + (d & 1u), j + (d >> 1 & 1u), k + (d >> 2)};
+          if (other[0] >= lattice_.points(0) || other[1] >= lattice_.points(1) ||
+              other[2] >= lattice_.points(2))
+            continue;
+          const std::uint32_t q = lattice_.point_index(other);
+          if (lattice_.owner(p) == lattice_.owner(q)) join(p, q);
+        }
+      }
+    }
+  }
+}
+
+Reconstruction::Part Reconstruction::find(Part part) {
+  const auto parent = [&](Part p) -> Part& {
+    return p < parent_.size() ? parent_[p] : pointless_parent_.at(p);
+  };
+  while (parent(part) != part) {
+    parent(part) = parent(parent(part));
+    part = parent(part);
+  }
+  return part;
+}
+
+void Reconstruction::join(Part a, Part b) {
+  a = find(a), b = find(b);
+  if (a == b) return;
+  if (b < a) std::swap(a, b);
+  (b < parent_.size() ? parent_[b] : pointless_parent_.at(b)) = a;
+}
+
+void Reconstruction::number_bodies() {
+  body_of_point_.resize(lattice_.point_count());
+  for (Part p = 0; p < lattice_.point_count(); ++p) {
+    const Part root = find(p);
+    if (root == p) {
+      body_of_point_[p] = body_materials_.next_id();
+      body_materials_.push_back(lattice_.owner(p));
+    } else {
+      body_of_point_[p] = body_of_point_[root];
+    }
+  }
+  std::sort(pointless_.begin(), pointless_.end());
+  for (const auto& [part, material] : pointless_) {
+    const Part root = find(part);
+    if (root < body_of_point_.size()) {
+      body_of_pointless_[part] = body_of_point_[root];
+    } else if (root == part) {
+      body_of_pointless_[part] = body_materials_.next_id();
+      body_materials_.push_back(material);
+    } else {
+      body_of_pointless_[part] = body_of_pointless_.at(root);
+    }
+  }
+  parent_ = {};
+  pointless_parent_ = {};
+}
+
+BodyId Reconstruction::body_at(const Vec3& p) const {
+  const auto location = lattice_.locate(p);
+  const auto corners = lattice_.tetrahedron(location.cell, location.path);
+  std::array<std::uint32_t, 4> points{};
+  for (std::size_t c = 0; c < 4; ++c) points[c] = lattice_.point_index(corners[c]);
+  const bool uniform = std::all_of(points.begin(), points.end(), [&](std::uint32_t q) {
+    return lattice_.pure(q) && lattice_.owner(q) == lattice_.owner(points[0]);
+  });
+  if (uniform) return body_of_point_[points[0]];
+  OwnershipProblem problem;
+  lattice_.ownership(points, problem);
+  const Part part =
+      part_in(location.cell, location.path, points, MaterialId(problem.owner(location.weights)));
+  if (part < body_of_point_.size()) return body_of_point_[part];
+  const auto found = body_of_pointless_.find(part);
+  return found != body_of_pointless_.end() ? found->second : body_of_point_[points[0]];
+}
+
+}  // namespace adamas

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "interfaces/errors/field_error.h"
+#include "interfaces/errors/interface_error.h"
+#include "interfaces/hierarchy/hierarchy.h"
+#include "interfaces/mesh/extraction.h"
+#include "interfaces/source.h"
+
+namespace adamas {
+
+struct ResamplingOptions {
+  double interface_error = 0;                       ///< wanted, in units of length; positive
+  std::vector<std::optional<double>> field_errors;  ///< wanted, per field of the source, in the field's unit
+  std::optional<std::size_t> max_tetrahedra;
+  GhostMode ghost = GhostMode::kConstant;
+  DistanceMode distance = DistanceMode::kExact;
+  bool certify = true;  ///< measure the interfaces' distance in the end, and refine where it is too great
+};
+
+/// One cell of the hierarchy.
+struct CellRecord {
+  std::vector<std::uint32_t> triangles;  ///< of the network, that meet the cell; leaves only
+  std::uint32_t first_element = 0,
+                last_element = 0;  ///< its native elements: a range of the resampler's order
+  InterfaceError interface;
+  std::vector<FieldError> fields;  ///< empty where not measured
+  bool evaluated = false;          ///< the triangles and the interface error are up to date
+};
+
+/// Two-sided distance between the input's interfaces and the approximated ones.
+struct InterfaceDistance {
+  double upper = 0;           ///< certified: no point of either is further from the other
+  double lower = 0;           ///< attained at some point
+  std::size_t triangles = 0;  ///< of the approximation
+};
+
+/// Builds a hierarchy that approximates the source within the wanted errors (SPEC 2.6): the interfaces first,
+/// then the fields. Always the diamond with the greatest error in relation to its target is split, until all
+/// are within or the number of tetrahedra would be exceeded. The result does not depend on the number of
+/// threads.
+class Resampler {
+ public:
+  using MeshHierarchy = Hierarchy<VertexRecord, CellRecord>;
+
+  Resampler(const ResamplingSource& source, ResamplingOptions options,
+            Progress& progress = SilentProgress::instance());
+
+  void refine();
+
+  [[nodiscard]] const MeshHierarchy& hierarchy() const { return hierarchy_; }
+  [[nodiscard]] const ResamplingSource& source() const { return source_; }
+  [[nodiscard]] const ResamplingOptions& options() const { return options_; }
+  /// Measured two-sided distance; none where `certify` is off or there are no interfaces.
+  [[nodiscard]] const std::optional<InterfaceDistance>& interface_distance() const { return distance_; }
+  /// The leaves, and what their vertices know.
+  [[nodiscard]] CellSet cells() const;
+  /// Rows of all bodies that own a part of a leaf, at its vertices; for output.
+  void complete_fields();
+
+ private:
+  struct Priority {
+    int rank = -1;  ///< 2: a lost interface, 1: an interface, 0: a field, -1: within all targets
+    double ratio = 0;
+    auto operator<=>(const Priority&) const = default;
+  };
+
+  void place_roots();
+  void evaluate_vertices(const std::vector<VertexId>& vertices);
+  void evaluate_interface(TetrahedronId t);
+  void distribute(TetrahedronId parent);
+  std::vector<TetrahedronId> process(const std::vector<Split>& splits);
+  void measure_fields(const std::vector<TetrahedronId>& cells);
+  void compute_rows(std::vector<std::pair<VertexId, BodyId>> needs);
+  [[nodiscard]] Priority priority(TetrahedronId t) const;
+  [[nodiscard]] bool wants_split(TetrahedronId t) const;
+  std::vector<TetrahedronId> refine_in_rounds(std::vector<TetrahedronId> cells);
+  void refine_greedily(const std::vector<TetrahedronId>& cells);
+  void refine_to_targets(std::vector<TetrahedronId> cells);
+  void undo(const std::vector<Split>& splits);
+  [[nodiscard]] std::vector<TetrahedronId> leaves() const;
+  [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
+  void certify();
+  std::vector<TetrahedronId> measure_distance();
+  [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
+  void ownership(TetrahedronId t, CellOwnership& result) const;
+  void report(std::string_view stage);
+
+  const ResamplingSource& source_;
+  ResamplingOptions options_;
+  Progress& progress_;
+  MeshHierarchy hierarchy_;
+  std::vector<std::uint32_t> element_order_;
+  bool fields_active_ = false;
+  bool budget_spent_ = false;
+  std::optional<InterfaceDistance> distance_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/geometry/vec3.h"
+#include "interfaces/fields/field_source.h"
+#include "interfaces/network/interface_network.h"
+
+namespace adamas {
+
+/// What is resampled: a box, the interfaces in it, who owns each point, and the fields of each material.
+struct ResamplingSource {
+  std::string name;  ///< for messages
+  Box3 box;
+  IdVector<MaterialId, std::string> materials;
+  std::shared_ptr<const InterfaceNetwork> network;
+  /// The body that owns a point; the flag tells that it rests on an open border of the input.
+  std::function<BodyId(const Vec3&, bool* flagged)> body_at;
+  std::shared_ptr<const FieldSource> fields;  ///< null where the input has none
+  IdVector<MaterialId, double>
+      volumes;  ///< of the materials, as the input states them; empty where it does not
+};
+
+}  // namespace adamas
