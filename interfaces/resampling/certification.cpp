@@ -1,7 +1,115 @@
+#include <algorithm>
+#include <atomic>
+
+#include "core/base/parallel.h"
+#include "interfaces/network/hausdorff.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
 
-void Resampler::certify() {}
+namespace {
+
+/// Measuring and refining again usually ends after two or three rounds; the bound is for what cannot be
+/// mended.
+constexpr int kMostRounds = 12;
+
+std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
+  std::vector<ClosestPointTree::Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const InterfaceTriangle& t : mesh.triangles) triangles.push_back(t.points);
+  return triangles;
+}
+
+}  // namespace
+
+/// Measures both ways and returns the leaves where the distance is, or may be, greater than wanted.
+std::vector<TetrahedronId> Resampler::measure_distance() {
+  const InterfaceNetwork& network = *source_.network;
+  const double target = options_.interface_error;
+  const auto extracted =
+      extract_interfaces(network.table(), cells(), 1e-11 * source_.box.diagonal(), progress_);
+  const auto triangles = indices(extracted.mesh);
+  const ClosestPointTree approximation(extracted.mesh.points, triangles);
+  HausdorffOptions options;
+  options.accept = 0.01 * target;
+  options.domain = source_.box;
+  report("measuring interfaces");
+  const DistanceBound from =
+      directed_distance_bound(network.points(), network.triangles(), approximation, options);
+  const DistanceBound to = directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options);
+  const double most = source_.box.diagonal();
+  distance_ = InterfaceDistance{std::min(most, std::max(from.upper, to.upper)),
+                                std::min(most, std::max(from.lower, to.lower)), triangles.size()};
+  if (distance_->upper <= target) return {};
+
+  const std::vector<TetrahedronId> all = leaves();
+  std::vector<char> bad(all.size(), 0);
+  std::vector<std::atomic<bool>> explained(network.triangles().size());
+  const auto too_far = [&](std::uint32_t t) { return from.triangle_upper[t] > target; };
+  parallel_for(all.size(), 256, [&](std::size_t i) {
+    for (const std::uint32_t t : hierarchy_.payload(all[i]).triangles) {
+      if (!too_far(t)) continue;
+      const auto& corners = network.triangle_corners(t);
+      const Tetrahedron cell = frame(all[i]);
+      Weights middle{};
+      double count = 0;
+      const auto check = [&](const Weights& w) {
+        if (approximation.closest(cell.point(w), target)) return;
+        bad[i] = 1;
+        explained[t] = true;
+      };
+      for (const Weights& w : ClippedTriangle(cell, corners[0], corners[1], corners[2])) {
+        check(w);
+        for (std::size_t c = 0; c < 4; ++c) middle[c] += w[c];
+        ++count;
+      }
+      for (double& w : middle) w /= count;
+      if (count > 0) check(middle);
+    }
+  });
+  // Too far somewhere between the points looked at: all cells of the triangle.
+  parallel_for(all.size(), 256, [&](std::size_t i) {
+    for (const std::uint32_t t : hierarchy_.payload(all[i]).triangles) {
+      if (too_far(t) && !explained[t]) bad[i] = 1;
+    }
+  });
+  std::vector<TetrahedronId> result;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (bad[i] != 0) result.push_back(all[i]);
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (!(to.triangle_upper[t] > target)) continue;
+    const auto& p = extracted.mesh.points;
+    result.push_back(leaf_at((1.0 / 3) * (p[triangles[t][0]] + p[triangles[t][1]] + p[triangles[t][2]])));
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+void Resampler::certify() {
+  if (source_.network->triangles().empty()) return;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::vector<TetrahedronId> failing = measure_distance();
+    if (failing.empty() || budget_spent_) return;
+    std::vector<Split> splits;
+    std::vector<TetrahedronId> created;
+    for (const TetrahedronId t : failing) {
+      if (!hierarchy_.is_leaf(t) || !hierarchy_.can_split(t)) continue;
+      const std::size_t before = splits.size();
+      hierarchy_.split(t, splits);
+      if (options_.max_tetrahedra && hierarchy_.leaf_count() > *options_.max_tetrahedra) {
+        undo({splits.begin() + static_cast<std::ptrdiff_t>(before), splits.end()});
+        splits.resize(before);
+        budget_spent_ = true;
+        break;
+      }
+    }
+    if (splits.empty()) return;
+    created = process(splits);
+    refine_to_targets(std::move(created));
+  }
+  measure_distance();
+}
 
 }  // namespace adamas
