@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
+#include "interfaces/network/huge_page_allocator.h"
 #include "interfaces/network/triangle_distance.h"
 
 namespace adamas {
@@ -92,8 +93,10 @@ class ClosestPointTree {
   void validate_node(std::uint32_t node, const Box3& within, std::vector<char>& seen) const;
   [[nodiscard]] Vec3 to_tree(const Vec3& p) const { return scale_ * (p - center_); }
 
-  std::vector<Node> nodes_;
-  std::vector<std::array<Vec3, 3>> corners_;  ///< in leaf order
+  using Nodes = std::vector<Node, HugePageAllocator<Node>>;
+  using Corners = std::array<Vec3, 3>;
+  Nodes nodes_;
+  std::vector<Corners, HugePageAllocator<Corners>> corners_;  ///< in leaf order
   std::vector<std::uint32_t> index_;          ///< of the triangle at each place
   std::vector<std::uint32_t> place_;          ///< of the triangle of each index
   Box3 bounds_;

@@ -40,7 +40,7 @@ class ClosestPointTreeBuilder {
     std::uint32_t parent;
     int slot;
   };
-  using Nodes = std::vector<ClosestPointTree::Node>;
+  using Nodes = ClosestPointTree::Nodes;
 
   [[nodiscard]] FloatBox box_of(const ClosestPointTree::Triangle& t) const;
   [[nodiscard]] FloatBox box_of_items(std::size_t begin, std::size_t end) const;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/data/interface_mesh.h"
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// The connected parts of the materials' regions (SPEC 2.3).
+struct Bodies {
+  /// Body in front of each triangle of the mesh and behind it; invalid where two of its points coincide.
+  std::vector<std::array<BodyId, 2>> sides;
+  /// Ascending materials; within one material by the first triangle that has a side in the body.
+  IdVector<BodyId, MaterialId> materials;
+  /// Edges round which the materials do not match: a sign of badly oriented triangles.
+  std::size_t inconsistent_edges = 0;
+  /// Rays that started in one material and arrived at a side of another: badly oriented triangles, or gaps.
+  std::size_t inconsistent_rays = 0;
+};
+
+/// Finds the bodies that the triangles of a mesh bound. Sides of triangles that face the same wedge round an
+/// edge belong together. Parts of the boundary of one region that no triangles connect (the inside and the
+/// outside of a shell, two planes that end at the domain) are joined by rays from the extreme points of each
+/// part and by random walks that bounce at the domain; both are the same in every run. Without a domain
+/// (null) regions of one material that reach infinity are one. Points must be finite and indices within
+/// range.
+Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain);
+
+}  // namespace adamas

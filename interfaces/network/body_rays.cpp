@@ -1,0 +1,136 @@
+#include "interfaces/network/body_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace adamas {
+
+namespace {
+
+constexpr int kWalks = 48;
+constexpr int kBounces = 16;
+constexpr double kCleanWeight = 1e-7;  // hits nearer to an edge, or more grazing than this, prove nothing
+constexpr double kCleanAngle = 1e-6;
+
+/// splitmix64: a counter, scrambled.
+double next_random(std::uint64_t& state) {
+  state += 0x9e3779b97f4a7c15ull;
+  std::uint64_t z = state;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  z ^= z >> 31;
+  return static_cast<double>(z >> 11) * 0x1p-53;
+}
+
+Vec3 random_direction(std::uint64_t& state) {
+  const double z = 2 * next_random(state) - 1;
+  const double angle = 2 * M_PI * next_random(state);
+  const double r = std::sqrt(std::max(0.0, 1 - z * z));
+  return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+/// Parameter at which a ray from inside leaves a box, and the face it leaves by.
+double exit_of(const Box3& box, const Vec3& origin, const Vec3& direction, Vec3& inward) {
+  double leave = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0) continue;
+    const double wall = direction[axis] > 0 ? box.max[axis] : box.min[axis];
+    const double t = std::max(0.0, (wall - origin[axis]) / direction[axis]);
+    if (t >= leave) continue;
+    leave = t;
+    inward = {};
+    inward[axis] = direction[axis] > 0 ? -1 : 1;
+  }
+  return leave;
+}
+
+}  // namespace
+
+Vec3 BodyRays::normal(std::uint32_t side) const {
+  const Vec3 n = normalized(cross(corner(side, 1) - corner(side, 0), corner(side, 2) - corner(side, 0)));
+  return side % 2 == 0 ? n : -n;
+}
+
+BodyRays::Result BodyRays::shoot(const std::vector<std::uint32_t>& part) const {
+  Result result;
+  shoot_from_extremes(part, result);
+  std::uint64_t random = part.front();
+  for (int walk = 0; walk < kWalks; ++walk) {
+    const auto pick = static_cast<std::size_t>(next_random(random) * static_cast<double>(part.size()));
+    const std::uint32_t side = part[std::min(pick, part.size() - 1)];
+    const double a = 0.05 + 0.9 * next_random(random), b = 0.05 + 0.9 * next_random(random);
+    const double u = std::min(a, b), v = std::abs(a - b);
+    const Vec3 origin = u * corner(side, 0) + v * corner(side, 1) + (1 - u - v) * corner(side, 2);
+    Vec3 direction = random_direction(random);
+    if (dot(direction, normal(side)) < 0) direction = -direction;
+    follow(side, origin, direction, random, result);
+  }
+  std::sort(result.seen.begin(), result.seen.end());
+  result.seen.erase(std::unique(result.seen.begin(), result.seen.end()), result.seen.end());
+  return result;
+}
+
+void BodyRays::shoot_from_extremes(const std::vector<std::uint32_t>& part, Result& result) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      Vec3 direction;
+      direction[axis] = sign;
+      double farthest = -std::numeric_limits<double>::infinity();
+      std::uint32_t best = part.front();
+      std::size_t best_corner = 0;
+      for (const std::uint32_t side : part) {
+        if (dot(normal(side), direction) < 1e-3) continue;
+        for (std::size_t i = 0; i < 3; ++i) {
+          const double reach = sign * corner(side, i)[axis];
+          if (reach > farthest) farthest = reach, best = side, best_corner = i;
+        }
+      }
+      if (farthest == -std::numeric_limits<double>::infinity()) continue;
+      const Vec3 middle = (1.0 / 3) * (corner(best, 0) + corner(best, 1) + corner(best, 2));
+      std::uint64_t random = best;
+      follow(best, 0.95 * corner(best, best_corner) + 0.05 * middle, direction, random, result);
+    }
+  }
+}
+
+void BodyRays::follow(std::uint32_t side, Vec3 origin, Vec3 direction, std::uint64_t& random,
+                      Result& result) const {
+  if (domain_ != nullptr && !domain_->contains(origin)) return;
+  if (std::abs(dot(normal(side), direction)) < kCleanAngle) return;
+  std::uint32_t ignore = side / 2;
+  for (int bounce = 0; bounce <= kBounces; ++bounce) {
+    Vec3 inward;
+    const double leave = domain_ == nullptr ? std::numeric_limits<double>::infinity()
+                                            : exit_of(*domain_, origin, direction, inward);
+    const auto hit = tree_.first_hit(origin, direction, leave, ignore);
+    if (hit) {
+      const auto& w = hit->weights;
+      const Vec3 n = normal(2 * hit->triangle);
+      const double facing = dot(n, direction);
+      if (std::min({w[0], w[1], w[2]}) < kCleanWeight || std::abs(facing) < kCleanAngle) return;
+      const std::uint32_t seen = 2 * hit->triangle + (facing < 0 ? 0 : 1);
+      if (material(seen) == material(side)) {
+        result.seen.push_back(seen);
+      } else {
+        ++result.inconsistent;
+      }
+      return;
+    }
+    if (domain_ == nullptr) {
+      result.seen.push_back(kInfinity);
+      return;
+    }
+    // A little inside, where the ends of the sheets at the boundary cannot be missed by round-off.
+    origin = origin + leave * direction;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double pull = 1e-9 * domain_->size()[axis];
+      origin[axis] = std::clamp(origin[axis], domain_->min[axis] + pull, domain_->max[axis] - pull);
+    }
+    direction = random_direction(random);
+    if (dot(direction, inward) < 0) direction = -direction;
+    ignore = ClosestPointTree::kNoTriangle;
+  }
+}
+
+}  // namespace adamas

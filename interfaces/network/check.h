@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "core/data/interface_mesh.h"
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// What is odd about an interface mesh, yet can be used.
+struct InterfaceMeshReport {
+  std::size_t points = 0;     ///< distinct ones that triangles use
+  std::size_t triangles = 0;  ///< with an area
+  std::size_t degenerate_triangles = 0;
+  std::size_t junction_edges = 0;  ///< with more than two triangles
+  std::size_t domain_edges = 0;    ///< with one triangle, in a face of the domain
+  std::size_t open_border_edges =
+      0;  ///< with one triangle, elsewhere: points beyond them may get a wrong material
+  std::size_t flipped_edges = 0;  ///< materials do not match round them; only where this is allowed
+  std::size_t intersections = 0;  ///< pairs of triangles without a common point; only where this is allowed
+};
+
+struct InterfaceCheckOptions {
+  bool allow_flipped_edges = false;
+  bool allow_intersections = false;
+};
+
+/// Throws Error naming the mesh and the first fault: no triangles, points that are not finite, indices and
+/// materials out of range, the same material on both sides of a triangle, no triangle with an area, edges
+/// round which the materials do not match (triangles turned the wrong way, or missing), triangles that
+/// intersect. `domain` may be null.
+InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* domain,
+                                         const InterfaceCheckOptions& options = {});
+
+/// Pairs of triangles that intersect, though they have no point in common. Degenerate triangles are left out.
+struct SelfIntersections {
+  std::size_t count = 0;
+  std::optional<std::array<std::uint32_t, 2>> first;  ///< the lowest pair
+};
+/// Exact. Points must be finite and indices within range.
+SelfIntersections find_self_intersections(const InterfaceMesh& mesh);
+
+}  // namespace adamas

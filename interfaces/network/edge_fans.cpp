@@ -1,0 +1,144 @@
+#include "interfaces/network/edge_fans.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "interfaces/network/weld.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr double kTieAngle = 1e-3;    // blades closer than this may change places to fit their materials
+constexpr std::size_t kMostTied = 7;  // fans with more blades are not searched for another order
+
+Vec3 any_perpendicular(const Vec3& v) {
+  const Vec3 a{std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+  const Vec3 axis = a.x <= a.y && a.x <= a.z ? Vec3{1, 0, 0} : (a.y <= a.z ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
+  return normalized(cross(v, axis));
+}
+
+bool may_swap(const Blade& a, const Blade& b) {
+  const double apart = std::abs(a.angle - b.angle);
+  return a.flat || b.flat || apart < kTieAngle || 2 * M_PI - apart < kTieAngle;
+}
+
+}  // namespace
+
+EdgeFans::EdgeFans(const InterfaceMesh& mesh, const Box3* domain)
+    : mesh_(mesh), domain_(domain), welded_(weld_points(mesh.points)) {
+  half_edges_.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& p = mesh.triangles[t].points;
+    const std::array<std::uint32_t, 3> v{welded_[p[0]], welded_[p[1]], welded_[p[2]]};
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = v[i], b = v[(i + 1) % 3];
+      half_edges_.push_back({std::min(a, b), std::max(a, b), t, a < b});
+    }
+  }
+  std::sort(half_edges_.begin(), half_edges_.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  for (std::uint32_t i = 0; i < half_edges_.size(); ++i) {
+    const bool first = i == 0 || half_edges_[i].low != half_edges_[i - 1].low ||
+                       half_edges_[i].high != half_edges_[i - 1].high;
+    if (first) starts_.push_back(i);
+  }
+  starts_.push_back(static_cast<std::uint32_t>(half_edges_.size()));
+}
+
+std::array<std::uint32_t, 2> EdgeFans::ends(std::size_t edge) const {
+  const HalfEdge& h = half_edges_[starts_[edge]];
+  return {h.low, h.high};
+}
+
+Vec3 EdgeFans::outward(std::size_t edge) const {
+  Vec3 normal;
+  if (domain_ == nullptr) return normal;
+  const auto [low, high] = ends(edge);
+  const Vec3 &a = mesh_.points[low], &b = mesh_.points[high];
+  const double tolerance = 1e-9 * domain_->diagonal();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto on = [&](double x) {
+      return std::abs(a[axis] - x) <= tolerance && std::abs(b[axis] - x) <= tolerance;
+    };
+    if (on(domain_->min[axis])) normal[axis] = -1;
+    if (on(domain_->max[axis])) normal[axis] = 1;
+  }
+  return normal;
+}
+
+bool EdgeFans::on_domain_boundary(std::size_t edge) const { return outward(edge) != Vec3{}; }
+
+void EdgeFans::fan(std::size_t edge, Fan& fan) const {
+  fan.blades.clear();
+  fan.outside_wedge = Fan::kNone;
+  const auto [low, high] = ends(edge);
+  const Vec3 origin = mesh_.points[low];
+  const Vec3 along = normalized(mesh_.points[high] - origin);
+  const Vec3 x = any_perpendicular(along), y = cross(along, x);
+  for (std::uint32_t i = starts_[edge]; i < starts_[edge + 1]; ++i) {
+    const HalfEdge& h = half_edges_[i];
+    const auto& p = mesh_.triangles[h.triangle].points;
+    Vec3 third;
+    for (const std::uint32_t v : p) {
+      if (welded_[v] != low && welded_[v] != high) third = mesh_.points[v] - origin;
+    }
+    const double u = dot(third, x), v = dot(third, y);
+    const bool flat = std::hypot(u, v) <= 1e-10 * norm(third);
+    fan.blades.push_back({h.triangle, h.forward, flat, std::atan2(v, u)});
+  }
+  std::stable_sort(fan.blades.begin(), fan.blades.end(),
+                   [](const Blade& a, const Blade& b) { return a.angle < b.angle; });
+  const Vec3 normal = outward(edge);
+  if (normal != Vec3{}) {
+    const double angle = std::atan2(dot(normal, y), dot(normal, x));
+    const auto next = std::upper_bound(fan.blades.begin(), fan.blades.end(), angle,
+                                       [](double value, const Blade& b) { return value < b.angle; });
+    fan.outside_wedge =
+        static_cast<std::size_t>(next == fan.blades.begin() ? fan.blades.end() - fan.blades.begin() - 1
+                                                            : next - fan.blades.begin() - 1);
+  }
+  fan.consistent = consistent(fan) || reorder_ties(fan);
+}
+
+bool EdgeFans::consistent(const Fan& fan) const {
+  const std::size_t n = fan.blades.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i == fan.outside_wedge || n == 1) continue;
+    const Blade &a = fan.blades[i], &b = fan.blades[(i + 1) % n];
+    if (material(a.triangle, side_ahead(a)) != material(b.triangle, side_behind(b))) return false;
+  }
+  return true;
+}
+
+bool EdgeFans::reorder_ties(Fan& fan) const {
+  const std::size_t n = fan.blades.size();
+  if (n < 3 || n > kMostTied) return false;
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Fan other;
+  other.outside_wedge = fan.outside_wedge;
+  // At the boundary of the domain the place of the outside is fixed too, so that every order counts there.
+  const auto from = order.begin() + (fan.outside_wedge == Fan::kNone ? 1 : 0);
+  while (std::next_permutation(from, order.end())) {
+    bool allowed = true;
+    for (std::size_t i = 0; i < n && allowed; ++i) {
+      for (std::size_t j = i + 1; j < n && allowed; ++j) {
+        allowed = order[i] < order[j] || may_swap(fan.blades[order[i]], fan.blades[order[j]]);
+      }
+    }
+    if (!allowed) continue;
+    other.blades.clear();
+    for (const std::size_t i : order) other.blades.push_back(fan.blades[i]);
+    if (!consistent(other)) continue;
+    fan.blades = other.blades;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace adamas

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/data/interface_mesh.h"
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// A triangle at an edge.
+struct Blade {
+  std::uint32_t triangle;
+  bool forward;       ///< the triangle runs along the edge from its lower point to its higher one
+  bool flat = false;  ///< without area, so that its angle means nothing
+  double angle = 0;   ///< round the edge, from an arbitrary zero, by the right-hand rule
+};
+
+/// The triangles round each edge of a network, in the order of their angles, and the wedges of space between
+/// them. The front of a forward blade and the back of another one face increasing angles. Triangles in which
+/// two points coincide are left out.
+class EdgeFans {
+ public:
+  /// `mesh` and `domain` (may be null) must outlive this object. Indices must be within range.
+  EdgeFans(const InterfaceMesh& mesh, const Box3* domain);
+
+  [[nodiscard]] std::size_t size() const { return starts_.size() - 1; }
+  /// Ends of an edge: the lower and the higher of two welded points.
+  [[nodiscard]] std::array<std::uint32_t, 2> ends(std::size_t edge) const;
+  /// Number of triangles at an edge.
+  [[nodiscard]] std::size_t valence(std::size_t edge) const { return starts_[edge + 1] - starts_[edge]; }
+  /// Whether an edge lies in a face of the domain.
+  [[nodiscard]] bool on_domain_boundary(std::size_t edge) const;
+
+  struct Fan {
+    std::vector<Blade>
+        blades;  ///< ascending angles, but for ties that fit the materials in another order only
+    /// Wedge i lies between blade i and the next one round; this one has the outside of the domain in it.
+    std::size_t outside_wedge = kNone;
+    bool consistent = true;  ///< both sides of each wedge inside the domain have the same material
+    static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  };
+  /// The blades of an edge and what lies between them. Replaces `fan`.
+  void fan(std::size_t edge, Fan& fan) const;
+
+  /// Side of a blade's triangle that faces increasing angles: 0 is the front, 1 the back.
+  static int side_ahead(const Blade& b) { return b.forward ? 0 : 1; }
+  static int side_behind(const Blade& b) { return b.forward ? 1 : 0; }
+  [[nodiscard]] MaterialId material(std::uint32_t triangle, int side) const {
+    const InterfaceTriangle& t = mesh_.triangles[triangle];
+    return side == 0 ? t.front : t.back;
+  }
+  /// Lowest point with the same coordinates.
+  [[nodiscard]] std::uint32_t welded(std::uint32_t point) const { return welded_[point]; }
+
+ private:
+  struct HalfEdge {
+    std::uint32_t low, high, triangle;
+    bool forward;
+  };
+
+  /// Outward normal of the faces of the domain that contain the edge; zero where there are none.
+  [[nodiscard]] Vec3 outward(std::size_t edge) const;
+  [[nodiscard]] bool consistent(const Fan& fan) const;
+  bool reorder_ties(Fan& fan) const;
+
+  const InterfaceMesh& mesh_;
+  const Box3* domain_;
+  std::vector<std::uint32_t> welded_;
+  std::vector<HalfEdge> half_edges_;
+  std::vector<std::uint32_t> starts_;  ///< edge i has the half edges starts_[i] to starts_[i + 1]
+};
+
+}  // namespace adamas

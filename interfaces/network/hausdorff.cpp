@@ -1,0 +1,159 @@
+#include "interfaces/network/hausdorff.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Piece {
+  std::array<Vec3, 3> corners;
+  std::uint32_t triangle;
+};
+
+struct Measure {
+  double upper = 0;
+  double lower = 0;
+  Vec3 worst;
+};
+
+/// A triangle clipped to a box has at most nine corners.
+struct Polygon {
+  std::array<Vec3, 10> corners;
+  std::size_t count = 0;
+  void add(const Vec3& p) {
+    if (count < corners.size()) corners[count++] = p;
+  }
+};
+
+/// Keeps what lies on the side of `wall` where sign * (x - wall) <= 0.
+Polygon clip(const Polygon& polygon, int axis, double wall, double sign) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const Vec3 &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
+    const double x = sign * (a[axis] - wall), y = sign * (b[axis] - wall);
+    if (x <= 0) kept.add(a);
+    if ((x < 0 && y > 0) || (x > 0 && y < 0)) {
+      Vec3 p = a + (x / (x - y)) * (b - a);
+      p[axis] = wall;
+      kept.add(p);
+    }
+  }
+  return kept;
+}
+
+Polygon clipped(const Piece& piece, const std::optional<Box3>& domain) {
+  Polygon polygon;
+  for (const Vec3& p : piece.corners) polygon.add(p);
+  if (!domain) return polygon;
+  for (int axis = 0; axis < 3; ++axis) {
+    polygon = clip(polygon, axis, domain->max[axis], 1);
+    polygon = clip(polygon, axis, domain->min[axis], -1);
+  }
+  return polygon;
+}
+
+/// Bounds of the distance over one piece. Its greatest distance to a triangle S is at a corner; to all of the
+/// target it is at most that for any S.
+Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optional<Box3>& domain) {
+  const Polygon polygon = clipped(piece, domain);
+  Measure result;
+  if (polygon.count == 0) return result;
+  Vec3 center;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    center += (1 / static_cast<double>(polygon.count)) * polygon.corners[i];
+  }
+  std::array<std::uint32_t, 11> candidates;
+  std::size_t count = 0;
+  double at_center = 0, spread = 0, farthest = 0;
+  for (std::size_t i = 0; i <= polygon.count; ++i) {
+    const Vec3& p = i < polygon.count ? polygon.corners[i] : center;
+    const auto closest = to.closest(p);
+    const double d = closest ? std::sqrt(closest->squared_distance) : kInfinity;
+    if (i == 0 || d > result.lower) {
+      result.lower = d;
+      result.worst = p;
+    }
+    if (i == polygon.count) at_center = d;
+    farthest = std::max(farthest, d);
+    spread = std::max(spread, distance(p, center));
+    if (closest && std::find(candidates.begin(), candidates.begin() + count, closest->triangle) ==
+                       candidates.begin() + count) {
+      candidates[count++] = closest->triangle;
+    }
+  }
+  result.upper = at_center + spread;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::array<Vec3, 3>& s = to.triangle(candidates[k]);
+    double greatest = 0;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      greatest = std::max(greatest, closest_on_triangle(polygon.corners[i], s).squared_distance);
+    }
+    result.upper = std::min(result.upper, std::sqrt(greatest));
+  }
+  // Against round-off: the bound is at least what was seen.
+  result.upper = std::max(result.upper, result.lower);
+  return result;
+}
+
+void divide(const Piece& piece, std::vector<Piece>& out) {
+  const auto& c = piece.corners;
+  const Vec3 ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), ca = 0.5 * (c[2] + c[0]);
+  out.push_back({{c[0], ab, ca}, piece.triangle});
+  out.push_back({{ab, c[1], bc}, piece.triangle});
+  out.push_back({{ca, bc, c[2]}, piece.triangle});
+  out.push_back({{ab, bc, ca}, piece.triangle});
+}
+
+}  // namespace
+
+DistanceBound directed_distance_bound(std::span<const Vec3> points,
+                                      std::span<const ClosestPointTree::Triangle> triangles,
+                                      const ClosestPointTree& to, const HausdorffOptions& options) {
+  DistanceBound bound;
+  bound.triangle_upper.assign(triangles.size(), 0.0);
+  if (to.empty()) {
+    std::fill(bound.triangle_upper.begin(), bound.triangle_upper.end(), kInfinity);
+    bound.upper = bound.lower = triangles.empty() ? 0 : kInfinity;
+    return bound;
+  }
+  const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
+  std::vector<Piece> pieces, next;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const auto& v = triangles[t];
+    pieces.push_back({{points[v[0]], points[v[1]], points[v[2]]}, t});
+  }
+  std::size_t measured = 0;
+  std::vector<Measure> measures;
+  while (!pieces.empty()) {
+    measures.assign(pieces.size(), {});
+    parallel_for(pieces.size(), 256,
+                 [&](std::size_t i) { measures[i] = measure(pieces[i], to, options.domain); });
+    measured += pieces.size();
+    for (const Measure& m : measures) {
+      if (m.lower > bound.lower) bound.lower = m.lower, bound.worst = m.worst;
+    }
+    next.clear();
+    const bool last = measured + 4 * pieces.size() > options.most_pieces;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const double upper = measures[i].upper;
+      const bool good = upper <= std::max({accept, (1 + options.relative) * bound.lower});
+      if (good || last) {
+        double& of_triangle = bound.triangle_upper[pieces[i].triangle];
+        of_triangle = std::max(of_triangle, upper);
+      } else {
+        divide(pieces[i], next);
+      }
+    }
+    pieces.swap(next);
+  }
+  for (const double upper : bound.triangle_upper) bound.upper = std::max(bound.upper, upper);
+  return bound;
+}
+
+}  // namespace adamas

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "interfaces/network/closest_point_tree.h"
+
+namespace adamas {
+
+struct HausdorffOptions {
+  /// Stop where upper <= (1 + relative) lower.
+  double relative = 0.05;
+  /// Triangles within this distance are not looked at more closely; 0 stands for 1e-4 of the size of the
+  /// target.
+  double accept = 0;
+  /// Only what lies inside counts.
+  std::optional<Box3> domain;
+  /// Bounds the work; what is left by then keeps the looser bound it has.
+  std::size_t most_pieces = 50'000'000;
+};
+
+/// Bounds of the directed Hausdorff distance: the greatest distance of a point of one surface to another
+/// surface.
+struct DistanceBound {
+  double upper = 0;  ///< never below the distance
+  double lower = 0;  ///< the distance at `worst`
+  Vec3 worst;
+  std::vector<double> triangle_upper;  ///< per triangle: no point of it is farther; 0 outside the domain
+};
+
+/// Bounds the distance of the triangles from the surface in the tree. The distance to one triangle is convex,
+/// so that over a piece it is greatest at a corner; pieces are divided until the least such bound, over
+/// triangles close to the piece, is good enough. Infinite where the tree is empty. The result does not depend
+/// on the number of threads.
+DistanceBound directed_distance_bound(std::span<const Vec3> points,
+                                      std::span<const ClosestPointTree::Triangle> triangles,
+                                      const ClosestPointTree& to, const HausdorffOptions& options = {});
+
+}  // namespace adamas

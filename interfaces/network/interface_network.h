@@ -1,0 +1,133 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/data/interface_mesh.h"
+#include "core/geometry/vec3.h"
+#include "interfaces/network/bodies.h"
+#include "interfaces/network/box_tree.h"
+#include "interfaces/network/closest_point_tree.h"
+#include "interfaces/ownership/interface_table.h"
+
+namespace adamas {
+
+/// An interface that is near a point, and the point's signed distance to it (SPEC 2.2): positive towards the
+/// lower of its two bodies.
+struct NearInterface {
+  InterfaceId interface;
+  double signed_distance;
+  Vec3 closest;
+};
+
+enum class DistanceMode {
+  kExact,          ///< to the closest point of the interface
+  kNearestVertex,  ///< to the nearest vertex of its mesh (D 3.4.1)
+};
+
+/// The interfaces of a mesh, each between two bodies, ready for questions about points: which body a point
+/// lies in, and how far it is from the interfaces round it. Coinciding points are welded; triangles in which
+/// two points coincide, or with one body on both sides, are left out. Queries may run on several threads at
+/// once.
+class InterfaceNetwork {
+ public:
+  /// Triangles are grouped by interface and turned so that their normals point to the lower body, `a`.
+  struct Interface {
+    BodyId a, b;
+    std::uint32_t first, count;  ///< its triangles
+    Box3 bounds;
+  };
+
+  /// Finds the bodies itself. `domain`: where the interfaces may end; the mesh must be sound
+  /// (check_interface_mesh).
+  explicit InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain = std::nullopt);
+  /// With known bodies: both sides of every triangle of the mesh, and the material of each body. Throws Error
+  /// where the numbers of triangles differ or a body is out of range.
+  InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain, Bodies bodies);
+
+  /// Bodies, their materials and the interfaces between them, numbered in the order of their pairs of bodies.
+  [[nodiscard]] const InterfaceTable& table() const { return table_; }
+  [[nodiscard]] const Interface& interface(InterfaceId i) const { return interfaces_[i]; }
+  [[nodiscard]] std::span<const Vec3> points() const { return points_; }
+  /// All triangles, interface by interface.
+  [[nodiscard]] std::span<const ClosestPointTree::Triangle> triangles() const { return triangles_; }
+  [[nodiscard]] const std::array<Vec3, 3>& triangle_corners(std::uint32_t triangle) const {
+    return tree_.triangle(triangle);
+  }
+  /// Unit normal, towards the lower body; zero for a triangle without area.
+  [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
+  [[nodiscard]] InterfaceId interface_of(std::uint32_t triangle) const { return interface_of_[triangle]; }
+  /// Number of a triangle in the mesh that the network was made of.
+  [[nodiscard]] std::uint32_t source_triangle(std::uint32_t triangle) const { return source_[triangle]; }
+  /// What find_bodies had to report; zeros where the bodies were given.
+  [[nodiscard]] std::size_t inconsistencies() const { return inconsistencies_; }
+
+  /// Closest points of the whole network, by number of triangle, and of one interface, by number within it.
+  [[nodiscard]] const ClosestPointTree& tree() const { return tree_; }
+  [[nodiscard]] const ClosestPointTree& tree(InterfaceId i) const { return trees_[i]; }
+  /// Closest point of all interfaces of a body, by number of triangle; none where it has none so near.
+  [[nodiscard]] std::optional<ClosestPoint> closest_of_body(
+      BodyId body, const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
+
+  /// The body that p lies in, by the angle-weighted pseudonormals of each body's boundary at the closest
+  /// point (SPEC 2.2; Baerentzen and Aanaes for one body). `flagged` (may be null) is set where the answer
+  /// rests on an open border inside the domain. Body 0 where there are no triangles.
+  [[nodiscard]] BodyId body_at(const Vec3& p, bool* flagged = nullptr) const;
+
+  /// The interfaces with a distance of at most `radius` from p, in ascending order, given the body of p.
+  /// Replaces `out`.
+  void near_interfaces(const Vec3& p, double radius, BodyId body_of_p, std::vector<NearInterface>& out,
+                       DistanceMode mode = DistanceMode::kExact) const;
+
+ private:
+  /// Bits of `borders_`: edge i or corner i of a triangle is on the border of its interface, or of the whole
+  /// network.
+  static constexpr unsigned kEdgeOfInterface = 0, kCornerOfInterface = 3, kEdgeOfNetwork = 6,
+                            kCornerOfNetwork = 9;
+
+  void group(const InterfaceMesh& mesh, const Bodies& bodies);
+  void find_adjacency();
+  void find_borders();
+  void mark_border_corner(std::uint32_t triangle, std::uint32_t point, bool of_interface);
+  void build_trees();
+  void build_vertex_trees() const;
+
+  /// Calls visit(triangle, weight) for the triangles at a closest point: weights are angles, up to a common
+  /// factor.
+  template <class Visit>
+  void for_each_at(std::uint32_t triangle, TriangleFeature feature, Visit&& visit) const;
+  [[nodiscard]] bool on_border(std::uint32_t triangle, TriangleFeature feature, unsigned edge_bit,
+                               unsigned corner_bit) const;
+  [[nodiscard]] bool on_domain_boundary(const Vec3& p) const;
+  [[nodiscard]] BodyId body_by_arc(const Vec3& offset, std::uint32_t triangle, TriangleFeature feature) const;
+  [[nodiscard]] Vec3 interface_normal(std::uint32_t triangle, TriangleFeature feature) const;
+  [[nodiscard]] std::optional<NearInterface> near_interface(InterfaceId i, const Vec3& p, double radius,
+                                                            BodyId body, DistanceMode mode) const;
+
+  std::optional<Box3> domain_;
+  std::vector<Vec3> points_;
+  std::vector<ClosestPointTree::Triangle> triangles_;
+  std::vector<Vec3> normals_;
+  std::vector<InterfaceId> interface_of_;
+  std::vector<std::uint32_t> source_;
+  std::vector<std::uint16_t> borders_;
+  InterfaceTable table_;
+  IdVector<InterfaceId, Interface> interfaces_;
+  std::vector<std::uint32_t> point_starts_;  ///< triangles at point i: point_triangles_[point_starts_[i] ...]
+  std::vector<std::uint32_t> point_triangles_;
+  std::size_t inconsistencies_ = 0;
+  ClosestPointTree tree_;
+  IdVector<InterfaceId, ClosestPointTree> trees_;
+  BoxTree box_tree_;
+
+  struct VertexTrees;
+  std::shared_ptr<VertexTrees> vertex_trees_;  ///< built on first need
+};
+
+}  // namespace adamas

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// For each point the lowest index of a point with the same coordinates.
+std::vector<std::uint32_t> weld_points(std::span<const Vec3> points);
+
+}  // namespace adamas
