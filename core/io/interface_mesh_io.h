@@ -31,8 +31,8 @@ void weld(InterfaceMesh& mesh);
 
 /// Writes by extension: .vtp (cell arrays "front" and "back", names in the field array "material_names"),
 /// .ply (binary, doubles, per-face front and back), .obj (a group per interface), .off, .stl (binary,
-/// floats), .arec or .txt (labelled network with the materials' indices). Throws Error where the file cannot
-/// be written in full.
+/// floats), .arec or .txt (labelled network with the materials' indices, of which 1 becomes -1 where a reader
+/// could not tell the sides apart). Throws Error where the file cannot be written in full.
 void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh& mesh);
 
 }  // namespace adamas

@@ -95,8 +95,7 @@ void write_stl(OutputStream& out, const InterfaceMesh& mesh) {
   }
 }
 
-/// The columns of labels are put in the order that a reader works out from the data.
-void write_network(OutputStream& out, const InterfaceMesh& mesh) {
+LabelledNetwork to_network(const InterfaceMesh& mesh) {
   LabelledNetwork network;
   network.points = mesh.points;
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -104,14 +103,28 @@ void write_network(OutputStream& out, const InterfaceMesh& mesh) {
     network.labels.push_back(
         {static_cast<std::int32_t>(t.front.value), static_cast<std::int32_t>(t.back.value)});
   }
-  const std::size_t front = first_label_is_front(network) ? 0 : 1;
+  return network;
+}
+
+/// A reader works out the front from the data (first_label_is_front): either the columns change places or,
+/// where two materials leave it open, the second is labelled -1.
+void write_network(OutputStream& out, const InterfaceMesh& mesh) {
+  LabelledNetwork network = to_network(mesh);
+  if (!first_label_is_front(network)) {
+    for (auto& labels : network.labels) std::swap(labels[0], labels[1]);
+    if (first_label_is_front(network)) {
+      for (auto& labels : network.labels) {
+        std::swap(labels[0], labels[1]);
+        for (std::int32_t& label : labels) label = label == 1 ? -1 : label;
+      }
+    }
+  }
   out.write(fmt::format("{}\n", network.points.size()));
   for (const Vec3& p : network.points) out.write(coordinates(p) + "\n");
   out.write(fmt::format("{}\n", network.triangles.size()));
   for (std::size_t t = 0; t < network.triangles.size(); ++t) {
     const auto& [a, b, c] = network.triangles[t];
-    out.write(
-        fmt::format("{} {} {} {} {}\n", a, b, c, network.labels[t][front], network.labels[t][1 - front]));
+    out.write(fmt::format("{} {} {} {} {}\n", a, b, c, network.labels[t][0], network.labels[t][1]));
   }
 }
 

@@ -34,8 +34,8 @@ class Words {
     }
     const auto result = static_cast<std::size_t>(value);
     if (result > left() / least_bytes + 1) {
-      fail("{}: line {}: expected {} {}, found {} bytes before the file's end", name_, line_, value,
-           what + 10, left());
+      fail("{}: line {}: expected {} {}, found {} bytes before the file's end", name_, line_, value, items,
+           left());
     }
     return result;
   }

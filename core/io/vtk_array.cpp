@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/io/xml_text.h"
 
 namespace adamas {
 
@@ -76,7 +77,7 @@ vtkSmartPointer<vtkAbstractArray> to_vtk(const NamedArray& array) {
     default:
       result = strings(std::get<4>(array.values), array.components);
   }
-  result->SetName(array.name.c_str());
+  result->SetName(xml_attribute(array.name).c_str());
   return result;
 }
 

@@ -7,7 +7,7 @@
 
 namespace adamas {
 
-/// A NamedArray as VTK's and back, bit for bit.
+/// A NamedArray as VTK's XML writers want it (xml_attribute), and as its readers give it; values bit for bit.
 vtkSmartPointer<vtkAbstractArray> to_vtk(const NamedArray& array);
 NamedArray from_vtk(vtkAbstractArray& array);
 
