@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "core/picture/canvas.h"
+#include "core/picture/ticks.h"
+
+namespace adamas {
+
+/// Colours and proportions that all figures share; lengths in units of the font size.
+namespace figure_style {
+inline constexpr Colour kInk{0.13, 0.13, 0.15};
+inline constexpr Colour kFrame{0.35, 0.35, 0.38};
+inline constexpr double kMargin = 1.0;
+inline constexpr double kTickLength = 0.35;
+inline constexpr double kTickGap = 0.35;
+inline constexpr double kTickFont = 0.88;
+inline constexpr double kTitleFont = 1.3;
+inline constexpr double kTitleHeight = 2.3;
+inline constexpr double kLabelHeight = 1.7;
+}  // namespace figure_style
+
+/// Where values of one axis lie on the canvas: value `low` at `from`, `high` at `to`.
+struct AxisScale {
+  double low = 0, high = 1;
+  double from = 0, to = 1;
+  bool logarithmic = false;
+
+  [[nodiscard]] double at(double value) const;
+};
+
+/// Width of the widest label in the font of tick labels.
+double widest_label(const Ticks& ticks, double font_size);
+
+/// Ticks outside the lower edge of `box` with labels beneath and the axis label under them. Labels that would
+/// touch their neighbour are left out.
+void draw_x_axis(Canvas& canvas, const Box2& box, const AxisScale& scale, const Ticks& ticks,
+                 const std::string& label, double font_size);
+
+/// Ticks outside the left edge of `box`; the axis label stands upright at distance `label_distance` from the
+/// edge.
+void draw_y_axis(Canvas& canvas, const Box2& box, const AxisScale& scale, const Ticks& ticks,
+                 const std::string& label, double label_distance, double font_size);
+
+/// Height below the box that draw_x_axis needs.
+double x_axis_height(const std::string& label, double font_size);
+
+/// The part of the segment inside the box; false when there is none.
+bool clip_segment(const Box2& box, Vec2& a, Vec2& b);
+
+}  // namespace adamas

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/picture/colour.h"
+#include "core/picture/picture_file.h"
+#include "core/picture/raster.h"
+#include "core/picture/vec2.h"
+
+namespace adamas {
+
+/// How a line is drawn; width in canvas units.
+struct Stroke {
+  Colour colour;
+  double width = 1;
+  double opacity = 1;
+  std::vector<double> dashes{};  ///< lengths on and off in canvas units; empty: unbroken
+};
+
+/// How text is drawn; size in canvas units (the em).
+struct TextStyle {
+  double size = 16;
+  Colour colour{0.13, 0.13, 0.15};
+  bool bold = false;
+};
+
+/// Where the given point lies on the text: at its start, middle or end, and on its base line.
+enum class Anchor { kStart, kMiddle, kEnd };
+
+/// Width of a line of text in canvas units, the same for every format.
+double text_width(std::string_view text, const TextStyle& style);
+
+/// `text`, with its end replaced by an ellipsis where it would be wider than `width`.
+std::string shortened(std::string_view text, const TextStyle& style, double width);
+
+/// A drawing surface with x to the right and y down, in units of pixels for PNG and of half a point for SVG
+/// and PDF. The background is white. The same calls give the same bytes.
+class Canvas {
+ public:
+  /// Throws Error unless both sides are in 1..32767.
+  Canvas(PictureFormat format, double width, double height);
+  ~Canvas();
+  Canvas(const Canvas&) = delete;
+  Canvas& operator=(const Canvas&) = delete;
+
+  void polyline(std::span<const Vec2> points, const Stroke& stroke, bool closed = false);
+  /// Separate segments, points[2k] to points[2k + 1].
+  void segments(std::span<const Vec2> points, const Stroke& stroke);
+  void fill(std::span<const Vec2> points, const Colour& colour, double opacity = 1);
+  void fill_box(const Box2& box, const Colour& colour, double opacity = 1);
+  void disc(const Vec2& centre, double radius, const Colour& colour);
+  /// The angle is in degrees, counter-clockwise as seen.
+  void text(std::string_view text, const Vec2& at, const TextStyle& style, Anchor anchor = Anchor::kStart,
+            double angle = 0);
+  /// The raster stretched over the box, its pixels kept sharp.
+  void image(const Raster& raster, const Box2& box);
+  /// Drawing from here on touches the box only, until `unclip`.
+  void clip(const Box2& box);
+  void unclip();
+
+  /// Ends the drawing and gives the file's bytes. The title goes into the document where the format has a
+  /// place for it, for SVG with all text drawn. Throws Error when Cairo fails.
+  std::string finish(std::string_view title);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/picture/picture_file.h"
+
+namespace adamas {
+
+/// A table of text; columns whose cells are all numbers are set to the right.
+struct ReportTable {
+  std::string caption{};
+  std::vector<std::string> header{};
+  std::vector<std::vector<std::string>> rows{};
+};
+
+/// A number that deserves to be seen at a glance.
+struct KeyFigure {
+  std::string label{};
+  std::string value{};
+  std::string unit{};
+};
+
+/// Builds a report as one HTML file that needs nothing else: pictures are embedded, no scripts, no outside
+/// references. All text is escaped. Readable on small screens, in light and dark, and on paper.
+class HtmlReport {
+ public:
+  explicit HtmlReport(std::string_view title, std::string_view subtitle = {});
+
+  /// A section's heading; those of level 2 make the table of contents. Throws Error for a level outside 2..4.
+  void heading(std::string_view text, int level = 2);
+  void paragraph(std::string_view text);
+  void list(const std::vector<std::string>& items);
+  /// Text as it stands, as a configuration file.
+  void preformatted(std::string_view text);
+  void key_figures(const std::vector<KeyFigure>& figures);
+  /// Throws Error for a row with more or fewer cells than the header.
+  void table(const ReportTable& table);
+  /// A picture by the bytes of a PNG or SVG file. Throws Error for PDF.
+  void picture(std::string_view bytes, PictureFormat format, std::string_view caption);
+  /// A picture from a .png or .svg file; throws Error when it cannot be read.
+  void picture(const std::filesystem::path& path, std::string_view caption);
+
+  [[nodiscard]] std::string html() const;
+  /// Through OutputFile; throws Error when the file cannot be written.
+  void write(const std::filesystem::path& path) const;
+
+ private:
+  struct Section {
+    std::string id, text;
+  };
+  std::string title_, subtitle_, body_;
+  std::vector<Section> sections_;
+  int pictures_ = 0;
+};
+
+}  // namespace adamas

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/picture/camera.h"
+#include "core/picture/legend.h"
+#include "core/picture/rasteriser.h"
+
+namespace adamas {
+
+/// A plane through `point`; what lies on the side of `normal` is cut away.
+struct CutAway {
+  Vec3 point, normal;
+};
+
+/// A picture of surfaces in space: shaded triangles in a wireframe box on white.
+struct InterfacePicture {
+  std::string title{};
+  std::vector<PictureTriangle> triangles{};
+  Box3 domain{};  ///< drawn as a wireframe and framed; empty: that of the triangles, not drawn
+  std::optional<CutAway> cut_away{};  ///< leaves out triangles by their centroid
+  std::vector<LegendEntry> materials{};
+  Vec3 direction{-0.62, 0.72, -0.42};  ///< the way the camera looks
+  Projection projection = Projection::kPerspective;
+};
+
+struct InterfacePictureOptions {
+  double width = 1600;   ///< pixels
+  double height = 1200;  ///< pixels
+  double font_size = 0;  ///< 0: by the width
+  int samples = 3;       ///< per pixel along each axis, 1 to 4
+  bool triangle_edges = false;
+  bool outlines = true;
+  bool axes = true;  ///< a small cross of the axes in the lower left corner
+};
+
+/// The file's bytes. Throws Error for points that are not finite, a box or a direction that cannot be framed,
+/// or options out of range.
+std::string draw_interfaces(const InterfacePicture& picture, PictureFormat format,
+                            const InterfacePictureOptions& options = {});
+
+/// Writes a .png file (or .svg, .pdf with the picture embedded); also throws Error when it cannot be written.
+void write_interfaces(const InterfacePicture& picture, const std::filesystem::path& path,
+                      const InterfacePictureOptions& options = {});
+
+}  // namespace adamas

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/picture/canvas.h"
+
+namespace adamas {
+
+/// Shapes of the points of a series.
+enum class Marker { kNone, kDisc, kSquare, kTriangle, kDiamond };
+
+/// Draws a marker of the given radius.
+void draw_marker(Canvas& canvas, Marker marker, const Vec2& centre, double radius, const Colour& colour);
+
+/// One entry of a legend: an area's colour, or a line with or without a marker.
+struct LegendEntry {
+  std::string name{};
+  Colour colour{};
+  bool area = true;
+  Stroke stroke{};  ///< of a line; width 0 leaves the line out
+  Marker marker = Marker::kNone;
+};
+
+/// Entries in rows from left to right, wrapped to a width.
+class Legend {
+ public:
+  /// The font size is in canvas units. Entries without a name are left out, names that are too wide are
+  /// shortened.
+  Legend(const std::vector<LegendEntry>& entries, double width, double font_size);
+
+  /// 0 without entries.
+  [[nodiscard]] double height() const { return height_; }
+  /// With its upper left corner at `corner`.
+  void draw(Canvas& canvas, const Vec2& corner) const;
+
+ private:
+  struct Placed {
+    LegendEntry entry;
+    Vec2 at;  // left end of the base line
+  };
+  std::vector<Placed> placed_;
+  double font_size_, height_ = 0;
+};
+
+}  // namespace adamas

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/picture/colour.h"
+
+namespace adamas {
+
+/// Number of different colours that `material_colour` gives before it starts again.
+inline constexpr std::size_t kPaletteSize = 40;
+
+/// The colour of material `index`: the first seven are those of Okabe and Ito (2008, "Color Universal
+/// Design"), the others are chosen one by one to lie as far as possible from all before them, also as
+/// colour-blind readers see them.
+Colour material_colour(std::size_t index);
+
+/// The first `count` material colours.
+std::vector<Colour> material_palette(std::size_t count);
+
+/// A colour for flat areas beneath lines: the material's colour, lightened.
+Colour material_area_colour(std::size_t index);
+
+}  // namespace adamas

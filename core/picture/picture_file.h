@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace adamas {
+
+/// File formats of pictures.
+enum class PictureFormat { kPng, kSvg, kPdf };
+
+/// The format by the extension (.png, .svg, .pdf, in any case); throws Error for another one.
+PictureFormat picture_format(const std::filesystem::path& path);
+
+/// Writes bytes to a file through OutputFile; throws Error when they cannot all be written.
+void write_bytes(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace adamas

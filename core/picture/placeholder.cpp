@@ -1,2 +1,0 @@
-// Until the first source of this folder lands.
-namespace adamas {}

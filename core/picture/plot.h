@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/picture/canvas.h"
+#include "core/picture/legend.h"
+
+namespace adamas {
+
+enum class AxisKind { kLinear, kLogarithmic };
+
+/// One axis of a plot. Without a range it holds all points.
+struct PlotAxis {
+  std::string label{};  ///< with the unit, as "error [cm]"
+  AxisKind kind = AxisKind::kLinear;
+  std::optional<double> low{}, high{};
+};
+
+/// Points (x[i], y[i]), joined in the order given. Points that are not finite, or not positive on a
+/// logarithmic axis, are left out and break the line.
+struct PlotSeries {
+  std::string name{};
+  std::vector<double> x{}, y{};
+  bool line = true;
+  bool markers = true;
+  bool dashed = false;
+  std::optional<Colour> colour{};  ///< default: by the series' place
+};
+
+/// A diagram of lines and points, as error against number of tetrahedra.
+struct Plot {
+  std::string title{};
+  PlotAxis x{}, y{};
+  std::vector<PlotSeries> series{};
+};
+
+/// Sizes in pixels (SVG and PDF: half points).
+struct PlotOptions {
+  double width = 1400;
+  double height = 900;
+  double font_size = 0;  ///< 0: by the width
+};
+
+/// The file's bytes. Throws Error for a series whose x and y differ in number, or a range that is empty or
+/// not positive on a logarithmic axis.
+std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions& options = {});
+
+/// Writes a .png, .svg or .pdf file; also throws Error when it cannot be written.
+void write_plot(const Plot& plot, const std::filesystem::path& path, const PlotOptions& options = {});
+
+}  // namespace adamas

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+#include "core/picture/raster.h"
+
+namespace adamas {
+
+/// The pixels of a PNG file's bytes, by Cairo. Throws Error for anything else.
+Raster decode_png(std::string_view bytes);
+
+}  // namespace adamas

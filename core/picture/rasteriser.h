@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "core/picture/camera.h"
+#include "core/picture/raster.h"
+
+namespace adamas {
+
+/// A triangle in space with one colour; either side may face the camera.
+struct PictureTriangle {
+  std::array<Vec3, 3> points;
+  Colour colour;
+};
+
+/// What is drawn besides the shaded triangles.
+struct RasteriserStyle {
+  bool triangle_edges = false;
+  bool outlines = true;      ///< silhouettes, borders between colours, creases
+  double crease_angle = 40;  ///< degrees between normals from which an edge is a crease
+  double edge_width = 1;     ///< of triangle edges, in pixels of the grid
+  double depth_jump = 0;     ///< distance along the view from which a step in depth is a silhouette
+};
+
+/// A z-buffer: draws triangles and depth-tested lines as a camera sees them, one sample per pixel centre.
+class Rasteriser {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+  /// The camera must have been made for this width and height. Throws Error for sides outside 1..32767.
+  Rasteriser(const Camera& camera, int width, int height);
+
+  /// The triangles, which must outlive the rasteriser. Of equally deep ones the first wins. Throws Error for
+  /// points that are not finite.
+  void draw(std::span<const PictureTriangle> triangles);
+  /// Index of the nearest triangle at a pixel, kNone where there is none.
+  [[nodiscard]] std::uint32_t triangle_at(int x, int y) const { return triangle_[index(x, y)]; }
+  /// Projected depth at a pixel, infinite where there is no triangle.
+  [[nodiscard]] double depth_at(int x, int y) const { return depth_[index(x, y)]; }
+
+  /// The shaded picture; pixels without a triangle stay transparent.
+  [[nodiscard]] Raster shade(const RasteriserStyle& style) const;
+  /// Draws a straight line over a shaded picture where no triangle lies in front of it.
+  void draw_line(Raster& raster, const Vec3& from, const Vec3& to, double width, const Colour& colour) const;
+
+ private:
+  // Depth as an affine function of the pixel position.
+  struct DepthPlane {
+    Vec2 origin, gradient;
+    double depth = 0;
+    [[nodiscard]] double at(double x, double y) const { return depth + dot(gradient, Vec2{x, y} - origin); }
+  };
+
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+  void draw_triangle(std::uint32_t number);
+  [[nodiscard]] Colour shaded_colour(std::uint32_t number) const;
+  void draw_edges(Raster& raster, const RasteriserStyle& style) const;
+  void draw_outlines(Raster& raster, const RasteriserStyle& style) const;
+  [[nodiscard]] bool outline_between(int x, int y, int u, int v, const RasteriserStyle& style,
+                                     double least_cosine) const;
+
+  Camera camera_;
+  int width_, height_;
+  std::span<const PictureTriangle> triangles_;
+  std::vector<DepthPlane> planes_;
+  std::vector<Vec3> normals_;  // towards the camera
+  std::vector<std::uint32_t> triangle_;
+  std::vector<double> depth_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/picture/vec2.h"
+
+namespace adamas {
+
+/// Visits the pixels (x, y) of a width x height grid whose centres (x + 1/2, y + 1/2) lie in a convex
+/// polygon, row by row: visit(int x, int y). Centres on an edge belong to the polygon on its right (in a row,
+/// to the half-open interval from the left to the right crossing), and a crossing depends on the edge alone,
+/// not on its direction, so polygons that share an edge neither leave out nor share a pixel. Either
+/// orientation; coordinates must be finite.
+template <class Visit>
+void scan_convex_polygon(std::span<const Vec2> points, int width, int height, Visit&& visit) {
+  if (points.size() < 3) return;
+  double low = points[0].y, high = points[0].y;
+  for (const Vec2& p : points) low = std::min(low, p.y), high = std::max(high, p.y);
+  const int first_row = static_cast<int>(std::clamp(std::ceil(low - 0.5), 0.0, static_cast<double>(height)));
+  const int last_row = static_cast<int>(std::clamp(std::ceil(high - 0.5), 0.0, static_cast<double>(height)));
+  for (int y = first_row; y < last_row; ++y) {
+    const double centre = y + 0.5;
+    double left = std::numeric_limits<double>::infinity(), right = -left;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Vec2 a = points[i], b = points[i + 1 < points.size() ? i + 1 : 0];
+      if ((a.y <= centre) == (b.y <= centre)) continue;
+      if (a.y > b.y) std::swap(a, b);
+      const double x = a.x + (centre - a.y) * ((b.x - a.x) / (b.y - a.y));
+      left = std::min(left, x);
+      right = std::max(right, x);
+    }
+    if (!(left < right)) continue;
+    const int begin = static_cast<int>(std::clamp(std::ceil(left - 0.5), 0.0, static_cast<double>(width)));
+    const int end = static_cast<int>(std::clamp(std::ceil(right - 0.5), 0.0, static_cast<double>(width)));
+    for (int x = begin; x < end; ++x) visit(x, y);
+  }
+}
+
+}  // namespace adamas

@@ -1,0 +1,308 @@
+#include "core/picture/slice_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/picture/axes.h"
+
+namespace adamas {
+
+using namespace figure_style;
+
+namespace {
+
+constexpr int kSamplesPerPixel = 2;  // along each axis
+constexpr double kStrokeReference = 1600;
+constexpr double kBarWidth = 1.2;
+
+// What has to be known of all panels before anything is placed.
+struct Contents {
+  Box2 window;
+  ValueRange range;
+  bool has_field = false, has_missing = false, below = false, above = false;
+};
+
+void check_points(const std::vector<Vec2>& points) {
+  for (const Vec2& p : points) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y))
+      fail("slice picture: expected finite coordinates, found ({}, {})", p.x, p.y);
+  }
+}
+
+Contents survey(const SlicePicture& picture) {
+  if (picture.panels.empty()) fail("slice picture: expected at least one panel, found none");
+  Contents contents;
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (const SlicePanel& panel : picture.panels) {
+    for (const FieldPolygon& polygon : panel.polygons) {
+      check_points(polygon.points);
+      for (const Vec2& p : polygon.points) contents.window.extend(p);
+      if (polygon.values.empty()) continue;
+      if (polygon.values.size() != polygon.points.size()) {
+        fail("slice picture: expected a value for each of {} corners, found {}", polygon.points.size(),
+             polygon.values.size());
+      }
+      contents.has_field = true;
+      for (const double v : polygon.values) {
+        if (!std::isfinite(v))
+          contents.has_missing = true;
+        else
+          least = std::min(least, v), greatest = std::max(greatest, v);
+      }
+    }
+    for (const LineSet& lines : panel.lines) {
+      check_points(lines.points);
+      for (const Vec2& p : lines.points) contents.window.extend(p);
+    }
+  }
+  if (!(least <= greatest)) least = 0, greatest = 1;
+  contents.range = picture.range.value_or(ValueRange{least, greatest});
+  if (!(std::isfinite(contents.range.low) && std::isfinite(contents.range.high) &&
+        contents.range.low <= contents.range.high)) {
+    fail("slice picture: expected a finite range, found {} to {}", contents.range.low, contents.range.high);
+  }
+  contents.below = least<contents.range.low, contents.above = greatest> contents.range.high;
+  if (picture.window) contents.window = *picture.window;
+  check_points({contents.window.empty() ? Vec2{} : contents.window.min,
+                contents.window.empty() ? Vec2{} : contents.window.max});
+  return contents;
+}
+
+// A window that is empty or very flat or narrow is widened about its middle.
+Box2 shown_window(const Box2& window) {
+  constexpr double kGreatestRatio = 8;
+  if (window.empty()) return {{0, 0}, {1, 1}};
+  const Vec2 middle = 0.5 * (window.min + window.max), size = window.size();
+  const double longest = std::max(size.x, size.y);
+  const double least = longest > 0 ? longest / kGreatestRatio : 1;
+  const Vec2 half{0.5 * std::max(size.x, least), 0.5 * std::max(size.y, least)};
+  return {middle - half, middle + half};
+}
+
+class SliceDrawing {
+ public:
+  SliceDrawing(const SlicePicture& picture, const SliceOptions& options)
+      : picture_(picture),
+        contents_(survey(picture)),
+        window_(shown_window(contents_.window)),
+        font_(options.font_size > 0 ? options.font_size : options.width / 80),
+        stroke_scale_(options.width / kStrokeReference),
+        legend_({}, 1, 1) {
+    if (!(options.width >= 200 && options.width <= 16000 && options.greatest_height >= 200 &&
+          font_ <= options.width / 20)) {
+      fail(
+          "slice picture: expected a width of 200 to 16000 and a height from 200, found {} x {}, font size "
+          "{}",
+          options.width, options.greatest_height, font_);
+    }
+    place(options);
+  }
+
+  std::string draw(PictureFormat format) const;
+
+ private:
+  void place(const SliceOptions& options);
+  void draw_panel(Canvas& canvas, std::size_t index, PictureFormat format) const;
+  void draw_areas(Canvas& canvas, const SlicePanel& panel, const Box2& box, PictureFormat format) const;
+  void draw_bar(Canvas& canvas) const;
+  [[nodiscard]] std::vector<LegendEntry> legend_entries() const;
+  [[nodiscard]] Box2 panel_box(std::size_t index) const {
+    const double x = left_ + static_cast<double>(index) * (panel_size_.x + gap_);
+    return {{x, top_}, {x + panel_size_.x, top_ + panel_size_.y}};
+  }
+
+  const SlicePicture& picture_;
+  Contents contents_;
+  Box2 window_;
+  double font_, stroke_scale_;
+  Legend legend_;
+  double width_ = 0, height_ = 0, left_ = 0, top_ = 0, gap_ = 0, label_distance_ = 0;
+  Vec2 panel_size_;
+  Ticks x_ticks_, y_ticks_, bar_ticks_;
+};
+
+std::vector<LegendEntry> SliceDrawing::legend_entries() const {
+  std::vector<LegendEntry> entries = picture_.materials;
+  if (contents_.has_missing) entries.push_back({.name = "no data", .colour = ColourMap::no_data()});
+  for (const SlicePanel& panel : picture_.panels) {
+    for (const LineSet& lines : panel.lines) {
+      const auto same = [&](const LegendEntry& entry) { return !entry.area && entry.name == lines.name; };
+      if (lines.name.empty() || std::any_of(entries.begin(), entries.end(), same)) continue;
+      Stroke stroke = lines.stroke;
+      // A hairline would not be seen in the legend.
+      stroke.width = std::max(stroke.width, 2.0) * stroke_scale_;
+      stroke.opacity = std::max(stroke.opacity, 0.6);
+      entries.push_back({.name = lines.name, .colour = stroke.colour, .area = false, .stroke = stroke});
+    }
+  }
+  return entries;
+}
+
+void SliceDrawing::place(const SliceOptions& options) {
+  const double f = font_, count = static_cast<double>(picture_.panels.size());
+  const Vec2 size = window_.size();
+  // Label widths hardly depend on the number of ticks: six for a first estimate.
+  const double label = widest_label(linear_ticks(window_.min.y, window_.max.y, 6), f);
+  const double x_label = widest_label(linear_ticks(window_.min.x, window_.max.x, 6), f);
+  label_distance_ = (kTickLength + kTickGap) * f + label + 0.7 * f;
+  left_ = std::ceil(kMargin * f + label_distance_ + (picture_.y_label.empty() ? 0 : f));
+  gap_ = std::ceil(std::max(1.5 * f, x_label + 0.5 * f));
+  bar_ticks_ = linear_ticks(contents_.range.low, contents_.range.high, 6);
+  const double bar = (1 + kBarWidth + kTickLength + kTickGap) * f + widest_label(bar_ticks_, f) +
+                     (picture_.field_label.empty() ? 0 : kLabelHeight * f);
+  const double right = std::ceil(kMargin * f + (contents_.has_field ? bar : 0.5 * x_label));
+  const bool titled = std::any_of(picture_.panels.begin(), picture_.panels.end(),
+                                  [](const SlicePanel& p) { return !p.title.empty(); });
+  top_ = std::ceil((kMargin + (picture_.title.empty() ? 0 : kTitleHeight) + (titled ? kLabelHeight : 0)) * f);
+
+  const double across = options.width - left_ - right - (count - 1) * gap_;
+  if (across < 4 * f * count)
+    fail("slice picture: expected room for {} panels, found a width of {}", count, options.width);
+  panel_size_.x = std::floor(across / count);
+  panel_size_.y = std::round(panel_size_.x * size.y / size.x);
+  const auto below = [&](double width) {
+    legend_ = Legend(legend_entries(), width - 2 * kMargin * f, f);
+    return x_axis_height(picture_.x_label, f) + (legend_.height() > 0 ? 0.8 * f + legend_.height() : 0) +
+           kMargin * f;
+  };
+  const double room = std::max(options.greatest_height - top_ - below(options.width), 8 * f);
+  if (panel_size_.y > room) {
+    panel_size_.y = std::floor(room);
+    panel_size_.x = std::max(std::round(panel_size_.y * size.x / size.y), 2.0);
+  }
+  const TextStyle title_style{.size = kTitleFont * f, .bold = true};
+  const double title_width =
+      std::min(text_width(picture_.title, title_style) + 2 * kMargin * f, options.width);
+  const double needed = left_ + right + count * panel_size_.x + (count - 1) * gap_;
+  width_ = std::max({needed, title_width, std::min(24 * f, options.width)});
+  left_ += std::floor(0.5 * (width_ - needed));
+  height_ = std::ceil(top_ + panel_size_.y + below(width_));
+  x_ticks_ = linear_ticks(window_.min.x, window_.max.x,
+                          static_cast<int>(std::clamp(panel_size_.x / (x_label + 2.5 * f), 1.0, 10.0)));
+  y_ticks_ = linear_ticks(window_.min.y, window_.max.y,
+                          static_cast<int>(std::clamp(panel_size_.y / (3 * f), 1.0, 10.0)));
+  bar_ticks_ = linear_ticks(contents_.range.low, contents_.range.high,
+                            static_cast<int>(std::clamp(panel_size_.y / (3 * f), 1.0, 10.0)));
+}
+
+void SliceDrawing::draw_areas(Canvas& canvas, const SlicePanel& panel, const Box2& box,
+                              PictureFormat format) const {
+  if (panel.polygons.empty()) return;
+  const int width = static_cast<int>(panel_size_.x) * kSamplesPerPixel,
+            height = static_cast<int>(panel_size_.y) * kSamplesPerPixel;
+  Raster raster(width, height);
+  const double sx = width / window_.size().x, sy = height / window_.size().y;
+  std::vector<Vec2> points;
+  for (const FieldPolygon& polygon : panel.polygons) {
+    points.clear();
+    for (const Vec2& p : polygon.points)
+      points.push_back({(p.x - window_.min.x) * sx, (window_.max.y - p.y) * sy});
+    if (polygon.values.empty())
+      fill_polygon(raster, points, polygon.colour);
+    else
+      fill_field_polygon(raster, points, polygon.values, contents_.range.low, contents_.range.high,
+                         picture_.map);
+  }
+  canvas.image(format == PictureFormat::kPng ? raster.reduced(kSamplesPerPixel) : raster, box);
+}
+
+void SliceDrawing::draw_panel(Canvas& canvas, std::size_t index, PictureFormat format) const {
+  const SlicePanel& panel = picture_.panels[index];
+  const Box2 box = panel_box(index);
+  draw_areas(canvas, panel, box, format);
+  const AxisScale x_scale{window_.min.x, window_.max.x, box.min.x, box.max.x};
+  const AxisScale y_scale{window_.min.y, window_.max.y, box.max.y, box.min.y};
+  canvas.clip(box);
+  std::vector<Vec2> ends;
+  for (const LineSet& lines : panel.lines) {
+    ends.clear();
+    for (std::size_t k = 0; k + 1 < lines.points.size(); k += 2) {
+      Vec2 a = lines.points[k], b = lines.points[k + 1];
+      if (!clip_segment(window_, a, b)) continue;
+      ends.push_back({x_scale.at(a.x), y_scale.at(a.y)});
+      ends.push_back({x_scale.at(b.x), y_scale.at(b.y)});
+    }
+    Stroke stroke = lines.stroke;
+    stroke.width *= stroke_scale_;
+    for (double& dash : stroke.dashes) dash *= stroke_scale_;
+    canvas.segments(ends, stroke);
+  }
+  canvas.unclip();
+  const std::array<Vec2, 4> frame{box.min, Vec2{box.max.x, box.min.y}, box.max, Vec2{box.min.x, box.max.y}};
+  canvas.polyline(frame, {.colour = kFrame, .width = 0.06 * font_}, true);
+  draw_x_axis(canvas, box, x_scale, x_ticks_, picture_.x_label, font_);
+  if (index == 0) draw_y_axis(canvas, box, y_scale, y_ticks_, picture_.y_label, label_distance_, font_);
+  const TextStyle style{.size = font_, .colour = kInk};
+  canvas.text(shortened(panel.title, style, panel_size_.x + 0.8 * gap_),
+              {box.min.x, box.min.y - 0.55 * font_}, style);
+}
+
+void SliceDrawing::draw_bar(Canvas& canvas) const {
+  const double f = font_;
+  const Box2 last = panel_box(picture_.panels.size() - 1);
+  const double tip = 0.9 * f, x = std::ceil(last.max.x + f);
+  const Box2 bar{{x, last.min.y + (contents_.above ? tip : 0)},
+                 {x + kBarWidth * f, last.max.y - (contents_.below ? tip : 0)}};
+  const int rows = std::clamp(static_cast<int>(bar.size().y), 2, 1024);
+  Raster raster(1, rows);
+  for (int y = 0; y < rows; ++y) raster.set(0, y, picture_.map.at(1 - (y + 0.5) / rows));
+  canvas.image(raster, bar);
+  const double middle = 0.5 * (bar.min.x + bar.max.x);
+  std::vector<Vec2> outline{{bar.min.x, bar.max.y}, {bar.min.x, bar.min.y}};
+  if (contents_.above) {
+    const Vec2 top{middle, bar.min.y - tip};
+    canvas.fill(std::array{bar.min, top, Vec2{bar.max.x, bar.min.y}}, picture_.map.at(1));
+    outline.push_back(top);
+  }
+  outline.push_back({bar.max.x, bar.min.y});
+  outline.push_back(bar.max);
+  if (contents_.below) {
+    const Vec2 bottom{middle, bar.max.y + tip};
+    canvas.fill(std::array{Vec2{bar.min.x, bar.max.y}, bottom, bar.max}, picture_.map.at(0));
+    outline.push_back(bottom);
+  }
+  const Stroke stroke{.colour = kFrame, .width = 0.06 * f};
+  canvas.polyline(outline, stroke, true);
+
+  const AxisScale scale{contents_.range.low, contents_.range.high, bar.max.y, bar.min.y};
+  for (std::size_t i = 0; i < bar_ticks_.positions.size(); ++i) {
+    const double y = scale.at(bar_ticks_.positions[i]);
+    canvas.polyline(std::array{Vec2{bar.max.x, y}, Vec2{bar.max.x + kTickLength * f, y}}, stroke);
+    canvas.text(bar_ticks_.labels[i], {bar.max.x + (kTickLength + kTickGap) * f, y + 0.36 * kTickFont * f},
+                {.size = kTickFont * f, .colour = kInk});
+  }
+  const double label_x = bar.max.x + (kTickLength + kTickGap + 1.4) * f + widest_label(bar_ticks_, f);
+  const TextStyle style{.size = f, .colour = kInk};
+  canvas.text(shortened(picture_.field_label, style, last.size().y),
+              {label_x, 0.5 * (last.min.y + last.max.y)}, style, Anchor::kMiddle, 90);
+}
+
+std::string SliceDrawing::draw(PictureFormat format) const {
+  Canvas canvas(format, width_, height_);
+  const TextStyle title{.size = kTitleFont * font_, .colour = kInk, .bold = true};
+  canvas.text(shortened(picture_.title, title, width_ - 2 * kMargin * font_),
+              {kMargin * font_, (kMargin + kTitleFont) * font_}, title);
+  for (std::size_t i = 0; i < picture_.panels.size(); ++i) draw_panel(canvas, i, format);
+  if (contents_.has_field) draw_bar(canvas);
+  legend_.draw(canvas, {kMargin * font_, height_ - kMargin * font_ - legend_.height()});
+  return canvas.finish(picture_.title);
+}
+
+}  // namespace
+
+Stroke cell_stroke() { return {.colour = {0.1, 0.1, 0.12}, .width = 0.7, .opacity = 0.35}; }
+Stroke original_interface_stroke() { return {.colour = {0.05, 0.05, 0.05}, .width = 2.4}; }
+Stroke approximated_interface_stroke() { return {.colour = {0.86, 0.08, 0.24}, .width = 2.0}; }
+
+std::string draw_slice(const SlicePicture& picture, PictureFormat format, const SliceOptions& options) {
+  return SliceDrawing(picture, options).draw(format);
+}
+
+void write_slice(const SlicePicture& picture, const std::filesystem::path& path,
+                 const SliceOptions& options) {
+  write_bytes(path, draw_slice(picture, picture_format(path), options));
+}
+
+}  // namespace adamas

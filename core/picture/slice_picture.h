@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/picture/canvas.h"
+#include "core/picture/colour_map.h"
+#include "core/picture/legend.h"
+
+namespace adamas {
+
+/// A convex polygon in the coordinates of the slice. With values, one per corner, a field that is linear over
+/// it; without, an area of one colour.
+struct FieldPolygon {
+  std::vector<Vec2> points{};
+  std::vector<double> values{};
+  Colour colour{};
+};
+
+/// Lines drawn alike: segments points[2k] to points[2k + 1], in the coordinates of the slice.
+struct LineSet {
+  std::string name{};  ///< in the legend; empty: not there
+  Stroke stroke{};     ///< the width in pixels of a picture 1600 pixels wide
+  std::vector<Vec2> points{};
+};
+
+/// Strokes for the lines that slices have in common.
+Stroke cell_stroke();
+Stroke original_interface_stroke();
+Stroke approximated_interface_stroke();
+
+/// A least and a greatest value.
+struct ValueRange {
+  double low = 0, high = 1;
+};
+
+/// One drawing of a slice: areas below, lines above, each in the order given.
+struct SlicePanel {
+  std::string title{};
+  std::vector<FieldPolygon> polygons{};
+  std::vector<LineSet> lines{};
+};
+
+/// Panels side by side that show the same part of a plane with the same colour map (SPEC 2.7).
+struct SlicePicture {
+  std::string title{};
+  std::string x_label{}, y_label{};  ///< with their units, as "x [cm]"
+  std::string field_label{};         ///< beside the colour bar, with its unit
+  std::vector<SlicePanel> panels{};
+  std::vector<LegendEntry> materials{};
+  std::optional<Box2> window{};       ///< the part of the plane that is shown; default: what the panels hold
+  std::optional<ValueRange> range{};  ///< the values at the ends of the map; default: what the panels hold
+  ColourMap map = ColourMap::sequential();
+};
+
+/// Sizes in pixels (SVG and PDF: half points). A picture is narrower than `width` where `greatest_height`
+/// binds.
+struct SliceOptions {
+  double width = 1600;
+  double greatest_height = 1400;
+  double font_size = 0;  ///< 0: by the width
+};
+
+/// The file's bytes. Throws Error for no panel, points that are not finite, or a polygon with fewer values
+/// than points.
+std::string draw_slice(const SlicePicture& picture, PictureFormat format, const SliceOptions& options = {});
+
+/// Writes a .png, .svg or .pdf file; also throws Error when it cannot be written.
+void write_slice(const SlicePicture& picture, const std::filesystem::path& path,
+                 const SliceOptions& options = {});
+
+}  // namespace adamas

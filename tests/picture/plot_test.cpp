@@ -1,0 +1,111 @@
+#include "core/picture/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/picture/axes.h"
+#include "core/picture/png.h"
+#include "scratch_folder.h"
+
+namespace adamas {
+namespace {
+
+Plot error_plot() {
+  Plot plot;
+  plot.title = "Error";
+  plot.x = {.label = "tetrahedra", .kind = AxisKind::kLogarithmic};
+  plot.y = {.label = "error [cm]", .kind = AxisKind::kLogarithmic};
+  plot.series = {{.name = "adamas", .x = {100, 1000, 10000}, .y = {1, 0.3, 0.1}},
+                 {.name = "peer", .x = {200, 4000}, .y = {2, 0.9}, .dashed = true}};
+  return plot;
+}
+
+// Centres of the blobs of one pure colour, as markers are, from left to right.
+std::vector<Vec2> blobs(const Raster& raster, const Colour& colour, double gap) {
+  const auto bytes = to_bytes(colour);
+  std::vector<Vec2> centres;
+  Vec2 sum{};
+  int count = 0, last = -1000;
+  for (int x = 0; x < raster.width(); ++x) {
+    for (int y = 0; y < raster.height(); ++y) {
+      if (!(raster.at(x, y) == Raster::Pixel{bytes[0], bytes[1], bytes[2], 255})) continue;
+      if (x - last > gap && count > 0) centres.push_back((1.0 / count) * sum), sum = {}, count = 0;
+      sum = sum + Vec2{x + 0.5, y + 0.5}, ++count, last = x;
+    }
+  }
+  if (count > 0) centres.push_back((1.0 / count) * sum);
+  return centres;
+}
+
+TEST(Plot, MarkersLieWhereTheValuesSay) {
+  for (const bool logarithmic : {false, true}) {
+    Plot plot;
+    const Colour colour{1, 0, 1};
+    if (logarithmic) plot.x.kind = plot.y.kind = AxisKind::kLogarithmic;
+    const std::vector<double> x{1, 20, 60, 100}, y{5, 90, 10, 50};
+    plot.series = {{.x = x, .y = y, .line = false, .colour = colour}};
+    const std::vector<Vec2> found = blobs(decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3);
+    ASSERT_EQ(found.size(), x.size());
+    const auto scaled = [&](double v) { return logarithmic ? std::log(v) : v; };
+    // The first and the last point fix the scales, the others must fit.
+    const double sx = (found[3].x - found[0].x) / (scaled(x[3]) - scaled(x[0]));
+    const double sy = (found[3].y - found[0].y) / (scaled(y[3]) - scaled(y[0]));
+    EXPECT_GT(sx, 0);
+    EXPECT_LT(sy, 0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      EXPECT_NEAR(found[i].x, found[0].x + sx * (scaled(x[i]) - scaled(x[0])), 0.7);
+      EXPECT_NEAR(found[i].y, found[0].y + sy * (scaled(y[i]) - scaled(y[0])), 0.7);
+    }
+  }
+}
+
+TEST(Plot, PointsThatCannotBeShownAreLeftOut) {
+  Plot plot = error_plot();
+  const Colour colour{1, 0, 1};
+  plot.series = {{.x = {1, 10, 100, -5, 1000}, .y = {1, 0, 2, 3, NAN}, .line = false, .colour = colour}};
+  EXPECT_EQ(blobs(decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3).size(), 2u);
+  plot.series[0].y = {NAN, NAN, NAN, NAN, NAN};
+  EXPECT_EQ(blobs(decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3).size(), 0u);
+}
+
+TEST(Plot, LinesAreClippedToTheRange) {
+  Vec2 a{-5, 0.5}, b{5, 0.5};
+  ASSERT_TRUE(clip_segment({{0, 0}, {1, 1}}, a, b));
+  EXPECT_EQ(a, (Vec2{0, 0.5}));
+  EXPECT_EQ(b, (Vec2{1, 0.5}));
+  a = {-1, 0.5}, b = {0.5, 2.1};
+  EXPECT_FALSE(clip_segment({{0, 0}, {1, 1}}, a, b));
+  Plot plot = error_plot();
+  plot.x.low = 500, plot.x.high = 600, plot.y.high = 0.2, plot.y.low = 0.01;
+  EXPECT_FALSE(draw_plot(plot, PictureFormat::kPng).empty());
+}
+
+TEST(Plot, FilesOfAllFormats) {
+  const ScratchFolder folder;
+  for (const char* name : {"a.png", "b.svg", "c.pdf"}) {
+    write_plot(error_plot(), folder.path() / name);
+    EXPECT_GT(std::filesystem::file_size(folder.path() / name), 1000u);
+  }
+  const std::string svg = bytes_of(folder.path() / "b.svg");
+  for (const char* text : {"Error", "tetrahedra", "error [cm]", "adamas", "peer", "10³"})
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  EXPECT_EQ(svg, draw_plot(error_plot(), PictureFormat::kSvg));
+}
+
+TEST(Plot, BadInputIsAnError) {
+  Plot plot = error_plot();
+  plot.series[0].y.pop_back();
+  EXPECT_THROW(draw_plot(plot, PictureFormat::kPng), Error);
+  plot = error_plot();
+  plot.x.low = 0;
+  EXPECT_THROW(draw_plot(plot, PictureFormat::kPng), Error);
+  plot = error_plot();
+  plot.y.low = 3, plot.y.high = 3;
+  EXPECT_THROW(draw_plot(plot, PictureFormat::kPng), Error);
+  EXPECT_THROW(draw_plot(error_plot(), PictureFormat::kPng, {.width = 10}), Error);
+}
+
+}  // namespace
+}  // namespace adamas

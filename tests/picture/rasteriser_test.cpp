@@ -1,0 +1,194 @@
+#include "core/picture/rasteriser.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/base/error.h"
+
+namespace adamas {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+const Box3 kBox{{-1, -2, 0}, {3, 1, 2}};
+
+std::vector<PictureTriangle> random_triangles(std::mt19937_64& random, int count, const Box3& box) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto point = [&] {
+    const Vec3 s = box.size();
+    return box.min + Vec3{s.x * unit(random), s.y * unit(random), s.z * unit(random)};
+  };
+  std::vector<PictureTriangle> triangles;
+  for (int i = 0; i < count; ++i)
+    triangles.push_back({{point(), point(), point()}, {unit(random), 0.5, 0.5}});
+  return triangles;
+}
+
+struct Ray {
+  Vec3 origin, direction;
+};
+
+// Distance along the ray to a triangle (Moeller and Trumbore), infinite for a miss. `margin` is how far
+// inside the hit lies, as the least barycentric weight.
+double hit(const Ray& ray, const PictureTriangle& t, double& margin) {
+  const Vec3 e1 = t.points[1] - t.points[0], e2 = t.points[2] - t.points[0];
+  const Vec3 p = cross(ray.direction, e2);
+  const double determinant = dot(e1, p);
+  const Vec3 s = ray.origin - t.points[0], q = cross(s, e1);
+  const double u = dot(s, p) / determinant, v = dot(ray.direction, q) / determinant;
+  margin = std::min({u, v, 1 - u - v});
+  return margin >= 0 ? dot(e2, q) / determinant : std::numeric_limits<double>::infinity();
+}
+
+// The ray of a pixel centre, found from projections alone: two points of space that land there.
+Ray ray_through(const Camera& camera, const Box3& box, double px, double py) {
+  // Corners of two planes across the view, whose projections are affine in the position on the plane.
+  const auto on_plane = [&](double distance) {
+    const Vec3 centre = box.center() + distance * camera.forward();
+    const Vec2 o = camera.project(centre).at, r = camera.project(centre + camera.right()).at,
+               u = camera.project(centre + camera.up()).at;
+    const Vec2 d{px - o.x, py - o.y};
+    const double area = cross(r - o, u - o);
+    return centre + (cross(d, u - o) / area) * camera.right() + (cross(r - o, d) / area) * camera.up();
+  };
+  const Vec3 near = on_plane(-0.5 * box.diagonal()), far = on_plane(box.diagonal());
+  return {near, far - near};
+}
+
+TEST(Rasteriser, ShowsWhatRaysHitFirst) {
+  std::mt19937_64 random(11);
+  for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
+    for (int round = 0; round < 12; ++round) {
+      std::uniform_real_distribution<double> unit(-1, 1);
+      const Vec3 direction{unit(random), unit(random), unit(random)};
+      const Camera camera(projection, kBox, direction, kWidth, kHeight);
+      const std::vector<PictureTriangle> triangles = random_triangles(random, 1 + 4 * round, kBox);
+      Rasteriser rasteriser(camera, kWidth, kHeight);
+      rasteriser.draw(triangles);
+      int compared = 0;
+      for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+          const Ray ray = ray_through(camera, kBox, x + 0.5, y + 0.5);
+          std::uint32_t first = Rasteriser::kNone;
+          double best = std::numeric_limits<double>::infinity(), second = best, closest_margin = 1;
+          for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+            double margin = 0;
+            const double t = hit(ray, triangles[i], margin);
+            closest_margin = std::min(closest_margin, std::abs(margin));
+            if (t < best)
+              second = best, best = t, first = i;
+            else
+              second = std::min(second, t);
+          }
+          if (closest_margin < 1e-9 || second - best < 1e-9) continue;  // too close to call
+          ++compared;
+          ASSERT_EQ(rasteriser.triangle_at(x, y), first) << x << " " << y << " round " << round;
+        }
+      }
+      EXPECT_GT(compared, kWidth * kHeight * 9 / 10);
+    }
+  }
+}
+
+TEST(Rasteriser, DepthIsTheDistanceAlongTheView) {
+  std::mt19937_64 random(12);
+  for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
+    const Camera camera(projection, kBox, {1, 2, -1}, kWidth, kHeight);
+    const std::vector<PictureTriangle> triangles = random_triangles(random, 6, kBox);
+    Rasteriser rasteriser(camera, kWidth, kHeight);
+    rasteriser.draw(triangles);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const std::uint32_t number = rasteriser.triangle_at(x, y);
+        if (number == Rasteriser::kNone) continue;
+        const Ray ray = ray_through(camera, kBox, x + 0.5, y + 0.5);
+        double margin = 0;
+        const double t = hit(ray, triangles[number], margin);
+        if (margin < 1e-9) continue;
+        const double distance = camera.distance_of(ray.origin + t * ray.direction);
+        EXPECT_NEAR(camera.distance_at_depth(rasteriser.depth_at(x, y)), distance, 1e-8 * kBox.diagonal());
+      }
+    }
+  }
+}
+
+TEST(Camera, FramesTheWholeBoxTightly) {
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
+    for (int round = 0; round < 200; ++round) {
+      const Vec3 direction = round == 0 ? Vec3{0, 0, -1} : Vec3{unit(random), unit(random), unit(random)};
+      const Camera camera(projection, kBox, direction, kWidth, kHeight, 0.1);
+      Box2 extent;
+      for (unsigned i = 0; i < 8; ++i) {
+        const Vec3 p{(i & 1u) != 0 ? kBox.max.x : kBox.min.x, (i & 2u) != 0 ? kBox.max.y : kBox.min.y,
+                     (i & 4u) != 0 ? kBox.max.z : kBox.min.z};
+        ASSERT_GE(camera.distance_of(p), camera.near());
+        extent.extend(camera.project(p).at);
+      }
+      const double left = 0.05 * kWidth, top = 0.05 * kHeight, tolerance = 1e-9 * kWidth;
+      EXPECT_GE(extent.min.x, left - tolerance);
+      EXPECT_GE(extent.min.y, top - tolerance);
+      EXPECT_LE(extent.max.x, kWidth - left + tolerance);
+      EXPECT_LE(extent.max.y, kHeight - top + tolerance);
+      const double slack = std::min({extent.min.x - left, extent.min.y - top, kWidth - left - extent.max.x,
+                                     kHeight - top - extent.max.y});
+      EXPECT_LT(slack, 1e-6);
+    }
+  }
+}
+
+TEST(Camera, UpIsUp) {
+  const Camera camera(Projection::kPerspective, kBox, {1, 1, -0.5}, kWidth, kHeight);
+  EXPECT_LT(camera.project({0, 0, 1.5}).at.y, camera.project({0, 0, 0.5}).at.y);
+  EXPECT_THROW(Camera(Projection::kPerspective, kBox, {0, 0, 0}, 10, 10), Error);
+  EXPECT_THROW(Camera(Projection::kPerspective, Box3{}, {0, 0, 1}, 10, 10), Error);
+}
+
+TEST(Rasteriser, TrianglesBehindTheCameraAreCut) {
+  const Camera camera(Projection::kPerspective, kBox, {0, 1, 0}, kWidth, kHeight);
+  // From far behind the camera to far in front of it, below the box: seen from the camera in the lower half
+  // only.
+  const std::vector<PictureTriangle> floor{
+      {{Vec3{-1e3, -1e3, -0.5}, Vec3{1e3, -1e3, -0.5}, Vec3{1, 1e5, -0.5}}, {1, 0, 0}},
+      {{Vec3{-1, -1e4, 0}, Vec3{1, -1e4, 0}, Vec3{0, -1e4, 1}}, {0, 1, 0}}};
+  Rasteriser rasteriser(camera, kWidth, kHeight);
+  rasteriser.draw(floor);
+  for (int x = 0; x < kWidth; ++x) {
+    EXPECT_EQ(rasteriser.triangle_at(x, 0), Rasteriser::kNone);
+    EXPECT_EQ(rasteriser.triangle_at(x, kHeight - 1), 0u);
+  }
+}
+
+TEST(Rasteriser, LinesAreHiddenBySurfaces) {
+  const Camera camera(Projection::kOrthographic, kBox, {0, 1, 0}, kWidth, kHeight);
+  const double y = -0.5;
+  const std::vector<PictureTriangle> wall{{{Vec3{-9, y, -9}, Vec3{9, y, -9}, Vec3{0, y, 20}}, {0, 0, 1}}};
+  Rasteriser rasteriser(camera, kWidth, kHeight);
+  rasteriser.draw(wall);
+  const Colour red{1, 0, 0};
+  const auto red_pixels = [&](double at) {
+    Raster raster = rasteriser.shade({.outlines = false});
+    rasteriser.draw_line(raster, {-1, at, 1}, {3, at, 1}, 2, red);
+    int count = 0;
+    for (int v = 0; v < kHeight; ++v) {
+      for (int u = 0; u < kWidth; ++u) count += raster.at(u, v) == Raster::Pixel{255, 0, 0, 255} ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(red_pixels(0.5), 0);
+  EXPECT_GT(red_pixels(-1.5), kWidth);
+}
+
+TEST(Rasteriser, PointsMustBeFinite) {
+  const Camera camera(Projection::kOrthographic, kBox, {0, 1, 0}, kWidth, kHeight);
+  const std::vector<PictureTriangle> bad{{{Vec3{0, 0, 0}, Vec3{1, NAN, 0}, Vec3{1, 1, 1}}, {}}};
+  Rasteriser rasteriser(camera, kWidth, kHeight);
+  EXPECT_THROW(rasteriser.draw(bad), Error);
+}
+
+}  // namespace
+}  // namespace adamas

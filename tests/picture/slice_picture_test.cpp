@@ -1,0 +1,162 @@
+#include "core/picture/slice_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/picture/palette.h"
+#include "core/picture/png.h"
+#include "scratch_folder.h"
+
+namespace adamas {
+namespace {
+
+SlicePicture three_panels() {
+  SlicePicture picture;
+  picture.title = "Density <of> the \"impact\" & more";
+  picture.x_label = "y [cm]";
+  picture.y_label = "z [cm]";
+  picture.field_label = "density [g/cm³]";
+  const FieldPolygon left{{{0, 0}, {1, 0}, {1, 2}, {0, 2}}, {0, 1, 1, 0}},
+      right{{{1, 0}, {2, 0}, {2, 2}, {1, 2}}, {1, 2, 2, 1}};
+  const LineSet lines{"original interface", original_interface_stroke(), {{1, 0}, {1, 2}}};
+  picture.panels = {
+      {"Input", {left, right}, {lines}}, {"Plain", {left, right}, {}}, {"Per material", {left}, {lines}}};
+  picture.materials = {{.name = "projectile", .colour = material_colour(0)}};
+  return picture;
+}
+
+// The rectangle that all pixels of one colour span: finds areas without knowing the layout.
+Box2 extent_of(const Raster& raster, const Colour& colour) {
+  const auto bytes = to_bytes(colour);
+  Box2 box;
+  for (int y = 0; y < raster.height(); ++y) {
+    for (int x = 0; x < raster.width(); ++x) {
+      if (raster.at(x, y) == Raster::Pixel{bytes[0], bytes[1], bytes[2], 255}) {
+        box.extend({static_cast<double>(x), static_cast<double>(y)});
+        box.extend({x + 1.0, y + 1.0});
+      }
+    }
+  }
+  return box;
+}
+
+TEST(SlicePicture, AreasKeepTheirProportionsAndPlaces) {
+  const Colour a{0.2, 0.4, 0.6}, b{0.6, 0.4, 0.2};
+  SlicePicture picture;
+  picture.window = Box2{{0, 0}, {4, 3}};
+  picture.panels = {
+      {"", {{{{1, 1}, {3, 1}, {3, 2}, {1, 2}}, {}, a}, {{{0, 2}, {4, 2}, {4, 3}, {0, 3}}, {}, b}}, {}}};
+  const Raster raster = decode_png(draw_slice(picture, PictureFormat::kPng));
+  const Vec2 inner = extent_of(raster, a).size(), upper = extent_of(raster, b).size();
+  EXPECT_NEAR(inner.x / inner.y, 2, 0.02);
+  EXPECT_NEAR(upper.x / inner.x, 2, 0.02);
+  EXPECT_LT(extent_of(raster, b).max.y, extent_of(raster, a).min.y + 2) << "greater ordinates lie higher";
+}
+
+TEST(SlicePicture, FieldValuesTakeTheColoursOfTheMap) {
+  for (const double value : {0.0, 0.25, 1.0}) {
+    SlicePicture picture;
+    picture.range = ValueRange{0, 1};
+    picture.panels = {{"", {{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {value, value, value, value}}}, {}}};
+    const Raster raster = decode_png(draw_slice(picture, PictureFormat::kPng));
+    const Vec2 size = extent_of(raster, picture.map.at(value)).size();
+    EXPECT_GT(size.x, 500) << value;
+    EXPECT_GT(size.y, 500) << value;
+  }
+}
+
+TEST(SlicePicture, IsAsWideAsAskedForAndNeverTallerThanAllowed) {
+  for (const double width : {600.0, 1600.0, 2400.0}) {
+    const Raster raster = decode_png(
+        draw_slice(three_panels(), PictureFormat::kPng, {.width = width, .greatest_height = 5000}));
+    EXPECT_LE(raster.width(), width);
+    EXPECT_GT(raster.width(), 0.97 * width);
+  }
+  const Raster low =
+      decode_png(draw_slice(three_panels(), PictureFormat::kPng, {.width = 1600, .greatest_height = 500}));
+  EXPECT_LE(low.height(), 520);
+}
+
+TEST(SlicePicture, SvgHoldsTheTexts) {
+  const std::string svg = draw_slice(three_panels(), PictureFormat::kSvg);
+  EXPECT_NE(svg.find("<svg"), std::string::npos);
+  EXPECT_NE(svg.find("</svg>"), std::string::npos);
+  EXPECT_NE(svg.find("<title>Density &lt;of&gt; the &quot;impact&quot; &amp; more</title>"),
+            std::string::npos);
+  for (const char* text : {"Input", "Plain", "Per material", "y [cm]", "z [cm]", "density [g/cm³]",
+                           "original interface", "projectile"}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
+  EXPECT_NE(svg.find("<image"), std::string::npos) << "the field is embedded as an image";
+}
+
+TEST(SlicePicture, PdfIsWholeAndNamesItsTitle) {
+  SlicePicture picture = three_panels();
+  picture.title = "Density";
+  const std::string pdf = draw_slice(picture, PictureFormat::kPdf);
+  EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
+  EXPECT_NE(pdf.find("%%EOF"), std::string::npos);
+  EXPECT_NE(pdf.find("/Title (Density)"), std::string::npos);
+}
+
+TEST(SlicePicture, SameBytesEveryTime) {
+  for (const PictureFormat format : {PictureFormat::kPng, PictureFormat::kSvg, PictureFormat::kPdf}) {
+    const std::string first = draw_slice(three_panels(), format), second = draw_slice(three_panels(), format);
+    EXPECT_TRUE(first == second);
+    EXPECT_EQ(first.find("CreationDate (D:202"), std::string::npos);
+  }
+}
+
+TEST(SlicePicture, OddContents) {
+  SlicePicture empty;
+  empty.panels.resize(1);
+  EXPECT_FALSE(draw_slice(empty, PictureFormat::kPng).empty());
+  SlicePicture odd = three_panels();
+  odd.title = std::string(500, 'W') + "\xff\x01";
+  odd.panels[0].title = "\xc3";
+  odd.panels[0].polygons[0].values = {NAN, INFINITY, 1, 1};
+  odd.panels[0].polygons.push_back({{{0, 0}, {1e9, 1e9}}, {1, 2}});
+  odd.panels[0].lines.push_back({"far away", cell_stroke(), {{-1e15, -1e15}, {1e15, 1.1e15}, {7, 7}}});
+  odd.window = Box2{{0, 0}, {2, 2}};
+  for (const PictureFormat format : {PictureFormat::kPng, PictureFormat::kSvg, PictureFormat::kPdf}) {
+    EXPECT_FALSE(draw_slice(odd, format).empty());
+  }
+  EXPECT_NE(draw_slice(odd, PictureFormat::kSvg).find("no data"), std::string::npos);
+  for (const double thin : {0.0, 1e-12, 1e12}) {
+    SlicePicture line;
+    line.panels = {{"", {}, {{"", cell_stroke(), {{0, 0}, {1, thin}}}}}};
+    EXPECT_FALSE(draw_slice(line, PictureFormat::kPng).empty());
+  }
+}
+
+TEST(SlicePicture, BadInputIsAnError) {
+  EXPECT_THROW(draw_slice({}, PictureFormat::kPng), Error);
+  SlicePicture picture = three_panels();
+  picture.panels[1].polygons[0].values.pop_back();
+  EXPECT_THROW(draw_slice(picture, PictureFormat::kPng), Error);
+  picture = three_panels();
+  picture.panels[0].lines[0].points[0].x = NAN;
+  EXPECT_THROW(draw_slice(picture, PictureFormat::kPng), Error);
+  picture = three_panels();
+  picture.range = ValueRange{1, -1};
+  EXPECT_THROW(draw_slice(picture, PictureFormat::kPng), Error);
+  EXPECT_THROW(draw_slice(three_panels(), PictureFormat::kPng, {.width = 1e6}), Error);
+  EXPECT_THROW(draw_slice(three_panels(), PictureFormat::kPng, {.width = NAN}), Error);
+}
+
+TEST(SlicePicture, FilesAreWholeOrAbsent) {
+  const ScratchFolder folder;
+  for (const char* name : {"a.png", "b.SVG", "c.pdf"}) {
+    write_slice(three_panels(), folder.path() / name);
+    EXPECT_GT(std::filesystem::file_size(folder.path() / name), 1000u);
+  }
+  EXPECT_EQ(bytes_of(folder.path() / "a.png"), draw_slice(three_panels(), PictureFormat::kPng));
+  EXPECT_THROW(write_slice(three_panels(), folder.path() / "d.jpg"), Error);
+  EXPECT_THROW(write_slice(three_panels(), folder.path() / "missing" / "d.png"), Error);
+  EXPECT_EQ(folder.files(), 3u);
+}
+
+}  // namespace
+}  // namespace adamas
