@@ -15,7 +15,7 @@ constexpr double kSlack = 1e-12;
 }  // namespace
 
 LocalScene::LocalScene(const Scene& scene)
-    : scene_(&scene), candidates_(scene.candidates()), ranges_(scene.functions().size()) {
+    : scene_(&scene), pool_(scene.candidates()), count_(pool_.size()), ranges_(scene.functions().size()) {
   drop_dominated_candidates();
   collect_functions();
 }
@@ -37,12 +37,14 @@ void LocalScene::restrict_to(const LocalScene& parent, const Box3& box) {
     }
     return range;
   };
-  for (const SceneCandidate& candidate : parent.candidates_) {
+  for (const SceneCandidate& candidate : parent.candidates()) {
     best_low = std::max(best_low, least(candidate).low);
   }
-  candidates_.clear();
-  for (const SceneCandidate& candidate : parent.candidates_) {
-    if (least(candidate).high >= best_low) candidates_.push_back(candidate);
+  count_ = 0;
+  for (const SceneCandidate& candidate : parent.candidates()) {
+    if (least(candidate).high < best_low) continue;
+    if (count_ == pool_.size()) pool_.emplace_back();
+    pool_[count_++] = candidate;
   }
   drop_functions_that_never_bind();
   drop_dominated_candidates();
@@ -50,7 +52,7 @@ void LocalScene::restrict_to(const LocalScene& parent, const Box3& box) {
 }
 
 void LocalScene::drop_functions_that_never_bind() {
-  for (SceneCandidate& candidate : candidates_) {
+  for (SceneCandidate& candidate : in_use()) {
     double least_high = std::numeric_limits<double>::infinity();
     for (const std::uint32_t index : candidate.functions)
       least_high = std::min(least_high, ranges_[index].high);
@@ -60,16 +62,19 @@ void LocalScene::drop_functions_that_never_bind() {
 
 void LocalScene::drop_dominated_candidates() {
   // A candidate with all the functions of another of the same owner, and perhaps more, is never above it.
-  for (std::size_t i = 0; i < candidates_.size();) {
+  for (std::size_t i = 0; i < count_;) {
     const auto dominates = [&](std::size_t j) {
-      const SceneCandidate &a = candidates_[i], &b = candidates_[j];
+      const SceneCandidate &a = pool_[i], &b = pool_[j];
       return j != i && a.owner == b.owner &&
              std::includes(a.functions.begin(), a.functions.end(), b.functions.begin(), b.functions.end());
     };
     bool dominated = false;
-    for (std::size_t j = 0; j < candidates_.size() && !dominated; ++j) dominated = dominates(j);
+    for (std::size_t j = 0; j < count_ && !dominated; ++j) dominated = dominates(j);
     if (dominated) {
-      candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(i));
+      std::rotate(pool_.begin() + static_cast<std::ptrdiff_t>(i),
+                  pool_.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                  pool_.begin() + static_cast<std::ptrdiff_t>(count_));
+      --count_;
     } else {
       ++i;
     }
@@ -78,7 +83,7 @@ void LocalScene::drop_dominated_candidates() {
 
 void LocalScene::collect_functions() {
   functions_.clear();
-  for (const SceneCandidate& candidate : candidates_) {
+  for (const SceneCandidate& candidate : candidates()) {
     functions_.insert(functions_.end(), candidate.functions.begin(), candidate.functions.end());
   }
   std::sort(functions_.begin(), functions_.end());
@@ -88,8 +93,8 @@ void LocalScene::collect_functions() {
 }
 
 std::optional<MaterialId> LocalScene::sole_owner() const {
-  const MaterialId first = candidates_.front().owner;
-  const bool sole = std::all_of(candidates_.begin(), candidates_.end(),
+  const MaterialId first = pool_.front().owner;
+  const bool sole = std::all_of(candidates().begin(), candidates().end(),
                                 [first](const SceneCandidate& c) { return c.owner == first; });
   return sole ? std::optional(first) : std::nullopt;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/geometry/partition.h"
@@ -24,18 +25,20 @@ class LocalScene {
   [[nodiscard]] std::optional<MaterialId> sole_owner() const;
   /// Are all functions linear in space, so that a partition of a tetrahedron is exact?
   [[nodiscard]] bool linear() const { return linear_; }
-  [[nodiscard]] const std::vector<SceneCandidate>& candidates() const { return candidates_; }
+  [[nodiscard]] std::span<const SceneCandidate> candidates() const { return {pool_.data(), count_}; }
   /// Indices of the functions in use, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& functions() const { return functions_; }
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
  private:
+  [[nodiscard]] std::span<SceneCandidate> in_use() { return {pool_.data(), count_}; }
   void drop_functions_that_never_bind();
   void drop_dominated_candidates();
   void collect_functions();
 
   const Scene* scene_;
-  std::vector<SceneCandidate> candidates_;
+  std::vector<SceneCandidate> pool_;  // the first count_ are in use; the others keep their memory
+  std::size_t count_ = 0;
   std::vector<std::uint32_t> functions_;
   std::vector<ValueRange> ranges_;  // by function, valid for functions in use
   bool linear_ = true;

@@ -12,7 +12,7 @@ namespace {
 
 // The grid and depth for volumes that are not known.
 constexpr std::size_t kVolumeCells = 16;
-constexpr int kVolumeDepth = 4;
+constexpr int kVolumeDepth = 3;
 constexpr double kRoundOff = 1e-12;
 
 struct Binding {

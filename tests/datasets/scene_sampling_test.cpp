@@ -65,7 +65,7 @@ TEST(SceneSampling, FractionsAgreeWithCountedPoints) {
   for (const std::string& name : scene_names()) scenes.push_back(make_scene(name, 1));
   for (std::uint64_t seed = 20; seed < 24; ++seed) scenes.push_back(make_scene("random", seed));
   for (const Scene& scene : scenes) {
-    const Sampled s = sample(scene, 6, 4);
+    const Sampled s = sample(scene, 6, 3);
     RandomNumbers random(2);
     for_each_cell(s.data.grid, [&](std::size_t site, const Box3& box) {
       constexpr int kPoints = 1000;
@@ -83,7 +83,7 @@ TEST(SceneSampling, FractionsAgreeWithCountedPoints) {
 TEST(SceneSampling, FractionsAddUpAndPassTheCheck) {
   for (const std::string& name : scene_names()) {
     const Scene scene = make_scene(name, 4);
-    Sampled s = sample(scene, 10);
+    const Sampled s = sample(scene, 10, 2);
     s.data.check();
     for (std::size_t site = 0; site < s.data.grid.site_count(); ++site) {
       double sum = 0;
@@ -100,7 +100,7 @@ TEST(SceneSampling, FractionsAddUpAndPassTheCheck) {
 TEST(SceneSampling, PureCellsHaveOneOwner) {
   for (const std::string& name : scene_names()) {
     const Scene scene = make_scene(name, 6);
-    const Sampled s = sample(scene, 9);
+    const Sampled s = sample(scene, 9, 2);
     RandomNumbers random(3);
     std::size_t pure = 0;
     for_each_cell(s.data.grid, [&](std::size_t site, const Box3& box) {
@@ -131,7 +131,7 @@ TEST(SceneSampling, CurvedVolumesConvergeWithinTheirStatedError) {
   for (const std::string name : {"sphere", "shell2", "shell3"}) {
     const Scene scene = make_scene(name);
     for (const int depth : {1, 2, 3}) {
-      const Sampled s = sample(scene, 16, depth);
+      const Sampled s = sample(scene, 8, depth);
       for (MaterialId m(0); m.value < scene.materials().size(); ++m.value) {
         const double error = std::abs(s.integral.volumes[m] - scene.volume(m));
         EXPECT_LE(error, s.integral.errors[m] + 1e-12) << name << " depth " << depth;
@@ -153,7 +153,7 @@ TEST(LongSceneSampling, SphereOn64Cubed) {
 
 TEST(SceneSampling, FieldsAreThoseOfTheScene) {
   const Scene scene = make_scene("shell3");
-  const Sampled s = sample(scene, 12);
+  const Sampled s = sample(scene, 12, 1);
   const RectilinearGrid& grid = s.data.grid;
   ASSERT_EQ(s.data.fields.size(), 6u);
   for (std::size_t f = 0; f < 3; ++f) {
@@ -178,9 +178,9 @@ TEST(SceneSampling, FieldsAreThoseOfTheScene) {
 TEST(SceneSampling, TheSameOnAnyNumberOfThreads) {
   const Scene scene = make_scene("random", 12);
   set_thread_limit(1);
-  const Sampled one = sample(scene, 20, 2);
+  const Sampled one = sample(scene, 12, 2);
   set_thread_limit(2);
-  const Sampled two = sample(scene, 20, 2);
+  const Sampled two = sample(scene, 12, 2);
   set_thread_limit(0);
   EXPECT_EQ(one.data.fractions, two.data.fractions);
   EXPECT_EQ(one.integral.volumes, two.integral.volumes);
