@@ -97,8 +97,8 @@ class ClosestPointTree {
   using Corners = std::array<Vec3, 3>;
   Nodes nodes_;
   std::vector<Corners, HugePageAllocator<Corners>> corners_;  ///< in leaf order
-  std::vector<std::uint32_t> index_;          ///< of the triangle at each place
-  std::vector<std::uint32_t> place_;          ///< of the triangle of each index
+  std::vector<std::uint32_t> index_;                          ///< of the triangle at each place
+  std::vector<std::uint32_t> place_;                          ///< of the triangle of each index
   Box3 bounds_;
   Vec3 center_;
   double scale_ = 1;  ///< a power of two: boxes are of scale (p - center)

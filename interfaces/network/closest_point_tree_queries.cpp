@@ -22,25 +22,50 @@ void clip_to_slab(double origin, double direction, double lower, double upper, d
   to = std::min(to, leave + slack);
 }
 
-/// Which side of an edge the ray passes on. Swapping the ends changes the sign and nothing else.
-double edge_side(const Vec3& direction, const Vec3& a, const Vec3& b) { return dot(direction, cross(a, b)); }
-
-bool hit_triangle(const Vec3& origin, const Vec3& direction, const std::array<Vec3, 3>& corners,
-                  RayHit& hit) {
-  const Vec3 a = corners[0] - origin, b = corners[1] - origin, c = corners[2] - origin;
-  const double u = edge_side(direction, b, c);
-  const double v = edge_side(direction, c, a);
-  const double w = edge_side(direction, a, b);
-  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
-  const double sum = u + v + w;
-  if (sum == 0) return false;
-  const Vec3 point = (u / sum) * a + (v / sum) * b + (w / sum) * c;
-  const double t = dot(point, direction) / squared_norm(direction);
-  if (!(t >= 0)) return false;
-  hit.t = t;
-  hit.weights = {u / sum, v / sum, w / sum};
-  return true;
+/// a b - c d, with the exact sign.
+double difference_of_products(double a, double b, double c, double d) {
+  const double p = a * b, q = c * d;
+  return p != q ? p - q : std::fma(a, b, -p) - std::fma(c, d, -q);
 }
+
+/// Sheared along its greatest component, a ray becomes an axis and the question one about triangles in the
+/// plane round the origin, which signs answer exactly (Woop, Benthin and Wald 2013): neighbours agree on
+/// their common edge.
+class ShearedRay {
+ public:
+  ShearedRay(const Vec3& origin, const Vec3& direction) : origin_(origin) {
+    const Vec3 size{std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};
+    z_ = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    x_ = (z_ + 1) % 3;
+    y_ = (z_ + 2) % 3;
+    scale_ = 1 / direction[z_];
+    shear_x_ = direction[x_] * scale_;
+    shear_y_ = direction[y_] * scale_;
+  }
+
+  bool hits(const std::array<Vec3, 3>& corners, RayHit& hit) const {
+    const Vec3 a = shear(corners[0]), b = shear(corners[1]), c = shear(corners[2]);
+    const double u = difference_of_products(c.x, b.y, c.y, b.x);
+    const double v = difference_of_products(a.x, c.y, a.y, c.x);
+    const double w = difference_of_products(b.x, a.y, b.y, a.x);
+    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
+    const double sum = u + v + w;
+    if (sum == 0) return false;
+    hit.weights = {u / sum, v / sum, w / sum};
+    hit.t = scale_ * (hit.weights[0] * a.z + hit.weights[1] * b.z + hit.weights[2] * c.z);
+    return hit.t >= 0;
+  }
+
+ private:
+  [[nodiscard]] Vec3 shear(const Vec3& p) const {
+    const Vec3 local = p - origin_;
+    return {local[x_] - shear_x_ * local[z_], local[y_] - shear_y_ * local[z_], local[z_]};
+  }
+
+  Vec3 origin_;
+  int x_, y_, z_;
+  double scale_, shear_x_, shear_y_;
+};
 
 /// Whether the projections of box (about the origin, with half sizes) and triangle on an axis are apart.
 bool separated(const Vec3& axis, const std::array<Vec3, 3>& corners, const Vec3& half) {
@@ -74,6 +99,7 @@ std::optional<RayHit> ClosestPointTree::first_hit(const Vec3& origin, const Vec3
   if (nodes_.empty()) return std::nullopt;
   const Vec3 local = to_tree(origin);
   const Vec3 step = scale_ * direction;
+  const ShearedRay ray(origin, direction);
   RayHit best;
   best.t = max_t;
   struct Entry {
@@ -89,7 +115,7 @@ std::optional<RayHit> ClosestPointTree::first_hit(const Vec3& origin, const Vec3
     if (entry.count > 0) {
       for (std::uint32_t i = entry.first; i < entry.first + entry.count; ++i) {
         RayHit hit;
-        if (index_[i] == ignore || !hit_triangle(origin, direction, corners_[i], hit)) continue;
+        if (index_[i] == ignore || !ray.hits(corners_[i], hit)) continue;
         if (hit.t > best.t || (hit.t == best.t && index_[i] > best.triangle)) continue;
         hit.triangle = index_[i];
         best = hit;

@@ -58,6 +58,22 @@ inline TrianglePoint closest_on_edges(const Vec3& q, const std::array<Vec3, 3>& 
   return best;
 }
 
+/// For triangles almost or wholly without area, where the signs of the usual weights are made of rounding
+/// errors.
+inline TrianglePoint closest_on_sliver(const Vec3& q, const std::array<Vec3, 3>& corner, const Vec3& normal) {
+  TrianglePoint best = closest_on_edges(q, corner);
+  const double squared = squared_norm(normal);
+  if (!(squared > 0)) return best;
+  const Vec3 p = q - (dot(normal, q - corner[0]) / squared) * normal;
+  for (unsigned i = 0; i < 3; ++i) {
+    const Vec3& a = corner[i];
+    if (!(dot(cross(corner[(i + 1) % 3] - a, p - a), normal) > 0)) return best;
+  }
+  const double d = squared_norm(q - p);
+  if (d < best.squared_distance) best = {p, d, TriangleFeature::kFace};
+  return best;
+}
+
 }  // namespace detail
 
 /// Closest point of a triangle by the Voronoi regions of its features (Ericson, Real-Time Collision
@@ -67,24 +83,22 @@ inline TrianglePoint closest_on_triangle(const Vec3& q, const std::array<Vec3, 3
   const Vec3 ap = q - corner[0];
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
   if (d1 <= 0 && d2 <= 0) return {corner[0], squared_norm(ap), TriangleFeature::kVertex0};
+  const Vec3 normal = cross(ab, ac);
+  const double spread = std::max(squared_norm(ab), squared_norm(ac));
+  if (!(squared_norm(normal) > 1e-6 * spread * spread)) return detail::closest_on_sliver(q, corner, normal);
+
   const Vec3 bp = q - corner[1];
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return {corner[1], squared_norm(bp), TriangleFeature::kVertex1};
   const Vec3 cp = q - corner[2];
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return {corner[2], squared_norm(cp), TriangleFeature::kVertex2};
-
   const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-  const double area = va + vb + vc;  // the squared length of the normal
-  const double spread = std::max(squared_norm(ab), squared_norm(ac));
-  // The weights of a sliver are made of rounding errors: its edges are as good.
-  if (!(area > 1e-20 * spread * spread)) return detail::closest_on_edges(q, corner);
-
   if (vc <= 0 && d1 >= 0 && d3 <= 0) return detail::closest_on_edge(q, corner, 0);
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return detail::closest_on_edge(q, corner, 1);
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return detail::closest_on_edge(q, corner, 2);
   if (va <= 0 || vb <= 0 || vc <= 0) return detail::closest_on_edges(q, corner);
-  const double scale = 1 / area;
+  const double scale = 1 / (va + vb + vc);
   const Vec3 p = corner[0] + (vb * scale) * ab + (vc * scale) * ac;
   return {p, squared_norm(q - p), TriangleFeature::kFace};
 }

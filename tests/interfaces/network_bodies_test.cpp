@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "interfaces/network/bodies.h"
+#include "tests/interfaces/network_meshes.h"
+
+namespace adamas {
+namespace {
+
+const MaterialId kA(0), kB(1), kC(2);
+
+std::vector<int> bodies_per_material(const Bodies& bodies, std::size_t materials) {
+  std::vector<int> count(materials, 0);
+  for (const MaterialId m : bodies.materials) ++count[m.value];
+  return count;
+}
+
+void expect_sides_have_their_materials(const InterfaceMesh& mesh, const Bodies& bodies) {
+  ASSERT_EQ(bodies.sides.size(), mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    EXPECT_EQ(bodies.materials[bodies.sides[t][0]], mesh.triangles[t].front);
+    EXPECT_EQ(bodies.materials[bodies.sides[t][1]], mesh.triangles[t].back);
+  }
+}
+
+TEST(Bodies, ShellHasOneBodyAndTwoRoundIt) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  test::add_sphere(mesh, {0.5, 0.5, 0.5}, 0.4, kA, kB);
+  test::add_sphere(mesh, {0.5, 0.5, 0.5}, 0.38, kB, kA);
+  const Box3 box = test::unit_box();
+  for (const Box3* domain : {&box, static_cast<const Box3*>(nullptr)}) {
+    const Bodies bodies = find_bodies(mesh, domain);
+    EXPECT_EQ(bodies_per_material(bodies, 2), (std::vector<int>{2, 1}));
+    EXPECT_EQ(bodies.inconsistent_edges + bodies.inconsistent_rays, 0u);
+    expect_sides_have_their_materials(mesh, bodies);
+  }
+}
+
+TEST(Bodies, SlabIsOneBodyBetweenTwo) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  test::add_patch(mesh, {0, 0, 0.5}, {1, 0, 0}, {0, 1, 0}, kA, kB);
+  test::add_patch(mesh, {0, 0, 0.45}, {1, 0, 0}, {0, 1, 0}, kB, kA);
+  const Box3 box = test::unit_box();
+  const Bodies bodies = find_bodies(mesh, &box);
+  EXPECT_EQ(bodies_per_material(bodies, 2), (std::vector<int>{2, 1}));
+  EXPECT_EQ(bodies.inconsistent_edges + bodies.inconsistent_rays, 0u);
+}
+
+TEST(Bodies, DisjointSpheresAreApartAndTheirSurroundingsOne) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  int count = 0;
+  for (const double x : {0.2, 0.5, 0.8}) {
+    for (const double y : {0.2, 0.5, 0.8}) {
+      for (const double z : {0.2, 0.5, 0.8}) {
+        test::add_sphere(mesh, {x, y, z}, 0.12, kA, kB, 6);
+        ++count;
+      }
+    }
+  }
+  const Box3 box = test::unit_box();
+  for (const Box3* domain : {&box, static_cast<const Box3*>(nullptr)}) {
+    EXPECT_EQ(bodies_per_material(find_bodies(mesh, domain), 2), (std::vector<int>{1, count}));
+  }
+}
+
+TEST(Bodies, CheckerboardQuartersStayApart) {
+  // Four quarters round a line, a and b in turn: opposite ones touch along the line only.
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  const Vec3 up{0, 0, 1}, o{0.5, 0.5, 0};
+  test::add_patch(mesh, o, {0.5, 0, 0}, up, kA, kB);
+  test::add_patch(mesh, o, {0, 0.5, 0}, up, kB, kA);
+  test::add_patch(mesh, o, {-0.5, 0, 0}, up, kA, kB);
+  test::add_patch(mesh, o, {0, -0.5, 0}, up, kB, kA);
+  const Box3 box = test::unit_box();
+  const Bodies bodies = find_bodies(mesh, &box);
+  EXPECT_EQ(bodies.inconsistent_edges, 0u);
+  EXPECT_EQ(bodies_per_material(bodies, 2), (std::vector<int>{2, 2}));
+}
+
+TEST(Bodies, SheetsThatMeetOnTheBoundaryDoNotJoinWhatTheyPart) {
+  // A ridge of b whose foot lines are on the floor, and beside it another one that starts at the same line:
+  // the a's on both sides of the ridges meet under the floor only.
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  test::add_patch(mesh, {0.5, 0, 0}, {-0.5, 0, 1}, {0, 1, 0}, kA, kB);
+  test::add_patch(mesh, {0.5, 0, 0}, {0.5, 0, 1}, {0, 1, 0}, kB, kA);
+  const Box3 box = test::unit_box();
+  const Bodies bodies = find_bodies(mesh, &box);
+  EXPECT_EQ(bodies.inconsistent_edges + bodies.inconsistent_rays, 0u);
+  EXPECT_EQ(bodies_per_material(bodies, 2), (std::vector<int>{2, 1}));
+}
+
+TEST(Bodies, BadOrientationIsCounted) {
+  InterfaceMesh mesh = test::mesh_with_materials(3);
+  test::add_sphere(mesh, {0.5, 0.5, 0.5}, 0.4, kA, kB);
+  test::add_sphere(mesh, {0.5, 0.5, 0.5}, 0.2, kC, kB);
+  const Box3 box = test::unit_box();
+  EXPECT_EQ(find_bodies(mesh, &box).inconsistent_edges, 0u);
+  EXPECT_GT(find_bodies(mesh, &box).inconsistent_rays, 0u);
+  std::swap(mesh.triangles[5].front, mesh.triangles[5].back);
+  EXPECT_EQ(find_bodies(mesh, &box).inconsistent_edges, 3u);
+}
+
+}  // namespace
+}  // namespace adamas

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include "core/base/parallel.h"
+#include "interfaces/network/hausdorff.h"
+#include "tests/interfaces/network_meshes.h"
+
+namespace adamas {
+namespace {
+
+using test::Triangles;
+
+struct Surface {
+  explicit Surface(const InterfaceMesh& mesh)
+      : points(mesh.points), triangles(test::triangles_of(mesh)), tree(points, triangles) {}
+  [[nodiscard]] Vec3 at(std::size_t t, double u, double v) const {
+    const auto& p = triangles[t];
+    return u * points[p[0]] + v * points[p[1]] + (1 - u - v) * points[p[2]];
+  }
+  std::vector<Vec3> points;
+  Triangles triangles;
+  ClosestPointTree tree;
+};
+
+/// Samples every triangle densely: nothing may be farther than the bounds say.
+void expect_bounds_hold(const Surface& from, const Surface& to, const HausdorffOptions& options) {
+  const DistanceBound bound = directed_distance_bound(from.points, from.triangles, to.tree, options);
+  double sampled = 0;
+  const int n = 12;
+  for (std::size_t t = 0; t < from.triangles.size(); ++t) {
+    for (int i = 0; i <= n; ++i) {
+      for (int j = 0; i + j <= n; ++j) {
+        const Vec3 p = from.at(t, 1.0 * i / n, 1.0 * j / n);
+        if (options.domain && !options.domain->contains(p)) continue;
+        const double d = std::sqrt(to.tree.closest(p)->squared_distance);
+        sampled = std::max(sampled, d);
+        EXPECT_LE(d, bound.triangle_upper[t] + 1e-13);
+      }
+    }
+  }
+  EXPECT_LE(sampled, bound.upper + 1e-13);
+  EXPECT_LE(bound.lower, bound.upper);
+  EXPECT_NEAR(bound.lower, std::sqrt(to.tree.closest(bound.worst)->squared_distance), 1e-13);
+  const double accept = options.accept > 0 ? options.accept : 1e-4 * to.tree.bounds().diagonal();
+  EXPECT_LE(bound.upper, std::max(accept, (1 + options.relative) * bound.lower) + 1e-13);
+  if (options.domain) {
+    EXPECT_TRUE(options.domain->contains(bound.worst));
+  }
+}
+
+TEST(Hausdorff, BoundsHoldOnRandomSoups) {
+  HausdorffOptions options;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const Surface from(test::random_soup(seed, 60)), to(test::random_soup(seed + 50, 40));
+    options.domain.reset();
+    options.relative = seed % 2 == 0 ? 0.05 : 0.5;
+    expect_bounds_hold(from, to, options);
+    options.domain = Box3{{0.2, 0.2, 0.2}, {0.7, 0.8, 0.6}};
+    expect_bounds_hold(from, to, options);
+  }
+}
+
+TEST(Hausdorff, BoundsHoldBetweenSpheres) {
+  const MaterialId a(0), b(1);
+  InterfaceMesh coarse = test::mesh_with_materials(2), fine = coarse, shifted = coarse;
+  test::add_sphere(coarse, {0, 0, 0}, 1, a, b, 9);
+  test::add_sphere(fine, {0, 0, 0}, 1, a, b, 20);
+  test::add_sphere(shifted, {0.125, 0, 0}, 1, a, b, 20);
+  const HausdorffOptions options;
+  expect_bounds_hold(Surface(coarse), Surface(fine), options);
+  expect_bounds_hold(Surface(fine), Surface(coarse), options);
+  const Surface x(fine), y(shifted);
+  const DistanceBound moved = directed_distance_bound(y.points, y.triangles, x.tree);
+  EXPECT_GT(moved.upper, 0.125 * 0.98);
+  EXPECT_LT(moved.lower, 0.126);
+}
+
+TEST(Hausdorff, KnownDistances) {
+  const MaterialId a(0), b(1);
+  InterfaceMesh low = test::mesh_with_materials(2), high = low, tilted = low;
+  test::add_patch(low, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, a, b, 5);
+  test::add_patch(high, {0, 0, 0.25}, {1, 0, 0}, {0, 1, 0}, a, b, 3);
+  test::add_patch(tilted, {0, 0, 0}, {1, 0, 0.5}, {0, 1, 0}, a, b, 7);
+  const Surface floor(low), lid(high), ramp(tilted);
+  EXPECT_LT(directed_distance_bound(floor.points, floor.triangles, floor.tree).upper, 1e-15);
+  const DistanceBound parallel = directed_distance_bound(lid.points, lid.triangles, floor.tree);
+  EXPECT_NEAR(parallel.lower, 0.25, 1e-15);
+  EXPECT_GE(parallel.upper, 0.25);
+  EXPECT_LE(parallel.upper, 0.25 * 1.05);
+  const DistanceBound rising = directed_distance_bound(ramp.points, ramp.triangles, floor.tree);
+  EXPECT_NEAR(rising.lower, 0.5, 1e-12);
+  EXPECT_LE(rising.upper, 0.525);
+  HausdorffOptions options;
+  options.domain = Box3{{0, 0, -1}, {0.5, 1, 1}};
+  EXPECT_NEAR(directed_distance_bound(ramp.points, ramp.triangles, floor.tree, options).lower, 0.25, 1e-12);
+  EXPECT_EQ(directed_distance_bound(lid.points, lid.triangles, ClosestPointTree()).upper,
+            std::numeric_limits<double>::infinity());
+  EXPECT_EQ(directed_distance_bound(lid.points, {}, floor.tree).upper, 0);
+}
+
+TEST(Hausdorff, AcceptedTrianglesAreThoseWithinTheTarget) {
+  const MaterialId a(0), b(1);
+  InterfaceMesh coarse = test::mesh_with_materials(2), fine = coarse;
+  test::add_sphere(coarse, {0, 0, 0}, 1, a, b, 8);
+  test::add_sphere(fine, {0, 0, 0}, 1, a, b, 40);
+  const Surface from(coarse), to(fine);
+  HausdorffOptions options;
+  options.relative = 0;
+  options.accept = 0.5;
+  EXPECT_LE(directed_distance_bound(from.points, from.triangles, to.tree, options).upper, 0.5);
+  options.accept = 1e-3;
+  options.most_pieces = 30000;
+  const DistanceBound cut_short = directed_distance_bound(from.points, from.triangles, to.tree, options);
+  options.most_pieces = 0;
+  const DistanceBound shortest = directed_distance_bound(from.points, from.triangles, to.tree, options);
+  EXPECT_LE(cut_short.upper, shortest.upper);
+  EXPECT_GE(shortest.upper, cut_short.lower);
+}
+
+TEST(Hausdorff, IsTheSameOnAnyNumberOfThreads) {
+  const Surface from(test::random_soup(1, 400)), to(test::random_soup(2, 300));
+  set_thread_limit(1);
+  const DistanceBound one = directed_distance_bound(from.points, from.triangles, to.tree);
+  set_thread_limit(4);
+  const DistanceBound four = directed_distance_bound(from.points, from.triangles, to.tree);
+  set_thread_limit(0);
+  EXPECT_EQ(one.upper, four.upper);
+  EXPECT_EQ(one.lower, four.lower);
+  EXPECT_EQ(one.worst, four.worst);
+  EXPECT_EQ(one.triangle_upper, four.triangle_upper);
+}
+
+}  // namespace
+}  // namespace adamas
