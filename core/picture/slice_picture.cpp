@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/picture/axes.h"
+#include "core/picture/slice_contents.h"
 
 namespace adamas {
 
@@ -17,75 +18,27 @@ constexpr int kSamplesPerPixel = 2;  // along each axis
 constexpr double kStrokeReference = 1600;
 constexpr double kBarWidth = 1.2;
 
-// What has to be known of all panels before anything is placed.
-struct Contents {
-  Box2 window;
-  ValueRange range;
-  bool has_field = false, has_missing = false, below = false, above = false;
-};
+constexpr int kMostTicks = 10;
 
-void check_points(const std::vector<Vec2>& points) {
-  for (const Vec2& p : points) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y))
-      fail("slice picture: expected finite coordinates, found ({}, {})", p.x, p.y);
-  }
+int tick_count(double length, double spacing) {
+  return static_cast<int>(std::clamp(length / spacing, 1.0, static_cast<double>(kMostTicks)));
 }
 
-Contents survey(const SlicePicture& picture) {
-  if (picture.panels.empty()) fail("slice picture: expected at least one panel, found none");
-  Contents contents;
-  double least = std::numeric_limits<double>::infinity(), greatest = -least;
-  for (const SlicePanel& panel : picture.panels) {
-    for (const FieldPolygon& polygon : panel.polygons) {
-      check_points(polygon.points);
-      for (const Vec2& p : polygon.points) contents.window.extend(p);
-      if (polygon.values.empty()) continue;
-      if (polygon.values.size() != polygon.points.size()) {
-        fail("slice picture: expected a value for each of {} corners, found {}", polygon.points.size(),
-             polygon.values.size());
-      }
-      contents.has_field = true;
-      for (const double v : polygon.values) {
-        if (!std::isfinite(v))
-          contents.has_missing = true;
-        else
-          least = std::min(least, v), greatest = std::max(greatest, v);
-      }
-    }
-    for (const LineSet& lines : panel.lines) {
-      check_points(lines.points);
-      for (const Vec2& p : lines.points) contents.window.extend(p);
-    }
+// Whatever the number of ticks turns out to be: it depends on the panels' size, which depends on the labels'
+// width.
+double widest_possible_label(double low, double high, double font_size) {
+  double widest = 0;
+  for (int wanted = 1; wanted <= kMostTicks; ++wanted) {
+    widest = std::max(widest, widest_label(linear_ticks(low, high, wanted), font_size));
   }
-  if (!(least <= greatest)) least = 0, greatest = 1;
-  contents.range = picture.range.value_or(ValueRange{least, greatest});
-  if (!(std::isfinite(contents.range.low) && std::isfinite(contents.range.high) &&
-        contents.range.low <= contents.range.high)) {
-    fail("slice picture: expected a finite range, found {} to {}", contents.range.low, contents.range.high);
-  }
-  contents.below = least<contents.range.low, contents.above = greatest> contents.range.high;
-  if (picture.window) contents.window = *picture.window;
-  check_points({contents.window.empty() ? Vec2{} : contents.window.min,
-                contents.window.empty() ? Vec2{} : contents.window.max});
-  return contents;
-}
-
-// A window that is empty or very flat or narrow is widened about its middle.
-Box2 shown_window(const Box2& window) {
-  constexpr double kGreatestRatio = 8;
-  if (window.empty()) return {{0, 0}, {1, 1}};
-  const Vec2 middle = 0.5 * (window.min + window.max), size = window.size();
-  const double longest = std::max(size.x, size.y);
-  const double least = longest > 0 ? longest / kGreatestRatio : 1;
-  const Vec2 half{0.5 * std::max(size.x, least), 0.5 * std::max(size.y, least)};
-  return {middle - half, middle + half};
+  return widest;
 }
 
 class SliceDrawing {
  public:
   SliceDrawing(const SlicePicture& picture, const SliceOptions& options)
       : picture_(picture),
-        contents_(survey(picture)),
+        contents_(survey_slice(picture)),
         window_(shown_window(contents_.window)),
         font_(options.font_size > 0 ? options.font_size : options.width / 80),
         stroke_scale_(options.width / kStrokeReference),
@@ -114,11 +67,11 @@ class SliceDrawing {
   }
 
   const SlicePicture& picture_;
-  Contents contents_;
+  SliceContents contents_;
   Box2 window_;
   double font_, stroke_scale_;
   Legend legend_;
-  double width_ = 0, height_ = 0, left_ = 0, top_ = 0, gap_ = 0, label_distance_ = 0;
+  double width_ = 0, height_ = 0, left_ = 0, top_ = 0, gap_ = 0, label_distance_ = 0, bar_label_width_ = 0;
   Vec2 panel_size_;
   Ticks x_ticks_, y_ticks_, bar_ticks_;
 };
@@ -143,14 +96,13 @@ std::vector<LegendEntry> SliceDrawing::legend_entries() const {
 void SliceDrawing::place(const SliceOptions& options) {
   const double f = font_, count = static_cast<double>(picture_.panels.size());
   const Vec2 size = window_.size();
-  // Label widths hardly depend on the number of ticks: six for a first estimate.
-  const double label = widest_label(linear_ticks(window_.min.y, window_.max.y, 6), f);
-  const double x_label = widest_label(linear_ticks(window_.min.x, window_.max.x, 6), f);
+  const double label = widest_possible_label(window_.min.y, window_.max.y, f);
+  const double x_label = widest_possible_label(window_.min.x, window_.max.x, f);
+  bar_label_width_ = widest_possible_label(contents_.range.low, contents_.range.high, f);
   label_distance_ = (kTickLength + kTickGap) * f + label + 0.7 * f;
   left_ = std::ceil(kMargin * f + label_distance_ + (picture_.y_label.empty() ? 0 : f));
   gap_ = std::ceil(std::max(1.5 * f, x_label + 0.5 * f));
-  bar_ticks_ = linear_ticks(contents_.range.low, contents_.range.high, 6);
-  const double bar = (1 + kBarWidth + kTickLength + kTickGap) * f + widest_label(bar_ticks_, f) +
+  const double bar = (1 + kBarWidth + kTickLength + kTickGap) * f + bar_label_width_ +
                      (picture_.field_label.empty() ? 0 : kLabelHeight * f);
   const double right = std::ceil(kMargin * f + (contents_.has_field ? bar : 0.5 * x_label));
   const bool titled = std::any_of(picture_.panels.begin(), picture_.panels.end(),
@@ -179,12 +131,9 @@ void SliceDrawing::place(const SliceOptions& options) {
   width_ = std::max({needed, title_width, std::min(24 * f, options.width)});
   left_ += std::floor(0.5 * (width_ - needed));
   height_ = std::ceil(top_ + panel_size_.y + below(width_));
-  x_ticks_ = linear_ticks(window_.min.x, window_.max.x,
-                          static_cast<int>(std::clamp(panel_size_.x / (x_label + 2.5 * f), 1.0, 10.0)));
-  y_ticks_ = linear_ticks(window_.min.y, window_.max.y,
-                          static_cast<int>(std::clamp(panel_size_.y / (3 * f), 1.0, 10.0)));
-  bar_ticks_ = linear_ticks(contents_.range.low, contents_.range.high,
-                            static_cast<int>(std::clamp(panel_size_.y / (3 * f), 1.0, 10.0)));
+  x_ticks_ = linear_ticks(window_.min.x, window_.max.x, tick_count(panel_size_.x, x_label + 2.5 * f));
+  y_ticks_ = linear_ticks(window_.min.y, window_.max.y, tick_count(panel_size_.y, 3 * f));
+  bar_ticks_ = linear_ticks(contents_.range.low, contents_.range.high, tick_count(panel_size_.y, 3 * f));
 }
 
 void SliceDrawing::draw_areas(Canvas& canvas, const SlicePanel& panel, const Box2& box,
@@ -215,12 +164,9 @@ void SliceDrawing::draw_panel(Canvas& canvas, std::size_t index, PictureFormat f
   const AxisScale x_scale{window_.min.x, window_.max.x, box.min.x, box.max.x};
   const AxisScale y_scale{window_.min.y, window_.max.y, box.max.y, box.min.y};
   canvas.clip(box);
-  std::vector<Vec2> ends;
   for (const LineSet& lines : panel.lines) {
-    ends.clear();
-    for (std::size_t k = 0; k + 1 < lines.points.size(); k += 2) {
-      Vec2 a = lines.points[k], b = lines.points[k + 1];
-      if (!clip_segment(window_, a, b)) continue;
+    std::vector<Vec2> ends;
+    for (const auto& [a, b] : shown_segments(lines.points, window_)) {
       ends.push_back({x_scale.at(a.x), y_scale.at(a.y)});
       ends.push_back({x_scale.at(b.x), y_scale.at(b.y)});
     }
@@ -273,7 +219,7 @@ void SliceDrawing::draw_bar(Canvas& canvas) const {
     canvas.text(bar_ticks_.labels[i], {bar.max.x + (kTickLength + kTickGap) * f, y + 0.36 * kTickFont * f},
                 {.size = kTickFont * f, .colour = kInk});
   }
-  const double label_x = bar.max.x + (kTickLength + kTickGap + 1.4) * f + widest_label(bar_ticks_, f);
+  const double label_x = bar.max.x + (kTickLength + kTickGap + 1.4) * f + bar_label_width_;
   const TextStyle style{.size = f, .colour = kInk};
   canvas.text(shortened(picture_.field_label, style, last.size().y),
               {label_x, 0.5 * (last.min.y + last.max.y)}, style, Anchor::kMiddle, 90);

@@ -31,7 +31,8 @@ struct Shares {
   double red = 0, green = 0;
 };
 
-Shares shares(const InterfacePicture& picture, const InterfacePictureOptions& options = {}) {
+Shares shares(const InterfacePicture& picture) {
+  const InterfacePictureOptions options{.width = 640, .height = 480, .samples = 2};
   const Raster raster = decode_png(draw_interfaces(picture, PictureFormat::kPng, options));
   Shares result;
   for (int y = 0; y < raster.height(); ++y) {

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/picture/palette.h"
 #include "core/picture/png.h"
+#include "core/picture/slice_contents.h"
 #include "scratch_folder.h"
 
 namespace adamas {
@@ -60,10 +61,10 @@ TEST(SlicePicture, FieldValuesTakeTheColoursOfTheMap) {
     SlicePicture picture;
     picture.range = ValueRange{0, 1};
     picture.panels = {{"", {{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {value, value, value, value}}}, {}}};
-    const Raster raster = decode_png(draw_slice(picture, PictureFormat::kPng));
+    const Raster raster = decode_png(draw_slice(picture, PictureFormat::kPng, {.width = 600}));
     const Vec2 size = extent_of(raster, picture.map.at(value)).size();
-    EXPECT_GT(size.x, 500) << value;
-    EXPECT_GT(size.y, 500) << value;
+    EXPECT_GT(size.x, 300) << value;
+    EXPECT_GT(size.y, 300) << value;
   }
 }
 
@@ -103,10 +104,23 @@ TEST(SlicePicture, PdfIsWholeAndNamesItsTitle) {
 
 TEST(SlicePicture, SameBytesEveryTime) {
   for (const PictureFormat format : {PictureFormat::kPng, PictureFormat::kSvg, PictureFormat::kPdf}) {
-    const std::string first = draw_slice(three_panels(), format), second = draw_slice(three_panels(), format);
+    const std::string first = draw_slice(three_panels(), format, {.width = 800}),
+                      second = draw_slice(three_panels(), format, {.width = 800});
     EXPECT_TRUE(first == second);
     EXPECT_EQ(first.find("CreationDate (D:202"), std::string::npos);
   }
+}
+
+TEST(SlicePicture, SharedEdgesAreDrawnOnce) {
+  const Vec2 a{0, 0}, b{1, 0.5}, c{0.5, 2};
+  const std::vector<Vec2> points{a, b, b, c, b, a, a, b, c, b};
+  EXPECT_EQ(shown_segments(points, {{0, 0}, {3, 3}}).size(), 2u);
+  EXPECT_EQ(shown_segments(points, {{0, 0}, {0.2, 3}}).size(), 1u);
+  SlicePicture once, twice;
+  once.panels = {{"", {}, {{"", cell_stroke(), {a, b, b, c}}}}};
+  twice.panels = {{"", {}, {{"", cell_stroke(), points}}}};
+  EXPECT_TRUE(draw_slice(once, PictureFormat::kPng, {.width = 400}) ==
+              draw_slice(twice, PictureFormat::kPng, {.width = 400}));
 }
 
 TEST(SlicePicture, OddContents) {
@@ -121,13 +135,13 @@ TEST(SlicePicture, OddContents) {
   odd.panels[0].lines.push_back({"far away", cell_stroke(), {{-1e15, -1e15}, {1e15, 1.1e15}, {7, 7}}});
   odd.window = Box2{{0, 0}, {2, 2}};
   for (const PictureFormat format : {PictureFormat::kPng, PictureFormat::kSvg, PictureFormat::kPdf}) {
-    EXPECT_FALSE(draw_slice(odd, format).empty());
+    EXPECT_FALSE(draw_slice(odd, format, {.width = 800}).empty());
   }
   EXPECT_NE(draw_slice(odd, PictureFormat::kSvg).find("no data"), std::string::npos);
   for (const double thin : {0.0, 1e-12, 1e12}) {
     SlicePicture line;
     line.panels = {{"", {}, {{"", cell_stroke(), {{0, 0}, {1, thin}}}}}};
-    EXPECT_FALSE(draw_slice(line, PictureFormat::kPng).empty());
+    EXPECT_FALSE(draw_slice(line, PictureFormat::kPng, {.width = 400}).empty());
   }
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/picture/slice_picture.h"
+
+namespace adamas {
+
+/// What has to be known of all panels of a slice before anything is placed.
+struct SliceContents {
+  Box2 window;       ///< as asked for, else that of all points; empty without points
+  ValueRange range;  ///< as asked for, else that of all values
+  bool has_field = false;
+  bool has_missing = false;           ///< some value is not finite
+  bool below = false, above = false;  ///< some value lies outside the range
+};
+
+/// Throws Error for what draw_slice cannot draw.
+SliceContents survey_slice(const SlicePicture& picture);
+
+/// A window with an area: one that is empty, very flat or very narrow is widened about its middle.
+Box2 shown_window(const Box2& window);
+
+/// The parts inside the window of the segments points[2k] to points[2k + 1], each once however often and in
+/// whichever direction it occurs: neighbouring cells bring their common edge twice, which would look darker.
+std::vector<std::array<Vec2, 2>> shown_segments(const std::vector<Vec2>& points, const Box2& window);
+
+}  // namespace adamas
