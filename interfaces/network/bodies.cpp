@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "interfaces/network/body_rays.h"
@@ -123,6 +124,43 @@ std::size_t join_by_rays(const InterfaceMesh& mesh, const std::vector<char>& col
   return inconsistent;
 }
 
+/// Between triangles without area lie parts without volume: joined to a part of the same material that they
+/// touch.
+void join_flat_parts(const InterfaceMesh& mesh, const EdgeFans& fans, const std::vector<char>& collapsed,
+                     DisjointSets& sets) {
+  const auto count = static_cast<std::uint32_t>(2 * mesh.triangles.size());
+  std::vector<char> solid(count, 0);  // of roots: has a triangle with an area
+  for (std::uint32_t side = 0; side < count; ++side) {
+    const auto& p = mesh.triangles[side / 2].points;
+    if (!is_flat({mesh.points[p[0]], mesh.points[p[1]], mesh.points[p[2]]})) solid[sets.find(side)] = 1;
+  }
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> flat_sides;
+  const auto for_each_point = [&](std::uint32_t side, const auto& visit) {
+    for (const std::uint32_t p : mesh.triangles[side / 2].points) visit(fans.welded(p));
+  };
+  for (std::uint32_t side = 0; side < count; ++side) {
+    if (collapsed[side / 2] != 0 || solid[sets.find(side)] != 0) continue;
+    for_each_point(side, [&](std::uint32_t p) { flat_sides[p].push_back(side); });
+  }
+  if (flat_sides.empty()) return;
+  std::vector<char> joined(count, 0);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> joins;
+  for (std::uint32_t side = 0; side < count; ++side) {
+    if (collapsed[side / 2] != 0 || solid[sets.find(side)] == 0) continue;
+    for_each_point(side, [&](std::uint32_t p) {
+      const auto at = flat_sides.find(p);
+      if (at == flat_sides.end()) return;
+      for (const std::uint32_t flat : at->second) {
+        const std::uint32_t root = sets.find(flat);
+        if (joined[root] != 0 || side_material(mesh, flat) != side_material(mesh, side)) continue;
+        joined[root] = 1;
+        joins.emplace_back(flat, side);
+      }
+    });
+  }
+  for (const auto& [flat, side] : joins) sets.join(flat, side);
+}
+
 }  // namespace
 
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain) {
@@ -131,6 +169,7 @@ Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain) {
   const EdgeFans fans(mesh, domain);
   const std::vector<char> collapsed = find_collapsed(mesh, fans);
   bodies.inconsistent_edges = join_round_edges(fans, sets);
+  join_flat_parts(mesh, fans, collapsed, sets);
   bodies.inconsistent_rays = join_by_rays(mesh, collapsed, domain, sets);
 
   std::vector<std::uint32_t> roots;

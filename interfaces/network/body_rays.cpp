@@ -97,7 +97,7 @@ void BodyRays::shoot_from_extremes(const std::vector<std::uint32_t>& part, Resul
 void BodyRays::follow(std::uint32_t side, Vec3 origin, Vec3 direction, std::uint64_t& random,
                       Result& result) const {
   if (domain_ != nullptr && !domain_->contains(origin)) return;
-  if (std::abs(dot(normal(side), direction)) < kCleanAngle) return;
+  if (flat(side) || std::abs(dot(normal(side), direction)) < kCleanAngle) return;
   std::uint32_t ignore = side / 2;
   for (int bounce = 0; bounce <= kBounces; ++bounce) {
     Vec3 inward;
@@ -108,7 +108,8 @@ void BodyRays::follow(std::uint32_t side, Vec3 origin, Vec3 direction, std::uint
       const auto& w = hit->weights;
       const Vec3 n = normal(2 * hit->triangle);
       const double facing = dot(n, direction);
-      if (std::min({w[0], w[1], w[2]}) < kCleanWeight || std::abs(facing) < kCleanAngle) return;
+      const bool clean = std::min({w[0], w[1], w[2]}) >= kCleanWeight && std::abs(facing) >= kCleanAngle;
+      if (!clean || flat(2 * hit->triangle)) return;
       const std::uint32_t seen = 2 * hit->triangle + (facing < 0 ? 0 : 1);
       if (material(seen) == material(side)) {
         result.seen.push_back(seen);

@@ -37,6 +37,9 @@ class BodyRays {
   [[nodiscard]] Vec3 corner(std::uint32_t side, std::size_t i) const {
     return mesh_.points[mesh_.triangles[side / 2].points[i]];
   }
+  [[nodiscard]] bool flat(std::uint32_t side) const {
+    return is_flat({corner(side, 0), corner(side, 1), corner(side, 2)});
+  }
   void shoot_from_extremes(const std::vector<std::uint32_t>& part, Result& result) const;
   void follow(std::uint32_t side, Vec3 origin, Vec3 direction, std::uint64_t& random, Result& result) const;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 #include "interfaces/network/weld.h"
@@ -11,8 +10,9 @@ namespace adamas {
 
 namespace {
 
-constexpr double kTieAngle = 1e-3;    // blades closer than this may change places to fit their materials
-constexpr std::size_t kMostTied = 7;  // fans with more blades are not searched for another order
+constexpr double kTieAngle = 1e-3;         // blades closer than this may change places to fit their materials
+constexpr double kFlat = 1e-8;             // height by length: below, round-off decides the angle
+constexpr std::size_t kMostSteps = 20000;  // of the search for another order
 
 Vec3 any_perpendicular(const Vec3& v) {
   const Vec3 a{std::abs(v.x), std::abs(v.y), std::abs(v.z)};
@@ -79,6 +79,7 @@ void EdgeFans::fan(std::size_t edge, Fan& fan) const {
   const auto [low, high] = ends(edge);
   const Vec3 origin = mesh_.points[low];
   const Vec3 along = normalized(mesh_.points[high] - origin);
+  const double length = distance(mesh_.points[high], origin);
   const Vec3 x = any_perpendicular(along), y = cross(along, x);
   for (std::uint32_t i = starts_[edge]; i < starts_[edge + 1]; ++i) {
     const HalfEdge& h = half_edges_[i];
@@ -88,7 +89,7 @@ void EdgeFans::fan(std::size_t edge, Fan& fan) const {
       if (welded_[v] != low && welded_[v] != high) third = mesh_.points[v] - origin;
     }
     const double u = dot(third, x), v = dot(third, y);
-    const bool flat = std::hypot(u, v) <= 1e-10 * norm(third);
+    const bool flat = std::hypot(u, v) <= kFlat * std::max(norm(third), length);
     fan.blades.push_back({h.triangle, h.forward, flat, std::atan2(v, u)});
   }
   std::stable_sort(fan.blades.begin(), fan.blades.end(),
@@ -115,28 +116,43 @@ bool EdgeFans::consistent(const Fan& fan) const {
   return true;
 }
 
+/// Looks for an order in which materials match and only blades whose angles are too close to tell have
+/// changed places.
 bool EdgeFans::reorder_ties(Fan& fan) const {
   const std::size_t n = fan.blades.size();
-  if (n < 3 || n > kMostTied) return false;
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  Fan other;
-  other.outside_wedge = fan.outside_wedge;
-  // At the boundary of the domain the place of the outside is fixed too, so that every order counts there.
-  const auto from = order.begin() + (fan.outside_wedge == Fan::kNone ? 1 : 0);
-  while (std::next_permutation(from, order.end())) {
+  if (n < 3) return false;
+  std::size_t steps = 0;
+  std::vector<std::size_t> order;
+  // At the boundary of the domain the place of the outside is fixed, so that every order counts there.
+  if (fan.outside_wedge == Fan::kNone) order.push_back(0);
+  if (!extend_order(fan, order, steps)) return false;
+  std::vector<Blade> blades;
+  for (const std::size_t i : order) blades.push_back(fan.blades[i]);
+  fan.blades = std::move(blades);
+  return true;
+}
+
+bool EdgeFans::extend_order(const Fan& fan, std::vector<std::size_t>& order, std::size_t& steps) const {
+  const std::size_t n = fan.blades.size();
+  const auto fits = [&](std::size_t i, std::size_t j, std::size_t wedge) {
+    const Blade &a = fan.blades[i], &b = fan.blades[j];
+    return wedge == fan.outside_wedge ||
+           material(a.triangle, side_ahead(a)) == material(b.triangle, side_behind(b));
+  };
+  if (++steps > kMostSteps) return false;
+  if (order.size() == n) return fits(order.back(), order.front(), n - 1);
+  for (std::size_t next = 0; next < n; ++next) {
+    if (std::find(order.begin(), order.end(), next) != order.end()) continue;
+    if (!order.empty() && !fits(order.back(), next, order.size() - 1)) continue;
     bool allowed = true;
-    for (std::size_t i = 0; i < n && allowed; ++i) {
-      for (std::size_t j = i + 1; j < n && allowed; ++j) {
-        allowed = order[i] < order[j] || may_swap(fan.blades[order[i]], fan.blades[order[j]]);
-      }
+    for (std::size_t i = 0; i < next && allowed; ++i) {
+      const bool placed = std::find(order.begin(), order.end(), i) != order.end();
+      allowed = placed || may_swap(fan.blades[i], fan.blades[next]);
     }
     if (!allowed) continue;
-    other.blades.clear();
-    for (const std::size_t i : order) other.blades.push_back(fan.blades[i]);
-    if (!consistent(other)) continue;
-    fan.blades = other.blades;
-    return true;
+    order.push_back(next);
+    if (extend_order(fan, order, steps)) return true;
+    order.pop_back();
   }
   return false;
 }

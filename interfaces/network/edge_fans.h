@@ -65,6 +65,7 @@ class EdgeFans {
   [[nodiscard]] Vec3 outward(std::size_t edge) const;
   [[nodiscard]] bool consistent(const Fan& fan) const;
   bool reorder_ties(Fan& fan) const;
+  bool extend_order(const Fan& fan, std::vector<std::size_t>& order, std::size_t& steps) const;
 
   const InterfaceMesh& mesh_;
   const Box3* domain_;

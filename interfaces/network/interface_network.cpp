@@ -27,6 +27,7 @@ InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3
   group(mesh, bodies);
   find_adjacency();
   find_borders();
+  find_flat();
   build_trees();
 }
 
@@ -132,6 +133,20 @@ void InterfaceNetwork::mark_border_corner(std::uint32_t triangle, std::uint32_t 
     for (unsigned k = 0; k < 3; ++k) {
       const unsigned bit = (of_interface ? kCornerOfInterface : kCornerOfNetwork) + k;
       if (triangles_[t][k] == point) borders_[t] = static_cast<std::uint16_t>(borders_[t] | (1u << bit));
+    }
+  }
+}
+
+void InterfaceNetwork::find_flat() {
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    const auto& v = triangles_[t];
+    if (!is_flat({points_[v[0]], points_[v[1]], points_[v[2]]})) continue;
+    borders_[t] = static_cast<std::uint16_t>(borders_[t] | (1u << kFlat));
+    for (const std::uint32_t p : v) {
+      for (std::uint32_t i = point_starts_[p]; i < point_starts_[p + 1]; ++i) {
+        std::uint16_t& bits = borders_[point_triangles_[i]];
+        bits = static_cast<std::uint16_t>(bits | (1u << kNearFlat));
+      }
     }
   }
 }

@@ -90,14 +90,27 @@ class InterfaceNetwork {
   /// network.
   static constexpr unsigned kEdgeOfInterface = 0, kCornerOfInterface = 3, kEdgeOfNetwork = 6,
                             kCornerOfNetwork = 9;
+  /// The triangle is (almost) without area, or has a point in common with one.
+  static constexpr unsigned kFlat = 12, kNearFlat = 13;
 
   void group(const InterfaceMesh& mesh, const Bodies& bodies);
   void find_adjacency();
   void find_borders();
+  void find_flat();
   void mark_border_corner(std::uint32_t triangle, std::uint32_t point, bool of_interface);
   void build_trees();
   void build_vertex_trees() const;
 
+  /// What meets at a point, by geometry: for places where triangles without area keep neighbours apart.
+  struct Touch {
+    std::uint32_t triangle;
+    double weight;  ///< angle round the point; zero for a triangle without area
+  };
+  /// Triangles of a tree whose first one is `first`; returns whether a border passes through the point, given
+  /// the bit of edge 0.
+  bool find_touching(const ClosestPointTree& tree, std::uint32_t first, const Vec3& p, unsigned edge_bit,
+                     std::vector<Touch>& out) const;
+  [[nodiscard]] bool near_flat(std::uint32_t triangle, TriangleFeature feature) const;
   /// Calls visit(triangle, weight) for the triangles at a closest point: weights are angles, up to a common
   /// factor.
   template <class Visit>
@@ -105,6 +118,7 @@ class InterfaceNetwork {
   [[nodiscard]] bool on_border(std::uint32_t triangle, TriangleFeature feature, unsigned edge_bit,
                                unsigned corner_bit) const;
   [[nodiscard]] bool on_domain_boundary(const Vec3& p) const;
+  [[nodiscard]] BodyId body_by_touch(const Vec3& offset, const ClosestPoint& closest, bool* flagged) const;
   [[nodiscard]] BodyId body_by_arc(const Vec3& offset, std::uint32_t triangle, TriangleFeature feature) const;
   [[nodiscard]] Vec3 interface_normal(std::uint32_t triangle, TriangleFeature feature) const;
   [[nodiscard]] std::optional<NearInterface> near_interface(InterfaceId i, const Vec3& p, double radius,

@@ -5,14 +5,16 @@
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "interfaces/network/interface_network.h"
+#include "interfaces/network/pseudonormals.h"
 #include "interfaces/network/vertex_trees.h"
 
 namespace adamas {
 
 namespace {
 
-/// Greatest dot products closer to each other than this, relative to the distance, decide nothing.
-constexpr double kAmbiguous = 1e-7;
+/// Points closer to each other than this part of the size of the network are one where flat triangles are
+/// about.
+constexpr double kTouch = 1e-10;
 
 double corner_angle(const Vec3& at, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - at, v = c - at;
@@ -80,6 +82,7 @@ BodyId InterfaceNetwork::body_at(const Vec3& p, bool* flagged) const {
   if (!closest) return BodyId(0);
   const Vec3 offset = p - closest->point;
   const Interface& interface = interfaces_[interface_of_[closest->triangle]];
+  if (near_flat(closest->triangle, closest->feature)) return body_by_touch(offset, *closest, flagged);
   if (closest->feature == TriangleFeature::kFace) {
     return dot(offset, normals_[closest->triangle]) >= 0 ? interface.a : interface.b;
   }
@@ -88,37 +91,58 @@ BodyId InterfaceNetwork::body_at(const Vec3& p, bool* flagged) const {
     return body_by_arc(offset, closest->triangle, closest->feature);
   }
 
-  struct Candidate {
-    BodyId body;
-    Vec3 normal;
-  };
-  std::array<Candidate, 16> candidates;
-  std::size_t count = 0;
-  const auto add = [&](BodyId body, const Vec3& normal) {
-    std::size_t i = 0;
-    while (i < count && candidates[i].body != body) ++i;
-    if (i == candidates.size()) return;
-    if (i == count) candidates[count++] = {body, {}};
-    candidates[i].normal += normal;
-  };
+  Pseudonormals normals;
   for_each_at(closest->triangle, closest->feature, [&](std::uint32_t t, double weight) {
     const Interface& at = interfaces_[interface_of_[t]];
-    add(at.a, weight * normals_[t]);
-    add(at.b, -weight * normals_[t]);
+    normals.add(at.a, weight * normals_[t]);
+    normals.add(at.b, -weight * normals_[t]);
   });
-  Candidate best{{}, {}};
-  double greatest = -std::numeric_limits<double>::infinity(), second = greatest;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double value = dot(offset, candidates[i].normal);
-    const bool better = value > greatest || (value == greatest && candidates[i].body < best.body);
-    second = std::max(second, better ? greatest : value);
-    if (better) greatest = value, best = candidates[i];
+  const auto best = normals.greatest(offset);
+  return best.clear ? best.body : body_by_arc(offset, closest->triangle, closest->feature);
+}
+
+bool InterfaceNetwork::near_flat(std::uint32_t triangle, TriangleFeature feature) const {
+  return bit(borders_[triangle], feature == TriangleFeature::kFace ? kFlat : kNearFlat);
+}
+
+bool InterfaceNetwork::find_touching(const ClosestPointTree& tree, std::uint32_t first, const Vec3& p,
+                                     unsigned edge_bit, std::vector<Touch>& out) const {
+  out.clear();
+  const double reach = kTouch * tree_.bounds().diagonal();
+  const Vec3 margin{reach, reach, reach};
+  thread_local std::vector<std::uint32_t> found;
+  tree.overlapping({p - margin, p + margin}, found);
+  bool border = false;
+  for (const std::uint32_t local : found) {
+    const std::uint32_t t = first + local;
+    const std::array<Vec3, 3>& c = triangle_corners(t);
+    double weight = 2 * M_PI;
+    for (unsigned i = 0; i < 3; ++i) {
+      if (detail::closest_on_edge(p, c, i).squared_distance > 4 * reach * reach) continue;
+      weight = std::min(weight, M_PI);
+      border = border || bit(borders_[t], edge_bit + i);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (distance(p, c[i]) <= 2 * reach) weight = corner_angle(c[i], c[(i + 1) % 3], c[(i + 2) % 3]);
+    }
+    out.push_back({t, bit(borders_[t], kFlat) ? 0 : weight});
   }
-  const double margin = kAmbiguous * norm(offset);
-  if (greatest <= margin || greatest - second <= margin || count == candidates.size()) {
-    return body_by_arc(offset, closest->triangle, closest->feature);
+  return border;
+}
+
+BodyId InterfaceNetwork::body_by_touch(const Vec3& offset, const ClosestPoint& closest, bool* flagged) const {
+  thread_local std::vector<Touch> touching;
+  const bool border = find_touching(tree_, 0, closest.point, kEdgeOfNetwork, touching);
+  if (border && flagged != nullptr) *flagged = !on_domain_boundary(closest.point);
+  Pseudonormals normals;
+  for (const auto& [t, weight] : touching) {
+    if (weight == 0) continue;
+    const Interface& at = interfaces_[interface_of_[t]];
+    normals.add(at.a, weight * normals_[t]);
+    normals.add(at.b, -weight * normals_[t]);
   }
-  return best.body;
+  const auto best = normals.greatest(offset);
+  return best.body.valid() ? best.body : interfaces_[interface_of_[closest.triangle]].a;
 }
 
 /// Follows the arc of directions from `offset` to the middle of the given triangle: the first triangle in the
@@ -209,11 +233,24 @@ std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, con
     feature = corner.feature;
   }
   const double distance = std::sqrt(closest->squared_distance);
-  const double height = dot(p - closest->point, interface_normal(triangle, feature));
-  const bool continued = exact && on_border(triangle, feature, kEdgeOfInterface, kCornerOfInterface);
+  Vec3 normal;
+  bool border = false;
+  if (near_flat(triangle, feature)) {
+    thread_local std::vector<Touch> touching;
+    border = find_touching(trees_[i], interface.first, closest->point, kEdgeOfInterface, touching);
+    for (const Touch& touch : touching) normal += touch.weight * normals_[touch.triangle];
+    normal = normalized(normal);
+  } else {
+    border = on_border(triangle, feature, kEdgeOfInterface, kCornerOfInterface);
+    normal = interface_normal(triangle, feature);
+  }
+  const double height = dot(p - closest->point, normal);
+  const bool continued = exact && border;
   double value = continued ? height : (height >= 0 ? distance : -distance);
-  if (body == interface.a && value < 0) value = distance;
-  if (body == interface.b && value > 0) value = -distance;
+  // A point on the continued plane is on both sides of it: there the sign tells nothing.
+  const double round_off = continued ? 1e-10 * radius : 0;
+  if (body == interface.a && value < -round_off) value = distance;
+  if (body == interface.b && value > round_off) value = -distance;
   return NearInterface{i, value, closest->point};
 }
 

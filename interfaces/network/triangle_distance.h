@@ -27,6 +27,13 @@ constexpr TriangleFeature vertex_feature(unsigned i) {
   return static_cast<TriangleFeature>(static_cast<unsigned>(TriangleFeature::kVertex0) + i);
 }
 
+/// Whether a triangle has so little area for its length that round-off decides its normal.
+inline bool is_flat(const std::array<Vec3, 3>& corner) {
+  const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+  const double spread = std::max({squared_norm(ab), squared_norm(ac), squared_norm(ac - ab)});
+  return !(squared_norm(cross(ab, ac)) > 1e-16 * spread * spread);
+}
+
 /// Closest point of one triangle, and the part of the triangle that it lies on.
 struct TrianglePoint {
   Vec3 point;
