@@ -31,6 +31,9 @@ class LatticeMap {
     }
   }
 
+  /// Fetches the memory that a later find(p) or insert(p) will look at.
+  void prefetch(LatticePoint p) const { __builtin_prefetch(&entries_[home(p)]); }
+
   /// The value at p, and whether it was put there by this call, being a default value then.
   std::pair<Value*, bool> insert(LatticePoint p) {
     ADAMAS_ASSERT(p != kEmpty.key);

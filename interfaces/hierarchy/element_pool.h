@@ -14,15 +14,17 @@ namespace adamas {
 template <class Element>
 class ElementPool {
  public:
-  /// Index of a free slot, which the caller fills at once. Throws Error when there are `limit` elements
-  /// already.
-  std::uint32_t allocate(std::uint32_t limit) {
+  /// Throws Error unless `count` more elements can have indices below `limit`.
+  void require_room(std::uint32_t count, std::uint32_t limit) const {
+    if (slots_ > limit - count) fail("hierarchy: expected at most {} elements of a kind, found more", limit);
+  }
+  /// Index of a free slot, which the caller fills at once.
+  std::uint32_t allocate() {
     if (!free_.empty()) {
       const std::uint32_t index = free_.back();
       free_.pop_back();
       return index;
     }
-    if (slots_ >= limit) fail("hierarchy: expected at most {} elements of a kind, found more", limit);
     elements_.grow(slots_ + std::size_t{1});
     return slots_++;
   }

@@ -4,7 +4,8 @@
 
 namespace adamas {
 namespace {
-constexpr std::uint32_t kMaxElements = 0xfffffff0u;
+// Tetrahedra have two ids per pair; the last id is the invalid one.
+constexpr std::uint32_t kMaxPairs = 0x7ffffff0u;
 }  // namespace
 
 HierarchyTopology::HierarchyTopology(const Domain& domain) : domain_(domain) {
@@ -22,7 +23,7 @@ HierarchyTopology::HierarchyTopology(const Domain& domain) : domain_(domain) {
 }
 
 VertexId HierarchyTopology::make_vertex(LatticePoint p) {
-  const std::uint32_t v = vertices_.allocate(kMaxElements);
+  const std::uint32_t v = vertices_.allocate();
   vertices_[v].point = p;
   return VertexId(v);
 }
@@ -34,7 +35,7 @@ void HierarchyTopology::make_root_cube(LatticePoint cube) {
                                             diamond.scale_bits());
   const auto roots = domain_.roots();
   for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
-    if (slot % 2 == 0) pairs_.allocate(kMaxElements / 2);
+    if (slot % 2 == 0) pairs_.allocate();
     const TetrahedronId t(std::size_t{2} * (pairs_.slots() - 1) + static_cast<std::size_t>(slot % 2));
     for (std::size_t v = 0; v < 4; ++v) {
       const LatticePoint p = diamond.tetrahedron(slot)[v];
@@ -50,7 +51,7 @@ void HierarchyTopology::make_root_cube(LatticePoint cube) {
 DiamondId HierarchyTopology::find_or_make_diamond(LatticePoint p, std::size_t type_index, int bits) {
   const auto [place, is_new] = diamond_at_.insert(p);
   if (!is_new) return *place;
-  const DiamondId id(diamonds_.allocate(kMaxElements));
+  const DiamondId id(diamonds_.allocate());
   *place = id;
   Record& diamond = record(id);
   diamond.point = p;
@@ -89,47 +90,69 @@ void HierarchyTopology::split_leaf(TetrahedronId leaf, std::vector<Split>& done)
   }
 }
 
+std::array<LatticePoint, 8> HierarchyTopology::prefetch_children(const Record& diamond) const {
+  const DiamondType& type = diamond.type();
+  const std::int32_t half_scale = (std::int32_t{1} << diamond.bits) / 2;
+  std::array<LatticePoint, 8> children;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(type.child_count); ++c) {
+    children[c] = diamond.point + half_scale * type.child_offsets[c];
+    diamond_at_.prefetch(children[c]);
+  }
+  return children;
+}
+
 void HierarchyTopology::split_complete(DiamondId d, std::vector<Split>& done) {
   ADAMAS_ASSERT(d.valid() && is_complete(d) && !is_split(d));
+  pairs_.require_room(8, kMaxPairs);  // there are more pairs than vertices or diamonds
   Record& diamond = record(d);
+  for (const TetrahedronId t : diamond.tetrahedra) {
+    if (t.valid()) __builtin_prefetch(&node(t));
+  }
   diamond.vertex = make_vertex(diamond.point);
+  const std::array<LatticePoint, 8> children = prefetch_children(diamond);
   std::array<std::uint32_t, 8> pairs;
   for (std::size_t slot = 0; slot < 8; ++slot) {
     const TetrahedronId t = diamond.tetrahedra[slot];
     if (!t.valid()) continue;
-    pairs[slot] = pairs_.allocate(kMaxElements / 2);
+    pairs[slot] = pairs_.allocate();
     pairs_[pairs[slot]].parent = t;
     node(t).children = pairs[slot];
     done.push_back({t, tetrahedra_of(pairs[slot]), diamond.vertex});
   }
   leaf_count_ += diamond.count;
-  link_children(diamond, pairs);
+  link_children(diamond, children, pairs);
 }
 
-void HierarchyTopology::link_children(const Record& diamond, const std::array<std::uint32_t, 8>& pairs) {
+void HierarchyTopology::link_children(const Record& diamond, const std::array<LatticePoint, 8>& points,
+                                      const std::array<std::uint32_t, 8>& pairs) {
   const DiamondType& type = diamond.type();
   const int child_bits = type.phase == 2 ? diamond.bits - 1 : diamond.bits;
-  const std::int32_t half_scale = (std::int32_t{1} << diamond.bits) / 2;
-  for (std::size_t c = 0; c < static_cast<std::size_t>(type.child_count); ++c) {
-    DiamondId child;
+  const auto count = static_cast<std::size_t>(type.child_count);
+  std::array<DiamondId, 8> children;
+  for (std::size_t c = 0; c < count; ++c) {
+    const auto& halves = type.child_tetrahedra[c];
+    if (!diamond.tetrahedra[halves[0].slot].valid() && !diamond.tetrahedra[halves[1].slot].valid()) continue;
+    children[c] = find_or_make_diamond(points[c], type.child_types[c], child_bits);
+    __builtin_prefetch(&record(children[c]));
+  }
+  for (std::size_t c = 0; c < count; ++c) {
     for (const DiamondType::ChildTetrahedron& half : type.child_tetrahedra[c]) {
       const TetrahedronId t = diamond.tetrahedra[half.slot];
       if (!t.valid()) continue;
-      if (!child.valid()) {
-        child = find_or_make_diamond(diamond.point + half_scale * type.child_offsets[c], type.child_types[c],
-                                     child_bits);
-      }
       const auto& v = node(t).vertices;
       const std::array<VertexId, 5> corners{v[0], v[1], v[2], v[3], diamond.vertex};
       const TetrahedronId half_id = tetrahedra_of(pairs[half.slot])[half.end];
       for (std::size_t w = 0; w < 4; ++w) node(half_id).vertices[w] = corners[half.vertices[w]];
-      attach(half_id, child, half.child_slot);
+      attach(half_id, children[c], half.child_slot);
     }
   }
 }
 
 bool HierarchyTopology::can_merge(DiamondId d) const {
   if (!is_split(d)) return false;
+  for (const TetrahedronId t : record(d).tetrahedra) {
+    if (t.valid()) __builtin_prefetch(&node(t));
+  }
   for (const TetrahedronId t : record(d).tetrahedra) {
     if (!t.valid()) continue;
     for (const TetrahedronId child : children(t)) {
@@ -142,6 +165,11 @@ bool HierarchyTopology::can_merge(DiamondId d) const {
 void HierarchyTopology::merge_diamond(DiamondId d) {
   ADAMAS_ASSERT(can_merge(d));
   Record& diamond = record(d);
+  prefetch_children(diamond);
+  for (const TetrahedronId t : diamond.tetrahedra) {
+    if (!t.valid()) continue;
+    for (const TetrahedronId child : children(t)) __builtin_prefetch(&record(node(child).diamond));
+  }
   for (const TetrahedronId t : diamond.tetrahedra) {
     if (!t.valid()) continue;
     for (const TetrahedronId child : children(t)) detach(child);

@@ -167,7 +167,10 @@ class HierarchyTopology {
   void attach(TetrahedronId t, DiamondId d, std::uint8_t slot);
   void detach(TetrahedronId t);
   void split_complete(DiamondId d, std::vector<Split>& done);
-  void link_children(const Record& diamond, const std::array<std::uint32_t, 8>& pairs);
+  /// Points of the child diamonds. They lie all over memory: asks for them before they are needed.
+  std::array<LatticePoint, 8> prefetch_children(const Record& diamond) const;
+  void link_children(const Record& diamond, const std::array<LatticePoint, 8>& points,
+                     const std::array<std::uint32_t, 8>& pairs);
 
   void validate_tree() const;
   void validate_tetrahedron(TetrahedronId t) const;

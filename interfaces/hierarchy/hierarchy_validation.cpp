@@ -111,8 +111,7 @@ void HierarchyTopology::validate_diamond(DiamondId d) const {
   if (find(r.point) != d) broken(name + " is not found by its point");
   if (!domain_.contains(r.point) || domain_.is_root_corner(r.point)) broken(name + " is no diamond's point");
   const Diamond shape(r.point);
-  if (shape.type_index() != r.type_index || shape.scale_bits() != r.bits)
-    broken(name + " has a wrong type");
+  if (shape.type_index() != r.type_index || shape.scale_bits() != r.bits) broken(name + " has a wrong type");
   if (shape.tetrahedron_count(domain_) != r.full_count)
     broken(name + " expects a wrong number of tetrahedra");
   std::size_t present = 0, leaves = 0;

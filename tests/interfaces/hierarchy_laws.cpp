@@ -131,7 +131,8 @@ void expect_faces_shared_by_two(const HierarchyTopology& h) {
     }
   }
   const LatticePoint extent = h.domain().extent();
-  for (const auto& [face, count] : faces) {
+  for (const auto& entry : faces) {
+    const auto& face = entry.first;
     bool on_boundary = false;
     for (int axis = 0; axis < 3; ++axis) {
       const auto lies_at = [&](std::int32_t x) {
@@ -139,7 +140,7 @@ void expect_faces_shared_by_two(const HierarchyTopology& h) {
       };
       on_boundary = on_boundary || lies_at(0) || lies_at(extent[axis]);
     }
-    ASSERT_EQ(count, on_boundary ? 1 : 2);
+    ASSERT_EQ(entry.second, on_boundary ? 1 : 2);
   }
 }
 
