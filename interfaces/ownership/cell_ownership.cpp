@@ -1,20 +1,17 @@
 #include "interfaces/ownership/cell_ownership.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace adamas {
 
 namespace {
 
-constexpr double kUnknown = -std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kLonelyKey = std::uint64_t{1} << 63;
 
-/// Per body the cell knows: is it within reach of each vertex, and the greatest value towards it there.
+/// A body the cell knows: is it within reach of each vertex, and its functions.
 struct KnownBody {
   BodyId body;
   std::array<bool, 4> within{};
-  std::array<double, 4> greatest{kUnknown, kUnknown, kUnknown, kUnknown};
   std::vector<std::uint64_t> keys;
   std::vector<std::array<double, 4>> functions;
 };
@@ -40,19 +37,10 @@ std::vector<KnownBody> known_bodies(const InterfaceTable& table,
   for (std::size_t v = 0; v < 4; ++v) {
     entry(known, vertices[v]->body).within[v] = true;
     for (const NearDistance& near : vertices[v]->near) {
-      for (std::size_t side = 0; side < 2; ++side) {
-        KnownBody& body = entry(known, table.sides(near.interface)[side]);
-        body.within[v] = true;
-        body.greatest[v] = std::max(body.greatest[v], side == 0 ? near.distance : -near.distance);
-      }
+      for (const BodyId side : table.sides(near.interface)) entry(known, side).within[v] = true;
     }
   }
   return known;
-}
-
-double far_value(const KnownBody& body, const VertexDistances& vertex, std::size_t v) {
-  if (!body.within[v]) return -vertex.radius;
-  return body.greatest[v] == kUnknown ? vertex.radius : body.greatest[v];
 }
 
 }  // namespace
@@ -106,9 +94,13 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
       const auto& near = vertices[v]->near;
       const auto at = std::lower_bound(near.begin(), near.end(), f.id,
                                        [](const NearDistance& n, InterfaceId i) { return n.interface < i; });
+      // Far from the interface: a value that no other exceeds, or falls below where the body itself is far.
+      const auto far_value = [&](const KnownBody& body) {
+        return body.within[v] ? vertices[v]->radius : -vertices[v]->radius;
+      };
       const bool is_near = at != near.end() && at->interface == f.id;
-      first[v] = is_near ? at->distance : far_value(known[f.first], *vertices[v], v);
-      second[v] = is_near ? -at->distance : far_value(known[f.second], *vertices[v], v);
+      first[v] = is_near ? at->distance : far_value(known[f.first]);
+      second[v] = is_near ? -at->distance : far_value(known[f.second]);
     }
     ownership.interfaces.push_back({f.id, static_cast<std::uint32_t>(known[f.first].functions.size()),
                                     static_cast<std::uint32_t>(known[f.second].functions.size())});
