@@ -75,7 +75,7 @@ class ClosestPointTree {
   friend class ClosestPointTreeBuilder;
 
   static constexpr int kWidth = 4;
-  static constexpr std::uint32_t kLeafSize = 2;
+  static constexpr std::uint32_t kLeafSize = 4;
   static constexpr std::size_t kStackSize = 512;
   static constexpr std::uint32_t kEmptySlot = 0xffffffffu;
 
