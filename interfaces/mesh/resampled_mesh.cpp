@@ -26,9 +26,11 @@ std::array<Vec3, 4> ResampledMesh::corners(std::size_t cell) const {
   return {points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
 }
 
-double ResampledMesh::value(std::size_t cell, BodyId body, std::size_t component, const Weights& weights) const {
+double ResampledMesh::value(std::size_t cell, BodyId body, std::size_t component,
+                            const Weights& weights) const {
   double sum = 0;
-  for (std::size_t v = 0; v < 4; ++v) sum += weights[v] * vertices[cells[cell].vertices[v]].row(body)[component];
+  for (std::size_t v = 0; v < 4; ++v)
+    sum += weights[v] * vertices[cells[cell].vertices[v]].row(body)[component];
   return sum;
 }
 
@@ -57,8 +59,10 @@ ResampledMesh take_mesh(Resampler& resampler) {
   std::vector<std::uint32_t> number(hierarchy.vertex_slots(), kUnused);
   hierarchy.for_each_leaf([&](TetrahedronId t) {
     const CellRecord& record = hierarchy.payload(t);
-    ResampledMesh::Cell cell{{}, static_cast<std::uint8_t>(hierarchy.level(t)),
-                             static_cast<std::uint8_t>(hierarchy.phase(t)), record.interface.distance};
+    ResampledMesh::Cell cell{{},
+                             static_cast<std::uint8_t>(hierarchy.level(t)),
+                             static_cast<std::uint8_t>(hierarchy.phase(t)),
+                             record.interface.distance};
     const auto vertices = hierarchy.vertices(t);
     for (std::size_t i = 0; i < 4; ++i) {
       std::uint32_t& n = number[vertices[i].value];

@@ -14,8 +14,9 @@ namespace adamas {
 
 class Resampler;
 
-/// A resampled mesh on its own, without its input: the leaves of the hierarchy, what their vertices know of interfaces
-/// and fields, and the errors that were measured. It answers who owns a point and what a material's field is there.
+/// A resampled mesh on its own, without its input: the leaves of the hierarchy, what their vertices know of
+/// interfaces and fields, and the errors that were measured. It answers who owns a point and what a
+/// material's field is there.
 struct ResampledMesh {
   struct Cell {
     std::array<std::uint32_t, 4> vertices;  ///< positively oriented
@@ -31,13 +32,16 @@ struct ResampledMesh {
   std::vector<Vec3> points;
   std::vector<VertexRecord> vertices;  ///< without closest points
   std::vector<Cell> cells;
-  std::vector<std::vector<double>> field_errors;  ///< per field and cell: greatest at the cell's native elements
+  std::vector<std::vector<double>>
+      field_errors;  ///< per field and cell: greatest at the cell's native elements
 
   [[nodiscard]] CellSet cell_set() const;
   void ownership(std::size_t cell, CellOwnership& result) const;
   [[nodiscard]] std::array<Vec3, 4> corners(std::size_t cell) const;
-  /// Value of component c of a body's field row at a point of a cell; the body must be one that owns a part of it.
-  [[nodiscard]] double value(std::size_t cell, BodyId body, std::size_t component, const Weights& weights) const;
+  /// Value of component c of a body's field row at a point of a cell; the body must be one that owns a part
+  /// of it.
+  [[nodiscard]] double value(std::size_t cell, BodyId body, std::size_t component,
+                             const Weights& weights) const;
   /// Plain linear interpolation of the vertices' own values, as if there were no interfaces.
   [[nodiscard]] double plain_value(std::size_t cell, std::size_t component, const Weights& weights) const;
 };

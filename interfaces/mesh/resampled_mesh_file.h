@@ -5,20 +5,18 @@
 
 namespace adamas {
 
-/// The mesh as a file holds it. For other programs: at points `material`, `body`, for each field its own value at the
-/// point, and for each field and material `FIELD in MATERIAL` with `FIELD in MATERIAL validity` (1: the input's own
-/// value, 0: a ghost value or none); at cells `material` (-1 where interfaces cross it), `level`, `phase`,
-/// `interface error` and `FIELD error`. For ourselves: field arrays named `adamas ...` that restore it exactly.
+/// The mesh as a file holds it. For other programs: at points `material`, `body`, for each field its own
+/// value at the point, and for each field and material `FIELD in MATERIAL` with `FIELD in MATERIAL validity`
+/// (1: the input's own value, 0: a ghost value or none); at cells `material` (-1 where interfaces cross it),
+/// `level`, `phase`, `interface error` and `FIELD error`. For ourselves: field arrays named `adamas ...` that
+/// restore it exactly.
 UnstructuredMesh to_unstructured_mesh(const ResampledMesh& mesh);
 
 /// Whether the file was made by to_unstructured_mesh.
 bool is_resampled_mesh(const UnstructuredMesh& mesh);
 
-/// The mesh back. Throws Error, naming `source`, where arrays are missing, of the wrong length, or point outside.
+/// The mesh back. Throws Error, naming `source`, where arrays are missing, of the wrong length, or point
+/// outside.
 ResampledMesh from_unstructured_mesh(const UnstructuredMesh& mesh, const std::string& source);
-
-/// Each cell divided along the interfaces into tetrahedra of one material, with `material`, `body`, `cell` and the
-/// fields of that material at points; a point on an interface comes once for each of its sides.
-UnstructuredMesh cut_mesh(const ResampledMesh& mesh);
 
 }  // namespace adamas
