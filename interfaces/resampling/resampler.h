@@ -88,6 +88,7 @@ class Resampler {
   std::vector<TetrahedronId> measure_distance();
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
   void ownership(TetrahedronId t, CellOwnership& result) const;
+  [[nodiscard]] double estimate_target() const;
   void report(std::string_view stage);
 
   const ResamplingSource& source_;
