@@ -90,7 +90,7 @@ void confine(std::size_t input_bytes) {
         static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
     limit(RLIMIT_AS, mapped_bytes() + memory);
   }
-  ::alarm(static_cast<unsigned>(std::min<std::size_t>(60 + input_bytes / 1'000'000, 86'400)));
+  ::alarm(static_cast<unsigned>(std::min<std::size_t>(20 + input_bytes / 1'000'000, 86'400)));
 }
 
 [[noreturn]] void run_child(const std::string& name, int descriptor, std::size_t input_bytes,

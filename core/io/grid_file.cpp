@@ -7,6 +7,7 @@
 #include "core/io/input_file.h"
 #include "core/io/legacy_vtk_check.h"
 #include "core/io/meta_image_check.h"
+#include "core/io/nrrd_reader.h"
 #include "core/io/vtk_grid_reader.h"
 
 namespace adamas {
@@ -92,9 +93,14 @@ std::string GridFile::array_names() const {
 
 GridFile read_grid_file(const std::filesystem::path& path) {
   const std::size_t size = check_input_file(path);
+  GridFile file;
+  if (file_extension(path) == ".nrrd" || file_extension(path) == ".nhdr") {
+    file = read_nrrd(path);
+    check_sizes(path.string(), file);
+    return file;
+  }
   if (file_extension(path) == ".vtk") check_legacy_vtk(path);
   if (file_extension(path) == ".mha" || file_extension(path) == ".mhd") check_meta_image(path);
-  GridFile file;
   read_in_child(
       path.string(), size, [&path](ByteSink& sink) { send(read_grid_with_vtk(path), sink); },
       [&file](ByteSource& source) { file = receive(source); });

@@ -1,16 +1,14 @@
 #include "core/io/meta_image_check.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "core/base/error.h"
+#include "core/io/inflate_stream.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
@@ -72,38 +70,6 @@ std::uint64_t promised_bytes(const Header& header, const std::string& name) {
   return bytes;
 }
 
-struct Inflater {
-  z_stream zip{};
-  Inflater() { inflateInit2(&zip, 15 + 32); }
-  ~Inflater() { inflateEnd(&zip); }
-  Inflater(const Inflater&) = delete;
-  Inflater& operator=(const Inflater&) = delete;
-};
-
-/// Size of a zlib or gzip stream once decompressed; throws where it is corrupt or ends early.
-std::uint64_t inflated_bytes(std::ifstream& stream, const std::string& name) {
-  Inflater inflater;
-  std::vector<char> in(std::size_t{1} << 16), out(std::size_t{1} << 18);
-  std::uint64_t total = 0;
-  int state = Z_OK;
-  while (state == Z_OK) {
-    stream.read(in.data(), static_cast<std::streamsize>(in.size()));
-    inflater.zip.next_in = reinterpret_cast<Bytef*>(in.data());
-    inflater.zip.avail_in = static_cast<uInt>(stream.gcount());
-    if (stream.gcount() == 0) break;
-    do {
-      inflater.zip.next_out = reinterpret_cast<Bytef*>(out.data());
-      inflater.zip.avail_out = static_cast<uInt>(out.size());
-      state = inflate(&inflater.zip, Z_NO_FLUSH);
-      total += out.size() - inflater.zip.avail_out;
-    } while (state == Z_OK && (inflater.zip.avail_in > 0 || inflater.zip.avail_out == 0));
-    if (state == Z_BUF_ERROR) state = Z_OK;
-  }
-  if (state != Z_STREAM_END)
-    fail("{}: expected whole compressed data, found corrupt or truncated ones", name);
-  return total;
-}
-
 }  // namespace
 
 void check_meta_image(const std::filesystem::path& path) {
@@ -124,7 +90,12 @@ void check_meta_image(const std::filesystem::path& path) {
     size = check_input_file(beside);
     stream = std::ifstream(beside, std::ios::binary);
   }
-  const std::uint64_t found = is_true(header, "CompressedData") ? inflated_bytes(stream, name) : size - at;
+  std::uint64_t found = size - at;
+  if (is_true(header, "CompressedData")) {
+    std::string bytes(found, '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    found = inflate_stream(bytes, name, [](std::string_view) {});
+  }
   if (found < expected) fail("{}: expected {} bytes of data, found {}", name, expected, found);
 }
 

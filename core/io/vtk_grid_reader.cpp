@@ -10,7 +10,6 @@
 #include <vtkMatrix4x4.h>
 #include <vtkMetaImageReader.h>
 #include <vtkNIFTIImageReader.h>
-#include <vtkNrrdReader.h>
 #include <vtkPointData.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkSmartPointer.h>
@@ -229,10 +228,7 @@ GridFile read_image(const std::filesystem::path& path, const std::string& extens
   const std::string name = path.string();
   GridFile file;
   vtkSmartPointer<vtkDataObject> data;
-  if (extension == ".nrrd" || extension == ".nhdr") {
-    file.kind = "NRRD";
-    data = run_if_readable<vtkNrrdReader>(name, "NRRD", messages);
-  } else if (extension == ".mhd" || extension == ".mha") {
+  if (extension == ".mhd" || extension == ".mha") {
     file.kind = "MetaImage";
     data = run_if_readable<vtkMetaImageReader>(name, "MetaImage", messages);
   } else if (extension == ".nii" || extension == ".nii.gz") {

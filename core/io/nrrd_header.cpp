@@ -1,0 +1,276 @@
+#include "core/io/nrrd_header.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/base/error.h"
+
+namespace adamas {
+
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+Words split(std::string_view text, std::string_view separators) {
+  Words words;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(separators), text.size());
+    if (end > 0) words.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return words;
+}
+
+std::string shown(std::string_view text) {
+  std::string result;
+  for (const char c : text.substr(0, 40)) result += c >= ' ' && c <= '~' ? c : '?';
+  return result;
+}
+
+template <class T>
+std::optional<T> number(std::string_view word) {
+  T value{};
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (code != std::errc() || end != word.data() + word.size()) return {};
+  return value;
+}
+
+const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>>& types() {
+  static const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>> known{
+      {"signed char", {"int8", 1}},
+      {"int8", {"int8", 1}},
+      {"int8_t", {"int8", 1}},
+      {"uchar", {"uint8", 1}},
+      {"unsigned char", {"uint8", 1}},
+      {"uint8", {"uint8", 1}},
+      {"uint8_t", {"uint8", 1}},
+      {"short", {"int16", 2}},
+      {"short int", {"int16", 2}},
+      {"signed short", {"int16", 2}},
+      {"int16", {"int16", 2}},
+      {"int16_t", {"int16", 2}},
+      {"ushort", {"uint16", 2}},
+      {"unsigned short", {"uint16", 2}},
+      {"unsigned short int", {"uint16", 2}},
+      {"uint16", {"uint16", 2}},
+      {"uint16_t", {"uint16", 2}},
+      {"int", {"int32", 4}},
+      {"signed int", {"int32", 4}},
+      {"int32", {"int32", 4}},
+      {"int32_t", {"int32", 4}},
+      {"uint", {"uint32", 4}},
+      {"unsigned int", {"uint32", 4}},
+      {"uint32", {"uint32", 4}},
+      {"uint32_t", {"uint32", 4}},
+      {"longlong", {"int64", 8}},
+      {"long long", {"int64", 8}},
+      {"int64", {"int64", 8}},
+      {"int64_t", {"int64", 8}},
+      {"ulonglong", {"uint64", 8}},
+      {"unsigned long long", {"uint64", 8}},
+      {"uint64", {"uint64", 8}},
+      {"uint64_t", {"uint64", 8}},
+      {"float", {"float32", 4}},
+      {"double", {"float64", 8}}};
+  return known;
+}
+
+class Parser {
+ public:
+  Parser(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+
+  NrrdHeader run() {
+    if (next_line().value_or("").substr(0, 4) != "NRRD")
+      fail("{}: expected NRRD, found something else", name_);
+    for (auto line = next_line(); line && !line->empty(); line = next_line()) read_line(*line);
+    header_.header_bytes = at_;
+    if (at_ == text_.size() && header_.data_file.empty()) {
+      fail("{}: line {}: expected an empty line and data after the header, found the file's end", name_,
+           line_);
+    }
+    if (header_.type.empty()) fail("{}: expected a header with type, found none", name_);
+    if (sizes_.empty()) fail("{}: expected a header with sizes, found none", name_);
+    if (!has_encoding_) fail("{}: expected a header with encoding, found none", name_);
+    set_sizes();
+    set_places();
+    return header_;
+  }
+
+ private:
+  std::optional<std::string_view> next_line() {
+    if (at_ >= text_.size()) return {};
+    const std::size_t end = text_.find('\n', at_);
+    std::string_view line = text_.substr(at_, end == std::string_view::npos ? end : end - at_);
+    at_ = end == std::string_view::npos ? text_.size() : end + 1;
+    ++line_;
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+    return line;
+  }
+
+  [[noreturn]] void fail_field(std::string_view expected, std::string_view found) const {
+    fail("{}: line {}: expected {}, found '{}'", name_, line_, expected, shown(found));
+  }
+
+  void read_line(std::string_view line) {
+    if (line[0] == '#' || line.find(":=") != std::string_view::npos) return;
+    const std::size_t colon = line.find(": ");
+    if (colon == std::string_view::npos) {
+      if (line.back() == ':') return;
+      fail_field("a field and its value", line);
+    }
+    const std::string_view field = line.substr(0, colon);
+    std::string_view value = line.substr(colon + 2);
+    value.remove_prefix(std::min(value.find_first_not_of(' '), value.size()));
+    if (field == "type") return read_type(value);
+    if (field == "encoding") return read_encoding(value);
+    if (field == "sizes") return read_sizes(value);
+    if (field == "dimension") {
+      const auto dimension = number<int>(value);
+      if (!dimension || *dimension < 2 || *dimension > 4) fail_field("two to four dimensions", value);
+      dimension_ = static_cast<std::size_t>(*dimension);
+    } else if (field == "endian") {
+      if (value != "little" && value != "big") fail_field("endian little or big", value);
+      header_.big_endian = value == "big";
+    } else if (field == "data file" || field == "datafile") {
+      if (value.substr(0, 4) == "LIST" || value.find('%') != std::string_view::npos)
+        fail_field("one data file", value);
+      header_.data_file = value;
+    } else if (field == "line skip" || field == "lineskip") {
+      const auto skip = number<std::uint32_t>(value);
+      if (!skip) fail_field("a number of lines", value);
+      header_.line_skip = *skip;
+    } else if (field == "byte skip" || field == "byteskip") {
+      const auto skip = number<std::int64_t>(value);
+      if (!skip || *skip < -1) fail_field("a number of bytes", value);
+      header_.byte_skip = *skip;
+    } else if (field == "spacings") {
+      spacings_ = split(value, " \t");
+    } else if (field == "axis mins" || field == "axismins") {
+      mins_ = split(value, " \t");
+    } else if (field == "kinds") {
+      kinds_ = split(value, " \t");
+    } else if (field == "space origin") {
+      origin_ = split(value, " \t(),");
+    } else if (field == "space directions") {
+      read_directions(value);
+    }
+  }
+
+  void read_type(std::string_view value) {
+    const auto found = types().find(value);
+    if (found == types().end()) fail_field("a type of numbers", value);
+    header_.type = found->second.first;
+    header_.type_bytes = found->second.second;
+  }
+
+  void read_encoding(std::string_view value) {
+    has_encoding_ = true;
+    if (value == "raw") {
+      header_.encoding = NrrdEncoding::kRaw;
+    } else if (value == "gzip" || value == "gz") {
+      header_.encoding = NrrdEncoding::kGzip;
+    } else if (value == "text" || value == "txt" || value == "ascii") {
+      header_.encoding = NrrdEncoding::kText;
+    } else {
+      fail_field("the encoding raw, gzip or text", value);
+    }
+  }
+
+  void read_sizes(std::string_view value) {
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 44;
+    std::uint64_t product = 1;
+    sizes_.clear();
+    for (const std::string_view word : split(value, " \t")) {
+      const auto size = number<std::uint64_t>(word);
+      if (!size || *size == 0 || *size > kMost / product) fail_field("positive sizes", value);
+      product *= *size;
+      sizes_.push_back(static_cast<std::size_t>(*size));
+    }
+  }
+
+  /// "(1,0,0) none (0,1,0)": three numbers, or none, per axis.
+  void read_directions(std::string_view value) {
+    directions_.clear();
+    while (!value.empty()) {
+      const std::size_t open = value.find_first_not_of(" \t");
+      if (open == std::string_view::npos) return;
+      value.remove_prefix(open);
+      const std::size_t end = value[0] == '(' ? value.find(')') : std::min(value.find(' '), value.size());
+      if (end == std::string_view::npos) fail_field("directions in brackets", value);
+      directions_.push_back(split(value.substr(0, end), " (,"));
+      value.remove_prefix(std::min(end + 1, value.size()));
+    }
+  }
+
+  void set_sizes() {
+    if (dimension_ != 0 && sizes_.size() != dimension_) {
+      fail("{}: expected {} sizes, found {}", name_, dimension_, sizes_.size());
+    }
+    if (sizes_.size() < 2 || sizes_.size() > 4)
+      fail("{}: expected two to four sizes, found {}", name_, sizes_.size());
+    const bool other_first =
+        (!kinds_.empty() && kinds_[0] != "domain" && kinds_[0] != "space" && kinds_[0] != "???") ||
+        (!directions_.empty() && directions_[0].size() < 2);
+    first_ = sizes_.size() == 4 || other_first ? 1 : 0;
+    if (sizes_.size() == 4 && !other_first && sizes_[0] > 9) {
+      fail("{}: expected three axes of space, found four", name_);
+    }
+    if (first_ == 1) header_.components = sizes_[0];
+    if (sizes_.size() - first_ < 2) fail("{}: expected two or three axes of space, found one", name_);
+    for (std::size_t axis = 0; axis + first_ < sizes_.size(); ++axis)
+      header_.sizes[axis] = sizes_[axis + first_];
+  }
+
+  /// A number of a list with an entry per axis; nothing where it is left out or "nan".
+  static std::optional<double> entry(const Words& words, std::size_t at) {
+    if (at >= words.size()) return {};
+    const auto value = number<double>(words[at]);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+  }
+
+  void set_places() {
+    bool straight = !directions_.empty();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t at = axis + first_;
+      double& spacing = header_.spacing[axis];
+      if (const auto value = entry(spacings_, at)) spacing = std::abs(*value);
+      if (const auto value = entry(mins_, at)) header_.origin[axis] = *value;
+      if (at >= directions_.size()) continue;
+      double squares = 0;
+      for (std::size_t i = 0; i < directions_[at].size(); ++i) {
+        const double component = entry(directions_[at], i).value_or(0);
+        squares += component * component;
+        straight = straight && (i == axis ? component > 0 : component == 0);
+      }
+      spacing = std::sqrt(squares);
+    }
+    for (double& spacing : header_.spacing) {
+      if (!(spacing > 0) || !std::isfinite(spacing)) spacing = 1;
+    }
+    for (std::size_t axis = 0; straight && axis < 3; ++axis) {
+      header_.origin[axis] = entry(origin_, axis).value_or(0);
+    }
+  }
+
+  std::string_view text_;
+  const std::string& name_;
+  std::size_t at_ = 0, line_ = 0;
+  NrrdHeader header_;
+  bool has_encoding_ = false;
+  std::size_t dimension_ = 0, first_ = 0;
+  std::vector<std::size_t> sizes_;
+  Words spacings_, mins_, kinds_, origin_;
+  std::vector<Words> directions_;
+};
+
+}  // namespace
+
+NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name) {
+  return Parser(text, name).run();
+}
+
+}  // namespace adamas

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace adamas {
+
+enum class NrrdEncoding { kRaw, kGzip, kText };
+
+/// What the header of an NRRD file says (teem.sourceforge.net/nrrd/format.html), for two or three axes of
+/// space and at most one other axis, the first, whose entries are components.
+struct NrrdHeader {
+  std::string type;  ///< "uint8", "float64", ...
+  std::size_t type_bytes = 0;
+  std::array<std::size_t, 3> sizes{1, 1, 1};
+  std::size_t components = 1;
+  std::array<double, 3> spacing{1, 1, 1};
+  std::array<double, 3> origin{};  ///< where the axes are those of space; else zero
+  NrrdEncoding encoding = NrrdEncoding::kRaw;
+  bool big_endian = false;
+  std::string data_file;  ///< empty: the data follow the header
+  std::size_t line_skip = 0;
+  std::int64_t byte_skip = 0;    ///< -1: the data are the file's last bytes
+  std::size_t header_bytes = 0;  ///< with the empty line
+
+  [[nodiscard]] std::size_t value_count() const { return components * sizes[0] * sizes[1] * sizes[2]; }
+};
+
+/// Throws Error with `name` and the line where the text does not begin with a whole header of that kind.
+/// value_count() times type_bytes does not overflow.
+NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name);
+
+}  // namespace adamas

@@ -1,0 +1,74 @@
+#include "core/io/grid_file.h"
+#include "core/io/nrrd_header.h"
+#include "scratch.h"
+
+namespace adamas {
+namespace {
+
+using test::error_of;
+using test::put_bytes;
+using test::says;
+
+const std::string kStart = "NRRD0004\ntype: uchar\nencoding: raw\n";
+
+TEST(NrrdHeader, AxesOfSpaceAndComponents) {
+  const NrrdHeader plain =
+      parse_nrrd_header(kStart + "sizes: 2 3 4\nspacings: 1 nan 0.5\naxis mins: 7 8 9\n\nx", "n");
+  EXPECT_EQ(plain.components, 1u) << "a short first axis is one of space";
+  EXPECT_EQ(plain.sizes, (std::array<std::size_t, 3>{2, 3, 4}));
+  EXPECT_EQ(plain.spacing, (std::array<double, 3>{1, 1, 0.5}));
+  EXPECT_EQ(plain.origin, (std::array<double, 3>{7, 8, 9}));
+
+  const NrrdHeader vectors = parse_nrrd_header(kStart +
+                                                   "dimension: 4\nsizes: 3 5 6 7\nspace directions: none "
+                                                   "(2,0,0) (0,3,0) (0,0,4)\nspace origin: (1,2,-3)\n\nx",
+                                               "n");
+  EXPECT_EQ(vectors.components, 3u);
+  EXPECT_EQ(vectors.sizes, (std::array<std::size_t, 3>{5, 6, 7}));
+  EXPECT_EQ(vectors.spacing, (std::array<double, 3>{2, 3, 4}));
+  EXPECT_EQ(vectors.origin, (std::array<double, 3>{1, 2, -3}));
+
+  const NrrdHeader turned = parse_nrrd_header(
+      kStart + "sizes: 5 6 7\nspace directions: (-2,0,0) (0,3,4) (0,-4,3)\nspace origin: (1,2,-3)\n\nx", "n");
+  EXPECT_EQ(turned.spacing, (std::array<double, 3>{2, 5, 5}));
+  EXPECT_EQ(turned.origin, (std::array<double, 3>{0, 0, 0}));
+}
+
+TEST(NrrdHeader, BadHeadersAreNamedWithTheirLine) {
+  const auto message = [](const std::string& text) {
+    return error_of([&] { parse_nrrd_header(text, "n.nrrd"); });
+  };
+  EXPECT_EQ(message("BMP"), "n.nrrd: expected NRRD, found something else");
+  EXPECT_TRUE(
+      says(message("NRRD0004\ntype: block\n"), "n.nrrd: line 2: expected a type of numbers, found 'block'"));
+  EXPECT_TRUE(says(message(kStart + "sizes: 3 0 2\n\nx"), "line 4: expected positive sizes"));
+  EXPECT_TRUE(says(message(kStart + "sizes: 3 -1 2\n\nx"), "line 4: expected positive sizes"));
+  EXPECT_TRUE(says(message(kStart + "sizes: 99999999 99999999 99\n\nx"), "line 4: expected positive sizes"));
+  EXPECT_TRUE(says(message(kStart + "dimension: 3\nsizes: 4 4\n\nx"), "expected 3 sizes, found 2"));
+  EXPECT_TRUE(says(message(kStart + "sizes: 4 4 4\n"), "found the file's end"));
+  EXPECT_TRUE(says(message(kStart + "\nx"), "expected a header with sizes"));
+  EXPECT_TRUE(says(message(kStart + "data file: LIST\n"), "expected one data file"));
+  EXPECT_TRUE(
+      says(message("NRRD0004\ntype: float\nencoding: bzip2\n"), "encoding raw, gzip or text, found 'bzip2'"));
+}
+
+TEST(NrrdReader, EncodingsByteOrdersAndDetachedData) {
+  const test::Scratch scratch;
+  const std::string head = "NRRD0004\ndimension: 3\nsizes: 2 1 2\n";
+  put_bytes(scratch / "t.nrrd", head + "type: float\nencoding: text\n\n1 2.5\n-3 1e3\n");
+  EXPECT_EQ(read_grid_file(scratch / "t.nrrd").arrays.at(0).take_floats(),
+            (std::vector<float>{1, 2.5f, -3, 1000}));
+  put_bytes(scratch / "cut.nrrd", head + "type: float\nencoding: text\n\n1 2.5\n-3 1e3");
+  EXPECT_TRUE(
+      says(error_of([&] { read_grid_file(scratch / "cut.nrrd"); }), "expected 4 values, found 3 whole ones"));
+  put_bytes(scratch / "b.nhdr",
+            head + "type: uint16\nencoding: raw\nendian: big\nbyte skip: -1\ndata file: b.raw\n");
+  EXPECT_TRUE(
+      says(error_of([&] { read_grid_file(scratch / "b.nhdr"); }), "b.raw: expected a file, found none"));
+  put_bytes(scratch / "b.raw", std::string("....\0\1\1\0\0\2\2\0", 12));
+  EXPECT_EQ(std::get<1>(read_grid_file(scratch / "b.nhdr").arrays.at(0).values),
+            (std::vector<std::int32_t>{1, 256, 2, 512}));
+}
+
+}  // namespace
+}  // namespace adamas
