@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""Checks how the sources are laid out: check_structure.py ROOT. Prints every breach; exits 1 where there is one."""
+
+import os
+import re
+import sys
+
+# What each module may include, beside itself. A file belongs to the longest name that its path begins with.
+MAY_INCLUDE = {
+    "core": [],
+    "core/io": ["core"],
+    "core/picture": ["core"],
+    "interfaces": ["core"],
+    "datasets": ["core", "core/io"],
+    "cli": ["core", "core/io", "core/picture", "interfaces", "datasets"],
+    "tools": ["core", "core/io", "core/picture", "interfaces", "datasets"],
+    "tests": ["core", "core/io", "core/picture", "interfaces", "datasets", "cli"],
+}
+# Within core: a folder may include those of its own layer and of lower ones.
+CORE_LAYERS = {"base": 0, "geometry": 1, "data": 1, "lattice": 1, "refinement": 2}
+# Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
+# files of the same folder include.
+OWNED = {
+    r"vtk\w*\.h": ["core/io", "tests"],
+    r"cairo[\w-]*\.h|cairo/.*": ["core/picture", "tests"],
+    r"tbb/.*|oneapi/tbb.*": ["core"],
+    r"CGAL/.*": ["core/io", "interfaces", "tests"],
+    r"Eigen/.*": ["interfaces", "tests"],
+    r"tiffio\.h|zlib\.h": ["core/io", "tests"],
+    r"CLI/.*": ["cli"],
+    r"nlohmann/.*": ["cli", "tools", "tests"],
+}
+LIGHT = [r"CLI/.*", r"nlohmann/.*"]
+FOLDERS = ["core", "interfaces", "datasets", "cli", "tools", "tests", "scripts", "cmake", "docs", ".ci"]
+ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
+NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
+CODE = {".h", ".cpp"}
+MOST_LINES = 400
+ABSOLUTE_PATH = re.compile(r"""(?<![\w.$}/-])/(work|home|root|Users|mnt)/[\w.]""")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def module_of(path):
+    names = [name for name in MAY_INCLUDE if path.startswith(name + "/")]
+    return max(names, key=len, default=None)
+
+
+def sources(root):
+    for folder in FOLDERS:
+        for base, folders, files in os.walk(os.path.join(root, folder)):
+            folders[:] = sorted(f for f in folders if f not in ("corpus", "golden", "__pycache__"))
+            for name in sorted(files):
+                yield os.path.relpath(os.path.join(base, name), root)
+    for name in ROOT_FILES:
+        if os.path.exists(os.path.join(root, name)):
+            yield name
+
+
+def check_project_include(root, path, target):
+    if not os.path.exists(os.path.join(root, target)):
+        # Tests and fuzz targets may include what lies beside them.
+        beside = os.path.join(os.path.dirname(path), target)
+        if path.startswith("tests/") and os.path.exists(os.path.join(root, beside)):
+            return
+        yield f"includes \"{target}\", which is no file of the project (paths are from the root)"
+        return
+    here, there = module_of(path), module_of(target)
+    if here is None or there is None:
+        yield f"includes \"{target}\" across unknown modules"
+    elif there != here and there not in MAY_INCLUDE[here]:
+        yield f"includes \"{target}\": {here} may not use {there}"
+    elif here == there == "core":
+        layer, other = path.split("/")[1], target.split("/")[1]
+        if CORE_LAYERS.get(other, 0) > CORE_LAYERS.get(layer, len(CORE_LAYERS)):
+            yield f"includes \"{target}\": core/{layer} lies below core/{other}"
+
+
+def check_heavy_header(root, path, target):
+    for other in sources(root):
+        if os.path.splitext(other)[1] not in CODE or other == path:
+            continue
+        with open(os.path.join(root, other), encoding="utf-8", errors="replace") as file:
+            if f'#include "{path}"' not in file.read():
+                continue
+        if other.endswith(".h") or os.path.dirname(other) != os.path.dirname(path):
+            yield f"includes <{target}>, and {other} includes it: such headers are for .cpp files of their own folder"
+
+
+def check_code(root, path, text):
+    is_header = path.endswith(".h")
+    if is_header and not text.startswith("#pragma once\n"):
+        yield "does not begin with #pragma once"
+    for quote, target in INCLUDE.findall(text):
+        for pattern, modules in OWNED.items():
+            if not re.fullmatch(pattern, target):
+                continue
+            if is_header and pattern not in LIGHT:
+                yield from check_heavy_header(root, path, target)
+            if module_of(path) not in modules:
+                yield f"includes <{target}>, which is for {', '.join(modules)}"
+        if quote == '"':
+            yield from check_project_include(root, path, target)
+
+
+def check_text(path, text):
+    lines = text.split("\n")
+    if text and not text.endswith("\n"):
+        yield "does not end with a newline"
+    if len(lines) - 1 > MOST_LINES:
+        yield f"has {len(lines) - 1} lines, more than {MOST_LINES}"
+    for number, line in enumerate(lines, 1):
+        if line != line.rstrip():
+            yield f"line {number} ends in whitespace"
+        if "\t" in line:
+            yield f"line {number} has a tab"
+        if ABSOLUTE_PATH.search(line):
+            yield f"line {number} has an absolute path"
+
+
+def breaches(root):
+    """All breaches as lines of text."""
+    for path in sources(root):
+        extension = os.path.splitext(path)[1]
+        if extension in NO_TEXT:
+            continue
+        try:
+            with open(os.path.join(root, path), encoding="utf-8", newline="") as file:
+                text = file.read()
+        except UnicodeDecodeError:
+            yield f"{path}: is no UTF-8 text"
+            continue
+        found = list(check_text(path, text))
+        if extension in CODE and module_of(path):
+            found += check_code(root, path, text)
+        for breach in found:
+            yield f"{path}: {breach}"
+    for module in MAY_INCLUDE:
+        if os.path.isdir(os.path.join(root, module)) and not os.path.exists(os.path.join(root, module, "README.md")):
+            yield f"{module}: has no README.md"
+
+
+def main():
+    found = list(breaches(sys.argv[1]))
+    for breach in found:
+        print(breach)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Breaks each rule of check_structure.py in a small tree of its own and expects it to be found."""
+
+import os
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from check_structure import breaches  # noqa: E402
+
+SOUND = {
+    "core/README.md": "# core\n",
+    "core/base/error.h": "#pragma once\n",
+    "core/data/grid.h": '#pragma once\n#include "core/base/error.h"\n',
+    "core/io/README.md": "# io\n",
+    "core/io/reader.h": "#pragma once\n",
+    "core/io/reader.cpp": '#include <vtkImageData.h>\n#include "core/io/reader.h"\n#include "core/data/grid.h"\n',
+    "core/picture/README.md": "# picture\n",
+    "core/picture/canvas.h": "#pragma once\n",
+    "interfaces/README.md": "# interfaces\n",
+    "interfaces/source.h": '#pragma once\n#include "core/data/grid.h"\n',
+}
+
+
+class StructureTest(unittest.TestCase):
+    def expect(self, files, expected):
+        with tempfile.TemporaryDirectory() as root:
+            for path, text in {**SOUND, **files}.items():
+                if text is None:
+                    continue
+                os.makedirs(os.path.dirname(os.path.join(root, path)), exist_ok=True)
+                with open(os.path.join(root, path), "w", encoding="utf-8", newline="") as file:
+                    file.write(text)
+            found = list(breaches(root))
+        self.assertEqual(len(found), 1 if expected else 0, found)
+        if expected:
+            self.assertIn(expected, found[0])
+
+    def test_sound_tree_has_none(self):
+        self.expect({}, None)
+
+    def test_include_directions(self):
+        self.expect({"core/data/a.h": '#pragma once\n#include "interfaces/source.h"\n'}, "core may not use interfaces")
+        self.expect({"core/data/a.h": '#pragma once\n#include "core/io/reader.h"\n'}, "core may not use core/io")
+        self.expect({"core/io/a.h": '#pragma once\n#include "core/picture/canvas.h"\n'}, "may not use core/picture")
+        self.expect({"core/base/a.h": '#pragma once\n#include "core/data/grid.h"\n'}, "below core/data")
+        self.expect({"interfaces/a.h": '#pragma once\n#include "source.h"\n'}, "no file of the project")
+
+    def test_heavy_headers(self):
+        heavy = {"core/io/a.h": "#pragma once\n#include <vtkImageData.h>\n", "core/io/a.cpp": '#include "core/io/a.h"\n'}
+        self.expect(heavy, None)
+        self.expect({**heavy, "core/io/b.h": '#pragma once\n#include "core/io/a.h"\n'}, "of their own folder")
+        parallel = {"core/base/a.h": "#pragma once\n#include <tbb/task_group.h>\n"}
+        self.expect({**parallel, "interfaces/a.cpp": '#include "core/base/a.h"\n'}, "of their own folder")
+        self.expect({"interfaces/a.cpp": "#include <vtkImageData.h>\n"}, "which is for core/io")
+        self.expect({"core/io/a.cpp": "#include <cairo/cairo.h>\n"}, "which is for core/picture")
+
+    def test_files(self):
+        self.expect({"core/base/a.h": "int a;\n"}, "#pragma once")
+        self.expect({"core/base/a.cpp": "int a; \n"}, "ends in whitespace")
+        self.expect({"core/base/a.cpp": "\tint a;\n"}, "has a tab")
+        self.expect({"core/base/a.cpp": "int a;"}, "end with a newline")
+        self.expect({"core/base/a.cpp": "int a;\n" * 401}, "more than 400")
+        self.expect({"core/base/a.cpp": '// see "/ho' + 'me/someone/x"\n'}, "absolute path")
+        self.expect({"interfaces/README.md": None}, "interfaces: has no README.md")
+
+
+if __name__ == "__main__":
+    unittest.main()
