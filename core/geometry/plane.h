@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// A plane in space: a point of it and a vector at right angles to it, of any length.
+struct Plane {
+  Vec3 origin;
+  Vec3 normal;
+
+  /// The axis that the normal is parallel to (0, 1, 2), if there is one.
+  [[nodiscard]] std::optional<int> axis() const;
+};
+
+/// A plane at right angles to an axis from text like "x=6" or "z = -1.5e3". Throws Error for anything else.
+Plane parse_plane(std::string_view text);
+
+/// As printed in messages: "x=6", or origin and normal.
+std::string to_string(const Plane& plane);
+
+/// Two-dimensional coordinates in a plane. Where the plane is at right angles to an axis, they are the space
+/// coordinates along the two others, in their order: (y, z), (x, z), (x, y). Elsewhere they are lengths from
+/// the plane's origin; `up` is the projection of z (of y, where z is nearly the normal), and the normal
+/// points to the viewer.
+struct PlaneFrame {
+  Vec3 origin;
+  Vec3 right, up;                   ///< unit vectors of the first and the second coordinate
+  std::string right_name, up_name;  ///< "x", "y", "z"; "u" and "v" in other planes
+
+  [[nodiscard]] std::array<double, 2> coordinates(const Vec3& p) const {
+    return {dot(right, p - origin), dot(up, p - origin)};
+  }
+};
+
+/// The frame of a plane whose normal is finite and not zero.
+PlaneFrame plane_frame(const Plane& plane);
+
+/// The part of a plane inside a box as a convex polygon, by clipping a great square; empty where they do not
+/// meet. A side of the box that lies in the plane counts.
+std::vector<Vec3> clip_plane(const Plane& plane, const Box3& box);
+
+/// Area of a plane polygon.
+double polygon_area(const std::vector<Vec3>& corners);
+
+}  // namespace adamas

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry/plane.h"
+
+namespace adamas {
+
+/// Which side of a plane the points of a box lie on, so that every part of a subdivision of the box that has
+/// points on both sides is cut, and the cuts fill the plane's part of the box once: points in the plane count
+/// as lying above it, or below where no point of the box lies below it. Distances that are round-off count as
+/// zero.
+class PlaneSides {
+ public:
+  /// Throws Error, naming `source`, for numbers that are not finite, a zero normal, and a plane that does not
+  /// cut the box.
+  PlaneSides(const Plane& plane, const Box3& box, std::string_view source);
+
+  [[nodiscard]] const Plane& plane() const { return plane_; }
+  /// Unit normal.
+  [[nodiscard]] const Vec3& normal() const { return normal_; }
+  /// Signed distance from the plane, positive where the normal points to.
+  [[nodiscard]] double distance(const Vec3& p) const { return snapped(dot(normal_, p - plane_.origin)); }
+  /// A distance, or zero where it is round-off.
+  [[nodiscard]] double snapped(double d) const { return d >= -tolerance_ && d <= tolerance_ ? 0 : d; }
+  /// The side of a point at this distance.
+  [[nodiscard]] bool above(double distance) const { return distance > 0 || (distance == 0 && zero_above_); }
+  /// Where the plane meets the way between two points on different sides of it. Points in the other order may
+  /// give other bits.
+  static Vec3 crossing(const Vec3& p, double dp, const Vec3& q, double dq) {
+    if (dp == 0) return p;
+    if (dq == 0) return q;
+    return p + (dp / (dp - dq)) * (q - p);
+  }
+
+ private:
+  Plane plane_;
+  Vec3 normal_;
+  double tolerance_ = 0;
+  bool zero_above_ = true;
+};
+
+/// The plane's part of a box inside the box that the sides were made for, as a convex polygon that runs
+/// counter-clockwise seen from where the normal points to; replaces `corners`. Boxes that fill the greater
+/// one have cuts that fill its cut.
+void cut_box(const PlaneSides& sides, const Box3& box, std::vector<Vec3>& corners);
+
+}  // namespace adamas

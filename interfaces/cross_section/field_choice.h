@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/data/multi_material_data.h"
+#include "interfaces/fields/field_source.h"
+
+namespace adamas {
+
+/// One number at each point made of a field: a component, or the length of a vector.
+struct FieldChoice {
+  std::size_t field = 0;
+  std::optional<std::size_t> component;  ///< none: the value of a scalar, the length of a vector
+
+  /// The number, given all components of the field.
+  [[nodiscard]] double scalar(std::span<const double> components) const;
+};
+
+/// Finds "NAME", or "NAME:C" for component C from 0 on, among the fields. Throws Error, naming `source` and
+/// the known fields, where there is none.
+FieldChoice find_field(std::span<const FieldInfo> fields, std::string_view text, std::string_view source);
+
+/// The chosen number's name and unit, as "velocity y [m/s]"; `|velocity|` for a length.
+std::string field_label(std::span<const FieldInfo> fields, const FieldChoice& choice);
+
+/// Names, units and offsets of the fields of data on a grid; without ranges.
+std::vector<FieldInfo> field_infos(const MultiMaterialData& data);
+
+}  // namespace adamas

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/partition.h"
+#include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/network/box_tree.h"
+
+namespace adamas {
+
+/// Finds the cell of a mesh that holds a point. Queries may run on several threads at once.
+class CellLocator {
+ public:
+  /// The mesh must outlive the locator.
+  explicit CellLocator(const ResampledMesh& mesh);
+
+  struct Location {
+    std::uint32_t cell;
+    Weights weights;  ///< of the point in the cell; those on its boundary may be below zero by round-off
+  };
+  /// None for a point outside the mesh's box. Of cells that share the point, the one with the lowest number
+  /// that the weights put it into.
+  [[nodiscard]] std::optional<Location> locate(const Vec3& p) const;
+
+ private:
+  const ResampledMesh& mesh_;
+  BoxTree tree_;
+};
+
+}  // namespace adamas

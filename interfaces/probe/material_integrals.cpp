@@ -1,0 +1,114 @@
+#include "interfaces/probe/material_integrals.h"
+
+#include <limits>
+
+#include "core/base/parallel.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::size_t kChunk = 2048;
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+using Integrals = IdVector<MaterialId, MaterialIntegral>;
+
+Integrals zeros(std::size_t materials, std::size_t values) {
+  return Integrals(materials, {0, std::vector<double>(values, 0.0), std::vector<double>(values, kNothing)});
+}
+
+void add(Integrals& to, const Integrals& from) {
+  for (MaterialId m(0); m.value < to.size(); ++m.value) {
+    to[m].volume += from[m].volume;
+    for (std::size_t c = 0; c < to[m].integral.size(); ++c) to[m].integral[c] += from[m].integral[c];
+  }
+}
+
+void find_means(Integrals& integrals) {
+  for (MaterialIntegral& i : integrals) {
+    for (std::size_t c = 0; c < i.mean.size(); ++c)
+      i.mean[c] = i.volume > 0 ? i.integral[c] / i.volume : kNothing;
+  }
+}
+
+Weights centroid(const std::array<Weights, 4>& corners) {
+  Weights w{};
+  for (std::size_t i = 0; i < 4; ++i)
+    w[i] = 0.25 * (corners[0][i] + corners[1][i] + corners[2][i] + corners[3][i]);
+  return w;
+}
+
+}  // namespace
+
+IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& mesh) {
+  std::size_t values = 0;
+  for (const FieldInfo& field : mesh.fields) values += static_cast<std::size_t>(field.components);
+  std::vector<Integrals> partial((mesh.cells.size() + kChunk - 1) / kChunk);
+  parallel_chunks(mesh.cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    Integrals& sums = partial[first / kChunk] = zeros(mesh.materials.size(), values);
+    CellOwnership ownership;
+    std::vector<OwnedTetrahedron> parts;
+    const auto add_part = [&](std::size_t cell, std::uint32_t owner, const Weights& center, double volume) {
+      MaterialIntegral& sum = sums[mesh.table.material(BodyId(owner))];
+      sum.volume += volume;
+      for (std::size_t c = 0; c < values; ++c)
+        sum.integral[c] += volume * mesh.value(cell, BodyId(owner), c, center);
+    };
+    for (std::size_t cell = first; cell < last; ++cell) {
+      const auto x = mesh.corners(cell);
+      const double volume = signed_volume(x[0], x[1], x[2], x[3]);
+      mesh.ownership(cell, ownership);
+      if (ownership.pure()) {
+        add_part(cell, ownership.problem.candidates[0].owner, {0.25, 0.25, 0.25, 0.25}, volume);
+        continue;
+      }
+      drop_hopeless(ownership.problem);
+      parts.clear();
+      partition_tetrahedron(ownership.problem, parts);
+      for (const OwnedTetrahedron& part : parts)
+        add_part(cell, part.owner, centroid(part.corners), volume * volume_fraction(part.corners));
+    }
+  });
+  Integrals integrals = zeros(mesh.materials.size(), values);
+  for (const Integrals& sums : partial) add(integrals, sums);
+  find_means(integrals);
+  return integrals;
+}
+
+IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialData& data) {
+  std::size_t values = 0;
+  for (const Field& field : data.fields) values += static_cast<std::size_t>(field.components);
+  std::vector<Integrals> layers(data.grid.sites(2));
+  parallel_for(layers.size(), 1, [&](std::size_t k) {
+    Integrals& sums = layers[k] = zeros(data.materials.size(), values);
+    const auto add_site = [&](std::size_t site, double site_volume) {
+      for (MaterialId m(0); m.value < sums.size(); ++m.value) {
+        const double volume = site_volume * static_cast<double>(data.fraction(m, site));
+        if (volume == 0) continue;
+        sums[m].volume += volume;
+        std::size_t row = 0;
+        for (const Field& field : data.fields) {
+          const auto components = static_cast<std::size_t>(field.components);
+          const std::vector<float>* given = &field.values;
+          if (field.per_material())
+            given = m.value < field.material_values.size() ? &field.material_values[m] : nullptr;
+          for (std::size_t c = 0; c < components; ++c, ++row) {
+            const bool known = given != nullptr && !given->empty();
+            sums[m].integral[row] +=
+                volume * (known ? static_cast<double>((*given)[site * components + c]) : kNothing);
+          }
+        }
+      }
+    };
+    for (std::size_t j = 0; j < data.grid.sites(1); ++j) {
+      for (std::size_t i = 0; i < data.grid.sites(0); ++i)
+        add_site(data.grid.site_index(i, j, k), data.grid.site_volume(i, j, k));
+    }
+  });
+  Integrals integrals = zeros(data.materials.size(), values);
+  for (const Integrals& sums : layers) add(integrals, sums);
+  find_means(integrals);
+  return integrals;
+}
+
+}  // namespace adamas

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/data/multi_material_data.h"
+#include "interfaces/mesh/resampled_mesh.h"
+
+namespace adamas {
+
+/// One material's volume and the integrals of its fields over its region.
+struct MaterialIntegral {
+  double volume = 0;
+  /// Of all components of all fields, laid out as FieldInfo::offset says; NaN for a field the material has
+  /// not.
+  std::vector<double> integral;
+  std::vector<double> mean;  ///< integral / volume; NaN without volume
+};
+
+/// Integrals of a resampled mesh: exact, to round-off, since fields are linear on each part of a cell.
+IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& mesh);
+
+/// Integrals of data on a grid: sums over the sites of volume times fraction times value. A mixed field's
+/// value counts for each material that the site holds.
+IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialData& data);
+
+}  // namespace adamas
