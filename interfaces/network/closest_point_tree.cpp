@@ -50,6 +50,7 @@ ClosestPointTree::ClosestPointTree(std::span<const Vec3> points, std::span<const
     const Triangle& t = triangles[index_[i]];
     corners_[i] = {points[t[0]], points[t[1]], points[t[2]]};
     place_[index_[i]] = static_cast<std::uint32_t>(i);
+    if (is_sliver(corners_[i])) index_[i] |= kSliver;
   });
 }
 
@@ -82,16 +83,19 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
     if (entry.count == 0) {
       const Node& node = nodes_[entry.first];
       const __m128 zero = _mm_setzero_ps();
-      __m128 sum = zero;
-      for (int axis = 0; axis < 3; ++axis) {
-        const __m128 under = _mm_sub_ps(_mm_load_ps(node.lower[axis]), high[axis]);
-        const __m128 over = _mm_sub_ps(low[axis], _mm_load_ps(node.upper[axis]));
-        const __m128 gap = _mm_max_ps(_mm_max_ps(under, over), zero);
-        sum = _mm_add_ps(sum, _mm_mul_ps(gap, gap));
-      }
       alignas(16) float distances[kWidth];
-      _mm_store_ps(distances, sum);
-      auto hits = static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(sum, _mm_set1_ps(bound))));
+      unsigned hits = 0;
+      for (int half = 0; half < kWidth; half += 4) {
+        __m128 sum = zero;
+        for (int axis = 0; axis < 3; ++axis) {
+          const __m128 under = _mm_sub_ps(_mm_load_ps(node.lower[axis] + half), high[axis]);
+          const __m128 over = _mm_sub_ps(low[axis], _mm_load_ps(node.upper[axis] + half));
+          const __m128 gap = _mm_max_ps(_mm_max_ps(under, over), zero);
+          sum = _mm_add_ps(sum, _mm_mul_ps(gap, gap));
+        }
+        _mm_store_ps(distances + half, sum);
+        hits |= static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(sum, _mm_set1_ps(bound)))) << half;
+      }
       const std::size_t base = top;
       for (; hits != 0; hits &= hits - 1) {
         const auto i = static_cast<unsigned>(__builtin_ctz(hits));
@@ -106,10 +110,12 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
       ADAMAS_ASSERT(top + kWidth <= kStackSize);
     } else {
       for (std::uint32_t i = entry.first; i < entry.first + entry.count; ++i) {
-        const TrianglePoint p = closest_on_triangle(q, corners_[i]);
+        const bool sliver = (index_[i] & kSliver) != 0;
+        const TrianglePoint p =
+            sliver ? detail::closest_on_sliver(q, corners_[i]) : detail::closest_on_proper(q, corners_[i]);
         if (p.squared_distance > best.squared_distance) continue;
-        if (p.squared_distance == best.squared_distance && index_[i] > best.triangle) continue;
-        best = {p.point, p.squared_distance, index_[i], p.feature};
+        if (p.squared_distance == best.squared_distance && index(i) > best.triangle) continue;
+        best = {p.point, p.squared_distance, index(i), p.feature};
         bound = box_bound(best.squared_distance, scale_);
       }
     }
@@ -132,7 +138,7 @@ void ClosestPointTree::validate() const {
   const auto missing = std::find(seen.begin(), seen.end(), 0);
   if (missing != seen.end()) fail("closest-point tree: place {} is in no leaf", missing - seen.begin());
   for (std::size_t i = 0; i < size(); ++i) {
-    if (place_[index_[i]] != i) fail("closest-point tree: place {} has the wrong triangle index", i);
+    if (place_[index(i)] != i) fail("closest-point tree: place {} has the wrong triangle index", i);
   }
 }
 

@@ -30,7 +30,7 @@ struct RayHit {
   std::array<double, 3> weights{};
 };
 
-/// A bounding-volume hierarchy over triangles, for closest points, rays and boxes. Nodes have four children
+/// A bounding-volume hierarchy over triangles, for closest points, rays and boxes. Nodes have eight children
 /// whose boxes are floats, rounded outwards; triangles are kept and tested in double. Results are those of
 /// testing every triangle in order, bit for bit; among triangles at equal distance the one of the lowest
 /// index is found.
@@ -40,7 +40,8 @@ class ClosestPointTree {
   static constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
   ClosestPointTree() = default;
-  /// Copies the corners. Points must be finite and indices within range; triangles may be degenerate.
+  /// Copies the corners. Points must be finite, indices within range and triangles fewer than 2^31; they may
+  /// be degenerate.
   ClosestPointTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
 
   [[nodiscard]] std::size_t size() const { return corners_.size(); }
@@ -74,9 +75,10 @@ class ClosestPointTree {
  private:
   friend class ClosestPointTreeBuilder;
 
-  static constexpr int kWidth = 4;
+  static constexpr int kWidth = 8;
   static constexpr std::uint32_t kLeafSize = 4;
-  static constexpr std::size_t kStackSize = 512;
+  static constexpr std::size_t kStackSize = 1024;
+  static constexpr std::uint32_t kSliver = 0x80000000u;
   static constexpr std::uint32_t kEmptySlot = 0xffffffffu;
 
   /// Child i is the node `first[i]` where `count[i]` is 0, and else the triangles at places [first, first +
@@ -91,14 +93,15 @@ class ClosestPointTree {
   template <class Visit>
   bool visit_overlapping(const Box3& box, Visit&& visit) const;
   void validate_node(std::uint32_t node, const Box3& within, std::vector<char>& seen) const;
+  [[nodiscard]] std::uint32_t index(std::size_t place) const { return index_[place] & ~kSliver; }
   [[nodiscard]] Vec3 to_tree(const Vec3& p) const { return scale_ * (p - center_); }
 
   using Nodes = std::vector<Node, HugePageAllocator<Node>>;
   using Corners = std::array<Vec3, 3>;
   Nodes nodes_;
   std::vector<Corners, HugePageAllocator<Corners>> corners_;  ///< in leaf order
-  std::vector<std::uint32_t> index_;                          ///< of the triangle at each place
-  std::vector<std::uint32_t> place_;                          ///< of the triangle of each index
+  std::vector<std::uint32_t> index_;  ///< of the triangle at each place, and its kSliver
+  std::vector<std::uint32_t> place_;  ///< of the triangle of each index
   Box3 bounds_;
   Vec3 center_;
   double scale_ = 1;  ///< a power of two: boxes are of scale (p - center)

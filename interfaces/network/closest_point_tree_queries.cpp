@@ -115,9 +115,9 @@ std::optional<RayHit> ClosestPointTree::first_hit(const Vec3& origin, const Vec3
     if (entry.count > 0) {
       for (std::uint32_t i = entry.first; i < entry.first + entry.count; ++i) {
         RayHit hit;
-        if (index_[i] == ignore || !ray.hits(corners_[i], hit)) continue;
-        if (hit.t > best.t || (hit.t == best.t && index_[i] > best.triangle)) continue;
-        hit.triangle = index_[i];
+        if (index(i) == ignore || !ray.hits(corners_[i], hit)) continue;
+        if (hit.t > best.t || (hit.t == best.t && index(i) > best.triangle)) continue;
+        hit.triangle = index(i);
         best = hit;
       }
       continue;
@@ -162,7 +162,7 @@ bool ClosestPointTree::visit_overlapping(const Box3& box, Visit&& visit) const {
         continue;
       }
       for (std::uint32_t k = node.first[i]; k < node.first[i] + node.count[i]; ++k) {
-        if (overlaps(corners_[k], box) && visit(index_[k])) return true;
+        if (overlaps(corners_[k], box) && visit(index(k))) return true;
       }
     }
   }

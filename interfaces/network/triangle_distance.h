@@ -65,9 +65,9 @@ inline TrianglePoint closest_on_edges(const Vec3& q, const std::array<Vec3, 3>& 
   return best;
 }
 
-/// For triangles almost or wholly without area, where the signs of the usual weights are made of rounding
-/// errors.
-inline TrianglePoint closest_on_sliver(const Vec3& q, const std::array<Vec3, 3>& corner, const Vec3& normal) {
+/// For slivers: the edges, and the face where the projection is inside.
+inline TrianglePoint closest_on_sliver(const Vec3& q, const std::array<Vec3, 3>& corner) {
+  const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
   TrianglePoint best = closest_on_edges(q, corner);
   const double squared = squared_norm(normal);
   if (!(squared > 0)) return best;
@@ -81,19 +81,13 @@ inline TrianglePoint closest_on_sliver(const Vec3& q, const std::array<Vec3, 3>&
   return best;
 }
 
-}  // namespace detail
-
-/// Closest point of a triangle by the Voronoi regions of its features (Ericson, Real-Time Collision
-/// Detection, 5.1.5). A triangle without area counts as its edges.
-inline TrianglePoint closest_on_triangle(const Vec3& q, const std::array<Vec3, 3>& corner) {
+/// For other triangles, by the Voronoi regions of their features (Ericson, Real-Time Collision
+/// Detection, 5.1.5).
+inline TrianglePoint closest_on_proper(const Vec3& q, const std::array<Vec3, 3>& corner) {
   const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0];
   const Vec3 ap = q - corner[0];
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
   if (d1 <= 0 && d2 <= 0) return {corner[0], squared_norm(ap), TriangleFeature::kVertex0};
-  const Vec3 normal = cross(ab, ac);
-  const double spread = std::max(squared_norm(ab), squared_norm(ac));
-  if (!(squared_norm(normal) > 1e-6 * spread * spread)) return detail::closest_on_sliver(q, corner, normal);
-
   const Vec3 bp = q - corner[1];
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return {corner[1], squared_norm(bp), TriangleFeature::kVertex1};
@@ -108,6 +102,20 @@ inline TrianglePoint closest_on_triangle(const Vec3& q, const std::array<Vec3, 3
   const double scale = 1 / (va + vb + vc);
   const Vec3 p = corner[0] + (vb * scale) * ab + (vc * scale) * ac;
   return {p, squared_norm(q - p), TriangleFeature::kFace};
+}
+
+}  // namespace detail
+
+/// Whether a triangle is so thin, or without area, that the usual weights may be made of rounding errors.
+inline bool is_sliver(const std::array<Vec3, 3>& corner) {
+  const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+  const double spread = std::max(squared_norm(ab), squared_norm(ac));
+  return !(squared_norm(cross(ab, ac)) > 1e-6 * spread * spread);
+}
+
+/// Closest point of a triangle. A triangle without area counts as its edges.
+inline TrianglePoint closest_on_triangle(const Vec3& q, const std::array<Vec3, 3>& corner) {
+  return is_sliver(corner) ? detail::closest_on_sliver(q, corner) : detail::closest_on_proper(q, corner);
 }
 
 }  // namespace adamas
