@@ -1,1 +1,87 @@
-int main() { return 0; }
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/interrupt.h"
+#include "cli/usage_error.h"
+
+namespace {
+
+enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130 };
+
+/// One line on stderr, whatever the text.
+void complain(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  std::fprintf(stderr, "adamas: error: %s\n", text.c_str());
+}
+
+int usage_status(const std::string& message, const std::string& command) {
+  complain(message);
+  std::fprintf(stderr, "Try 'adamas%s%s --help'.\n", command.empty() ? "" : " ", command.c_str());
+  return kWrongUsage;
+}
+
+/// The innermost command that was named, for the hint at --help.
+std::string named_command(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  if (parsed.empty()) return {};
+  const std::string inner = named_command(*parsed.front());
+  return parsed.front()->get_name() + (inner.empty() ? "" : " " + inner);
+}
+
+int run(CLI::App& app, adamas::Session& session, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    session.begin();
+    session.run();
+    session.console.clear();
+    session.console.flush();
+    return kDone;
+  } catch (const CLI::Success& e) {
+    const int status = app.exit(e);
+    session.console.flush();
+    return status;
+  } catch (const CLI::ParseError& e) {
+    return usage_status(e.what(), named_command(app));
+  } catch (const adamas::UsageError& e) {
+    return usage_status(e.what(), session.command);
+  }
+}
+
+/// All ways a run can end.
+int run_to_the_end(CLI::App& app, adamas::Session& session, int argc, char** argv) {
+  try {
+    return run(app, session, argc, argv);
+  } catch (const adamas::Cancelled&) {
+    session.console.clear();
+    std::fputs("adamas: cancelled\n", stderr);
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    session.console.clear();
+    complain("expected enough memory, found too little");
+  } catch (const std::exception& e) {
+    session.console.clear();
+    complain(e.what());
+  } catch (...) {
+    session.console.clear();
+    complain("stopped for a reason that is not known");
+  }
+  return kFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  adamas::catch_signals();
+  adamas::Session session;
+  CLI::App app("Adaptive tetrahedral meshes of multi-material data, with sharp interfaces.", "adamas");
+  adamas::add_all_commands(app, session);
+  return run_to_the_end(app, session, argc, argv);
+}

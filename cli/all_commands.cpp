@@ -1,0 +1,29 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "cli/command.h"
+#include "cli/config_file.h"
+#include "cli/version.h"
+
+namespace adamas {
+
+void add_all_commands(CLI::App& app, Session& session) {
+  app.set_help_flag("--help,-h", "Print this and stop");
+  app.set_version_flag("--version", std::string("adamas ") + kVersion, "Print the version and stop");
+  app.get_formatter()->column_width(36);
+  // Each command has an option of this name that hands its file on to here.
+  app.set_config("--config")->group("");
+  app.config_formatter(std::make_shared<ConfigFile>(app));
+  app.require_subcommand(1);
+  app.footer("Each command has its own --help with an example.");
+  add_generate(app, session);
+  add_info(app, session);
+  add_reconstruct(app, session);
+  add_resample(app, session);
+  add_slice(app, session);
+  add_probe(app, session);
+  add_completion(app, session);
+}
+
+}  // namespace adamas

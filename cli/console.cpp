@@ -1,0 +1,94 @@
+#include "cli/console.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "cli/interrupt.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::size_t kBarWidth = 24;
+constexpr std::chrono::milliseconds kBarInterval{100};
+
+/// Characters of UTF-8 text.
+std::size_t width(std::string_view text) {
+  const auto starts = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; };
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts));
+}
+
+void to_stderr(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+
+}  // namespace
+
+void Console::table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));
+  }
+  for (const auto& row : rows) {
+    std::string line = "  ";
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string space(widths[c] - width(row[c]), ' ');
+      line += c == 0 ? row[c] + space : "  " + space + row[c];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    print("{}\n", line);
+  }
+}
+
+void Console::write(std::string_view text) {
+  clear();
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void Console::write_note(const std::string& text) {
+  clear();
+  std::fflush(stdout);
+  to_stderr("adamas: note: " + text + "\n");
+}
+
+void Console::flush() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  if (errno == EPIPE || errno == 0) return;
+  fail("standard output: could not be written: {}", std::strerror(errno));
+}
+
+void Console::report(std::string_view stage, double fraction) {
+  if (quiet) return;
+  // What follows a colon changes from step to step.
+  const std::string_view name = stage.substr(0, stage.find(':'));
+  if (verbose && name != stage_) {
+    clear();
+    stage_ = name;
+    to_stderr(fmt::format("adamas: {:8.2f} s  {}\n", seconds(), name));
+  }
+  if (isatty(STDERR_FILENO) == 0 || Clock::now() - drawn_ < kBarInterval) return;
+  std::string bar;
+  if (fraction >= 0) {
+    const double part = std::clamp(fraction, 0.0, 1.0);
+    const auto full = static_cast<std::size_t>(part * static_cast<double>(kBarWidth));
+    bar = fmt::format("[{:<{}}] {:3.0f}%  ", std::string(full, '#'), kBarWidth, 100 * part);
+  }
+  to_stderr(fmt::format("\r\033[K{}{}  {:.1f} s", bar, stage, seconds()));
+  bar_ = true;
+  drawn_ = Clock::now();
+}
+
+bool Console::cancelled() const { return interrupted(); }
+
+void Console::clear() {
+  if (bar_) to_stderr("\r\033[K");
+  bar_ = false;
+}
+
+double Console::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+}  // namespace adamas

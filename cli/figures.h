@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/base/typed_id.h"
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// The figures of a run as `--json` writes them; keys stay in the order of their making.
+using Figures = nlohmann::ordered_json;
+
+/// Writes indented JSON; numbers that are not finite become null.
+void write_figures(const std::filesystem::path& path, const Figures& figures);
+
+/// [x0, x1, y0, y1, z0, z1].
+Figures box_figures(const Box3& box);
+
+/// Greatest resident memory of this process so far.
+std::size_t peak_memory_bytes();
+
+/// A volume with six digits.
+std::string volume_text(double volume);
+
+/// What became of a volume, in percent: "-0.02%"; "-" where there was none.
+std::string difference_text(double before, double after);
+
+/// "1.5 GiB".
+std::string bytes_text(double bytes);
+
+/// "[0, 1] x [0, 1] x [0, 1]".
+std::string box_text(const Box3& box);
+
+}  // namespace adamas

@@ -1,0 +1,156 @@
+#include "cli/given_interfaces.h"
+
+#include <algorithm>
+#include <array>
+
+#include "cli/option_values.h"
+#include "cli/usage_error.h"
+#include "core/io/array_names.h"
+#include "core/io/field_assembly.h"
+#include "core/io/grid_file.h"
+#include "core/io/input_file.h"
+#include "core/io/interface_mesh_io.h"
+#include "interfaces/grid_source.h"
+#include "interfaces/network/check.h"
+
+namespace adamas {
+
+namespace {
+
+/// How much larger than the interfaces their domain is on each side, where it is not given.
+constexpr double kMargin = 0.05;
+
+InterfaceMesh read_surface_option(const std::string& text) {
+  const auto [file, pair] = parse_assignment("--interface", text, true);
+  const std::size_t comma = pair.find(',');
+  const std::string front = pair.substr(0, comma);
+  const std::string back = comma == std::string::npos ? "" : pair.substr(comma + 1);
+  if (front.empty() || back.empty() || front == back) {
+    wrong_usage("--interface: expected FILE=FRONT,BACK with two materials, found '{}'", text);
+  }
+  check_input_file(file);
+  if (input_kind(file) != InputKind::kSurface) {
+    fail("{}: expected a surface (.obj, .off, .ply, .stl) for --interface, found something else", file);
+  }
+  return read_surface(file, front, back);
+}
+
+Box3 domain_of(const InterfaceMesh& mesh) {
+  Box3 box;
+  for (const Vec3& p : mesh.points) box.extend(p);
+  const Vec3 size = box.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double margin = kMargin * (size[axis] > 0 ? size[axis] : box.diagonal());
+    box.min[axis] -= margin;
+    box.max[axis] += margin;
+  }
+  return box;
+}
+
+/// A grid that knows no materials: all arrays are fields.
+MultiMaterialData read_fields(const InputOptions& options) {
+  if (!options.region.empty()) wrong_usage("--region: expected a grid with materials");
+  GridFile file = read_grid_file(options.path);
+  MultiMaterialData data;
+  data.source = options.path;
+  data.grid.nodes = file.nodes;
+  if (!file.arrays.empty()) data.grid.centering = file.arrays.front().centering;
+  add_fields(std::move(file.arrays), data);
+  return data;
+}
+
+bool has_materials(const InputOptions& options) {
+  if (options.any_material_option()) return true;
+  const GridFile file = read_grid_file(options.path);
+  return std::any_of(file.arrays.begin(), file.arrays.end(),
+                     [](const GridArray& array) { return fraction_material(array.name).has_value(); });
+}
+
+/// Gives the mesh the materials of the data, in their order; those of the mesh alone come after them.
+void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
+  IdVector<MaterialId, MaterialId> renamed;
+  for (const std::string& name : mesh.materials) {
+    const auto found = std::find(data.materials.begin(), data.materials.end(), name);
+    if (found == data.materials.end()) {
+      std::string known;
+      for (const std::string& m : data.materials) known += (known.empty() ? "" : ", ") + m;
+      fail("{}: expected the materials of {} ({}), found '{}'", mesh.source, data.source, known, name);
+    }
+    renamed.push_back(MaterialId(static_cast<std::size_t>(found - data.materials.begin())));
+  }
+  for (InterfaceTriangle& t : mesh.triangles) t.front = renamed[t.front], t.back = renamed[t.back];
+  mesh.materials = data.materials;
+}
+
+void print_report(const InterfaceMeshReport& report, const std::string& name, Console& console) {
+  if (report.degenerate_triangles > 0) {
+    console.note("{}: {} triangles without area are left out", name, report.degenerate_triangles);
+  }
+  if (report.open_border_edges > 0) {
+    console.note("{}: {} edges are open borders; points beyond them may get a wrong material", name,
+                 report.open_border_edges);
+  }
+  if (report.flipped_edges > 0) {
+    console.note("{}: materials do not match round {} edges", name, report.flipped_edges);
+  }
+  if (report.intersections > 0) {
+    console.note("{}: {} pairs of triangles intersect", name, report.intersections);
+  }
+}
+
+}  // namespace
+
+bool has_given_interfaces(const InputOptions& options) {
+  return !options.interfaces.empty() ||
+         (!options.path.empty() && input_kind(options.path) == InputKind::kNetwork);
+}
+
+InterfaceMesh read_given_interfaces(const InputOptions& options) {
+  std::vector<InterfaceMesh> meshes;
+  if (!options.path.empty() && input_kind(options.path) == InputKind::kNetwork) {
+    check_input_file(options.path);
+    meshes.push_back(file_extension(options.path) == ".vtp"
+                         ? read_interface_mesh(options.path)
+                         : read_labelled_network(options.path, options.region_names));
+  } else if (!options.region_names.empty()) {
+    wrong_usage("--region-names: expected a labelled network as INPUT");
+  }
+  for (const std::string& text : options.interfaces) meshes.push_back(read_surface_option(text));
+  if (meshes.size() == 1) return std::move(meshes.front());
+  InterfaceMesh merged = merge(meshes);
+  if (merged.source.empty()) merged.source = meshes.front().source;
+  return merged;
+}
+
+ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_ptr<MultiMaterialData>& data,
+                                       Console& console) {
+  const bool gridded = !options.path.empty() && input_kind(options.path) == InputKind::kGrid;
+  if (!options.path.empty() && !gridded && input_kind(options.path) != InputKind::kNetwork) {
+    fail("{}: expected a grid or a labelled network beside --interface, found a mesh", options.path);
+  }
+  if (!gridded && options.any_material_option()) {
+    wrong_usage("options of volume fractions, labels and fields: expected a grid as INPUT");
+  }
+  std::optional<Box3> box;
+  if (!options.box.empty()) box = to_box(parse_bounds("--box", options.box));
+  console.step("reading interfaces", -1);
+  InterfaceMesh mesh = read_given_interfaces(options);
+  if (gridded && has_materials(options)) {
+    data = std::make_unique<MultiMaterialData>(load_data(options, console));
+    adopt_materials(*data, mesh);
+  } else if (gridded) {
+    data = std::make_unique<MultiMaterialData>(read_fields(options));
+    data->materials = mesh.materials;
+    data->labels.assign(data->grid.site_count(), 0);
+    data->check();
+    data->labels.clear();
+  }
+  if (!box && !mesh.triangles.empty()) box = data ? data->grid.domain() : domain_of(mesh);
+  console.step("checking interfaces", -1);
+  const InterfaceCheckOptions how{options.tolerant, options.tolerant};
+  print_report(check_interface_mesh(mesh, box ? &*box : nullptr, how), mesh.source, console);
+  console.step("finding bodies", -1);
+  return make_mesh_source(mesh, *box, data.get());
+}
+
+}  // namespace adamas

@@ -1,0 +1,279 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/given_interfaces.h"
+#include "cli/input_options.h"
+#include "core/io/array_names.h"
+#include "core/io/file_summary.h"
+#include "core/io/input_file.h"
+#include "core/io/interface_mesh_io.h"
+#include "core/io/unstructured_mesh_io.h"
+#include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/network/check.h"
+
+namespace adamas {
+
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+void print_grid(const FileSummary& s, Console& console, Figures& figures) {
+  if (s.nodes[0] > 0) {
+    figures["nodes"] = s.nodes;
+    console.print("  {} x {} x {} nodes\n", s.nodes[0], s.nodes[1], s.nodes[2]);
+  }
+  figures["points"] = s.points;
+  figures["cells"] = s.cells;
+  console.print("  {} points, {} cells\n", s.points, s.cells);
+  if (s.points > 0) {
+    figures["box"] = box_figures(s.box);
+    console.print("  {}\n", box_text(s.box));
+  }
+}
+
+void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
+  figures["arrays"] = Figures::array();
+  Rows rows{{"array", "on", "type", "components", "from", "to"}};
+  for (const ArraySummary& a : s.arrays) {
+    const bool ranged = a.min <= a.max;
+    figures["arrays"].push_back({{"name", a.name},
+                                 {"on", a.of},
+                                 {"type", a.type},
+                                 {"components", a.components},
+                                 {"min", ranged ? Figures(a.min) : Figures(nullptr)},
+                                 {"max", ranged ? Figures(a.max) : Figures(nullptr)}});
+    rows.push_back({a.name, a.of, a.type, std::to_string(a.components),
+                    ranged ? fmt::format("{:.6g}", a.min) : "-",
+                    ranged ? fmt::format("{:.6g}", a.max) : "-"});
+  }
+  if (rows.size() > 1) console.table(rows);
+}
+
+/// Volumes of the materials as their fractions or labels say.
+IdVector<MaterialId, double> volumes(const MultiMaterialData& data) {
+  IdVector<MaterialId, double> result(data.materials.size(), 0.0);
+  std::size_t site = 0;
+  for (std::size_t k = 0; k < data.grid.sites(2); ++k) {
+    for (std::size_t j = 0; j < data.grid.sites(1); ++j) {
+      for (std::size_t i = 0; i < data.grid.sites(0); ++i, ++site) {
+        const double volume = data.grid.site_volume(i, j, k);
+        if (!data.labels.empty()) {
+          result[MaterialId(data.labels[site])] += volume;
+          continue;
+        }
+        for (MaterialId m(0); m.value < result.size(); ++m.value) {
+          result[m] += volume * static_cast<double>(data.fractions[m][site]);
+        }
+      }
+    }
+  }
+  return result;
+}
+
+void print_volumes(const IdVector<MaterialId, std::string>& names, const IdVector<MaterialId, double>& of,
+                   Console& console, Figures& figures) {
+  double whole = 0;
+  for (const double v : of) whole += v;
+  figures["materials"] = Figures::array();
+  Rows rows{{"material", "volume", "part"}};
+  for (MaterialId m(0); m.value < names.size(); ++m.value) {
+    figures["materials"].push_back({{"name", names[m]}, {"volume", of[m]}});
+    rows.push_back(
+        {names[m], volume_text(of[m]), fmt::format("{:.3f}%", whole > 0 ? 100 * of[m] / whole : 0)});
+  }
+  console.table(rows);
+}
+
+/// Least and greatest value, of lengths for vectors, over all materials.
+std::pair<double, double> range_of(const Field& field) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const auto add = [&](const std::vector<float>& values) {
+    const auto n = static_cast<std::size_t>(field.components);
+    for (std::size_t i = 0; i + n <= values.size(); i += n) {
+      double value = static_cast<double>(values[i]);
+      if (n > 1) {
+        value = 0;
+        for (std::size_t c = 0; c < n; ++c) value = std::hypot(value, static_cast<double>(values[i + c]));
+      }
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  };
+  add(field.values);
+  for (const auto& values : field.material_values) add(values);
+  return {low, high};
+}
+
+void print_fields(const MultiMaterialData& data, Console& console, Figures& figures) {
+  figures["fields"] = Figures::array();
+  Rows rows{{"field", "unit", "components", "of", "from", "to"}};
+  for (const Field& field : data.fields) {
+    const auto [low, high] = range_of(field);
+    figures["fields"].push_back({{"name", field.name},
+                                 {"unit", field.unit},
+                                 {"components", field.components},
+                                 {"per_material", field.per_material()},
+                                 {"min", low},
+                                 {"max", high}});
+    rows.push_back({field.name, field.unit.empty() ? "-" : field.unit, std::to_string(field.components),
+                    field.per_material() ? "each material" : "all", fmt::format("{:.6g}", low),
+                    fmt::format("{:.6g}", high)});
+  }
+  if (rows.size() > 1) console.table(rows);
+}
+
+void print_data(const InputOptions& options, Console& console, Figures& figures) {
+  const MultiMaterialData data = load_data(options, console);
+  console.print("\n");
+  print_volumes(data.materials, volumes(data), console, figures);
+  print_fraction_report(data, console);
+  if (data.labels.empty()) {
+    figures["fraction_sum_min"] = data.report.sum_min;
+    figures["fraction_sum_max"] = data.report.sum_max;
+  }
+  console.print("\n");
+  print_fields(data, console, figures);
+}
+
+void print_resampled(const ResampledMesh& mesh, Console& console, Figures& figures) {
+  std::map<int, std::size_t> levels;
+  for (const auto& cell : mesh.cells) ++levels[cell.level];
+  Rows rows{{"level", "tetrahedra"}};
+  figures["levels"] = Figures::array();
+  for (const auto& [level, count] : levels) {
+    rows.push_back({std::to_string(level), std::to_string(count)});
+    figures["levels"].push_back({{"level", level}, {"tetrahedra", count}});
+  }
+  figures["bodies"] = mesh.table.body_count();
+  figures["interfaces"] = mesh.table.interface_count();
+  console.print("  {} bodies, {} interfaces, resampled from {}\n\n", mesh.table.body_count(),
+                mesh.table.interface_count(), mesh.source);
+  console.table(rows);
+  IdVector<MaterialId, double> of(mesh.materials.size(), 0.0);
+  const auto bodies = body_volumes(mesh.table, mesh.cell_set());
+  for (BodyId b(0); b.value < bodies.size(); ++b.value) of[mesh.table.material(b)] += bodies[b];
+  console.print("\n");
+  print_volumes(mesh.materials, of, console, figures);
+  rows = {{"field", "unit", "components", "from", "to", "greatest error"}};
+  figures["fields"] = Figures::array();
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    const FieldInfo& info = mesh.fields[f];
+    double worst = 0;
+    for (const double e : mesh.field_errors[f]) worst = std::max(worst, e);
+    figures["fields"].push_back({{"name", info.name},
+                                 {"unit", info.unit},
+                                 {"components", info.components},
+                                 {"min", info.min},
+                                 {"max", info.max},
+                                 {"max_error", worst}});
+    rows.push_back({info.name, info.unit.empty() ? "-" : info.unit, std::to_string(info.components),
+                    fmt::format("{:.6g}", info.min), fmt::format("{:.6g}", info.max),
+                    fmt::format("{:.4g}", worst)});
+  }
+  console.print("\n");
+  if (rows.size() > 1) console.table(rows);
+}
+
+/// Interfaces, and whether the mesh is sound.
+void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures) {
+  figures["materials"] = Figures::array();
+  for (const std::string& name : mesh.materials) figures["materials"].push_back({{"name", name}});
+  std::map<std::pair<MaterialId, MaterialId>, std::size_t> counts;
+  for (const InterfaceTriangle& t : mesh.triangles) ++counts[std::minmax(t.front, t.back)];
+  figures["interfaces"] = Figures::array();
+  Rows rows{{"interface", "triangles"}};
+  for (const auto& [pair, count] : counts) {
+    const std::string &a = mesh.materials[pair.first], &b = mesh.materials[pair.second];
+    rows.push_back({a + " | " + b, std::to_string(count)});
+    figures["interfaces"].push_back({{"materials", {a, b}}, {"triangles", count}});
+  }
+  console.table(rows);
+  InterfaceMeshReport report;
+  try {
+    report = check_interface_mesh(mesh, nullptr, {true, true});
+  } catch (const Error& e) {
+    figures["unsound"] = e.what();
+    console.print("  not usable: {}\n", e.what());
+    return;
+  }
+  figures["degenerate_triangles"] = report.degenerate_triangles;
+  figures["junction_edges"] = report.junction_edges;
+  figures["open_border_edges"] = report.open_border_edges;
+  figures["flipped_edges"] = report.flipped_edges;
+  figures["intersections"] = report.intersections;
+  console.table({{"triangles without area", std::to_string(report.degenerate_triangles)},
+                 {"edges where more than two meet", std::to_string(report.junction_edges)},
+                 {"open border edges", std::to_string(report.open_border_edges)},
+                 {"edges round which materials do not match", std::to_string(report.flipped_edges)},
+                 {"pairs of triangles that intersect", std::to_string(report.intersections)}});
+}
+
+bool has_data(const FileSummary& s, const InputOptions& options) {
+  return options.any_material_option() || std::any_of(s.arrays.begin(), s.arrays.end(), [](const auto& a) {
+           return fraction_material(a.name).has_value();
+         });
+}
+
+void print_details(const FileSummary& s, const InputOptions& options, Console& console, Figures& figures) {
+  switch (input_kind(options.path)) {
+    case InputKind::kGrid:
+      print_arrays(s, console, figures);
+      if (has_data(s, options)) print_data(options, console, figures);
+      return;
+    case InputKind::kMesh: {
+      const UnstructuredMesh mesh = read_unstructured_mesh(options.path);
+      if (is_resampled_mesh(mesh)) {
+        figures["kind"] = "resampled mesh";
+        return print_resampled(from_unstructured_mesh(mesh, options.path), console, figures);
+      }
+      return print_arrays(s, console, figures);
+    }
+    case InputKind::kNetwork: {
+      const bool labelled = file_extension(options.path) != ".vtp";
+      if (labelled || !s.materials.empty()) {
+        return print_network(read_given_interfaces(options), console, figures);
+      }
+      return print_arrays(s, console, figures);
+    }
+    case InputKind::kSurface:
+      break;
+  }
+}
+
+void run(const InputOptions& options, Session& session) {
+  check_input_file(options.path);
+  session.console.step("reading " + options.path, -1);
+  const FileSummary summary = summarize_file(options.path);
+  Figures figures{{"file", options.path}, {"kind", summary.kind}};
+  session.console.print("{}: {}\n", options.path, summary.kind);
+  print_grid(summary, session.console, figures);
+  print_details(summary, options, session.console, figures);
+  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  session.outputs.commit();
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<InputOptions>();
+  CLI::App* command = add_command(app, session, "info", "What is in a file", "adamas info cth.vtr",
+                                  [options, &session] { run(*options, session); });
+  command->add_option("input", options->path, "Data on a grid, a mesh, interfaces or a surface")
+      ->required()
+      ->type_name("FILE");
+  add_material_options(*command, *options);
+  command
+      ->add_option("--region-names", options->region_names, "Names of a network's labels, LABEL NAME a line")
+      ->type_name("FILE")
+      ->group("Input");
+}
+
+}  // namespace adamas

@@ -1,0 +1,113 @@
+#include "cli/option_values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "cli/usage_error.h"
+
+namespace adamas {
+
+namespace {
+
+std::optional<double> to_number(const std::string& text) {
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+}  // namespace
+
+double parse_number(const std::string& option, const std::string& text) {
+  const auto value = to_number(text);
+  if (!value) wrong_usage("{}: expected a finite number, found '{}'", option, text);
+  return *value;
+}
+
+double parse_positive(const std::string& option, const std::string& text) {
+  const auto value = to_number(text);
+  if (!value || !(*value > 0)) wrong_usage("{}: expected a positive number, found '{}'", option, text);
+  return *value;
+}
+
+std::size_t parse_count(const std::string& option, const std::string& text) {
+  std::size_t value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || value == 0) {
+    wrong_usage("{}: expected a whole number of at least 1, found '{}'", option, text);
+  }
+  return value;
+}
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
+  std::vector<double> values;
+  for (const std::string& part : split(text)) {
+    if (const auto value = to_number(part)) values.push_back(*value);
+  }
+  if (values.size() != count || split(text).size() != count) {
+    wrong_usage("{}: expected {} finite numbers with commas between them, found '{}'", option, count, text);
+  }
+  return values;
+}
+
+Vec3 parse_vector(const std::string& option, const std::string& text) {
+  const auto v = parse_numbers(option, text, 3);
+  return {v[0], v[1], v[2]};
+}
+
+std::array<double, 6> parse_bounds(const std::string& option, const std::string& text) {
+  const auto v = parse_numbers(option, text, 6);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (v[2 * axis] < v[2 * axis + 1]) continue;
+    wrong_usage("{}: expected {}0 < {}1 in x0,x1,y0,y1,z0,z1, found '{}'", option, "xyz"[axis], "xyz"[axis],
+                text);
+  }
+  return {v[0], v[1], v[2], v[3], v[4], v[5]};
+}
+
+Box3 to_box(const std::array<double, 6>& b) { return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}}; }
+
+std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std::string& text) {
+  std::vector<std::string> parts = split(text);
+  if (parts.size() == 1) parts.resize(3, parts[0]);
+  std::array<std::size_t, 3> counts{};
+  bool good = parts.size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const char* end = parts[i].data() + parts[i].size();
+    const auto [at, code] = std::from_chars(parts[i].data(), end, counts[i]);
+    good = code == std::errc() && at == end && counts[i] > 0;
+  }
+  if (!good) wrong_usage("{}: expected numbers of cells X,Y,Z of at least 1, found '{}'", option, text);
+  return counts;
+}
+
+std::pair<std::string, std::string> parse_assignment(const std::string& option, const std::string& text,
+                                                     bool at_last) {
+  const std::size_t at = at_last ? text.rfind('=') : text.find('=');
+  if (at == std::string::npos || at == 0 || at + 1 == text.size()) {
+    wrong_usage("{}: expected two parts with '=' between them, found '{}'", option, text);
+  }
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+ErrorTarget parse_error_target(const std::string& option, const std::string& text) {
+  const bool relative = !text.empty() && text.back() == '%';
+  const auto value = to_number(relative ? text.substr(0, text.size() - 1) : text);
+  if (!value || !(*value > 0)) {
+    wrong_usage("{}: expected a positive error as 0.15 or 1%, found '{}'", option, text);
+  }
+  return {relative ? *value / 100 : *value, relative};
+}
+
+}  // namespace adamas

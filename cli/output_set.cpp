@@ -1,0 +1,90 @@
+#include "cli/output_set.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "cli/usage_error.h"
+#include "core/base/error.h"
+
+namespace adamas {
+
+namespace {
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  return text;
+}
+
+void check_extension(const std::string& option, const std::filesystem::path& path,
+                     std::initializer_list<const char*> extensions) {
+  if (extensions.size() == 0) return;
+  const std::string found = lower_case(path.extension().string());
+  std::string known;
+  for (const char* extension : extensions) {
+    if (found == extension) return;
+    known += (known.empty() ? "" : ", ") + std::string(extension);
+  }
+  wrong_usage("{}: expected a file name that ends in {}, found '{}'", option, known, path.string());
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+}  // namespace
+
+void OutputSet::declare(const std::string& option, const std::string& path,
+                        std::initializer_list<const char*> extensions) {
+  if (path.empty()) return;
+  check_extension(option, path, extensions);
+  const std::filesystem::path full = std::filesystem::absolute(path).lexically_normal();
+  for (const auto& file : files_) {
+    if (std::filesystem::absolute(file->path()).lexically_normal() == full) {
+      wrong_usage("{}: expected another name for each output, found {} twice", option, path);
+    }
+  }
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+      !std::filesystem::is_directory(status)) {
+    fail("{}: expected the name of a plain file, found something else there", path);
+  }
+  files_.push_back(std::make_unique<OutputFile>(path));
+}
+
+const OutputFile* OutputSet::find(const std::string& path) const {
+  const auto at =
+      std::find_if(files_.begin(), files_.end(), [&path](const auto& file) { return file->path() == path; });
+  return at == files_.end() ? nullptr : at->get();
+}
+
+void OutputSet::write(const std::string& path,
+                      const std::function<void(const std::filesystem::path&)>& writer) {
+  const OutputFile* file = find(path);
+  if (file == nullptr) return;
+  try {
+    writer(file->temporary());
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {
+    fail("{}", replaced(e.what(), file->temporary().string(), path));
+  }
+}
+
+std::size_t OutputSet::bytes(const std::string& path) const {
+  const OutputFile* file = find(path);
+  std::error_code code;
+  const auto size = file == nullptr ? 0 : std::filesystem::file_size(file->temporary(), code);
+  return code ? 0 : static_cast<std::size_t>(size);
+}
+
+void OutputSet::commit() {
+  for (const auto& file : files_) file->commit();
+  files_.clear();
+}
+
+}  // namespace adamas

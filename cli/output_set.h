@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/output_file.h"
+
+namespace adamas {
+
+/// The outputs of one run: they get their names together, when all of them are whole.
+class OutputSet {
+ public:
+  /// An output that will be written, to be declared before long work; an empty path is none. Throws
+  /// UsageError for an extension that is not among those given or a path declared before, and Error where its
+  /// folder cannot be used.
+  void declare(const std::string& option, const std::string& path,
+               std::initializer_list<const char*> extensions = {});
+  /// Calls `writer` with the name to write to, if the path was declared. Its Errors name the final path.
+  void write(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
+  /// Bytes written for a path.
+  [[nodiscard]] std::size_t bytes(const std::string& path) const;
+  void commit();
+
+ private:
+  [[nodiscard]] const OutputFile* find(const std::string& path) const;
+
+  std::vector<std::unique_ptr<OutputFile>> files_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,166 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/option_values.h"
+#include "cli/point_table.h"
+#include "cli/slice_input.h"
+#include "cli/usage_error.h"
+#include "core/io/output_stream.h"
+#include "interfaces/cross_section/field_choice.h"
+#include "interfaces/probe/material_integrals.h"
+
+namespace adamas {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  std::string points, line, output;
+  std::vector<std::string> single;
+};
+
+/// "x,y,z..x,y,z,n".
+std::vector<Vec3> parse_line(const std::string& text) {
+  const std::size_t dots = text.find("..");
+  const std::size_t comma = text.rfind(',');
+  if (dots == std::string::npos || comma == std::string::npos || comma < dots) {
+    wrong_usage("--line: expected x,y,z..x,y,z,n, found '{}'", text);
+  }
+  const std::size_t count = parse_count("--line", text.substr(comma + 1));
+  if (count < 2 || count > 100'000'000) {
+    wrong_usage("--line: expected 2 to 100000000 points, found {}", count);
+  }
+  return line_points(parse_vector("--line", text.substr(0, dots)),
+                     parse_vector("--line", text.substr(dots + 2, comma - dots - 2)), count);
+}
+
+std::vector<Vec3> wanted_points(const Options& options) {
+  std::vector<Vec3> points;
+  for (const std::string& text : options.single) points.push_back(parse_vector("--point", text));
+  if (!options.line.empty()) {
+    const auto line = parse_line(options.line);
+    points.insert(points.end(), line.begin(), line.end());
+  }
+  if (!options.points.empty()) {
+    const auto file = read_points(options.points);
+    points.insert(points.end(), file.begin(), file.end());
+  }
+  return points;
+}
+
+Figures known(double value) { return std::isfinite(value) ? Figures(value) : Figures(nullptr); }
+
+/// One number of a field as it is, a list for vectors.
+Figures components(const std::vector<double>& row, const FieldInfo& info) {
+  if (info.components == 1) return known(row[info.offset]);
+  Figures list = Figures::array();
+  for (int c = 0; c < info.components; ++c)
+    list.push_back(known(row[info.offset + static_cast<std::size_t>(c)]));
+  return list;
+}
+
+std::string components_text(const std::vector<double>& row, const FieldInfo& info) {
+  std::string text;
+  for (int c = 0; c < info.components; ++c) {
+    const double value = row[info.offset + static_cast<std::size_t>(c)];
+    text +=
+        (text.empty() ? "" : " ") + (std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string("-"));
+  }
+  return text;
+}
+
+void report_integrals(const IdVector<MaterialId, MaterialIntegral>& integrals,
+                      const IdVector<MaterialId, std::string>& materials,
+                      const std::vector<FieldInfo>& fields, bool print, Console& console, Figures& figures) {
+  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
+  for (const FieldInfo& f : fields) {
+    rows[0].push_back("integral of " + f.name);
+    rows[0].push_back("mean");
+  }
+  figures["materials"] = Figures::array();
+  for (MaterialId m(0); m.value < materials.size(); ++m.value) {
+    Figures figure{{"name", materials[m]}, {"volume", integrals[m].volume}, {"fields", Figures::object()}};
+    rows.push_back({materials[m], volume_text(integrals[m].volume)});
+    for (const FieldInfo& f : fields) {
+      figure["fields"][f.name] = {{"integral", components(integrals[m].integral, f)},
+                                  {"mean", components(integrals[m].mean, f)}};
+      rows.back().push_back(components_text(integrals[m].integral, f));
+      rows.back().push_back(components_text(integrals[m].mean, f));
+    }
+    figures["materials"].push_back(std::move(figure));
+  }
+  if (print) console.table(rows);
+}
+
+void run(const Options& options, Session& session) {
+  Console& console = session.console;
+  const bool meshed = input_kind(options.input.path) == InputKind::kMesh;
+  if (meshed && options.input.any_material_option()) {
+    wrong_usage("options of volume fractions, labels and fields: expected data on a grid as INPUT");
+  }
+  session.outputs.declare("-o", options.output, {".csv", ".txt"});
+  const std::vector<Vec3> points = wanted_points(options);
+  if (points.empty() && !options.output.empty()) {
+    wrong_usage("-o: expected --points, --point or --line as well");
+  }
+  Figures figures{{"points", points.size()}};
+  PointTable table;
+  const bool to_stdout = options.output.empty() && !points.empty();
+  if (meshed) {
+    const ResampledMesh mesh = load_resampled_mesh(options.input.path, console);
+    console.step("probing", -1);
+    table = {mesh.materials, mesh.fields, probe(mesh, points)};
+    report_integrals(material_integrals(mesh), mesh.materials, mesh.fields, !to_stdout, console, figures);
+  } else {
+    const Input input = load_input(options.input, console);
+    const std::vector<FieldInfo> fields =
+        input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>();
+    console.step("probing", -1);
+    table = {input.source.materials, fields, probe(input.source, points)};
+    if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
+      report_integrals(material_integrals(*input.data), input.data->materials, field_infos(*input.data),
+                       !to_stdout, console, figures);
+    }
+  }
+  if (to_stdout) console.write(table.csv());
+  session.outputs.write(options.output, [&](const auto& path) {
+    OutputStream stream(path);
+    stream.write(table.csv());
+    stream.finish();
+  });
+  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  session.outputs.commit();
+}
+
+}  // namespace
+
+void add_probe(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(app, session, "probe", "Values and materials at points, and integrals per material",
+                  "adamas probe mesh.vtu --line 0,0,-8..0,0,4,200 -o line.csv",
+                  [options, &session] { run(*options, session); });
+  command->add_option("input", options->input.path, "Data on a grid, or a mesh from adamas resample (.vtu)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--points", options->points, "Points, x,y,z a line")->type_name("FILE");
+  command->add_option("--point", options->single, "A point; repeatable")
+      ->type_name("x,y,z")
+      ->allow_extra_args(false);
+  command->add_option("--line", options->line, "n points from one point to another")
+      ->type_name("x,y,z..x,y,z,n");
+  command
+      ->add_option("-o,--output", options->output,
+                   "The samples: .csv (default: stdout, which then has no integrals)")
+      ->type_name("FILE");
+  add_material_options(*command, options->input);
+  add_interface_options(*command, options->input);
+}
+
+}  // namespace adamas

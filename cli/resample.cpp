@@ -1,0 +1,211 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/input_options.h"
+#include "cli/resample_figures.h"
+#include "cli/resampling_setup.h"
+#include "core/io/interface_mesh_io.h"
+#include "core/io/unstructured_mesh_io.h"
+#include "interfaces/mesh/cut_mesh.h"
+#include "interfaces/mesh/resampled_mesh_file.h"
+
+namespace adamas {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  ResamplingText text;
+  std::string output, interfaces, cut;
+};
+
+double mean(const FieldError& e) { return e.count > 0 ? e.sum / static_cast<double>(e.count) : 0; }
+
+/// A figure that is not known is null.
+Figures known(bool is, double value) { return is ? Figures(value) : Figures(nullptr); }
+
+Figures field_figures(const ResampleFigures& measured, const Resampler& resampler) {
+  Figures figures = Figures::object();
+  for (std::size_t f = 0; f < measured.fields.size(); ++f) {
+    const FieldFigures& e = measured.fields[f];
+    const bool any = e.all.count > 0, at_interfaces = e.at_interfaces.count > 0;
+    const auto& target = resampler.options().field_errors[f];
+    figures[resampler.source().fields->fields()[f].name] = {
+        {"max_error", known(any, e.all.max)},
+        {"mean_error", known(any, mean(e.all))},
+        {"interface_max_error", known(at_interfaces, e.at_interfaces.max)},
+        {"interface_mean_error", known(at_interfaces, mean(e.at_interfaces))},
+        {"target", known(target.has_value(), target.value_or(0))}};
+  }
+  return figures;
+}
+
+Figures material_figures(const ResampleFigures& measured, const ResamplingSource& source) {
+  Figures figures = Figures::array();
+  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
+    const bool stated = m.value < source.volumes.size();
+    figures.push_back({{"name", source.materials[m]},
+                       {"volume_input", known(stated, stated ? source.volumes[m] : 0)},
+                       {"volume_mesh", measured.volumes[m]}});
+  }
+  return figures;
+}
+
+Figures all_figures(const ResampleFigures& measured, const Resampler& resampler) {
+  const auto& distance = resampler.interface_distance();
+  Figures figures;
+  figures["tetrahedra"] = measured.tetrahedra;
+  figures["vertices"] = measured.vertices;
+  figures["interface_tetrahedra"] = measured.interface_tetrahedra;
+  figures["interface_error"] = known(distance.has_value(), distance ? distance->upper : 0);
+  figures["interface_error_measured"] = known(distance.has_value(), distance ? distance->lower : 0);
+  figures["interface_error_target"] = resampler.options().interface_error;
+  figures["lost_interfaces"] = measured.lost_interfaces;
+  figures["fields"] = field_figures(measured, resampler);
+  figures["materials"] = material_figures(measured, resampler.source());
+  figures["bodies"] = measured.bodies;
+  figures["interface_triangles"] = distance ? Figures(distance->triangles) : Figures(nullptr);
+  figures["flagged_vertices"] = measured.flagged_vertices;
+  return figures;
+}
+
+void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& console) {
+  const double target = resampler.options().interface_error;
+  std::vector<std::vector<std::string>> rows{{"tetrahedra", std::to_string(m.tetrahedra)},
+                                             {"vertices", std::to_string(m.vertices)},
+                                             {"interface tetrahedra", std::to_string(m.interface_tetrahedra)},
+                                             {"interface error wanted", fmt::format("{:.4g}", target)}};
+  if (const auto& d = resampler.interface_distance()) {
+    rows.push_back({"interface error certified", fmt::format("{:.4g}", d->upper)});
+    rows.push_back({"interface error found", fmt::format("{:.4g}", d->lower)});
+  }
+  rows.push_back({"lost interfaces", std::to_string(m.lost_interfaces)});
+  if (m.flagged_vertices > 0)
+    rows.push_back({"vertices of doubtful material", std::to_string(m.flagged_vertices)});
+  console.table(rows);
+  const auto& distance = resampler.interface_distance();
+  if (distance && distance->upper > target) {
+    console.note("the interface error wanted was not reached");
+  }
+}
+
+void print_fields(const ResampleFigures& m, const Resampler& resampler, Console& console) {
+  if (m.fields.empty()) return;
+  const auto text = [](const FieldError& e, double value) {
+    return e.count > 0 ? fmt::format("{:.4g}", value) : std::string("-");
+  };
+  std::vector<std::vector<std::string>> rows{
+      {"field error", "wanted", "greatest", "mean", "at interfaces", "mean there"}};
+  for (std::size_t f = 0; f < m.fields.size(); ++f) {
+    const FieldInfo& info = resampler.source().fields->fields()[f];
+    const auto& target = resampler.options().field_errors[f];
+    const auto& [all, near] = m.fields[f];
+    rows.push_back({info.unit.empty() ? info.name : info.name + " [" + info.unit + "]",
+                    target ? fmt::format("{:.4g}", *target) : "-", text(all, all.max), text(all, mean(all)),
+                    text(near, near.max), text(near, mean(near))});
+  }
+  console.print("\n");
+  console.table(rows);
+}
+
+void print_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+  constexpr std::size_t kMost = 40;
+  const bool stated = !source.volumes.empty();
+  std::vector<std::vector<std::string>> rows{{"material", "volume", "mesh", "difference"}};
+  if (!stated) rows[0] = {"material", "volume in the mesh"};
+  for (MaterialId i(0); i.value < std::min(source.materials.size(), kMost); ++i.value) {
+    const std::string& name = source.materials[i];
+    const double found = m.volumes[i];
+    if (stated) {
+      rows.push_back({name, volume_text(source.volumes[i]), volume_text(found),
+                      difference_text(source.volumes[i], found)});
+    } else {
+      rows.push_back({name, volume_text(found)});
+    }
+  }
+  console.print("\n");
+  console.table(rows);
+  if (source.materials.size() > kMost) console.print("  ... and {} more\n", source.materials.size() - kMost);
+}
+
+void write_outputs(const Options& options, Resampler& resampler, Session& session) {
+  Console& console = session.console;
+  if (!options.interfaces.empty()) {
+    const ResamplingSource& source = resampler.source();
+    auto extracted = extract_interfaces(source.network->table(), resampler.cells(),
+                                        1e-11 * source.box.diagonal(), console);
+    extracted.mesh.materials = source.materials;
+    extracted.mesh.source = source.name;
+    console.step("writing " + options.interfaces, -1);
+    session.outputs.write(options.interfaces,
+                          [&](const auto& path) { write_interface_mesh(path, extracted.mesh); });
+  }
+  if (options.output.empty() && options.cut.empty()) return;
+  console.step("completing fields", -1);
+  const ResampledMesh mesh = take_mesh(resampler);
+  session.outputs.write(options.output, [&](const auto& path) {
+    console.step("writing " + options.output, -1);
+    write_unstructured_mesh(path, to_unstructured_mesh(mesh));
+  });
+  session.outputs.write(options.cut, [&](const auto& path) {
+    console.step("writing " + options.cut, -1);
+    write_unstructured_mesh(path, cut_mesh(mesh));
+  });
+}
+
+void run(const Options& options, Session& session) {
+  Console& console = session.console;
+  const ResamplingWishes wishes(options.text);
+  session.outputs.declare("-o", options.output, {".vtu"});
+  session.outputs.declare("--interfaces-out", options.interfaces,
+                          {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
+  session.outputs.declare("--cut-mesh", options.cut, {".vtu"});
+  const Input input = load_input(options.input, console);
+  if (input.data) print_fraction_report(*input.data, console);
+  Resampler resampler(input.source, wishes.options(input.source), console);
+  resampler.refine();
+  console.step("measuring", -1);
+  const ResampleFigures measured = measure(resampler);
+  print_mesh(measured, resampler, console);
+  print_fields(measured, resampler, console);
+  print_materials(measured, input.source, console);
+  Figures figures = all_figures(measured, resampler);
+  write_outputs(options, resampler, session);
+  figures["seconds"] = console.seconds();
+  figures["peak_memory_bytes"] = peak_memory_bytes();
+  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  session.outputs.commit();
+  console.print("\n  {:.2f} s, {} of memory at most\n", console.seconds(),
+                bytes_text(static_cast<double>(peak_memory_bytes())));
+}
+
+}  // namespace
+
+void add_resample(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(app, session, "resample", "An adaptive tetrahedral mesh with sharp material interfaces",
+                  "adamas resample cth.vtr --interface-error 0.5% --field-error Pressure=5% -o mesh.vtu "
+                  "--json figures.json",
+                  [options, &session] { run(*options, session); });
+  command
+      ->add_option("input", options->input.path, "Data on a grid, or a labelled network (.vtp, .arec, .txt)")
+      ->type_name("FILE");
+  add_resampling_options(*command, options->text);
+  command->add_option("-o,--output", options->output, "The mesh: .vtu")->type_name("FILE");
+  command
+      ->add_option("--interfaces-out", options->interfaces,
+                   "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
+      ->type_name("FILE");
+  command->add_option("--cut-mesh", options->cut, "The mesh with cells cut along the interfaces: .vtu")
+      ->type_name("FILE");
+  add_material_options(*command, options->input);
+  add_interface_options(*command, options->input);
+}
+
+}  // namespace adamas

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cli/console.h"
+#include "interfaces/resampling/resampler.h"
+
+namespace adamas {
+
+/// Field errors over all cells and over those with an interface.
+struct FieldFigures {
+  FieldError all, at_interfaces;
+};
+
+/// What a run of the resampler came to (DESIGN 4).
+struct ResampleFigures {
+  std::size_t tetrahedra = 0, vertices = 0;
+  std::size_t interface_tetrahedra = 0;  ///< that an approximated interface runs through
+  std::size_t lost_interfaces = 0;       ///< cells whose interface the approximation does not show
+  std::size_t flagged_vertices = 0;      ///< whose material rests on an open border of the input
+  std::size_t bodies = 0;
+  std::vector<FieldFigures> fields;      ///< by the source's fields
+  IdVector<MaterialId, double> volumes;  ///< of the mesh
+};
+
+ResampleFigures measure(const Resampler& resampler);
+
+}  // namespace adamas

@@ -1,0 +1,79 @@
+#include "cli/resampling_setup.h"
+
+#include <algorithm>
+
+#include "cli/usage_error.h"
+#include "core/base/error.h"
+
+namespace adamas {
+
+void add_resampling_options(CLI::App& command, ResamplingText& text) {
+  command
+      .add_option("--interface-error", text.interface_error,
+                  "Greatest distance between the interfaces and their approximation, as a length or in % of "
+                  "the domain's diagonal")
+      ->type_name("E|E%")
+      ->capture_default_str();
+  command
+      .add_option("--field-error", text.field_errors,
+                  "Greatest error of a field, in its unit or in % of its range; repeatable")
+      ->type_name("NAME=E|E%")
+      ->allow_extra_args(false);
+  command.add_option("--max-tetrahedra", text.max_tetrahedra, "Stop at this size, whatever the errors")
+      ->type_name("N");
+  command
+      .add_option("--ghost", text.ghost, "How a material's field goes on beyond the material, within a cell")
+      ->check(CLI::IsMember({"constant", "linear"}))
+      ->capture_default_str();
+  command
+      .add_option("--distance", text.distance,
+                  "What vertices measure: the distance to an interface, or to the nearest vertex of its mesh")
+      ->check(CLI::IsMember({"exact", "nearest-vertex"}))
+      ->capture_default_str();
+}
+
+ResamplingWishes::ResamplingWishes(const ResamplingText& text)
+    : interface_error(parse_error_target("--interface-error", text.interface_error)) {
+  for (const std::string& each : text.field_errors) {
+    const auto [name, value] = parse_assignment("--field-error", each, true);
+    const auto same = [&name = name](const auto& other) { return other.first == name; };
+    if (std::any_of(field_errors.begin(), field_errors.end(), same)) {
+      wrong_usage("--field-error: expected one error per field, found '{}' twice", name);
+    }
+    field_errors.emplace_back(name, parse_error_target("--field-error " + name, value));
+  }
+  if (!text.max_tetrahedra.empty()) max_tetrahedra = parse_count("--max-tetrahedra", text.max_tetrahedra);
+  if (text.ghost == "linear") ghost = GhostMode::kLinear;
+  if (text.distance == "nearest-vertex") distance = DistanceMode::kNearestVertex;
+}
+
+ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) const {
+  ResamplingOptions result;
+  result.interface_error = interface_error.of(source.box.diagonal());
+  result.max_tetrahedra = max_tetrahedra;
+  result.ghost = ghost;
+  result.distance = distance;
+  if (source.fields) result.field_errors.resize(source.fields->fields().size());
+  for (const auto& [name, target] : field_errors) {
+    const std::vector<FieldInfo> none;
+    const auto& fields = source.fields ? source.fields->fields() : none;
+    const auto found =
+        std::find_if(fields.begin(), fields.end(), [&name = name](const auto& f) { return f.name == name; });
+    if (found == fields.end()) {
+      fail("{}: --field-error: expected one of its fields ({}), found '{}'", source.name, field_names(fields),
+           name);
+    }
+    const double wanted = target.of(found->max - found->min);
+    // A field of one value everywhere is met by any mesh.
+    if (wanted > 0) result.field_errors[static_cast<std::size_t>(found - fields.begin())] = wanted;
+  }
+  return result;
+}
+
+std::string field_names(const std::vector<FieldInfo>& fields) {
+  std::string names;
+  for (const FieldInfo& f : fields) names += (names.empty() ? "'" : ", '") + f.name + "'";
+  return names.empty() ? "none" : names;
+}
+
+}  // namespace adamas

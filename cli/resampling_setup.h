@@ -1,0 +1,37 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/option_values.h"
+#include "interfaces/resampling/resampler.h"
+
+namespace adamas {
+
+/// The options that say how well to resample, as text.
+struct ResamplingText {
+  std::string interface_error = "1%", max_tetrahedra, ghost = "constant", distance = "exact";
+  std::vector<std::string> field_errors;
+};
+
+void add_resampling_options(CLI::App& command, ResamplingText& text);
+
+/// The options with their values checked, before the input is known.
+struct ResamplingWishes {
+  /// Throws UsageError.
+  explicit ResamplingWishes(const ResamplingText& text);
+  /// For a source: errors in its units. Throws Error for fields that it has not.
+  [[nodiscard]] ResamplingOptions options(const ResamplingSource& source) const;
+
+  ErrorTarget interface_error;
+  std::vector<std::pair<std::string, ErrorTarget>> field_errors;
+  std::optional<std::size_t> max_tetrahedra;
+  GhostMode ghost = GhostMode::kConstant;
+  DistanceMode distance = DistanceMode::kExact;
+};
+
+/// The names of a source's fields, for messages: "'a', 'b'"; "none" where it has none.
+std::string field_names(const std::vector<FieldInfo>& fields);
+
+}  // namespace adamas

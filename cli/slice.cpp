@@ -1,0 +1,212 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/option_values.h"
+#include "cli/slice_panels.h"
+#include "cli/slice_polygons.h"
+#include "cli/usage_error.h"
+#include "core/io/input_file.h"
+#include "core/io/unstructured_mesh_io.h"
+
+namespace adamas {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  std::string plane, origin, normal, original, mode, range, colour_map = "sequential", size, output, title;
+  bool cells = false, no_cells = false, no_interfaces = false;
+};
+
+Plane parse_any_plane(const Options& options) {
+  if (options.plane.empty() == (options.origin.empty() && options.normal.empty())) {
+    wrong_usage("expected --plane, or --origin and --normal");
+  }
+  if (!options.plane.empty()) {
+    try {
+      return parse_plane(options.plane);
+    } catch (const Error& e) {
+      wrong_usage("--plane: {}", e.what());
+    }
+  }
+  if (options.origin.empty() || options.normal.empty()) {
+    wrong_usage("expected --origin and --normal together");
+  }
+  const Plane plane{parse_vector("--origin", options.origin), parse_vector("--normal", options.normal)};
+  if (!(squared_norm(plane.normal) > 0)) wrong_usage("--normal: expected a vector with a length, found 0");
+  return plane;
+}
+
+/// `--field NAME=FILE` adds a field as for other commands; the last one named is shown.
+std::string split_fields(InputOptions& input) {
+  std::string shown;
+  std::vector<std::string> added;
+  for (const std::string& text : input.fields) {
+    if (text.find('=') != std::string::npos) added.push_back(text);
+    shown = text.substr(0, text.find('='));
+  }
+  input.fields = added;
+  return shown;
+}
+
+std::vector<SliceMode> modes(const Options& options, const SliceInput& input) {
+  if (!input.mesh) {
+    if (options.mode.empty() || options.mode == "input") return {SliceMode::kInput};
+    wrong_usage("--mode {}: expected a resampled mesh (.vtu) as INPUT, found {}", options.mode,
+                options.input.path);
+  }
+  const bool has_data = input.data != nullptr;
+  if (options.mode == "input" && !has_data) wrong_usage("--mode input: expected --original DATA");
+  if (options.mode == "input") return {SliceMode::kInput};
+  if (options.mode == "plain") return {SliceMode::kPlain};
+  if (options.mode != "all") return {SliceMode::kMaterials};
+  if (has_data) return {SliceMode::kInput, SliceMode::kPlain, SliceMode::kMaterials};
+  return {SliceMode::kPlain, SliceMode::kMaterials};
+}
+
+SliceOptions picture_size(const Options& options) {
+  SliceOptions size;
+  if (options.size.empty()) return size;
+  const auto sides = parse_numbers("--size", options.size, 2);
+  for (const double side : sides) {
+    if (!(side >= 200 && side <= 16000)) {
+      wrong_usage("--size: expected a width and a height from 200 to 16000, found '{}'", options.size);
+    }
+  }
+  size.width = sides[0];
+  size.greatest_height = sides[1];
+  return size;
+}
+
+std::optional<ValueRange> parse_range(const Options& options) {
+  if (options.range.empty()) return {};
+  const auto ends = parse_numbers("--range", options.range, 2);
+  if (!(ends[0] < ends[1])) wrong_usage("--range: expected a < b in a,b, found '{}'", options.range);
+  return ValueRange{ends[0], ends[1]};
+}
+
+SlicePicture make_picture(const Options& options, const SliceInput& input, const SliceStyle& style,
+                          const std::vector<SliceMode>& wanted, const std::vector<CrossSection>& sections) {
+  const PlaneFrame frame = plane_frame(style.plane);
+  SlicePicture picture;
+  picture.title = std::filesystem::path(input.name).filename().string() + ", " + to_string(style.plane);
+  picture.x_label = frame.right_name;
+  picture.y_label = frame.up_name;
+  picture.field_label = shown_field(input, style);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    picture.panels.push_back(make_panel(input, wanted[i], style, sections[i]));
+  }
+  if (style.field.empty()) picture.materials = material_legend(input, sections);
+  picture.range = parse_range(options);
+  picture.map = ColourMap::by_name(options.colour_map);
+  return picture;
+}
+
+/// Areas of the last section: the one with the materials, where there are several.
+void report_areas(const SliceInput& input, const CrossSection& section, Session& session, Figures& figures) {
+  figures["area"] = section.area;
+  figures["materials"] = Figures::array();
+  std::vector<std::vector<std::string>> rows{{"material", "area", "part"}};
+  for (MaterialId m(0); m.value < input.materials().size(); ++m.value) {
+    const double area = m.value < section.material_area.size() ? section.material_area[m] : 0;
+    figures["materials"].push_back({{"name", input.materials()[m]}, {"area", area}});
+    if (area > 0 && rows.size() <= 40) {
+      rows.push_back(
+          {input.materials()[m], volume_text(area), fmt::format("{:.3f}%", 100 * area / section.area)});
+    }
+  }
+  session.console.table(rows);
+}
+
+void run(const Options& options, Session& session) {
+  Console& console = session.console;
+  SliceStyle style;
+  style.plane = parse_any_plane(options);
+  const SliceOptions size = picture_size(options);
+  parse_range(options);
+  InputOptions from = options.input;
+  style.field = split_fields(from);
+  style.interfaces = !options.no_interfaces;
+  if (options.cells && options.no_cells) wrong_usage("--cells and --no-cells: expected one of them");
+  session.outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});
+  const bool polygons = file_extension(options.output) == ".vtp";
+
+  const SliceInput input = load_slice_input(from, options.original, style.interfaces && !polygons, console);
+  const std::vector<SliceMode> wanted = modes(options, input);
+  if (polygons && wanted.size() > 1) wrong_usage("--mode all: expected a picture as output, found a .vtp");
+  style.cells = options.cells || (!options.no_cells && input.mesh.has_value());
+  console.step("cutting", -1);
+  std::vector<CrossSection> sections;
+  for (const SliceMode mode : wanted) sections.push_back(cut(input, mode, style));
+  Figures figures{{"area", nullptr}, {"materials", nullptr}, {"plane", to_string(style.plane)}};
+  report_areas(input, sections.back(), session, figures);
+  figures["pieces"] = sections.back().pieces.size();
+  console.step("drawing", -1);
+  session.outputs.write(options.output, [&](const auto& path) {
+    if (polygons)
+      return write_unstructured_mesh(path, section_polygons(sections.back(), input.materials(), style.field));
+    write_slice(make_picture(options, input, style, wanted, sections), path, size);
+  });
+  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  session.outputs.commit();
+}
+
+void add_drawing_options(CLI::App& command, Options& options) {
+  command
+      .add_option(
+          "--mode", options.mode,
+          "The input as it is, or of a mesh: plain linear interpolation, the fields of each material, "
+          "all side by side (default: input for data, materials for a mesh)")
+      ->check(CLI::IsMember({"input", "plain", "materials", "all"}))
+      ->group("Picture");
+  command.add_flag("--cells", options.cells, "Draw the cells (default for a mesh)")->group("Picture");
+  command.add_flag("--no-cells", options.no_cells, "Do not")->group("Picture");
+  command.add_flag("--no-interfaces,!--interfaces", options.no_interfaces, "Do not draw the interfaces")
+      ->group("Picture");
+  command.add_option("--range", options.range, "Values at the ends of the colour map")
+      ->type_name("a,b")
+      ->group("Picture");
+  command.add_option("--colour-map,--color-map", options.colour_map, "The colour map")
+      ->check(CLI::IsMember(ColourMap::names()))
+      ->capture_default_str()
+      ->group("Picture");
+  command.add_option("--size", options.size, "Width and greatest height in pixels")
+      ->type_name("W,H")
+      ->group("Picture");
+}
+
+}  // namespace
+
+void add_slice(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(
+      app, session, "slice", "A cross section of data or of a resampled mesh",
+      "adamas slice mesh.vtu --plane x=6 --field Pressure --mode all --original cth.vtr -o slice.png",
+      [options, &session] { run(*options, session); });
+  command->add_option("input", options->input.path, "Data on a grid, or a mesh from adamas resample (.vtu)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--plane", options->plane, "The plane, at right angles to an axis")->type_name("x=6");
+  command->add_option("--origin", options->origin, "A point of the plane")->type_name("x,y,z");
+  command->add_option("--normal", options->normal, "A vector at right angles to it")->type_name("x,y,z");
+  command
+      ->add_option("--original", options->original,
+                   "What a mesh was resampled from: data on a grid, or a labelled network")
+      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, "A picture (.png, .svg, .pdf) or polygons (.vtp)")
+      ->required()
+      ->type_name("FILE");
+  add_drawing_options(*command, *options);
+  add_material_options(*command, options->input,
+                       "The field to show, or NAME:0 for a component of a vector; without, the materials. "
+                       "NAME=FILE adds it first",
+                       "NAME[=FILE-or-ARRAY]");
+  add_interface_options(*command, options->input);
+}
+
+}  // namespace adamas

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/input_options.h"
+#include "core/data/interface_mesh.h"
+#include "interfaces/mesh/resampled_mesh.h"
+
+namespace adamas {
+
+/// What a slice is cut from: the input's own data and interfaces, a resampled mesh, or both.
+struct SliceInput {
+  std::string name;
+  std::unique_ptr<MultiMaterialData> data;
+  std::optional<InterfaceMesh> interfaces;  ///< the original ones
+  std::optional<ResampledMesh> mesh;
+
+  [[nodiscard]] Box3 box() const { return mesh ? mesh->box : data->grid.domain(); }
+  [[nodiscard]] const IdVector<MaterialId, std::string>& materials() const {
+    return mesh ? mesh->materials : data->materials;
+  }
+};
+
+/// Reads a resampled mesh from .vtu. Throws Error for another mesh.
+ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
+
+/// Reads the positional input, a resampled mesh or gridded data, and for a mesh the original data or
+/// interfaces, where given. Interfaces of gridded data are reconstructed if `with_interfaces`.
+SliceInput load_slice_input(const InputOptions& options, const std::string& original, bool with_interfaces,
+                            Console& console);
+
+}  // namespace adamas

@@ -1,0 +1,98 @@
+#include "cli/slice_panels.h"
+
+#include "core/base/error.h"
+#include "core/picture/palette.h"
+
+namespace adamas {
+
+namespace {
+
+/// More materials than this make no legend.
+constexpr std::size_t kMostNames = 30;
+
+Vec2 to_plane(const PlaneFrame& frame, const Vec3& p) {
+  const auto c = frame.coordinates(p);
+  return {c[0], c[1]};
+}
+
+LineSet to_lines(const PlaneFrame& frame, const std::string& name, const Stroke& stroke,
+                 const std::vector<Segment>& segments) {
+  LineSet lines{name, stroke};
+  lines.points.reserve(2 * segments.size());
+  for (const Segment& s : segments) {
+    lines.points.push_back(to_plane(frame, s[0]));
+    lines.points.push_back(to_plane(frame, s[1]));
+  }
+  return lines;
+}
+
+std::vector<FieldInfo> fields_of(const SliceInput& input, bool of_data) {
+  return of_data ? field_infos(*input.data) : input.mesh->fields;
+}
+
+std::optional<FieldChoice> choose(const SliceInput& input, bool of_data, const SliceStyle& style) {
+  if (style.field.empty()) return {};
+  return find_field(fields_of(input, of_data), style.field, of_data ? input.data->source : input.name);
+}
+
+}  // namespace
+
+CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
+  const bool of_data = mode == SliceMode::kInput;
+  const auto field = choose(input, of_data, style);
+  if (of_data) return cross_section(*input.data, style.plane, field);
+  return cross_section(*input.mesh, style.plane, field,
+                       mode == SliceMode::kPlain ? SectionMode::kPlain : SectionMode::kPerMaterial);
+}
+
+std::string shown_field(const SliceInput& input, const SliceStyle& style) {
+  const bool of_data = !input.mesh;
+  const auto field = choose(input, of_data, style);
+  return field ? field_label(fields_of(input, of_data), *field) : std::string();
+}
+
+SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle& style,
+                      const CrossSection& section) {
+  const PlaneFrame frame = plane_frame(style.plane);
+  SlicePanel panel;
+  panel.title = mode == SliceMode::kInput   ? "input"
+                : mode == SliceMode::kPlain ? "plain linear"
+                                            : "per material";
+  panel.polygons.reserve(section.pieces.size());
+  for (const SectionPiece& piece : section.pieces) {
+    FieldPolygon polygon;
+    for (const Vec3& p : piece.corners) polygon.points.push_back(to_plane(frame, p));
+    if (style.field.empty()) {
+      polygon.colour = material_area_colour(piece.material.value);
+    } else {
+      polygon.values = piece.values;
+    }
+    panel.polygons.push_back(std::move(polygon));
+  }
+  if (style.cells) panel.lines.push_back(to_lines(frame, "cells", cell_stroke(), section.cell_edges));
+  if (!style.interfaces) return panel;
+  if (mode != SliceMode::kInput) {
+    panel.lines.push_back(
+        to_lines(frame, "approximated interfaces", approximated_interface_stroke(), section.interface_edges));
+  }
+  if (input.interfaces) {
+    panel.lines.push_back(to_lines(frame, "original interfaces", original_interface_stroke(),
+                                   section_edges(*input.interfaces, style.plane, input.box())));
+  }
+  return panel;
+}
+
+std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vector<CrossSection>& sections) {
+  std::vector<LegendEntry> entries;
+  for (MaterialId m(0); m.value < input.materials().size(); ++m.value) {
+    bool shown = false;
+    for (const CrossSection& s : sections) {
+      shown = shown || (m.value < s.material_area.size() && s.material_area[m] > 0);
+    }
+    if (shown) entries.push_back({input.materials()[m], material_area_colour(m.value)});
+  }
+  if (entries.size() > kMostNames) entries.clear();
+  return entries;
+}
+
+}  // namespace adamas

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/slice_input.h"
+#include "core/geometry/plane.h"
+#include "core/picture/slice_picture.h"
+#include "interfaces/cross_section/cross_section.h"
+
+namespace adamas {
+
+/// What a panel of a slice shows.
+enum class SliceMode {
+  kInput,      ///< the input as it is
+  kPlain,      ///< the mesh with plain linear interpolation
+  kMaterials,  ///< the mesh with the fields of each material
+};
+
+/// How slices are drawn.
+struct SliceStyle {
+  Plane plane;
+  std::string field;  ///< "NAME" or "NAME:C"; empty: the materials
+  bool cells = true, interfaces = true;
+};
+
+/// One section of the input in one mode.
+CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style);
+
+/// Name and unit of the field that is shown; empty for the materials.
+std::string shown_field(const SliceInput& input, const SliceStyle& style);
+
+/// A panel of a section: areas by field or material, cells and interfaces as lines.
+SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle& style,
+                      const CrossSection& section);
+
+/// The materials that some piece shows, as entries of a legend; empty where there are too many.
+std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vector<CrossSection>& sections);
+
+}  // namespace adamas
