@@ -57,7 +57,7 @@ def sources(root):
 
 
 def check_project_include(root, path, target):
-    if not os.path.exists(os.path.join(root, target)):
+    if not any(os.path.exists(os.path.join(root, target + end)) for end in ("", ".in")):
         # Tests and fuzz targets may include what lies beside them.
         beside = os.path.join(os.path.dirname(path), target)
         if path.startswith("tests/") and os.path.exists(os.path.join(root, beside)):

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""Runs the benchmarks of a build folder and prints one table: bench_table.py BUILD [--quick]."""
+
+import argparse
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+
+def note(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def output_of(*command):
+    note("bench: " + " ".join(os.path.basename(command[0]) if i == 0 else a for i, a in enumerate(command)))
+    result = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    if result.returncode != 0:
+        sys.exit(f"bench: {command[0]} ended with {result.returncode}")
+    return result.stdout
+
+
+def row(what, ours, peer, ratio, aim, equal_at):
+    return [what, ours, peer, ratio, aim, equal_at]
+
+
+def millions(rate):
+    return f"{rate / 1e6:.2f} M/s"
+
+
+def hierarchy_rows(build, quick):
+    program = os.path.join(build, "tests/benchmarks/bench_hierarchy")
+    found = json.loads(output_of(program, "--benchmark_format=json", f"--benchmark_min_time={0.5 if quick else 2}"))
+    for run in found["benchmarks"]:
+        kind, order, leaves = re.fullmatch(r"(\w+)/(\w+)/(\d+)", run["name"]).groups()
+        rate = run[kind]
+        at = f"{int(leaves):,} tetrahedra, {order} requests, 1 thread"
+        yield row(f"hierarchy: {kind}", millions(rate), "1 M/s (aim)", f"{rate / 1e6:.2f}", ">= 1", at)
+        if kind == "splits":
+            size = run["bytes_per_leaf"]
+            yield row("hierarchy: bytes per tetrahedron", f"{size:.0f}", "200 (aim)", f"{size / 200:.2f}", "<= 1", at)
+
+
+def closest_point_rows(build, quick):
+    del quick
+    triangles = ""
+    for line in output_of(os.path.join(build, "tests/benchmarks/bench_closest_point")).splitlines():
+        size = re.match(r"(\d+) triangles", line)
+        if size:
+            triangles = f"{int(size.group(1)):,} triangles"
+        rates = re.match(r"\s+(near the surface|anywhere in the box)\s+(\d+)\s+(\d+)\s+([\d.]+)", line)
+        if rates:
+            where, ours, cgal, ratio = rates.groups()
+            aim = ">= 3" if where == "near the surface" else ""
+            yield row(f"closest points, {where}", millions(float(ours)), f"CGAL AABB {millions(float(cgal))}", ratio, aim,
+                      f"{triangles}, the same points, 1 thread")
+
+
+def resample(adamas, folder, data, *options):
+    figures = os.path.join(folder, "figures.json")
+    output_of(adamas, "resample", data, *options, "--quiet", "--json", figures, "-o", os.path.join(folder, "mesh.vtu"))
+    with open(figures, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def resample_row(name, figures, growth, target):
+    ours = f"{figures['seconds']:.2f} s, {figures['peak_memory_bytes'] / 2**20:.0f} MiB"
+    reached = figures.get("interface_error")
+    at = f"{figures['tetrahedra']:,} tetrahedra, interface error "
+    at += f"{reached:.3g} (wanted {target})" if reached is not None else f"wanted {target}"
+    return row(f"resample {name}", ours, "", growth, "", at)
+
+
+def sphere_rows(build, quick):
+    adamas = os.path.join(build, "cli/adamas")
+    last = None
+    for n in (32, 64, 128) if quick else (64, 128, 256):
+        with tempfile.TemporaryDirectory() as folder:
+            data = os.path.join(folder, "sphere.vti")
+            output_of(adamas, "generate", "scene", "sphere", "--dimensions", f"{n},{n},{n}", "--quiet", "-o", data)
+            target = f"{0.5 / n:.6g}"
+            figures = resample(adamas, folder, data, "--interface-error", target)
+        growth = ""
+        if last is not None:
+            exponent = math.log(figures["seconds"] / last["seconds"]) / math.log(8)
+            growth = f"time ~ cells^{exponent:.2f}"
+        last = figures
+        yield resample_row(f"sphere {n}^3", figures, growth, f"{target}, half a cell")
+
+
+def cth_rows(build, quick):
+    del quick
+    data = os.path.join(os.environ.get("ADAMAS_DATA", "../shared/data"), "material/pyvista_misc/cth.vtr")
+    if not os.path.exists(data):
+        note(f"bench: {data} is not there: no row for the CTH data")
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        for target in ("1%", "0.5%"):
+            figures = resample(os.path.join(build, "cli/adamas"), folder, data, "--interface-error", target)
+            yield resample_row("CTH 128x64x64", figures, "", f"{target} of the diagonal")
+
+
+def print_table(rows):
+    header = ["what", "adamas", "peer", "ratio, growth", "aim", "equal at"]
+    widths = [max(len(r[i]) for r in [header] + rows) for i in range(len(header))]
+
+    def line(cells):
+        print("| " + " | ".join(cell.ljust(width) for cell, width in zip(cells, widths)) + " |")
+
+    line(header)
+    print("|" + "|".join("-" * (width + 2) for width in widths) + "|")
+    for cells in rows:
+        line(cells)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="bench", description="Prints a table of what the project and its peers do.")
+    parser.add_argument("build", help="folder of the release build")
+    parser.add_argument("--quick", action="store_true", help="smaller grids, shorter runs")
+    arguments = parser.parse_args()
+    rows = []
+    for part in (hierarchy_rows, closest_point_rows, sphere_rows, cth_rows):
+        rows += part(arguments.build, arguments.quick)
+    print_table(rows)
+
+
+if __name__ == "__main__":
+    main()
