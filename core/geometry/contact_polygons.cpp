@@ -181,6 +181,8 @@ class ContactFinder {
   /// The part of the polygon where h > f (above) or where it is not.
   Polygon clip(const Polygon& polygon, std::uint32_t h, bool above) const {
     Polygon kept;
+    // On the polygon f is g, so that a function equal to g is no farther from f than the two keys tell.
+    if (function(h).values == function(g_).values) return greater(h, g_, 0) == above ? polygon : kept;
     const std::size_t size = polygon.size();
     std::vector<double> d(size);
     std::vector<bool> inside(size);

@@ -20,90 +20,111 @@ Weights between(const Weights& a, const Weights& b, double t) {
   return w;
 }
 
-/// A convex piece during the division: corners and what may still own a part of it.
-template <class Corners>
-struct Piece {
-  Corners corners;
-};
-
 using TetrahedronCorners = std::array<Weights, 4>;
 using PolygonCorners = std::vector<Weights>;
 
 /// What may still own a part of a piece: candidates, each with the functions that may still be its least.
-struct Contenders {
-  struct Contender {
-    std::uint32_t owner;
-    std::vector<std::uint32_t> functions;
-  };
-  std::vector<Contender> list;
+struct Contender {
+  std::uint32_t owner;
+  std::vector<std::uint32_t> functions;
 };
 
-/// Values of every function at the corners of a piece: row f holds `corners` values.
+/// The contenders' values at the corners of a piece.
 class ValueTable {
  public:
   template <class Corners>
-  ValueTable(const OwnershipProblem& problem, const Corners& corners) : corners_(corners.size()) {
-    values_.resize(problem.functions.size() * corners_);
-    for (std::size_t f = 0; f < problem.functions.size(); ++f) {
-      for (std::size_t c = 0; c < corners_; ++c) {
-        values_[f * corners_ + c] = evaluate(problem.functions[f].values, corners[c]);
+  ValueTable(const OwnershipProblem& problem, const Corners& corners,
+             const std::vector<Contender>& contenders)
+      : corners_(corners.size()) {
+    for (const Contender& contender : contenders) {
+      for (const std::uint32_t f : contender.functions) {
+        place_.emplace_back(f, values_.size());
+        for (const Weights& w : corners) values_.push_back(evaluate(problem.functions[f].values, w));
       }
     }
+    std::sort(place_.begin(), place_.end());
   }
   [[nodiscard]] std::size_t corners() const { return corners_; }
-  [[nodiscard]] double operator()(std::uint32_t f, std::size_t corner) const {
-    return values_[f * corners_ + corner];
+  /// The values of a function, corner by corner.
+  [[nodiscard]] const double* row(std::uint32_t f) const {
+    const auto found = std::lower_bound(place_.begin(), place_.end(), std::pair(f, std::size_t{0}));
+    return values_.data() + found->second;
+  }
+  [[nodiscard]] double greatest(std::uint32_t f) const {
+    return *std::max_element(row(f), row(f) + corners_);
+  }
+  [[nodiscard]] double smallest(std::uint32_t f) const {
+    return *std::min_element(row(f), row(f) + corners_);
   }
   /// Whether g <= f all over the piece; equal functions are ordered by `first`.
   [[nodiscard]] bool at_most(std::uint32_t g, std::uint32_t f, bool first) const {
+    const double *a = row(g), *b = row(f);
     bool strict = false;
     for (std::size_t c = 0; c < corners_; ++c) {
-      if ((*this)(g, c) > (*this)(f, c)) return false;
-      strict = strict || (*this)(g, c) < (*this)(f, c);
+      if (a[c] > b[c]) return false;
+      strict = strict || a[c] < b[c];
     }
     return strict || first;
+  }
+  /// Value of a contender at a corner.
+  [[nodiscard]] double least(const Contender& contender, std::size_t corner) const {
+    double value = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t f : contender.functions) value = std::min(value, row(f)[corner]);
+    return value;
   }
 
  private:
   std::size_t corners_;
+  std::vector<std::pair<std::uint32_t, std::size_t>> place_;
   std::vector<double> values_;
 };
 
-/// Drops functions that are nowhere the least of their contender and contenders that are nowhere the
-/// greatest.
-void prune(const OwnershipProblem& problem, const ValueTable& values, Contenders& contenders) {
-  const auto key = [&](std::uint32_t f) { return problem.functions[f].key; };
-  for (auto& contender : contenders.list) {
-    auto& fs = contender.functions;
-    for (std::size_t i = 0; i < fs.size() && fs.size() > 1;) {
-      const bool redundant = std::any_of(fs.begin(), fs.end(), [&](std::uint32_t g) {
-        return g != fs[i] &&
-               values.at_most(g, fs[i], key(g) < key(fs[i]) || (key(g) == key(fs[i]) && g < fs[i]));
-      });
-      if (redundant) {
-        fs.erase(fs.begin() + static_cast<std::ptrdiff_t>(i));
-      } else {
-        ++i;
-      }
-    }
+/// Drops contenders that are below what another surely reaches everywhere.
+void drop_low(const ValueTable& values, std::vector<Contender>& contenders) {
+  if (contenders.size() < 3) return;
+  double surely = -std::numeric_limits<double>::infinity();
+  for (const Contender& contender : contenders) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < values.corners(); ++c) least = std::min(least, values.least(contender, c));
+    surely = std::max(surely, least);
   }
-  auto& list = contenders.list;
-  const auto beaten_by = [&](const Contenders::Contender& y, const Contenders::Contender& x) {
-    return std::any_of(y.functions.begin(), y.functions.end(), [&](std::uint32_t m) {
-      return std::all_of(x.functions.begin(), x.functions.end(), [&](std::uint32_t l) {
-        return values.at_most(m, l, key(l) < key(m) || (key(l) == key(m) && l < m));
-      });
+  std::erase_if(contenders, [&](const Contender& contender) {
+    return std::any_of(contender.functions.begin(), contender.functions.end(),
+                       [&](std::uint32_t f) { return values.greatest(f) < surely; });
+  });
+}
+
+/// Drops functions that are nowhere the least of their contender.
+void drop_redundant(const OwnershipProblem& problem, const ValueTable& values, Contender& contender) {
+  auto& fs = contender.functions;
+  if (fs.size() > 2) {
+    // First those that are above the greatest value of another: that needs no pairs.
+    double ceiling = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t f : fs) ceiling = std::min(ceiling, values.greatest(f));
+    std::erase_if(fs, [&](std::uint32_t f) { return values.smallest(f) > ceiling; });
+  }
+  const auto key = [&](std::uint32_t f) { return std::pair(problem.functions[f].key, f); };
+  for (std::size_t i = 0; i < fs.size() && fs.size() > 1;) {
+    const bool redundant = std::any_of(fs.begin(), fs.end(), [&](std::uint32_t g) {
+      // Of equal functions the one with the smaller key counts as greater.
+      return g != fs[i] && values.at_most(g, fs[i], key(g) > key(fs[i]));
     });
-  };
-  for (std::size_t i = 0; i < list.size() && list.size() > 1;) {
-    bool beaten = false;
-    for (std::size_t j = 0; j < list.size() && !beaten; ++j) beaten = j != i && beaten_by(list[i], list[j]);
-    if (beaten) {
-      list.erase(list.begin() + static_cast<std::ptrdiff_t>(i));
+    if (redundant) {
+      fs.erase(fs.begin() + static_cast<std::ptrdiff_t>(i));
     } else {
       ++i;
     }
   }
+}
+
+/// Whether y is nowhere greater than x: one of its functions is at most each of x's.
+bool is_beaten(const OwnershipProblem& problem, const ValueTable& values, const Contender& y,
+               const Contender& x) {
+  const auto key = [&](std::uint32_t f) { return std::pair(problem.functions[f].key, f); };
+  return std::any_of(y.functions.begin(), y.functions.end(), [&](std::uint32_t m) {
+    return std::all_of(x.functions.begin(), x.functions.end(),
+                       [&](std::uint32_t l) { return values.at_most(m, l, key(l) < key(m)); });
+  });
 }
 
 bool distinct(const TetrahedronCorners& t) {
@@ -150,14 +171,40 @@ void cut(const TetrahedronCorners& piece, const std::vector<double>& d, const st
   add_prism(section, {piece[o[0]], piece[o[1]], piece[o[2]]}, lone_above ? below : above);
 }
 
-void cut(const PolygonCorners& piece, const std::vector<double>& d, const std::vector<bool>& positive,
+/// On a convex polygon a linear function changes sign twice at most. Where it is round-off it may seem to do
+/// so more often: the weakest runs of corners on one side then count as zeros of the other side.
+void drop_weak_runs(std::vector<double>& d, std::vector<bool>& positive) {
+  const std::size_t n = d.size();
+  while (true) {
+    std::size_t changes = 0, weakest = n, weakest_size = 0;
+    double weakest_value = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < n; ++c) {
+      if (positive[c] == positive[(c + n - 1) % n]) continue;
+      ++changes;
+      double greatest = 0;
+      std::size_t size = 0;
+      for (; size < n && positive[(c + size) % n] == positive[c]; ++size)
+        greatest = std::max(greatest, std::abs(d[(c + size) % n]));
+      if (greatest < weakest_value) weakest_value = greatest, weakest = c, weakest_size = size;
+    }
+    if (changes <= 2) return;
+    const bool side = !positive[weakest];
+    for (std::size_t i = 0; i < weakest_size; ++i) {
+      d[(weakest + i) % n] = 0;
+      positive[(weakest + i) % n] = side;
+    }
+  }
+}
+
+void cut(const PolygonCorners& piece, std::vector<double> d, std::vector<bool> positive,
          std::vector<PolygonCorners>& above, std::vector<PolygonCorners>& below) {
+  drop_weak_runs(d, positive);
   PolygonCorners up, down;
   for (std::size_t c = 0; c < piece.size(); ++c) {
     const std::size_t next = (c + 1) % piece.size();
     (positive[c] ? up : down).push_back(piece[c]);
     if (positive[c] == positive[next]) continue;
-    const Weights w = between(piece[c], piece[next], d[c] / (d[c] - d[next]));
+    const Weights w = between(piece[c], piece[next], d[c] == 0 ? 0 : d[c] / (d[c] - d[next]));
     up.push_back(w);
     down.push_back(w);
   }
@@ -165,78 +212,120 @@ void cut(const PolygonCorners& piece, const std::vector<double>& d, const std::v
   if (down.size() > 2) below.push_back(std::move(down));
 }
 
-/// Cuts where two functions are equal, until one contender is left (see divide).
+/// Cuts a piece where two functions are equal, until one contender is left. Each cut takes a function or a
+/// contender away on either side.
 template <class Corners, class Emit>
 class Divider {
  public:
   Divider(const OwnershipProblem& problem, Emit emit) : problem_(problem), emit_(std::move(emit)) {}
 
-  void divide(const Corners& corners, Contenders contenders) {
-    const ValueTable values(problem_, corners);
-    prune(problem_, values, contenders);
-    if (contenders.list.size() <= 1) {
-      if (!contenders.list.empty()) emit_(contenders.list.front().owner, corners);
-      return;
+  void divide(const Corners& corners, std::vector<Contender> contenders) {
+    if (contenders.size() == 1) return emit_(contenders.front().owner, corners);
+    const ValueTable values(problem_, corners, contenders);
+    drop_low(values, contenders);
+    // Two that are greatest somewhere, or the one that is greatest at all corners and another.
+    std::size_t x = greatest_at(values, contenders, 0), y = x;
+    for (std::size_t c = 1; c < values.corners() && y == x; ++c) y = greatest_at(values, contenders, c);
+    drop_redundant(problem_, values, contenders[x]);
+    if (y == x) {
+      const auto before = static_cast<std::ptrdiff_t>(x);
+      const auto beaten = [&](const Contender& other) {
+        return &other != &contenders[x] && is_beaten(problem_, values, other, contenders[x]);
+      };
+      std::vector<Contender> rest;
+      for (const Contender& other : contenders) {
+        if (!beaten(other)) rest.push_back(other);
+      }
+      x = static_cast<std::size_t>(std::count_if(contenders.begin(), contenders.begin() + before,
+                                                 [&](const Contender& other) { return !beaten(other); }));
+      contenders = std::move(rest);
+      if (contenders.size() == 1) return emit_(contenders.front().owner, corners);
+      y = highest_rival(values, contenders, x);
     }
-    for (std::size_t i = 0; i < contenders.list.size(); ++i) {
-      if (contenders.list[i].functions.size() > 1) return cut_within(corners, values, contenders, i);
+    drop_redundant(problem_, values, contenders[y]);
+    for (const std::size_t i : {x, y}) {
+      if (contenders[i].functions.size() > 1) return cut_within(corners, values, contenders, i);
     }
-    cut_between(corners, values, contenders);
+    cut_between(corners, values, contenders, x, y);
   }
 
  private:
-  /// Which of its two first functions is the least of contender i.
-  void cut_within(const Corners& corners, const ValueTable& values, const Contenders& contenders,
+  /// Where which of the two first functions is the least of contender i.
+  void cut_within(const Corners& corners, const ValueTable& values, const std::vector<Contender>& contenders,
                   std::size_t i) {
-    const auto& fs = contenders.list[i].functions;
-    const auto without = [&](std::uint32_t f) {
-      Contenders rest = contenders;
-      std::erase(rest.list[i].functions, f);
+    const std::uint32_t f = contenders[i].functions[0], g = contenders[i].functions[1];
+    const auto without = [&](std::uint32_t gone) {
+      std::vector<Contender> rest = contenders;
+      std::erase(rest[i].functions, gone);
       return rest;
     };
-    split(corners, values, fs[0], fs[1], without(fs[0]), without(fs[1]));
+    split(corners, values, f, g, without(f), without(g));
   }
 
-  /// All contenders are linear now: cuts between the owners of two corners.
-  void cut_between(const Corners& corners, const ValueTable& values, const Contenders& contenders) {
-    const std::size_t x = greatest_at(values, contenders, 0);
-    std::size_t y = x;
-    for (std::size_t c = 1; c < values.corners() && y == x; ++c) y = greatest_at(values, contenders, c);
-    if (y == x) y = x == 0 ? 1 : 0;
+  /// Where which of two linear contenders is greater.
+  void cut_between(const Corners& corners, const ValueTable& values, const std::vector<Contender>& contenders,
+                   std::size_t x, std::size_t y) {
     const auto without = [&](std::size_t gone) {
-      Contenders rest = contenders;
-      rest.list.erase(rest.list.begin() + static_cast<std::ptrdiff_t>(gone));
+      std::vector<Contender> rest = contenders;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(gone));
       return rest;
     };
-    split(corners, values, contenders.list[x].functions[0], contenders.list[y].functions[0], without(y),
-          without(x));
+    split(corners, values, contenders[x].functions[0], contenders[y].functions[0], without(y), without(x));
   }
 
-  [[nodiscard]] std::size_t greatest_at(const ValueTable& values, const Contenders& contenders,
+  /// Key of the function that is a contender's least at a corner.
+  [[nodiscard]] std::pair<double, std::uint64_t> binding(const ValueTable& values, const Contender& contender,
+                                                         std::size_t c) const {
+    std::pair<double, std::uint64_t> least{std::numeric_limits<double>::infinity(), 0};
+    for (const std::uint32_t f : contender.functions) {
+      const double value = values.row(f)[c];
+      const std::uint64_t key = problem_.functions[f].key;
+      if (value < least.first || (value == least.first && key > least.second)) least = {value, key};
+    }
+    return least;
+  }
+
+  [[nodiscard]] std::size_t greatest_at(const ValueTable& values, const std::vector<Contender>& contenders,
                                         std::size_t c) const {
     std::size_t best = 0;
-    for (std::size_t i = 1; i < contenders.list.size(); ++i) {
-      const std::uint32_t f = contenders.list[i].functions[0], g = contenders.list[best].functions[0];
-      const double difference = values(f, c) - values(g, c);
-      if (difference > 0 || (difference == 0 && problem_.functions[f].key < problem_.functions[g].key))
+    auto greatest = binding(values, contenders[0], c);
+    for (std::size_t i = 1; i < contenders.size(); ++i) {
+      const auto other = binding(values, contenders[i], c);
+      if (other.first > greatest.first || (other.first == greatest.first && other.second < greatest.second)) {
         best = i;
+        greatest = other;
+      }
+    }
+    return best;
+  }
+
+  /// The contender, other than x, that may reach highest.
+  [[nodiscard]] static std::size_t highest_rival(const ValueTable& values,
+                                                 const std::vector<Contender>& contenders, std::size_t x) {
+    std::size_t best = x == 0 ? 1 : 0;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      double reach = std::numeric_limits<double>::infinity();
+      for (const std::uint32_t f : contenders[i].functions) reach = std::min(reach, values.greatest(f));
+      if (i != x && reach > highest) best = i, highest = reach;
     }
     return best;
   }
 
   /// Goes on with `above` where f > g and with `below` elsewhere.
   void split(const Corners& corners, const ValueTable& values, std::uint32_t f, std::uint32_t g,
-             const Contenders& above, const Contenders& below) {
+             std::vector<Contender> above, std::vector<Contender> below) {
     std::vector<double> d(values.corners());
     std::vector<bool> positive(values.corners());
     std::size_t positives = 0;
+    const double *a = values.row(f), *b = values.row(g);
     for (std::size_t c = 0; c < d.size(); ++c) {
-      d[c] = values(f, c) - values(g, c);
+      d[c] = a[c] - b[c];
       positive[c] = d[c] > 0 || (d[c] == 0 && problem_.functions[f].key < problem_.functions[g].key);
       positives += positive[c] ? 1 : 0;
     }
-    if (positives == d.size()) return divide(corners, above);
-    if (positives == 0) return divide(corners, below);
+    if (positives == d.size()) return divide(corners, std::move(above));
+    if (positives == 0) return divide(corners, std::move(below));
     std::vector<Corners> up, down;
     cut(corners, d, positive, up, down);
     for (const Corners& piece : up) divide(piece, above);
@@ -247,12 +336,12 @@ class Divider {
   Emit emit_;
 };
 
-Contenders all_contenders(const OwnershipProblem& problem) {
-  Contenders contenders;
+std::vector<Contender> all_contenders(const OwnershipProblem& problem) {
+  std::vector<Contender> contenders;
   for (const auto& candidate : problem.candidates) {
-    auto& contender = contenders.list.emplace_back();
-    contender.owner = candidate.owner;
-    for (std::uint32_t f = 0; f < candidate.count; ++f) contender.functions.push_back(candidate.first + f);
+    contenders.push_back({candidate.owner, {}});
+    for (std::uint32_t f = 0; f < candidate.count; ++f)
+      contenders.back().functions.push_back(candidate.first + f);
   }
   return contenders;
 }
@@ -302,6 +391,7 @@ void drop_hopeless(OwnershipProblem& problem) {
     }
     return least;
   };
+  if (problem.candidates.size() < 3) return;
   // Each candidate is concave: nowhere below the least of its corner values, nowhere above the greatest
   // corner value of any of its functions.
   double surely = -std::numeric_limits<double>::infinity();
@@ -317,6 +407,30 @@ void drop_hopeless(OwnershipProblem& problem) {
     }
     return at_most < surely;
   });
+}
+
+void keep_owners(OwnershipProblem& problem) {
+  if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
+  drop_hopeless(problem);
+  std::vector<OwnedTetrahedron> parts;
+  partition_tetrahedron(problem, parts);
+  OwnershipProblem kept;
+  const TetrahedronCorners whole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0},
+                                 Weights{0, 0, 0, 1}};
+  std::vector<Contender> contenders = all_contenders(problem);
+  std::erase_if(contenders, [&](const Contender& contender) {
+    return std::none_of(parts.begin(), parts.end(),
+                        [&](const auto& part) { return part.owner == contender.owner; });
+  });
+  const ValueTable values(problem, whole, contenders);
+  for (Contender& contender : contenders) {
+    drop_redundant(problem, values, contender);
+    kept.add_candidate(contender.owner);
+    for (const std::uint32_t f : contender.functions) {
+      kept.add_function(problem.functions[f].values, problem.functions[f].key);
+    }
+  }
+  problem = std::move(kept);
 }
 
 void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTetrahedron>& parts) {

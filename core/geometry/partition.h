@@ -81,6 +81,10 @@ void partition_polygon(const OwnershipProblem& problem, const std::vector<Weight
 /// Leaves out candidates that own no point by far, so that the others can be divided faster.
 void drop_hopeless(OwnershipProblem& problem);
 
+/// Leaves out all candidates that own no part of the tetrahedron, and functions that are nowhere the least of
+/// theirs.
+void keep_owners(OwnershipProblem& problem);
+
 /// The polygons where two owners touch inside the tetrahedron.
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
 

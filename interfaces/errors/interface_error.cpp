@@ -8,36 +8,56 @@ namespace adamas {
 namespace {
 
 /// A cell that knows more bodies than this is split before its partition is worked out.
-constexpr std::size_t kCrowd = 16;
+constexpr std::size_t kCrowd = 64;
 /// From this many triangles on, a first look takes every so manyth.
 constexpr std::size_t kManyTriangles = 256;
+/// Where nothing tells the distance.
+constexpr double kFar = std::numeric_limits<double>::max();
 
 class Estimator {
  public:
   Estimator(const InterfaceNetwork& network, const Tetrahedron& cell, const CellOwnership& ownership)
-      : network_(network), cell_(cell), ownership_(ownership), diameter_(cell.diameter()) {}
+      : network_(network),
+        cell_(cell),
+        ownership_(ownership),
+        diameter_(cell.diameter()),
+        owners_(ownership.problem) {
+    keep_owners(owners_);
+  }
 
   [[nodiscard]] double diameter() const { return diameter_; }
 
-  /// Greatest distance of the given triangles' parts from the cell's interfaces.
-  double of_triangles(std::span<const std::uint32_t> triangles, std::size_t stride) {
+  /// Greatest distance of the given triangles' parts from the cell's interfaces. Before the contacts are
+  /// known, and for interfaces that the cell shows, at most the diameter.
+  double of_triangles(std::span<const std::uint32_t> triangles, std::size_t stride) const {
     double greatest = 0;
-    for (std::size_t i = 0; i < triangles.size() && greatest < diameter_; i += stride) {
-      greatest = std::max(greatest, of_triangle(triangles[i]));
+    for (std::size_t i = 0; i < triangles.size(); i += stride) {
+      greatest = std::max(greatest, std::min(diameter_, of_triangle(triangles[i])));
+      if (greatest >= diameter_) break;
     }
-    return std::min(greatest, diameter_);
+    return greatest;
   }
 
-  /// Greatest distance of the cell's interfaces from the input's; notes which interfaces the cell shows.
+  /// Greatest distance of the parts of triangles whose interface the cell does not show.
+  double of_hidden_triangles(std::span<const std::uint32_t> triangles) const {
+    double greatest = 0;
+    for (const std::uint32_t t : triangles) {
+      if (!shows(network_.interface_of(t))) greatest = std::max(greatest, of_triangle(t));
+    }
+    return greatest;
+  }
+
+  /// Greatest distance of the cell's interfaces from the input's; between bodies that do not touch in the
+  /// input, from any of its interfaces. Notes which interfaces the cell shows.
   double of_contacts() {
     contacts_.clear();
-    contact_polygons(ownership_.problem, contacts_);
+    contact_polygons(owners_, contacts_);
     double greatest = 0;
     for (const ContactPolygon& contact : contacts_) {
       const auto id = network_.table().find(BodyId(contact.front), BodyId(contact.back));
-      if (!id) return diameter_;
+      const ClosestPointTree& tree = id ? network_.tree(*id) : network_.tree();
       for (const auto& corner : contact.corners) {
-        const auto closest = network_.tree(*id).closest(cell_.point(corner.weights), diameter_);
+        const auto closest = tree.closest(cell_.point(corner.weights), diameter_);
         greatest = std::max(greatest, closest ? std::sqrt(closest->squared_distance) : diameter_);
       }
     }
@@ -54,11 +74,11 @@ class Estimator {
   }
 
  private:
-  double of_triangle(std::uint32_t triangle) {
+  [[nodiscard]] double of_triangle(std::uint32_t triangle) const {
     const InterfaceId id = network_.interface_of(triangle);
     const auto known = std::lower_bound(ownership_.interfaces.begin(), ownership_.interfaces.end(), id,
                                         [](const auto& i, InterfaceId other) { return i.id < other; });
-    if (known == ownership_.interfaces.end() || known->id != id) return diameter_;
+    if (known == ownership_.interfaces.end() || known->id != id) return kFar;
     const auto& [a, b] = network_.table().sides(id);
     const auto& problem = ownership_.problem;
     const auto& first = problem.candidates[ownership_.candidate(a)];
@@ -86,6 +106,7 @@ class Estimator {
   const Tetrahedron& cell_;
   const CellOwnership& ownership_;
   double diameter_;
+  OwnershipProblem owners_;  ///< those that own a part of the cell
   std::vector<ContactPolygon> contacts_;
 };
 
@@ -93,7 +114,8 @@ class Estimator {
 
 InterfaceError estimate_interface_error(const InterfaceNetwork& network, const Tetrahedron& cell,
                                         const CellOwnership& ownership,
-                                        std::span<const std::uint32_t> triangles, double target) {
+                                        std::span<const std::uint32_t> triangles, double target,
+                                        double trusted) {
   Estimator estimator(network, cell, ownership);
   if (ownership.pure()) return {triangles.empty() ? 0 : estimator.diameter(), !triangles.empty()};
   if (ownership.problem.candidates.size() > kCrowd && estimator.diameter() > target)
@@ -103,13 +125,11 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
     error.distance = estimator.of_triangles(triangles, triangles.size() / (kManyTriangles / 4));
     if (error.distance > target) return error;
   }
-  error.distance = estimator.of_triangles(triangles, 1);
-  const double back = estimator.of_contacts();
-  if (error.distance > target) {
-    error.lost = std::any_of(triangles.begin(), triangles.end(),
-                             [&](std::uint32_t t) { return !estimator.shows(network.interface_of(t)); });
-  }
-  error.distance = std::max(error.distance, back);
+  error.distance = std::max(estimator.of_triangles(triangles, 1), estimator.of_contacts());
+  double hidden = estimator.of_hidden_triangles(triangles);
+  if (hidden > 0 && estimator.diameter() > trusted) hidden = kFar;
+  error.lost = hidden > target;
+  error.distance = std::max(error.distance, hidden);
   return error;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace adamas {
 
 /// How far the approximation of the interfaces in one cell is from the input's (SPEC 2.5); an estimate.
 struct InterfaceError {
-  double distance = 0;  ///< at most the cell's diameter
+  double distance = 0;  ///< at most the cell's diameter, but for lost interfaces
   bool lost = false;    ///< the input has an interface here, further than the target from any the cell shows
 };
 
@@ -20,9 +21,12 @@ struct InterfaceError {
 /// and at the corners of the cell's own interfaces, by the distance to the input's. `triangles`: of the
 /// network, those that meet the cell. Of very many only some are looked at, which can make the estimate of a
 /// coarse cell smaller but not less than `target` where that matters: all are looked at before an error
-/// within the target is returned.
+/// within the target is returned. An interface that the cell does not show may be shown just outside, where
+/// its linear function vanishes; in cells with a diameter above `trusted` that is not believed, and the
+/// interface counts as lost.
 InterfaceError estimate_interface_error(const InterfaceNetwork& network, const Tetrahedron& cell,
                                         const CellOwnership& ownership,
-                                        std::span<const std::uint32_t> triangles, double target);
+                                        std::span<const std::uint32_t> triangles, double target,
+                                        double trusted = std::numeric_limits<double>::infinity());
 
 }  // namespace adamas

@@ -23,7 +23,7 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
         const auto vertices = cells.corners(begin + i);
         cells.ownership(table, vertices, ownership);
         if (ownership.pure()) continue;
-        drop_hopeless(ownership.problem);
+        keep_owners(ownership.problem);
         buffers[first / kChunk].add({vertices[0], vertices[1], vertices[2], vertices[3]},
                                     cells.positions(vertices), ownership.problem);
       }

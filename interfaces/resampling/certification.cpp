@@ -110,6 +110,7 @@ void Resampler::certify() {
     std::vector<TetrahedronId> created;
     for (const TetrahedronId t : failing) {
       if (!hierarchy_.is_leaf(t) || !hierarchy_.can_split(t)) continue;
+      hierarchy_.payload(t).trusted = 0.25 * frame(t).diameter();
       const std::size_t before = splits.size();
       hierarchy_.split(t, splits);
       if (options_.max_tetrahedra && hierarchy_.leaf_count() > *options_.max_tetrahedra) {

@@ -153,7 +153,7 @@ void Resampler::evaluate_interface(TetrahedronId t) {
   CellOwnership owners;
   ownership(t, owners);
   cell.interface =
-      estimate_interface_error(*source_.network, frame(t), owners, cell.triangles, options_.interface_error);
+      estimate_interface_error(*source_.network, frame(t), owners, cell.triangles, estimate_target(), cell.trusted);
   cell.evaluated = true;
 }
 
@@ -176,6 +176,7 @@ void Resampler::distribute(TetrahedronId parent) {
     CellRecord& to = hierarchy_.payload(children[side]);
     to.first_element = side == 0 ? from.first_element : middle;
     to.last_element = side == 0 ? middle : from.last_element;
+    to.trusted = from.trusted;
     const Tetrahedron part = frame(children[side]);
     for (const std::uint32_t t : from.triangles) {
       const auto& corners = source_.network->triangle_corners(t);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct CellRecord {
                 last_element = 0;  ///< its native elements: a range of the resampler's order
   InterfaceError interface;
   std::vector<FieldError> fields;  ///< empty where not measured
+  /// Cells larger than this must show the interfaces in them; falls where measuring has found one missing.
+  double trusted = std::numeric_limits<double>::infinity();
   bool evaluated = false;          ///< the triangles and the interface error are up to date
 };
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "interfaces/resampling/resampler.h"
+
+namespace adamas {
+
+/// Nested errors of a hierarchy (SPEC 2.5): a tetrahedron's covers those of its children, a diamond's those
+/// of its tetrahedra and of its child diamonds. So no error grows on the way down, neither in the tree of
+/// tetrahedra nor among diamonds: what a selection by threshold wants to split never waits for something it
+/// does not want. The least such errors that are nowhere below the direct ones.
+struct NestedErrors {
+  std::vector<double> of_tetrahedra;  ///< by TetrahedronId
+  std::vector<double> of_diamonds;    ///< by DiamondId
+
+  [[nodiscard]] double operator[](TetrahedronId t) const { return of_tetrahedra[t.value]; }
+  [[nodiscard]] double operator[](DiamondId d) const { return of_diamonds[d.value]; }
+};
+
+/// From the direct error of every tetrahedron of the tree, leaf or not; zero for ids that are not in use.
+NestedErrors nest_errors(const HierarchyTopology& hierarchy,
+                         const std::function<double(TetrahedronId)>& direct);
+
+/// Of the estimated distances of the interfaces. A tetrahedron that was never a leaf when it was looked at
+/// has no direct error: its children's stand for it.
+NestedErrors nest_interface_errors(const Resampler& resampler);
+
+/// Of the greatest errors of one field of the source, where they were measured.
+NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field);
+
+}  // namespace adamas
