@@ -91,16 +91,15 @@ class CellCutter {
     piece.body = BodyId(owner);
     piece.material = job_.mesh.table.material(piece.body);
     piece.cell = cell_;
-    Vec3 turn;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       if (i > 0 && corners[i] == corners[i - 1]) continue;
       piece.corners.push_back(point(corners[i]));
       if (job_.field) piece.values.push_back(value(piece.body, corners[i]));
-      if (i > 0)
-        turn += cross(piece.corners.back() - piece.corners[0],
-                      point(corners[(i + 1) % corners.size()]) - piece.corners[0]);
     }
-    if (piece.corners.size() < 3 || squared_norm(turn) == 0) return;
+    Vec3 turn;
+    for (std::size_t i = 2; i < piece.corners.size(); ++i)
+      turn += cross(piece.corners[i - 1] - piece.corners[0], piece.corners[i] - piece.corners[0]);
+    if (squared_norm(turn) == 0) return;
     if (dot(turn, job_.sides.normal()) < 0) {
       std::reverse(piece.corners.begin(), piece.corners.end());
       std::reverse(piece.values.begin(), piece.values.end());

@@ -1,0 +1,170 @@
+#include "interfaces/probe/probe.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/base/error.h"
+#include "tests/interfaces/cross_section_meshes.h"
+
+namespace adamas {
+namespace {
+
+using test::make_scene_mesh;
+using test::SceneMesh;
+using test::SceneMeshOptions;
+
+std::vector<Vec3> random_points(std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Vec3> points(count);
+  for (Vec3& p : points) p = {unit(random), unit(random), unit(random)};
+  return points;
+}
+
+/// Points inside, on vertices, edges and faces of cells, and on the box.
+std::vector<Vec3> trying_points(const ResampledMesh& mesh) {
+  std::vector<Vec3> points = random_points(150, 11);
+  for (std::size_t cell = 0; cell < mesh.cells.size(); cell += 1 + mesh.cells.size() / 20) {
+    const auto x = mesh.corners(cell);
+    points.push_back(x[0]);
+    points.push_back(0.5 * (x[1] + x[2]));
+    points.push_back((1.0 / 3) * (x[1] + x[2] + x[3]));
+  }
+  for (const double x : {0.0, 0.3, 1.0}) points.push_back({x, 1, 0});
+  return points;
+}
+
+TEST(Probe, FindsWhatTryingAllCellsFinds) {
+  for (const char* name : {"sphere", "plate", "tjunction"}) {
+    SceneMeshOptions options;
+    options.most = 1500;
+    const SceneMesh scene = make_scene_mesh(name, options);
+    const auto points = trying_points(scene.mesh);
+    const CellLocator locator(scene.mesh);
+    const auto samples = probe(scene.mesh, locator, points);
+    ASSERT_EQ(samples.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto found = test::find_cell(scene.mesh, points[i]);
+      const auto at = locator.locate(points[i]);
+      ASSERT_TRUE(at);
+      EXPECT_GE(*std::min_element(at->weights.begin(), at->weights.end()), -1e-12);
+      EXPECT_TRUE(samples[i].inside);
+      EXPECT_EQ(samples[i].point, points[i]);
+      EXPECT_EQ(scene.mesh.table.material(samples[i].body), samples[i].material);
+      // On interfaces the two cells of a shared face may take either side.
+      const BodyId owner = test::owner_in(scene.mesh, found);
+      if (owner != samples[i].body) {
+        EXPECT_LT(samples[i].interface_distance, 1e-12);
+        continue;
+      }
+      for (std::size_t c = 0; c < samples[i].values.size(); ++c) {
+        const double expected = scene.mesh.value(found.cell, owner, c, found.weights);
+        EXPECT_TRUE(test::same(samples[i].values[c], expected) ||
+                    std::abs(samples[i].values[c] - expected) < 1e-9);
+        EXPECT_EQ(std::isnan(expected), c == 5 && samples[i].material != MaterialId(0));
+      }
+    }
+  }
+}
+
+TEST(Probe, SharedPointsGoToTheFirstCell) {
+  const SceneMesh scene = make_scene_mesh("sphere");
+  const CellLocator locator(scene.mesh);
+  std::vector<std::uint32_t> first(scene.mesh.points.size(), 0xffffffffu);
+  for (std::size_t cell = scene.mesh.cells.size(); cell-- > 0;) {
+    for (const std::uint32_t v : scene.mesh.cells[cell].vertices) first[v] = static_cast<std::uint32_t>(cell);
+  }
+  // The weights of a cell's own vertex are exact but for the one that makes up for the others.
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    const auto at = locator.locate(scene.mesh.points[v]);
+    ASSERT_TRUE(at);
+    const auto& vertices = scene.mesh.cells[at->cell].vertices;
+    EXPECT_NE(std::find(vertices.begin(), vertices.end(), v), vertices.end());
+    EXPECT_GE(at->cell, first[v]);
+  }
+}
+
+TEST(Probe, PointsOutsideAreFlagged) {
+  const SceneMesh scene = make_scene_mesh("sphere");
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const std::vector<Vec3> points{
+      {1 + 1e-12, 0.5, 0.5}, {-1, 0, 0}, {nan, 0.5, 0.5}, {0.5, inf, 0.5}, {1, 1, 1}};
+  for (const auto& samples : {probe(scene.mesh, points), probe(scene.source, points)}) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_FALSE(samples[i].inside);
+      EXPECT_FALSE(samples[i].material.valid() || samples[i].body.valid());
+      ASSERT_FALSE(samples[i].values.empty());
+      for (const double v : samples[i].values) EXPECT_TRUE(std::isnan(v));
+      EXPECT_TRUE(std::isnan(samples[i].interface_distance));
+    }
+    EXPECT_TRUE(samples[4].inside);
+  }
+  EXPECT_TRUE(probe(scene.mesh, std::vector<Vec3>{}).empty());
+}
+
+TEST(Probe, LinearFieldsAndMaterialsOfPlaneScenesAreExact) {
+  const SceneMesh scene = make_scene_mesh("tjunction");
+  const auto points = random_points(500, 4);
+  const auto in_mesh = probe(scene.mesh, points), in_input = probe(scene.source, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const MaterialId owner = scene.scene.owner(points[i]);
+    EXPECT_EQ(in_mesh[i].material, owner);
+    EXPECT_EQ(in_input[i].material, owner);
+    const double expected = scene.scene.field(SceneField::kLinear, owner, points[i]);
+    EXPECT_NEAR(in_mesh[i].values[0], expected, 1e-11);
+    EXPECT_NEAR(in_input[i].values[0], expected, 1e-11);
+  }
+}
+
+TEST(Probe, DistancesAreThoseOfTheSphere) {
+  SceneMeshOptions options;
+  options.error = 0.01;
+  options.most = 30000;
+  const SceneMesh scene = make_scene_mesh("sphere", options);
+  const SceneSphere& sphere = scene.scene.spheres()[0];
+  const auto points = random_points(400, 6);
+  const auto in_mesh = probe(scene.mesh, points), in_input = probe(scene.source, points);
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double expected = std::abs(distance(points[i], sphere.center) - sphere.radius);
+    EXPECT_NEAR(in_input[i].interface_distance, expected, 0.02);
+    if (std::isnan(in_mesh[i].interface_distance)) continue;
+    ++known;
+    // Far from the interface it is only known to be far.
+    if (expected < 0.02) {
+      EXPECT_NEAR(in_mesh[i].interface_distance, expected, 0.03);
+    }
+  }
+  EXPECT_GT(known, 0u);
+}
+
+TEST(Probe, LinesHaveTheirEnds) {
+  const auto points = line_points({0, 0, 0}, {1, 2, 0.1}, 11);
+  ASSERT_EQ(points.size(), 11u);
+  EXPECT_EQ(points.front(), (Vec3{0, 0, 0}));
+  EXPECT_EQ(points.back(), (Vec3{1, 2, 0.1}));
+  EXPECT_NEAR(distance(points[3], Vec3{0.3, 0.6, 0.03}), 0, 1e-15);
+  EXPECT_THROW(line_points({0, 0, 0}, {1, 1, 1}, 1), Error);
+  EXPECT_THROW(line_points({0, 0, 0}, {1, 1, 1}, std::size_t(-1)), Error);
+  EXPECT_THROW(line_points({0, std::nan(""), 0}, {1, 1, 1}, 5), Error);
+}
+
+TEST(Probe, SameOnAnyNumberOfThreads) {
+  const SceneMesh scene = make_scene_mesh("plate");
+  const auto points = random_points(2000, 8);
+  set_thread_limit(1);
+  const auto one = probe(scene.mesh, points);
+  set_thread_limit(2);
+  const auto two = probe(scene.mesh, points);
+  set_thread_limit(0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(one[i].body, two[i].body);
+    EXPECT_TRUE(std::equal(one[i].values.begin(), one[i].values.end(), two[i].values.begin(), test::same));
+  }
+}
+
+}  // namespace
+}  // namespace adamas
