@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "core/geometry/partition.h"
+
+namespace adamas::test {
+
+/// What makes a random ownership problem hard.
+struct ProblemTraits {
+  bool zeros = false;       ///< every third value is zero: exact ties at vertices, along edges and on faces
+  bool duplicates = false;  ///< some functions have the values of another, under a key of their own
+};
+
+/// 2 to 6 candidates of 1 to 5 functions; keys are all different and in no order.
+OwnershipProblem random_problem(std::mt19937_64& random, const ProblemTraits& traits);
+
+/// The same problem with candidates, and the functions of each, in another order.
+OwnershipProblem shuffled(const OwnershipProblem& problem, std::mt19937_64& random);
+
+/// Uniform in the tetrahedron.
+Weights random_weights(std::mt19937_64& random);
+
+/// Least function of a candidate, by brute force.
+double candidate_value(const OwnershipProblem& problem, std::size_t candidate, const Weights& weights);
+
+/// The candidate with the greatest least function, where a function counts as infinitesimally greater the
+/// smaller its key; and whether that is beyond doubt: all others are exactly as great or lower by more than
+/// `margin`.
+struct BruteOwner {
+  std::uint32_t owner;
+  double value;
+  bool certain;
+};
+BruteOwner brute_owner(const OwnershipProblem& problem, const Weights& weights, double margin);
+
+/// A change of owner along a line: at from + t (to - from).
+struct OwnerChange {
+  double t;
+  std::uint32_t before, after;
+};
+
+/// All changes along the line from one point to another, from every place where two functions are equal.
+/// `crowded` is set where two places are too close to tell apart.
+std::vector<OwnerChange> owner_changes(const OwnershipProblem& problem, const Weights& from,
+                                       const Weights& to, bool& crowded);
+
+}  // namespace adamas::test
