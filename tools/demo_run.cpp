@@ -14,9 +14,12 @@ RunFigures figures_of(const Resampler& resampler, const ResampledMesh& mesh) {
   figures.vertices = mesh.points.size();
   figures.fields.resize(mesh.fields.size());
   CellOwnership ownership;
+  std::vector<ContactPolygon> contacts;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
     mesh.ownership(c, ownership);
-    if (!ownership.pure()) ++figures.interface_tetrahedra;
+    contacts.clear();
+    if (!ownership.pure()) contact_polygons(ownership.problem, contacts);
+    if (!contacts.empty()) ++figures.interface_tetrahedra;
   }
   resampler.hierarchy().for_each_leaf([&](TetrahedronId t) {
     const CellRecord& cell = resampler.hierarchy().payload(t);
