@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/geometry/plane_sides.h"
+#include "core/geometry/tetrahedron.h"
 #include "interfaces/cross_section/cross_section.h"
 
 namespace adamas {
@@ -43,9 +44,7 @@ class CellCutter {
     job_.mesh.ownership(cell, ownership_);
     if (ownership_.pure()) return add_piece(ownership_.problem.candidates[0].owner, polygon_);
     drop_hopeless(ownership_.problem);
-    owned_.clear();
-    partition_polygon(ownership_.problem, polygon_, owned_);
-    for (const OwnedPolygon& piece : owned_) add_piece(piece.owner, piece.corners);
+    divide_polygon();
     contacts_.clear();
     contact_polygons(ownership_.problem, contacts_);
     for (const ContactPolygon& contact : contacts_) add_contact(contact);
@@ -80,6 +79,25 @@ class CellCutter {
     }
     if (polygon_.size() > 1 && polygon_.front() == polygon_.back()) polygon_.pop_back();
     return polygon_.size() > 2;
+  }
+
+  /// Interfaces may coincide with the plane: who owns the polygon is decided a little beside it.
+  void divide_polygon() {
+    const Tetrahedron frame(positions_);
+    const Vec3 nudge = job_.sides.nudge();
+    Weights shift{};
+    for (std::size_t i = 0; i < 4; ++i) shift[i] = dot(frame.slopes[i], nudge);
+    const auto moved = [&](const Weights& w, double sign) {
+      return Weights{w[0] + sign * shift[0], w[1] + sign * shift[1], w[2] + sign * shift[2],
+                     w[3] + sign * shift[3]};
+    };
+    for (Weights& w : polygon_) w = moved(w, 1);
+    owned_.clear();
+    partition_polygon(ownership_.problem, polygon_, owned_);
+    for (OwnedPolygon& piece : owned_) {
+      for (Weights& w : piece.corners) w = moved(w, -1);
+      add_piece(piece.owner, piece.corners);
+    }
   }
 
   [[nodiscard]] Vec3 point(const Weights& w) const {

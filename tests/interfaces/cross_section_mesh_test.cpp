@@ -8,6 +8,7 @@
 #include "core/geometry/plane_sides.h"
 #include "interfaces/cross_section/cross_section.h"
 #include "tests/interfaces/cross_section_meshes.h"
+#include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
 namespace {
@@ -217,6 +218,39 @@ TEST(CrossSection, PlaneJunctionsHaveExactAreas) {
     for (MaterialId m(0); m.value < expected.size(); ++m.value)
       EXPECT_NEAR(section.material_area[m], expected[m], 1e-9) << to_string(plane);
   }
+}
+
+TEST(CrossSection, APlaneInAnInterfaceShowsOneSide) {
+  const SceneMesh scene = make_scene_mesh("tjunction");
+  const Vec3 center{0.5, 0.5, 0.5}, first{0.5, 0.5, 0}, second{0.5, 0.025, -0.375};
+  for (const double sign : {1.0, -1.0}) {
+    const Plane plane{center, sign * first};
+    const CrossSection section = cross_section(scene.mesh, plane, std::nullopt);
+    IdVector<MaterialId, double> expected(scene.mesh.materials.size(), 0.0);
+    for (const double side : {1.0, -1.0}) {
+      const auto part = half(clip_plane(plane, scene.mesh.box), center, side * second);
+      Vec3 middle;
+      for (const Vec3& p : part) middle += (1 / static_cast<double>(part.size())) * p;
+      expected[scene.scene.owner(middle - 1e-6 * plane.normal)] += polygon_area(part);
+    }
+    for (MaterialId m(0); m.value < expected.size(); ++m.value)
+      EXPECT_NEAR(section.material_area[m], expected[m], 1e-9) << to_string(plane);
+  }
+  // Through the middle of cells, where the interface is found by interpolation only.
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  test::add_patch(mesh, {0.3712, 0, 0}, {0, 1, 0}, {0, 0, 1}, MaterialId(0), MaterialId(1));
+  const ResamplingSource source = make_mesh_source(mesh, scene.mesh.box);
+  ResamplingOptions options;
+  options.interface_error = 0.1;
+  Resampler resampler(source, options);
+  resampler.refine();
+  const ResampledMesh resampled = take_mesh(resampler);
+  EXPECT_NEAR(
+      cross_section(resampled, {{0.3712, 0, 0}, {1, 0, 0}}, std::nullopt).material_area[MaterialId(1)], 1,
+      1e-12);
+  EXPECT_NEAR(
+      cross_section(resampled, {{0.3712, 0, 0}, {-1, 0, 0}}, std::nullopt).material_area[MaterialId(0)], 1,
+      1e-12);
 }
 
 TEST(CrossSection, InterfaceEdgesPartOwnersAndRoundTheirBodies) {
