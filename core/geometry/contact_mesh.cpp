@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "core/geometry/triangulate.h"
 
@@ -11,19 +12,9 @@ namespace adamas {
 
 namespace {
 
-/// Weights below this are zero: the point lies on the smaller feature.
-constexpr double kZeroWeight = 1e-12;
+/// Points nearer to a vertex or an edge than this, in weights, may coincide with others.
+constexpr double kSmallWeight = 1e-9;
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
-constexpr std::array<std::uint64_t, 4> kNoFunctions{kNone, kNone, kNone, kNone};
-
-/// The ids of the feature that is left when the vertices in `zeros` are taken away.
-std::array<std::uint64_t, 4> feature(std::array<std::uint64_t, 4> ids, unsigned zeros) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    if ((zeros >> i & 1u) != 0u) ids[i] = kNone;
-  }
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
 
 std::uint64_t mix(std::uint64_t x) {
   x ^= x >> 30;
@@ -33,57 +24,23 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Whether p lies on the segment between a and b, away from its ends; `position` then tells how far along.
-bool passes(const Vec3& p, const Vec3& a, const Vec3& b, double tolerance, double& position) {
-  const Vec3 along = b - a;
-  const double length = norm(along);
-  if (!(length > 2 * tolerance)) return false;
-  position = dot(p - a, along) / length;
-  if (position <= tolerance || position >= length - tolerance) return false;
-  return norm(p - a - (position / length) * along) <= tolerance;
-}
-
 }  // namespace
 
-ContactBuffer::Key ContactBuffer::digest(const std::array<std::uint64_t, 4>& ids,
-                                         const std::array<std::uint64_t, 4>& functions) {
+ContactBuffer::Key ContactBuffer::digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
+                                         std::span<const std::uint64_t> functions) {
   std::uint64_t low = 0x243f6a8885a308d3ull, high = 0x13198a2e03707344ull;
-  for (const auto* part : {&ids, &functions}) {
-    for (const std::uint64_t word : *part) {
-      low = mix(low + word + 0x9e3779b97f4a7c15ull);
-      high = mix((high ^ std::rotl(word, 32)) + 0xd1b54a32d192ed03ull);
-    }
-  }
-  return {low | 1, high};
-}
-
-ContactBuffer::Corner ContactBuffer::make_corner(const ContactPolygon::Corner& corner,
-                                                 const std::array<std::uint64_t, 4>& ids,
-                                                 const std::array<Vec3, 4>& positions) const {
-  Corner result;
-  std::array<std::uint64_t, 4> support;
-  support.fill(kNone);
-  std::size_t count = 0, last = 0;
-  Vec3 position;
-  double total = 0;
+  const auto take = [&](std::uint64_t word) {
+    low = mix(low + word + 0x9e3779b97f4a7c15ull);
+    high = mix((high ^ std::rotl(word, 32)) + 0xd1b54a32d192ed03ull);
+  };
   for (std::size_t i = 0; i < 4; ++i) {
-    const bool by_construction = (corner.zero_weights >> i & 1u) != 0u;
-    if (by_construction || corner.weights[i] < kZeroWeight) {
-      result.zeros = static_cast<std::uint8_t>(result.zeros | 1u << i);
-      result.crowded = result.crowded || !by_construction;
-      continue;
-    }
-    support[count++] = ids[i];
-    last = i;
-    position += corner.weights[i] * positions[i];
-    total += corner.weights[i];
+    if ((zeros >> i & 1u) == 0) take(ids[i]);
   }
-  result.position = count == 1 ? positions[last] : (1 / total) * position;
-  std::array<std::uint64_t, 4> functions = corner.functions;
-  if (count == 1) functions.fill(kNone);
-  result.key = digest(support, functions);
-  if (count == 2 || count == 3) result.own = digest(support, kNoFunctions);
-  return result;
+  take(kNone);
+  for (const std::uint64_t function : functions) {
+    if (function != kNone) take(function);
+  }
+  return {low, high};
 }
 
 void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
@@ -105,78 +62,51 @@ void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const st
   contact_polygons(sorted, contacts);
   const bool mirrored = signed_volume(places[0], places[1], places[2], places[3]) < 0;
   const bool crowded = problem.candidates.size() > 2 || problem.functions.size() > 2;
-  const std::size_t first_polygon = polygons_.size();
-  for (ContactPolygon& contact : contacts) {
-    if (mirrored) std::reverse(contact.corners.begin(), contact.corners.end());
-    const auto first = static_cast<std::uint32_t>(corners_.size());
-    for (const auto& corner : contact.corners) {
-      corners_.push_back(make_corner(corner, ids, places));
-      corners_.back().crowded = corners_.back().crowded || crowded;
-    }
-    for (std::size_t c = 0; c < contact.corners.size(); ++c) {
-      Corner& here = corners_[first + c];
-      const Corner& next = corners_[first + (c + 1) % contact.corners.size()];
-      if (const unsigned zeros = here.zeros & next.zeros; zeros != 0)
-        here.leaving = digest(feature(ids, zeros), kNoFunctions);
-      if (!here.crowded) here.own = {};
-    }
-    polygons_.push_back(
-        {contact.front, contact.back, first, static_cast<std::uint32_t>(contact.corners.size())});
-  }
-  if (crowded && polygons_.size() - first_polygon > 1) {
-    double size = 0;
-    for (std::size_t i = 1; i < 4; ++i) size = std::max(size, distance(places[0], places[i]));
-    insert_passed_points(first_polygon, 1e-10 * size);
-  }
-}
-
-void ContactBuffer::insert_passed_points(std::size_t first_polygon, double tolerance) {
-  const std::size_t begin = polygons_[first_polygon].first;
-  const std::vector<Corner> all(corners_.begin() + static_cast<std::ptrdiff_t>(begin), corners_.end());
-  corners_.resize(begin);
-  for (std::size_t p = first_polygon; p < polygons_.size(); ++p) {
-    Polygon& polygon = polygons_[p];
-    const std::size_t old_first = polygon.first - begin;
-    polygon.first = static_cast<std::uint32_t>(corners_.size());
-    for (std::size_t c = 0; c < polygon.count; ++c) {
-      const Corner& here = all[old_first + c];
-      const Corner& next = all[old_first + (c + 1) % polygon.count];
-      corners_.push_back(here);
-      std::vector<std::pair<double, Corner>> passed;
-      for (const Corner& other : all) {
-        double position = 0;
-        if (other.key == here.key || other.key == next.key) continue;
-        if (!passes(other.position, here.position, next.position, tolerance, position)) continue;
-        passed.emplace_back(position, other);
-        passed.back().second.leaving = here.leaving;
-      }
-      std::sort(passed.begin(), passed.end(), [](const auto& a, const auto& b) {
-        return std::tuple(a.first, a.second.key.low) < std::tuple(b.first, b.second.key.low);
-      });
-      for (std::size_t i = 0; i < passed.size(); ++i) {
-        if (i == 0 || passed[i].second.key != passed[i - 1].second.key) corners_.push_back(passed[i].second);
+  for (const ContactPolygon& contact : contacts) {
+    const std::size_t count = contact.corners.size();
+    polygons_.push_back({contact.front, contact.back, static_cast<std::uint32_t>(corners_.size()),
+                         static_cast<std::uint32_t>(count)});
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& corner = contact.corners[mirrored ? count - 1 - i : i];
+      // In a mirrored polygon the edge to the next corner is the one that arrived.
+      const auto& edge = mirrored ? contact.corners[(2 * count - 2 - i) % count] : corner;
+      Corner& result = corners_.emplace_back();
+      result.key = digest(ids, corner.zero_weights, corner.functions);
+      result.leaving = digest(ids, edge.line_zero_weights, edge.line_functions);
+      result.crowded = crowded;
+      for (std::size_t v = 0; v < 4; ++v) {
+        result.position += corner.weights[v] * places[v];
+        if ((corner.zero_weights >> v & 1u) == 0 && corner.weights[v] < kSmallWeight) result.crowded = true;
       }
     }
-    polygon.count = static_cast<std::uint32_t>(corners_.size() - polygon.first);
   }
 }
 
 std::uint32_t ContactMeshBuilder::point_of(const ContactBuffer::Corner& corner) {
   const auto [entry, fresh] =
       point_by_key_.try_emplace(corner.key, static_cast<std::uint32_t>(points_.size()));
-  if (fresh) points_.push_back(corner.position);
-  if (corner.crowded) crowded_.push_back(entry->second);
-  if (corner.own != ContactBuffer::Key{}) points_in_feature_[corner.own].push_back(entry->second);
+  if (fresh) {
+    points_.push_back(corner.position);
+    crowded_.push_back(0);
+  }
+  if (corner.crowded) crowded_[entry->second] = 1;
   return entry->second;
 }
 
 void ContactMeshBuilder::append(const ContactBuffer& buffer) {
   for (const auto& polygon : buffer.polygons_) {
-    polygons_.push_back(
-        {polygon.front, polygon.back, static_cast<std::uint32_t>(corners_.size()), polygon.count});
-    for (std::uint32_t c = polygon.first; c < polygon.first + polygon.count; ++c) {
-      corners_.push_back(point_of(buffer.corners_[c]));
-      leaving_.push_back(buffer.corners_[c].leaving);
+    const auto first = static_cast<std::uint32_t>(corners_.size());
+    polygons_.push_back({polygon.front, polygon.back, first, polygon.count});
+    for (std::uint32_t c = 0; c < polygon.count; ++c) {
+      const auto& corner = buffer.corners_[polygon.first + c];
+      corners_.push_back(point_of(corner));
+      leaving_.push_back(corner.leaving);
+    }
+    for (std::uint32_t c = 0; c < polygon.count; ++c) {
+      if (!buffer.corners_[polygon.first + c].crowded) continue;
+      auto& points = lines_[leaving_[first + c]].points;
+      points.emplace_back(0, corners_[first + c]);
+      points.emplace_back(0, corners_[first + (c + 1) % polygon.count]);
     }
   }
 }
@@ -188,17 +118,31 @@ void ContactMeshBuilder::add(const std::array<std::uint64_t, 4>& vertex_ids,
   append(buffer);
 }
 
+void ContactMeshBuilder::order_lines() {
+  for (auto& [key, line] : lines_) {
+    auto& points = line.points;
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    line.origin = points_[points.front().second];
+    for (const auto& [unused, p] : points) {
+      const Vec3 offset = points_[p] - line.origin;
+      if (squared_norm(offset) > squared_norm(line.direction)) line.direction = offset;
+    }
+    for (auto& entry : points) entry = line.place(entry.second, points_[entry.second]);
+    std::sort(points.begin(), points.end());
+  }
+}
+
 void ContactMeshBuilder::weld_crowded_points() {
   welded_.resize(points_.size());
   std::iota(welded_.begin(), welded_.end(), 0u);
-  std::sort(crowded_.begin(), crowded_.end());
-  crowded_.erase(std::unique(crowded_.begin(), crowded_.end()), crowded_.end());
   const auto box_of = [](std::int64_t i, std::int64_t j, std::int64_t k) {
     return mix(mix(mix(static_cast<std::uint64_t>(i)) + static_cast<std::uint64_t>(j)) +
                static_cast<std::uint64_t>(k));
   };
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> boxes;
-  for (const std::uint32_t p : crowded_) {
+  for (std::uint32_t p = 0; p < points_.size(); ++p) {
+    if (crowded_[p] == 0) continue;
     const Vec3& x = points_[p];
     std::array<std::int64_t, 3> low{}, high{}, own{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -225,57 +169,118 @@ void ContactMeshBuilder::weld_crowded_points() {
   }
 }
 
-void ContactMeshBuilder::emit(const Polygon& polygon, InterfaceMesh& mesh) {
+void ContactMeshBuilder::emit(const Polygon& polygon, InterfaceMesh& mesh) const {
   std::vector<std::uint32_t> loop;
   for (std::uint32_t c = 0; c < polygon.count; ++c) {
     const std::size_t here = polygon.first + c;
-    const std::uint32_t a = welded_[corners_[here]],
-                        b = welded_[corners_[polygon.first + (c + 1) % polygon.count]];
-    loop.push_back(a);
-    if (a == b || leaving_[here] == ContactBuffer::Key{}) continue;
-    const auto face = points_in_feature_.find(leaving_[here]);
-    if (face == points_in_feature_.end()) continue;
-    std::vector<std::pair<double, std::uint32_t>> passed;
-    for (const std::uint32_t raw : face->second) {
-      const std::uint32_t p = welded_[raw];
-      double position = 0;
-      if (p != a && p != b && passes(points_[p], points_[a], points_[b], tolerance_, position)) {
-        passed.emplace_back(position, p);
-      }
-    }
-    std::sort(passed.begin(), passed.end());
-    for (const auto& [position, p] : passed) loop.push_back(p);
+    const std::uint32_t a = corners_[here], b = corners_[polygon.first + (c + 1) % polygon.count];
+    loop.push_back(welded_[a]);
+    const auto found = lines_.find(leaving_[here]);
+    if (found == lines_.end()) continue;
+    const Line& line = found->second;
+    const auto from = line.place(a, points_[a]), to = line.place(b, points_[b]);
+    const auto first = std::upper_bound(line.points.begin(), line.points.end(), std::min(from, to));
+    const auto last = std::lower_bound(first, line.points.end(), std::max(from, to));
+    const auto begin = static_cast<std::ptrdiff_t>(loop.size());
+    for (auto p = first; p < last; ++p) loop.push_back(welded_[p->second]);
+    if (to < from) std::reverse(loop.begin() + begin, loop.end());
   }
   loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
   while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
   if (loop.size() < 3) return;
   triangulate_convex(points_, loop, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (a == b || b == c || c == a) return;
     mesh.triangles.push_back({{a, b, c}, MaterialId(polygon.front), MaterialId(polygon.back)});
   });
 }
 
+void ContactMeshBuilder::cancel_coinciding(InterfaceMesh& mesh) const {
+  // Triangles by their corners, turned so that these run upwards with the smallest first.
+  struct Side {
+    std::array<std::uint32_t, 3> points;
+    std::uint32_t triangle;
+    auto operator<=>(const Side&) const = default;
+  };
+  std::vector<Side> sides;
+  const auto turned = [](const InterfaceTriangle& t) {
+    auto p = t.points;
+    std::sort(p.begin(), p.end());
+    return p;
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& p = mesh.triangles[t].points;
+    if (crowded_[p[0]] != 0 && crowded_[p[1]] != 0 && crowded_[p[2]] != 0)
+      sides.push_back({turned(mesh.triangles[t]), t});
+  }
+  std::sort(sides.begin(), sides.end());
+  const auto even = [&](const InterfaceTriangle& t) {
+    const auto& p = t.points;
+    return (p[0] < p[1]) == (p[1] < p[2]) ? p[0] < p[1] : p[2] < p[0];
+  };
+  std::vector<char> gone(mesh.triangles.size(), 0);
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    while (last < sides.size() && sides[last].points == sides[first].points) ++last;
+    if (last - first < 2) continue;
+    // How often each region lies in front of the stack of triangles rather than behind it.
+    std::vector<std::pair<std::uint32_t, int>> net;
+    const auto count = [&](MaterialId side, int by) {
+      const auto found =
+          std::find_if(net.begin(), net.end(), [&](const auto& entry) { return entry.first == side.value; });
+      if (found == net.end()) {
+        net.emplace_back(side.value, by);
+      } else {
+        found->second += by;
+      }
+    };
+    for (std::size_t i = first; i < last; ++i) {
+      const InterfaceTriangle& t = mesh.triangles[sides[i].triangle];
+      count(t.front, even(t) ? 1 : -1);
+      count(t.back, even(t) ? -1 : 1);
+      gone[sides[i].triangle] = 1;
+    }
+    std::erase_if(net, [](const auto& entry) { return entry.second == 0; });
+    if (net.empty()) continue;
+    if (net.size() != 2 || std::abs(net[0].second) != 1) {
+      for (std::size_t i = first; i < last; ++i) gone[sides[i].triangle] = 0;
+      continue;
+    }
+    InterfaceTriangle& kept = mesh.triangles[sides[first].triangle];
+    if ((net[0].second > 0) != even(kept)) std::swap(net[0], net[1]);
+    kept.front = MaterialId(net[0].first);
+    kept.back = MaterialId(net[1].first);
+    gone[sides[first].triangle] = 0;
+  }
+  std::size_t left = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (gone[t] == 0) mesh.triangles[left++] = mesh.triangles[t];
+  }
+  mesh.triangles.resize(left);
+}
+
+/// Points in the order of their first use.
+void ContactMeshBuilder::number_points(InterfaceMesh& mesh) const {
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> number(points_.size(), kUnused);
+  for (InterfaceTriangle& triangle : mesh.triangles) {
+    for (std::uint32_t& p : triangle.points) {
+      if (number[p] == kUnused) {
+        number[p] = static_cast<std::uint32_t>(mesh.points.size());
+        mesh.points.push_back(points_[p]);
+      }
+      p = number[p];
+    }
+  }
+}
+
 InterfaceMesh ContactMeshBuilder::finish() {
+  order_lines();
   weld_crowded_points();
   point_by_key_.clear();
-  for (auto& [face, points] : points_in_feature_) {
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-  }
   InterfaceMesh mesh;
   mesh.triangles.reserve(2 * polygons_.size());
   for (const Polygon& polygon : polygons_) emit(polygon, mesh);
-  // Points in the order of their first use.
-  constexpr std::uint32_t kUnused = 0xffffffffu;
-  std::vector<std::uint32_t> renumbered(points_.size(), kUnused);
-  for (InterfaceTriangle& triangle : mesh.triangles) {
-    for (std::uint32_t& p : triangle.points) {
-      if (renumbered[p] == kUnused) {
-        renumbered[p] = static_cast<std::uint32_t>(mesh.points.size());
-        mesh.points.push_back(points_[p]);
-      }
-      p = renumbered[p];
-    }
-  }
+  cancel_coinciding(mesh);
+  number_points(mesh);
   *this = ContactMeshBuilder(tolerance_);
   return mesh;
 }

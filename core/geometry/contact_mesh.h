@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/data/interface_mesh.h"
@@ -34,27 +36,26 @@ class ContactBuffer {
   struct Corner {
     Key key;
     Vec3 position;
-    Key leaving;  ///< the mesh face or edge along which the way to the next corner runs; zero in the cell
-    Key own;      ///< the mesh face or edge in whose inside the point lies, where crowded; zero elsewhere
-    std::uint8_t zeros = 0;  ///< bit i: the weight of vertex i is zero, by construction or nearly
-    bool crowded = false;    ///< other points may coincide with it
+    Key leaving;   ///< the line along which the edge to the next corner runs
+    bool crowded;  ///< other points may lie on the line or coincide with the corner
   };
   struct Polygon {
     std::uint32_t front, back;
     std::uint32_t first, count;
   };
 
-  static Key digest(const std::array<std::uint64_t, 4>& ids, const std::array<std::uint64_t, 4>& functions);
-  Corner make_corner(const ContactPolygon::Corner& corner, const std::array<std::uint64_t, 4>& ids,
-                     const std::array<Vec3, 4>& positions) const;
-  void insert_passed_points(std::size_t first_polygon, double tolerance);
+  static Key digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
+                    std::span<const std::uint64_t> functions);
 
   std::vector<Corner> corners_;
   std::vector<Polygon> polygons_;
 };
 
-/// Welds the contact polygons of a conforming tetrahedral mesh into a network of triangles: no cracks, no
-/// T-junctions, and round every inner edge the sides of the triangles match up.
+/// Welds the contact polygons of a conforming tetrahedral mesh into a network of triangles. It is closed, by
+/// combinatorics alone: the polygons fit together but for points of one polygon that lie on the edge of
+/// another. Such edges run on one line, which is known by the functions that are equal there, and are divided
+/// at all the points of their line in one order. Then points that coincide become one, and triangles that
+/// this brings onto each other, with nothing between them, go.
 class ContactMeshBuilder {
  public:
   /// `tolerance`: points nearer than this that stem from different features are one (a length; far below any
@@ -73,20 +74,32 @@ class ContactMeshBuilder {
     std::uint32_t front, back;
     std::uint32_t first, count;
   };
+  /// The points on a line in the order of their positions along it.
+  struct Line {
+    Vec3 origin, direction;
+    std::vector<std::pair<double, std::uint32_t>> points;
+    [[nodiscard]] std::pair<double, std::uint32_t> place(std::uint32_t point, const Vec3& position) const {
+      return {dot(position - origin, direction), point};
+    }
+  };
+  using Key = ContactBuffer::Key;
+
   std::uint32_t point_of(const ContactBuffer::Corner& corner);
+  void order_lines();
   void weld_crowded_points();
-  void emit(const Polygon& polygon, InterfaceMesh& mesh);
+  void emit(const Polygon& polygon, InterfaceMesh& mesh) const;
+  void cancel_coinciding(InterfaceMesh& mesh) const;
+  void number_points(InterfaceMesh& mesh) const;
 
   double tolerance_;
   std::vector<Vec3> points_;
-  std::vector<std::uint32_t> crowded_;  ///< points that may coincide with others
-  std::vector<std::uint32_t> welded_;   ///< point -> the point it became
+  std::vector<char> crowded_;          ///< by point: it may coincide with others
+  std::vector<std::uint32_t> welded_;  ///< point -> the point it became
   std::vector<std::uint32_t> corners_;
-  std::vector<ContactBuffer::Key> leaving_;
+  std::vector<Key> leaving_;
   std::vector<Polygon> polygons_;
-  std::unordered_map<ContactBuffer::Key, std::uint32_t, ContactBuffer::KeyHash> point_by_key_;
-  std::unordered_map<ContactBuffer::Key, std::vector<std::uint32_t>, ContactBuffer::KeyHash>
-      points_in_feature_;
+  std::unordered_map<Key, std::uint32_t, ContactBuffer::KeyHash> point_by_key_;
+  std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< those with crowded edges
 };
 
 }  // namespace adamas

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "core/geometry/determinant_sign.h"
 #include "core/geometry/partition.h"
 
 namespace adamas {
@@ -11,11 +12,16 @@ namespace {
 
 constexpr std::uint32_t kFaceTag = 0x80000000u;
 
-/// A corner of the polygon under construction and the line of the edge that leaves it: `line` is a function
-/// that equals the two that make the polygon, or kFaceTag + the face opposite to a vertex.
+/// A corner of the polygon under construction: where `equal` functions are equal, on the face of the vertices
+/// that are not in `zeros`.
 struct Corner {
-  ContactPolygon::Corner data;
-  std::uint32_t line;
+  Weights weights;
+  std::array<std::uint32_t, 4> equal;
+  std::uint8_t count;  ///< of functions in `equal`, and of vertices of the face
+  std::uint8_t zeros;  ///< bit i: weight i is zero
+  std::int8_t side;    ///< sign of the determinant that its weights are divided by
+  std::uint32_t
+      line;  ///< of the edge that leaves it: a function that is equal too, or kFaceTag + the opposite vertex
 };
 using Polygon = std::vector<Corner>;
 
@@ -36,16 +42,24 @@ class ContactFinder {
   }
 
  private:
+  /// A polygon divided where h is equal to f.
+  struct Divided {
+    Polygon above, below;
+  };
+
   [[nodiscard]] const LinearFunction& function(std::uint32_t f) const { return problem_.functions[f]; }
   [[nodiscard]] double difference(std::uint32_t f, std::uint32_t g, const Weights& w) const {
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) sum += (function(f).values[i] - function(g).values[i]) * w[i];
     return sum;
   }
-  /// Whether f counts as greater than g where they differ by d; exact ties go to the smaller key.
+  /// The order of the infinitesimals, the greatest first.
+  [[nodiscard]] bool comes_first(std::uint32_t f, std::uint32_t g) const {
+    return function(f).key < function(g).key || (function(f).key == function(g).key && f < g);
+  }
+  /// Whether f is greater than g where they differ by d.
   [[nodiscard]] bool greater(std::uint32_t f, std::uint32_t g, double d) const {
-    return d > 0 ||
-           (d == 0 && (function(f).key < function(g).key || (function(f).key == function(g).key && f < g)));
+    return d > 0 || (d == 0 && comes_first(f, g));
   }
 
   void contact(std::size_t a, std::size_t b, std::uint32_t f, std::uint32_t g) {
@@ -57,8 +71,8 @@ class ContactFinder {
       const std::uint32_t least = own == a ? f : g;
       for (std::uint32_t h = cs[own].first; h < cs[own].first + cs[own].count; ++h) {
         if (h == least) continue;
-        polygon = clip(polygon, h, true);
-        if (polygon.size() < 3) return;
+        polygon = divide(std::move(polygon), h).above;
+        if (polygon.empty()) return;
       }
     }
     leave_to_others(std::move(polygon), a, b, 0);
@@ -69,44 +83,91 @@ class ContactFinder {
     const auto& cs = problem_.candidates;
     for (; c < cs.size(); ++c) {
       if (c == a || c == b) continue;
-      Polygon rest = polygon;
       for (std::uint32_t h = cs[c].first; h < cs[c].first + cs[c].count; ++h) {
-        Polygon lower = clip(rest, h, false);
-        if (lower.size() == rest.size() && lower.size() >= 3 && same(lower, rest)) {
-          rest = std::move(lower);
-          break;  // h stays below all over what is left
+        Divided divided = divide(std::move(polygon), h);
+        polygon = std::move(divided.above);
+        if (polygon.empty()) {
+          polygon = std::move(divided.below);  // h stays below all over what is left
+          break;
         }
-        if (lower.size() >= 3) leave_to_others(std::move(lower), a, b, c + 1);
-        rest = clip(rest, h, true);
-        if (rest.size() < 3) return;
+        if (!divided.below.empty()) leave_to_others(std::move(divided.below), a, b, c + 1);
         if (h + 1 == cs[c].first + cs[c].count) return;  // c owns the rest
       }
-      polygon = std::move(rest);
     }
     emit(polygon, a, b);
-  }
-
-  static bool same(const Polygon& x, const Polygon& y) {
-    return std::equal(x.begin(), x.end(), y.begin(),
-                      [](const Corner& p, const Corner& q) { return p.data.weights == q.data.weights; });
   }
 
   void emit(const Polygon& polygon, std::size_t a, std::size_t b) {
     ContactPolygon& contact = out_.emplace_back();
     contact.front = problem_.candidates[a].owner;
     contact.back = problem_.candidates[b].owner;
-    for (const Corner& corner : polygon) contact.corners.push_back(corner.data);
+    for (const Corner& corner : polygon) {
+      ContactPolygon::Corner& result = contact.corners.emplace_back();
+      result.weights = corner.weights;
+      result.zero_weights = corner.zeros;
+      set_keys(std::span(corner.equal).first(corner.count), result.functions);
+      std::array<std::uint32_t, 3> line{f_, g_, corner.line};
+      const bool on_face = (corner.line & kFaceTag) != 0;
+      set_keys(std::span(line).first(on_face ? 2 : 3), result.line_functions);
+      result.line_zero_weights = on_face ? static_cast<std::uint8_t>(1u << (corner.line & ~kFaceTag)) : 0;
+    }
   }
 
-  [[nodiscard]] ContactPolygon::Corner corner(const Weights& weights, std::uint8_t zero,
-                                              std::span<const std::uint32_t> equal) const {
-    ContactPolygon::Corner result;
-    result.weights = weights;
-    result.zero_weights = zero;
-    result.functions.fill(~std::uint64_t{0});
-    for (std::size_t i = 0; i < equal.size() && i < 4; ++i) result.functions[i] = function(equal[i]).key;
-    std::sort(result.functions.begin(), result.functions.end());
-    return result;
+  template <std::size_t Size>
+  void set_keys(std::span<const std::uint32_t> functions, std::array<std::uint64_t, Size>& keys) const {
+    keys.fill(~std::uint64_t{0});
+    for (std::size_t i = 0; i < functions.size(); ++i) keys[i] = function(functions[i]).key;
+    std::sort(keys.begin(), keys.end());
+  }
+
+  [[nodiscard]] Corner make_corner(const Weights& weights, std::uint8_t zeros,
+                                   std::span<const std::uint32_t> equal, std::uint32_t line) const {
+    Corner corner{weights, {}, static_cast<std::uint8_t>(equal.size()), zeros, 0, line};
+    std::copy(equal.begin(), equal.end(), corner.equal.begin());
+    corner.side = static_cast<std::int8_t>(sign_with_ones(corner, f_, corner.count));
+    return corner;
+  }
+
+  /// The determinant's rows are the corner's functions and h, at the vertices of the corner's face, and a
+  /// column of ones: its sign is that of h - f at the corner, times the corner's side.
+  void fill_rows(const Corner& corner, std::uint32_t h, SmallMatrix& rows) const {
+    for (std::size_t r = 0; r <= corner.count; ++r) {
+      const auto& values = function(r < corner.count ? corner.equal[r] : h).values;
+      std::size_t column = 0;
+      for (std::size_t v = 0; v < 4; ++v) {
+        if ((corner.zeros >> v & 1u) == 0) rows[r][column++] = values[v];
+      }
+      rows[r][column] = 1;
+    }
+  }
+
+  /// The same determinant for h = 1 + h in one row: how it grows with that row's function.
+  [[nodiscard]] int sign_with_ones(const Corner& corner, std::uint32_t h, std::size_t row) const {
+    SmallMatrix rows{};
+    fill_rows(corner, h, rows);
+    rows[row].fill(1);
+    rows[row][corner.count] = 0;
+    return determinant_sign(rows, corner.count + std::size_t{1});
+  }
+
+  /// Whether h is greater than f at the corner.
+  [[nodiscard]] bool above(const Corner& corner, std::uint32_t h) const {
+    SmallMatrix rows{};
+    fill_rows(corner, h, rows);
+    int sign = determinant_sign(rows, corner.count + std::size_t{1});
+    if (sign == 0) {
+      // The infinitesimals decide, the greatest first.
+      const auto at = [&](std::size_t row) { return row < corner.count ? corner.equal[row] : h; };
+      std::array<std::size_t, 5> order{};
+      for (std::size_t row = 0; row <= corner.count; ++row) {
+        std::size_t place = row;
+        for (; place > 0 && comes_first(at(row), at(order[place - 1])); --place)
+          order[place] = order[place - 1];
+        order[place] = row;
+      }
+      for (std::size_t i = 0; i <= corner.count && sign == 0; ++i) sign = sign_with_ones(corner, h, order[i]);
+    }
+    return sign * corner.side > 0;
   }
 
   /// Where f = g inside the tetrahedron, counter-clockwise seen from the side of f.
@@ -126,11 +187,11 @@ class ContactFinder {
     const auto on_edge = [&](std::size_t i, std::size_t j, std::size_t next_face) {
       if (i > j) std::swap(i, j);
       Weights w{};
-      const double t = d[i] / (d[i] - d[j]);
+      const double t = d[i] == 0 ? 0 : d[i] / (d[i] - d[j]);
       w[i] = 1 - t;
       w[j] = t;
-      const auto zero = static_cast<std::uint8_t>(0xfu & ~(1u << i) & ~(1u << j));
-      return Corner{corner(w, zero, equal), kFaceTag + static_cast<std::uint32_t>(next_face)};
+      const auto zeros = static_cast<std::uint8_t>(0xfu & ~(1u << i) & ~(1u << j));
+      return make_corner(w, zeros, equal, kFaceTag + static_cast<std::uint32_t>(next_face));
     };
     Polygon polygon;
     if (np == 2) {
@@ -153,7 +214,7 @@ class ContactFinder {
     const auto vertex = [&](std::size_t c) {
       std::array<double, 3> x{};
       for (std::size_t i = 0; i < 4; ++i) {
-        const double w = (polygon[c].data.zero_weights >> i & 1u) != 0u ? 0 : 0.5;
+        const double w = (polygon[c].zeros >> i & 1u) != 0u ? 0 : 0.5;
         if (i > 0) x[i - 1] += w;
       }
       return x;
@@ -178,48 +239,47 @@ class ContactFinder {
     polygon.back().line = first;
   }
 
-  /// The part of the polygon where h > f (above) or where it is not.
-  Polygon clip(const Polygon& polygon, std::uint32_t h, bool above) const {
-    Polygon kept;
-    // On the polygon f is g, so that a function equal to g is no farther from f than the two keys tell.
-    if (function(h).values == function(g_).values) return greater(h, g_, 0) == above ? polygon : kept;
+  /// Divides a polygon into the parts where h is greater than f and where it is not; empty where there is
+  /// none.
+  [[nodiscard]] Divided divide(Polygon polygon, std::uint32_t h) const {
     const std::size_t size = polygon.size();
-    std::vector<double> d(size);
-    std::vector<bool> inside(size);
+    std::vector<bool> positive(size);
     std::size_t count = 0;
     for (std::size_t c = 0; c < size; ++c) {
-      d[c] = difference(h, f_, polygon[c].data.weights);
-      inside[c] = greater(h, f_, d[c]) == above;
-      count += inside[c] ? 1 : 0;
+      positive[c] = above(polygon[c], h);
+      count += positive[c] ? 1 : 0;
     }
-    if (count == size) return polygon;
-    if (count == 0) return kept;
+    if (count == size) return {std::move(polygon), {}};
+    if (count == 0) return {{}, std::move(polygon)};
+    Divided divided;
     for (std::size_t c = 0; c < size; ++c) {
       const std::size_t next = (c + 1) % size;
-      if (inside[c]) kept.push_back(polygon[c]);
-      if (inside[c] == inside[next]) continue;
-      Corner cut = crossing(polygon[c], polygon[next], d[c], d[next], h);
-      if (inside[c]) cut.line = h;  // leaves along the cut
-      kept.push_back(cut);
+      (positive[c] ? divided.above : divided.below).push_back(polygon[c]);
+      if (positive[c] == positive[next]) continue;
+      Corner cut = crossing(polygon[c], polygon[next], h);
+      (positive[c] ? divided.below : divided.above).push_back(cut);
+      cut.line = h;  // the part that is left goes on along the cut
+      (positive[c] ? divided.above : divided.below).push_back(cut);
     }
-    return kept;
+    return divided;
   }
 
-  [[nodiscard]] Corner crossing(const Corner& from, const Corner& to, double d_from, double d_to,
-                                std::uint32_t h) const {
+  [[nodiscard]] Corner crossing(const Corner& from, const Corner& to, std::uint32_t h) const {
     const std::uint32_t line = from.line;
-    const double t = d_from / (d_from - d_to);
+    const double d_from = std::abs(difference(h, f_, from.weights)),
+                 d_to = std::abs(difference(h, f_, to.weights));
+    const double t = d_from + d_to > 0 ? d_from / (d_from + d_to) : 0.5;
     Weights w;
-    for (std::size_t i = 0; i < 4; ++i) w[i] = (1 - t) * from.data.weights[i] + t * to.data.weights[i];
+    for (std::size_t i = 0; i < 4; ++i) w[i] = (1 - t) * from.weights[i] + t * to.weights[i];
     if ((line & kFaceTag) == 0) {
       const std::array<std::uint32_t, 4> equal{f_, g_, line, h};
-      return {corner(w, 0, equal), line};
+      return make_corner(w, 0, equal, line);
     }
     const std::uint32_t face = line & ~kFaceTag;
     w[face] = 0;
     const std::array<std::uint32_t, 3> equal{f_, g_, h};
     if (const auto exact = on_face(equal, face)) w = *exact;
-    return {corner(w, static_cast<std::uint8_t>(1u << face), equal), line};
+    return make_corner(w, static_cast<std::uint8_t>(1u << face), equal, line);
   }
 
   /// Where three functions are equal on a face, worked out the same way from either cell. None if that is no

@@ -66,6 +66,9 @@ struct ContactPolygon {
     /// cell.
     std::array<std::uint64_t, 4> functions;
     std::uint8_t zero_weights;  ///< bit i: weight i is zero by construction
+    /// The same for the line of the edge to the next corner: three functions, or two on a face.
+    std::array<std::uint64_t, 3> line_functions;
+    std::uint8_t line_zero_weights;
   };
   std::uint32_t front, back;
   std::vector<Corner> corners;
@@ -85,7 +88,10 @@ void drop_hopeless(OwnershipProblem& problem);
 /// theirs.
 void keep_owners(OwnershipProblem& problem);
 
-/// The polygons where two owners touch inside the tetrahedron.
+/// The polygons where two owners touch inside the tetrahedron. Which polygons there are, and between which functions
+/// their corners lie, is decided exactly, for functions that are each greater by an infinitesimal, the more so the
+/// smaller their key: so polygons of one tetrahedron, and of two that share a face, fit together however close to
+/// coincidence functions are. Corners are only as exact as doubles.
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
 
 /// Volume of a part as a fraction of the tetrahedron's.

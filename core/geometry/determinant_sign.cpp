@@ -1,0 +1,104 @@
+#include "core/geometry/determinant_sign.h"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace adamas {
+
+namespace {
+
+/// A number as a sum of doubles, by ascending size, without zeros and without overlaps.
+using Expansion = std::vector<double>;
+
+/// Appends the rounding error of a + b, if any, and returns the rounded sum.
+double add(double a, double b, Expansion& errors) {
+  const double sum = a + b, from_b = sum - a, from_a = sum - from_b;
+  const double error = (a - from_a) + (b - from_b);
+  if (error != 0) errors.push_back(error);
+  return sum;
+}
+
+Expansion sum_of(const Expansion& e, const Expansion& f) {
+  if (e.empty()) return f;
+  if (f.empty()) return e;
+  Expansion result;
+  result.reserve(e.size() + f.size());
+  std::size_t i = 0, j = 0;
+  const auto next = [&] {
+    return j == f.size() || (i < e.size() && std::abs(e[i]) < std::abs(f[j])) ? e[i++] : f[j++];
+  };
+  double carried = next();
+  while (i < e.size() || j < f.size()) carried = add(carried, next(), result);
+  if (carried != 0) result.push_back(carried);
+  return result;
+}
+
+Expansion product_of(const Expansion& e, double factor) {
+  Expansion result;
+  if (factor == 0) return result;
+  result.reserve(2 * e.size());
+  double carried = 0;
+  for (const double part : e) {
+    const double high = part * factor, low = std::fma(part, factor, -high);
+    const double middle = add(carried, low, result);
+    carried = add(high, middle, result);
+  }
+  if (carried != 0) result.push_back(carried);
+  return result;
+}
+
+/// Determinants of the first rows and the columns in each set, by Laplace's expansion along the last of the
+/// rows. `Number` offers zero, one, and sums and products by the given functions.
+template <class Number, class Accumulate>
+Number determinant(std::size_t n, const Number& zero, const Number& one, Accumulate&& accumulate) {
+  std::array<Number, 32> minors;
+  minors.fill(zero);
+  minors[0] = one;
+  for (unsigned set = 1; set < 1u << n; ++set) {
+    std::size_t row = 0;
+    for (unsigned rest = set; rest != 0; rest &= rest - 1) ++row;
+    bool negative = row % 2 == 0;
+    for (std::size_t column = 0; column < n; ++column) {
+      if ((set >> column & 1u) == 0) continue;
+      accumulate(minors[set], minors[set & ~(1u << column)], row - 1, column, negative);
+      negative = !negative;
+    }
+  }
+  return minors[(1u << n) - 1];
+}
+
+int exact_sign(const SmallMatrix& matrix, std::size_t n) {
+  const Expansion value = determinant<Expansion>(
+      n, Expansion{}, Expansion{1},
+      [&](Expansion& sum, const Expansion& minor, std::size_t row, std::size_t column, bool negative) {
+        const double entry = matrix[row][column];
+        sum = sum_of(sum, product_of(minor, negative ? -entry : entry));
+      });
+  return value.empty() ? 0 : value.back() > 0 ? 1 : -1;
+}
+
+/// A sum and the sum of the sizes of its terms.
+struct Bounded {
+  double value, size;
+};
+
+}  // namespace
+
+int determinant_sign(const SmallMatrix& matrix, std::size_t n) {
+  const Bounded found = determinant<Bounded>(
+      n, {0, 0}, {1, 1},
+      [&](Bounded& sum, const Bounded& minor, std::size_t row, std::size_t column, bool negative) {
+        const double entry = matrix[row][column];
+        sum.value += (negative ? -entry : entry) * minor.value;
+        sum.size += std::abs(entry) * minor.size;
+      });
+  // Each of the n levels rounds a product and at most n sums.
+  const double bound =
+      2 * static_cast<double>(n * (n + 1)) * std::numeric_limits<double>::epsilon() * found.size;
+  if (found.value > bound) return 1;
+  if (found.value < -bound) return -1;
+  return exact_sign(matrix, n);
+}
+
+}  // namespace adamas

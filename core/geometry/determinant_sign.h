@@ -1,0 +1,16 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace adamas {
+
+/// Rows of a square matrix of at most five rows; the first n of the first n rows count.
+using SmallMatrix = std::array<std::array<double, 5>, 5>;
+
+/// The sign of the determinant of an n x n matrix, n <= 5: exact for finite entries whose products neither
+/// overflow nor underflow. In floating point where that is certain, else by expansions, sums of doubles that
+/// do not overlap (Shewchuk, Adaptive precision floating-point arithmetic, 1997).
+int determinant_sign(const SmallMatrix& matrix, std::size_t n);
+
+}  // namespace adamas

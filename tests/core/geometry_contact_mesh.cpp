@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include "core/geometry/contact_mesh.h"
+#include "core/geometry/tetrahedron.h"
+#include "tests/support/closed_surface.h"
+#include "tests/support/ownership_problems.h"
+
+namespace adamas {
+namespace {
+
+/// How the vertices of a lattice get the values of the functions.
+enum class Data {
+  kGeneric,
+  kZeros,      ///< every third value is zero
+  kNearZeros,  ///< every third value is zero but for round-off
+  kLabels,     ///< one function an owner: 1 at the points that have its label, else 0
+  kHalves      ///< multiples of one half
+};
+
+/// A lattice of n^3 cubes, each six tetrahedra round its diagonal, and functions with random values at its
+/// points: `owners` regions, each the least of one to three of them.
+class RandomLattice {
+ public:
+  RandomLattice(std::uint64_t seed, std::uint32_t n, std::uint32_t owners, Data data) : n_(n), random_(seed) {
+    std::vector<std::uint32_t> labels((n_ + 1) * (n_ + 1) * (n_ + 1));
+    for (std::uint32_t& label : labels) label = static_cast<std::uint32_t>(random_() % owners);
+    for (std::uint32_t owner = 0; owner < owners; ++owner) {
+      std::vector<std::size_t> functions;
+      const std::size_t count = data == Data::kLabels ? 1 : 1 + random_() % 3;
+      for (std::size_t f = 0; f < count; ++f) {
+        functions.push_back(values_.size());
+        values_.push_back(random_values(data));
+        if (data != Data::kLabels) continue;
+        for (std::size_t p = 0; p < labels.size(); ++p) values_.back()[p] = labels[p] == owner ? 1 : 0;
+      }
+      functions_.push_back(functions);
+    }
+  }
+
+  [[nodiscard]] Box3 box() const { return {{0, 0, 0}, {1, 1, 1}}; }
+  [[nodiscard]] std::uint32_t owners() const { return static_cast<std::uint32_t>(functions_.size()); }
+  [[nodiscard]] std::uint32_t point(const std::array<std::uint32_t, 3>& p) const {
+    return p[0] + (n_ + 1) * (p[1] + (n_ + 1) * p[2]);
+  }
+  [[nodiscard]] std::uint32_t last_point() const { return point({n_, n_, n_}); }
+  [[nodiscard]] Vec3 position(std::uint32_t p) const {
+    const double h = 1.0 / n_;
+    return {h * (p % (n_ + 1)), h * (p / (n_ + 1) % (n_ + 1)), h * (p / ((n_ + 1) * (n_ + 1)))};
+  }
+  [[nodiscard]] OwnershipProblem problem(const std::array<std::uint32_t, 4>& corners) const {
+    OwnershipProblem problem;
+    for (std::uint32_t owner = 0; owner < owners(); ++owner) {
+      problem.add_candidate(owner);
+      for (const std::size_t f : functions_[owner]) {
+        problem.add_function(
+            {values_[f][corners[0]], values_[f][corners[1]], values_[f][corners[2]], values_[f][corners[3]]},
+            f);
+      }
+    }
+    return problem;
+  }
+  /// Calls visit(corners) for all tetrahedra, positively oriented or not.
+  template <class Visit>
+  void for_each_tetrahedron(Visit&& visit) const {
+    std::array<int, 3> path{0, 1, 2};
+    for (std::uint32_t k = 0; k < n_; ++k) {
+      for (std::uint32_t j = 0; j < n_; ++j) {
+        for (std::uint32_t i = 0; i < n_; ++i) {
+          do {
+            std::array<std::uint32_t, 3> at{i, j, k};
+            std::array<std::uint32_t, 4> corners{point(at)};
+            for (std::size_t step = 0; step < 3; ++step) {
+              ++at[static_cast<std::size_t>(path[step])];
+              corners[step + 1] = point(at);
+            }
+            visit(corners);
+          } while (std::next_permutation(path.begin(), path.end()));
+        }
+      }
+    }
+  }
+
+ private:
+  std::vector<double> random_values(Data data) {
+    std::uniform_real_distribution<double> value(-1, 1);
+    std::vector<double> values((n_ + 1) * (n_ + 1) * (n_ + 1));
+    for (double& v : values) {
+      v = value(random_);
+      const bool zero = random_() % 3 == 0;
+      if (zero && data == Data::kZeros) v = 0;
+      if (zero && data == Data::kNearZeros) v *= 1e-15;
+      if (data == Data::kHalves) v = 0.5 * std::round(2 * v);
+    }
+    return values;
+  }
+
+  std::uint32_t n_;
+  std::mt19937_64 random_;
+  std::vector<std::vector<double>> values_;
+  std::vector<std::vector<std::size_t>> functions_;
+};
+
+struct Extracted {
+  InterfaceMesh mesh;
+  std::vector<double> volumes;  ///< of the parts
+};
+
+Extracted extract(const RandomLattice& lattice) {
+  ContactMeshBuilder builder(1e-11);
+  Extracted result;
+  result.volumes.assign(lattice.owners(), 0);
+  lattice.for_each_tetrahedron([&](const std::array<std::uint32_t, 4>& c) {
+    OwnershipProblem problem = lattice.problem(c);
+    const std::array<Vec3, 4> x{lattice.position(c[0]), lattice.position(c[1]), lattice.position(c[2]),
+                                lattice.position(c[3])};
+    drop_hopeless(problem);
+    std::vector<OwnedTetrahedron> parts;
+    partition_tetrahedron(problem, parts);
+    const double volume = std::abs(signed_volume(x[0], x[1], x[2], x[3]));
+    for (const auto& part : parts) result.volumes[part.owner] += volume * volume_fraction(part.corners);
+    builder.add({c[0], c[1], c[2], c[3]}, x, problem);
+  });
+  result.mesh = builder.finish();
+  return result;
+}
+
+void expect_laws(const RandomLattice& lattice, bool generic) {
+  const Extracted found = extract(lattice);
+  const auto triangles = test::sided_by_material(found.mesh);
+  const auto edges = test::check_edges(found.mesh.points, triangles, lattice.box(), 2e-11);
+  ASSERT_GT(edges.inner_edges, 0u);
+  EXPECT_EQ(edges.open, 0u) << edges.first;
+  EXPECT_EQ(edges.lonely, 0u) << edges.first;
+  EXPECT_EQ(edges.degenerate, 0u);
+  if (generic) {
+    EXPECT_EQ(edges.uneven, 0u);
+    const std::uint32_t far = lattice.last_point();
+    const auto corner = lattice.problem({far, far, far, far}).owner({1, 0, 0, 0});
+    const auto enclosed =
+        test::enclosed_volumes(found.mesh.points, triangles, lattice.owners(), lattice.box(), corner, 2e-11);
+    for (std::size_t owner = 0; owner < enclosed.size(); ++owner)
+      EXPECT_NEAR(enclosed[owner], found.volumes[owner], 1e-10) << owner;
+  }
+}
+
+void expect_laws_of_many(Data data, int count) {
+  for (int seed = 0; seed < count; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_laws(
+        RandomLattice(static_cast<std::uint64_t>(seed), 3, 2 + static_cast<std::uint32_t>(seed % 4), data),
+        data == Data::kGeneric);
+  }
+}
+
+TEST(ContactMesh, RandomLatticesAreClosed) { expect_laws_of_many(Data::kGeneric, 20); }
+TEST(ContactMesh, LatticesWithZerosAreClosed) { expect_laws_of_many(Data::kZeros, 20); }
+TEST(ContactMesh, LatticesWithNearZerosAreClosed) { expect_laws_of_many(Data::kNearZeros, 20); }
+TEST(ContactMesh, LatticesOfLabelsAreClosed) { expect_laws_of_many(Data::kLabels, 20); }
+TEST(ContactMesh, LatticesOfHalvesAreClosed) { expect_laws_of_many(Data::kHalves, 20); }
+
+}  // namespace
+}  // namespace adamas

@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "core/geometry/determinant_sign.h"
+
+namespace adamas {
+namespace {
+
+/// By permutations, in integers of 128 bits.
+int sign_in_integers(const SmallMatrix& matrix, std::size_t n) {
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  __extension__ __int128 sum = 0;
+  do {
+    __extension__ __int128 product = 1;
+    for (std::size_t r = 0; r < n; ++r) product *= static_cast<std::int64_t>(matrix[r][order[r]]);
+    std::size_t inversions = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < i; ++j) inversions += order[j] > order[i] ? 1 : 0;
+    }
+    sum += inversions % 2 == 0 ? product : -product;
+  } while (std::next_permutation(order.begin(), order.end()));
+  return sum > 0 ? 1 : sum < 0 ? -1 : 0;
+}
+
+TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
+  std::mt19937_64 random(1);
+  std::size_t zeros = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const std::size_t n = 2 + random() % 4;
+    // Entries of 23 bits: products of five fit 128 bits, but no double.
+    const auto entry = [&] {
+      return static_cast<double>(static_cast<std::int64_t>(random() % (1u << 24)) - (1 << 23));
+    };
+    SmallMatrix matrix{};
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t c = 0; c < n; ++c) matrix[r][c] = entry();
+    }
+    if (i % 2 == 0) {
+      // The last row depends on two others, but for one unit now and then.
+      for (std::size_t c = 0; c < n; ++c)
+        matrix[n - 1][c] = n == 2 ? matrix[0][c] : matrix[0][c] - (n > 2 ? matrix[n - 2][c] : 0);
+      if (i % 4 == 0) matrix[n - 1][random() % n] += 1;
+    }
+    // Columns scaled by powers of two, which changes no sign.
+    SmallMatrix scaled = matrix;
+    for (std::size_t c = 0; c < n; ++c) {
+      const int exponent = static_cast<int>(random() % 80) - 40;
+      for (std::size_t r = 0; r < n; ++r) scaled[r][c] = std::ldexp(matrix[r][c], exponent);
+    }
+    const int expected = sign_in_integers(matrix, n);
+    zeros += expected == 0 ? 1 : 0;
+    ASSERT_EQ(determinant_sign(matrix, n), expected) << i;
+    ASSERT_EQ(determinant_sign(scaled, n), expected) << i;
+  }
+  EXPECT_GT(zeros, 1000u);
+}
+
+}  // namespace
+}  // namespace adamas

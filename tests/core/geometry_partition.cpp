@@ -1,0 +1,320 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/geometry/partition.h"
+#include "core/geometry/tetrahedron.h"
+#include "tests/support/ownership_problems.h"
+
+namespace adamas {
+namespace {
+
+using test::ProblemTraits;
+
+constexpr std::array<ProblemTraits, 4> kTraits{{{false, false}, {true, false}, {false, true}, {true, true}}};
+
+/// Runs a check on random problems of all kinds.
+template <class Check>
+void on_random_problems(std::uint64_t seed, int count, Check&& check) {
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < count; ++i) {
+    SCOPED_TRACE(i);
+    const OwnershipProblem problem = test::random_problem(random, kTraits[static_cast<std::size_t>(i) % 4]);
+    check(problem, random);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+}
+
+/// A point of the unit tetrahedron: the weights of the last three vertices.
+Vec3 place(const Weights& w) { return {w[1], w[2], w[3]}; }
+
+Weights weights_at(const Vec3& p) { return {1 - p.x - p.y - p.z, p.x, p.y, p.z}; }
+
+std::map<std::uint32_t, double> volumes(const OwnershipProblem& problem) {
+  std::vector<OwnedTetrahedron> parts;
+  partition_tetrahedron(problem, parts);
+  std::map<std::uint32_t, double> result;
+  for (const OwnedTetrahedron& part : parts) result[part.owner] += volume_fraction(part.corners);
+  return result;
+}
+
+Vec3 area_vector(const std::vector<Vec3>& polygon) {
+  Vec3 sum;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    sum += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+  return 0.5 * sum;
+}
+
+std::vector<Vec3> places(const std::vector<Weights>& polygon) {
+  std::vector<Vec3> result;
+  for (const Weights& w : polygon) result.push_back(place(w));
+  return result;
+}
+
+std::vector<Vec3> places(const ContactPolygon& polygon) {
+  std::vector<Vec3> result;
+  for (const auto& corner : polygon.corners) result.push_back(place(corner.weights));
+  return result;
+}
+
+TEST(Partition, VolumesAddUp) {
+  on_random_problems(1, 1000, [](const OwnershipProblem& problem, std::mt19937_64&) {
+    double sum = 0;
+    for (const auto& [owner, volume] : volumes(problem)) {
+      ASSERT_GE(volume, 0);
+      sum += volume;
+    }
+    ASSERT_NEAR(sum, 1, 1e-13);
+  });
+}
+
+TEST(Partition, PartsBelongToTheGreatestOfTheLeast) {
+  std::size_t certain = 0;
+  on_random_problems(2, 300, [&](const OwnershipProblem& problem, std::mt19937_64& random) {
+    std::vector<OwnedTetrahedron> parts;
+    partition_tetrahedron(problem, parts);
+    for (const OwnedTetrahedron& part : parts) {
+      if (volume_fraction(part.corners) < 1e-9) continue;
+      for (int i = 0; i < 4; ++i) {
+        const Weights inner = test::random_weights(random);
+        Weights w{};
+        for (std::size_t c = 0; c < 4; ++c) {
+          for (std::size_t v = 0; v < 4; ++v) w[v] += inner[c] * part.corners[c][v];
+        }
+        const auto brute = test::brute_owner(problem, w, 1e-10);
+        certain += brute.certain ? 1 : 0;
+        if (brute.certain) {
+          ASSERT_EQ(part.owner, brute.owner);
+        }
+      }
+    }
+  });
+  EXPECT_GT(certain, 5000u);
+}
+
+TEST(Partition, OwnersOfPointsAreThoseOfBruteForce) {
+  on_random_problems(3, 4000, [](const OwnershipProblem& problem, std::mt19937_64& random) {
+    OwnershipProblem fewer = problem;
+    drop_hopeless(fewer);
+    const OwnershipProblem other = test::shuffled(problem, random);
+    for (int i = 0; i < 10; ++i) {
+      Weights w = test::random_weights(random);
+      if (i < 4) w = Weights{}, w[static_cast<std::size_t>(i)] = 1;
+      const auto brute = test::brute_owner(problem, w, 0);
+      ASSERT_EQ(problem.owner(w), brute.owner);
+      ASSERT_EQ(fewer.owner(w), brute.owner);
+      ASSERT_EQ(other.owner(w), brute.owner);
+    }
+  });
+}
+
+TEST(Partition, TheOrderOfCandidatesChangesNothing) {
+  on_random_problems(4, 300, [](const OwnershipProblem& problem, std::mt19937_64& random) {
+    const OwnershipProblem other = test::shuffled(problem, random);
+    auto mine = volumes(problem), its = volumes(other);
+    OwnershipProblem fewer = problem;
+    drop_hopeless(fewer);
+    auto left = volumes(fewer);
+    for (const auto& candidate : problem.candidates) {
+      ASSERT_NEAR(mine[candidate.owner], its[candidate.owner], 1e-13);
+      ASSERT_NEAR(mine[candidate.owner], left[candidate.owner], 1e-13);
+    }
+  });
+}
+
+TEST(Partition, PolygonsAreDividedLikeTheTetrahedron) {
+  on_random_problems(5, 2000, [](const OwnershipProblem& problem, std::mt19937_64& random) {
+    const Weights a = test::random_weights(random), b = test::random_weights(random),
+                  c = test::random_weights(random);
+    Weights d{};
+    for (std::size_t v = 0; v < 4; ++v) d[v] = 0.6 * a[v] + 0.7 * c[v] - 0.3 * b[v];
+    const std::vector<Weights> polygon{a, b, c, d};
+    std::vector<OwnedPolygon> parts;
+    partition_polygon(problem, polygon, parts);
+    const Vec3 whole = area_vector(places(polygon));
+    Vec3 sum;
+    for (const OwnedPolygon& part : parts) {
+      const auto corners = places(part.corners);
+      const Vec3 area = area_vector(corners);
+      sum += area;
+      // Convex, and as the whole oriented.
+      ASSERT_GE(dot(area, whole), -1e-14);
+      if (norm(area) < 1e-7) continue;
+      std::exponential_distribution<double> weight;
+      Vec3 p;
+      double total = 0;
+      for (const Vec3& corner : corners) {
+        const double w = weight(random);
+        p += w * corner;
+        total += w;
+      }
+      const auto brute = test::brute_owner(problem, weights_at((1 / total) * p), 1e-10);
+      if (brute.certain) {
+        ASSERT_EQ(part.owner, brute.owner);
+      }
+    }
+    ASSERT_LT(norm(sum - whole), 1e-13);
+  });
+}
+
+/// For each owner: its share of the faces and its contacts close up, and enclose its parts' volume.
+TEST(ContactPolygons, FacesAndContactsEncloseTheParts) {
+  on_random_problems(6, 600, [](const OwnershipProblem& problem, std::mt19937_64&) {
+    std::map<std::uint32_t, Vec3> closure;
+    std::map<std::uint32_t, double> enclosed;
+    const auto add = [&](std::uint32_t owner, const std::vector<Vec3>& polygon, double sign) {
+      const Vec3 area = sign * area_vector(polygon);
+      closure[owner] += area;
+      enclosed[owner] += 2 * dot(polygon.front(), area);  // 6 volumes a third
+    };
+    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+      std::vector<Weights> face;
+      for (std::size_t v = 0; v < 4; ++v) {
+        if (v == opposite) continue;
+        face.push_back({});
+        face.back()[v] = 1;
+      }
+      if (opposite % 2 == 1) std::swap(face[0], face[1]);  // seen from outside
+      std::vector<OwnedPolygon> parts;
+      partition_polygon(problem, face, parts);
+      for (const OwnedPolygon& part : parts) add(part.owner, places(part.corners), 1);
+    }
+    std::vector<ContactPolygon> contacts;
+    contact_polygons(problem, contacts);
+    for (const ContactPolygon& contact : contacts) {
+      ASSERT_GE(contact.corners.size(), 3u);
+      ASSERT_NE(contact.front, contact.back);
+      add(contact.back, places(contact), 1);
+      add(contact.front, places(contact), -1);
+    }
+    auto parts = volumes(problem);
+    for (const auto& candidate : problem.candidates) {
+      ASSERT_LT(norm(closure[candidate.owner]), 1e-12);
+      ASSERT_NEAR(enclosed[candidate.owner], parts[candidate.owner], 1e-12);
+    }
+  });
+}
+
+TEST(ContactPolygons, LieWhereTheirOwnersAreEqualAndGreatest) {
+  std::size_t points = 0;
+  on_random_problems(7, 3000, [&](const OwnershipProblem& problem, std::mt19937_64& random) {
+    std::vector<ContactPolygon> contacts;
+    contact_polygons(problem, contacts);
+    std::exponential_distribution<double> weight;
+    for (const ContactPolygon& contact : contacts) {
+      Weights w{};
+      double total = 0;
+      for (const auto& corner : contact.corners) {
+        const double part = weight(random);
+        total += part;
+        for (std::size_t v = 0; v < 4; ++v) w[v] += part * corner.weights[v];
+      }
+      for (double& x : w) x /= total;
+      double greatest = -1e300, front = 0, back = 0;
+      for (std::size_t c = 0; c < problem.candidates.size(); ++c) {
+        const double value = test::candidate_value(problem, c, w);
+        greatest = std::max(greatest, value);
+        if (problem.candidates[c].owner == contact.front) front = value;
+        if (problem.candidates[c].owner == contact.back) back = value;
+      }
+      ASSERT_NEAR(front, greatest, 1e-12);
+      ASSERT_NEAR(back, greatest, 1e-12);
+      ++points;
+    }
+  });
+  EXPECT_GT(points, 5000u);
+}
+
+/// Where a line through the tetrahedron passes a polygon: 1 inside, 0 at its border or nearly, -1 not at all.
+int passes(const std::vector<Vec3>& polygon, const Vec3& from, const Vec3& to, double& t) {
+  const Vec3 area = area_vector(polygon);
+  const double a = dot(from - polygon[0], area), b = dot(to - polygon[0], area);
+  if (norm(area) < 1e-10 || std::abs(a - b) < 1e-9 * norm(area)) return 0;
+  t = a / (a - b);
+  const Vec3 p = from + t * (to - from);
+  double least = 1e300;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &u = polygon[i], &v = polygon[(i + 1) % polygon.size()];
+    if (distance(u, v) < 1e-12) continue;
+    least = std::min(least, dot(cross(v - u, p - u), area) / (norm(area) * distance(u, v)));
+  }
+  return t <= 0 || t >= 1 || least < -1e-8 ? -1 : least > 1e-8 ? 1 : 0;
+}
+
+/// What each owner gains at a place of a line. Between functions with the same values there are parts without
+/// thickness, so that a line may pass several contacts at one place.
+struct Net {
+  double t;
+  std::map<std::uint32_t, int> gained;
+};
+
+void count(std::vector<Net>& nets, double t, std::uint32_t before, std::uint32_t after) {
+  auto found =
+      std::find_if(nets.begin(), nets.end(), [t](const Net& net) { return std::abs(net.t - t) < 1e-8; });
+  if (found == nets.end()) found = nets.insert(nets.end(), {t, {}});
+  --found->gained[before];
+  ++found->gained[after];
+}
+
+/// The owners along random lines, by brute force, change where the lines pass a contact between the two, and
+/// nowhere else.
+TEST(ContactPolygons, AreWhatLinesCross) {
+  std::size_t crossings = 0;
+  on_random_problems(8, 1500, [&](const OwnershipProblem& problem, std::mt19937_64& random) {
+    std::vector<ContactPolygon> contacts;
+    contact_polygons(problem, contacts);
+    std::vector<std::vector<Vec3>> polygons;
+    for (const ContactPolygon& contact : contacts) polygons.push_back(places(contact));
+    for (int line = 0; line < 10; ++line) {
+      const Weights from = test::random_weights(random), to = test::random_weights(random);
+      bool doubtful = false;
+      std::vector<Net> nets;
+      for (const auto& change : test::owner_changes(problem, from, to, doubtful))
+        count(nets, change.t, change.before, change.after);
+      for (std::size_t c = 0; c < contacts.size() && !doubtful; ++c) {
+        double t = 0;
+        const int side = passes(polygons[c], place(from), place(to), t);
+        if (side == 0) doubtful = true;
+        if (side <= 0) continue;
+        const bool to_front = dot(place(to) - place(from), area_vector(polygons[c])) > 0;
+        // Takes back what brute force has counted.
+        count(nets, t, to_front ? contacts[c].front : contacts[c].back,
+              to_front ? contacts[c].back : contacts[c].front);
+        ++crossings;
+      }
+      if (doubtful) continue;
+      for (const Net& net : nets) {
+        for (const auto& [owner, sum] : net.gained) ASSERT_EQ(sum, 0) << "owner " << owner << " at " << net.t;
+      }
+    }
+  });
+  EXPECT_GT(crossings, 3000u);
+}
+
+TEST(ContactPolygons, TheOrderOfCandidatesChangesNothing) {
+  on_random_problems(9, 2000, [](const OwnershipProblem& problem, std::mt19937_64& random) {
+    using Pair = std::pair<std::uint32_t, std::uint32_t>;
+    const auto areas = [](const OwnershipProblem& p) {
+      std::vector<ContactPolygon> contacts;
+      contact_polygons(p, contacts);
+      std::map<Pair, std::pair<Vec3, double>> result;  // towards the greater owner, and in all
+      for (const ContactPolygon& contact : contacts) {
+        const Vec3 area = area_vector(places(contact));
+        auto& [towards, all] = result[std::minmax(contact.front, contact.back)];
+        towards += contact.front < contact.back ? -area : area;
+        all += norm(area);
+      }
+      return result;
+    };
+    auto mine = areas(problem), its = areas(test::shuffled(problem, random));
+    its.insert(mine.begin(), mine.end());
+    for (const auto& [pair, area] : its) {
+      ASSERT_LT(norm(area.first - mine[pair].first), 1e-12);
+      ASSERT_NEAR(area.second, mine[pair].second, 1e-12);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace adamas
