@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 
 #include "core/geometry/box_clip.h"
 
@@ -12,95 +12,110 @@ namespace {
 
 class Measurer {
  public:
-  Measurer(const ResamplingSource& source, const Tetrahedron& cell, const CellOwnership& ownership,
-           const std::array<const VertexRecord*, 4>& vertices, double warp)
-      : source_(source), cell_(cell), ownership_(ownership), vertices_(vertices), warp_(warp) {
-    native_.resize(source.fields->row_size());
-  }
+  Measurer(const ResamplingSource& source, const CellView& cell, double warp, const CellsInBox& cells_in_box)
+      : source_(source),
+        cell_(cell),
+        warp_(warp),
+        cells_in_box_(cells_in_box),
+        native_(source.fields->row_size()) {}
 
   void measure(const NativeElement& element, std::span<FieldError> errors) {
     source_.fields->native_values(element, native_);
-    const Weights weights = cell_.weights(element.position);
-    const BodyId owner(ownership_.pure() ? ownership_.problem.candidates[0].owner
-                                         : ownership_.problem.owner(weights));
-    const bool own = material(owner) == element.material;
+    const Weights weights = cell_.frame.weights(element.position);
+    const OwnershipProblem& problem = cell_.owners.problem;
+    const BodyId owner(cell_.owners.pure() ? problem.candidates[0].owner : problem.owner(weights));
     const auto& fields = source_.fields->fields();
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-      if (std::isnan(native_[fields[f].offset])) continue;
-      const double error =
-          own ? error_at(fields[f], owner, weights) : error_nearby(fields[f], element, weights);
-      if (!std::isnan(error)) errors[f].add(error);
+    if (material(owner) == element.material) {
+      for (std::size_t f = 0; f < fields.size(); ++f)
+        add(error_at(cell_, fields[f], owner, weights), errors[f]);
+      return;
     }
+    find_parts(element);
+    for (std::size_t f = 0; f < fields.size(); ++f) add(error_nearby(fields[f]), errors[f]);
   }
 
  private:
+  /// A part of the element's own material within the box, by its corners.
+  struct Part {
+    CellView cell;
+    BodyId body;
+    std::vector<Vec3> corners;
+  };
+
   [[nodiscard]] MaterialId material(BodyId body) const { return source_.network->table().material(body); }
 
-  [[nodiscard]] double error_at(const FieldInfo& field, BodyId body, const Weights& weights) const {
+  /// Fields without a value at the element, or without any in the material, have no error there.
+  static void add(double error, FieldError& sum) {
+    if (!std::isnan(error)) sum.add(error);
+  }
+
+  [[nodiscard]] double error_at(const CellView& cell, const FieldInfo& field, BodyId body,
+                                const Weights& weights) const {
     double squared = 0;
     for (std::size_t c = field.offset; c < field.offset + static_cast<std::size_t>(field.components); ++c) {
       double value = 0;
-      for (std::size_t v = 0; v < 4; ++v) value += weights[v] * vertices_[v]->row(body)[c];
+      for (std::size_t v = 0; v < 4; ++v) value += weights[v] * cell.vertices[v]->row(body)[c];
       squared += (value - native_[c]) * (value - native_[c]);
     }
     return std::sqrt(squared);
   }
 
-  /// The element's place went to another material: the best its own material does within the box.
-  double error_nearby(const FieldInfo& field, const NativeElement& element, const Weights& weights) {
-    if (!parts_) {
-      parts_.emplace();
-      if (!ownership_.pure()) partition_tetrahedron(ownership_.problem, *parts_);
-    }
-    std::optional<double> best;
-    const Box3 box{element.position - Vec3{warp_, warp_, warp_},
-                   element.position + Vec3{warp_, warp_, warp_}};
-    for (const OwnedTetrahedron& part : *parts_) {
-      const BodyId body(part.owner);
-      if (material(body) != element.material) continue;
-      const std::vector<Vec3> corners = corners_within(part, box);
-      if (corners.empty()) continue;
-      const double error = least_error(field, body, corners);
-      best = best ? std::min(*best, error) : error;
-    }
-    if (best) return *best;
-    // None of the material within the box: its field as continued to the element's place.
-    best.reset();
-    for (const auto& candidate : ownership_.problem.candidates) {
-      if (material(BodyId(candidate.owner)) != element.material) continue;
-      const double error = error_at(field, BodyId(candidate.owner), weights);
-      best = best ? std::min(*best, error) : error;
-    }
-    return best.value_or(native_size(field));
+  void find_parts(const NativeElement& element) {
+    parts_.clear();
+    const Vec3 reach{warp_, warp_, warp_};
+    const Box3 box{element.position - reach, element.position + reach};
+    std::vector<OwnedTetrahedron> pieces;
+    cells_in_box_(box, [&](const CellView& cell) {
+      const auto& candidates = cell.owners.problem.candidates;
+      const bool concerned = std::any_of(candidates.begin(), candidates.end(), [&](const auto& candidate) {
+        return material(BodyId(candidate.owner)) == element.material;
+      });
+      if (!concerned) return;
+      pieces.clear();
+      if (cell.owners.pure()) {
+        pieces.push_back(
+            {candidates[0].owner,
+             {Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0}, Weights{0, 0, 0, 1}}});
+      } else {
+        partition_tetrahedron(cell.owners.problem, pieces);
+      }
+      for (const OwnedTetrahedron& piece : pieces) {
+        if (material(BodyId(piece.owner)) != element.material) continue;
+        std::array<Vec3, 4> corners;
+        for (std::size_t c = 0; c < 4; ++c) corners[c] = cell.frame.point(piece.corners[c]);
+        std::vector<Vec3> inside = clip_to_box(corners, box);
+        if (!inside.empty()) parts_.push_back({cell, BodyId(piece.owner), std::move(inside)});
+      }
+    });
   }
 
-  /// Where the material is unknown to the cell nothing approximates the value.
+  /// The place went to another material: the best that the element's own does within the box.
+  [[nodiscard]] double error_nearby(const FieldInfo& field) const {
+    if (std::isnan(native_[field.offset])) return native_[field.offset];
+    // Where none of the material is left nothing approximates the value.
+    double least = std::max(native_size(field), field.max - field.min);
+    for (const Part& part : parts_) least = std::min(least, least_error(field, part));
+    return least;
+  }
+
   [[nodiscard]] double native_size(const FieldInfo& field) const {
     double squared = 0;
     for (std::size_t c = field.offset; c < field.offset + static_cast<std::size_t>(field.components); ++c) {
       squared += native_[c] * native_[c];
     }
-    return std::max(std::sqrt(squared), field.max - field.min);
+    return std::sqrt(squared);
   }
 
-  [[nodiscard]] std::vector<Vec3> corners_within(const OwnedTetrahedron& part, const Box3& box) const {
-    std::array<Vec3, 4> corners;
-    for (std::size_t c = 0; c < 4; ++c) corners[c] = cell_.point(part.corners[c]);
-    return clip_to_box(corners, box);
-  }
-
-  /// Least error over a convex set given by its corners. Scalars: nothing if the value lies between the
-  /// corners' values.
-  [[nodiscard]] double least_error(const FieldInfo& field, BodyId body,
-                                   const std::vector<Vec3>& corners) const {
+  /// Least error over a convex part. Scalars: none if the value lies between the corners' values.
+  [[nodiscard]] double least_error(const FieldInfo& field, const Part& part) const {
     double least = std::numeric_limits<double>::infinity();
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vec3& corner : corners) {
-      const Weights w = cell_.weights(corner);
-      least = std::min(least, error_at(field, body, w));
+    for (const Vec3& corner : part.corners) {
+      const Weights w = part.cell.frame.weights(corner);
+      least = std::min(least, error_at(part.cell, field, part.body, w));
       if (field.components > 1) continue;
       double value = 0;
-      for (std::size_t v = 0; v < 4; ++v) value += w[v] * vertices_[v]->row(body)[field.offset];
+      for (std::size_t v = 0; v < 4; ++v) value += w[v] * part.cell.vertices[v]->row(part.body)[field.offset];
       low = std::min(low, value), high = std::max(high, value);
     }
     const double native = native_[field.offset];
@@ -108,21 +123,19 @@ class Measurer {
   }
 
   const ResamplingSource& source_;
-  const Tetrahedron& cell_;
-  const CellOwnership& ownership_;
-  const std::array<const VertexRecord*, 4>& vertices_;
+  const CellView& cell_;
   double warp_;
+  const CellsInBox& cells_in_box_;
   std::vector<double> native_;
-  std::optional<std::vector<OwnedTetrahedron>> parts_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace
 
-void measure_field_errors(const ResamplingSource& source, const Tetrahedron& cell,
-                          const CellOwnership& ownership, const std::array<const VertexRecord*, 4>& vertices,
+void measure_field_errors(const ResamplingSource& source, const CellView& cell,
                           std::span<const std::uint32_t> elements, double warp,
-                          std::span<FieldError> errors) {
-  Measurer measurer(source, cell, ownership, vertices, warp);
+                          const CellsInBox& cells_in_box, std::span<FieldError> errors) {
+  Measurer measurer(source, cell, warp, cells_in_box);
   const auto& all = source.fields->native_elements();
   for (const std::uint32_t e : elements) measurer.measure(all[e], errors);
 }

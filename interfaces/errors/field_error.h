@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -30,12 +31,21 @@ struct FieldError {
   }
 };
 
-/// Difference between the input and the cell's linear approximation of each field at the native elements in
-/// the cell (SPEC 2.5, D 3.6): of the element's own material; where the cell gives the element's place to
-/// another material, the least over its own material's part of the cell in the box of half-width `warp` round
-/// it. Vectors by length.
-void measure_field_errors(const ResamplingSource& source, const Tetrahedron& cell,
-                          const CellOwnership& ownership, const std::array<const VertexRecord*, 4>& vertices,
-                          std::span<const std::uint32_t> elements, double warp, std::span<FieldError> errors);
+/// A cell with what is needed to evaluate fields in it.
+struct CellView {
+  Tetrahedron frame;
+  CellOwnership owners;  ///< candidates that own a part
+  std::array<const VertexRecord*, 4> vertices;
+};
+/// Calls back for every cell that may meet a box.
+using CellsInBox = std::function<void(const Box3&, const std::function<void(const CellView&)>&)>;
+
+/// Difference between the input and the linear approximation of each field at the native elements of a cell
+/// (SPEC 2.5, D 3.6): of the element's own material; where the mesh gives the element's place to another
+/// material, the least over its own material's part of the mesh in the box of half-width `warp` round it.
+/// Vectors by length.
+void measure_field_errors(const ResamplingSource& source, const CellView& cell,
+                          std::span<const std::uint32_t> elements, double warp,
+                          const CellsInBox& cells_in_box, std::span<FieldError> errors);
 
 }  // namespace adamas

@@ -28,6 +28,7 @@ struct VertexRecord {
   };
   std::vector<BodyRow> rows;
 
+  /// The row of a body; of the nearest in number where the body owns no part of any cell round the vertex.
   [[nodiscard]] std::span<const double> row(BodyId body) const;
 };
 

@@ -19,7 +19,7 @@ constexpr float kPresent = 1e-3f;
 constexpr float kPure = 0.99f;
 /// Sites looked at for a fit lie within this many steps.
 constexpr std::int32_t kReach = 6;
-/// A fit takes sites from the smallest window that has this many.
+/// A fit takes sites from the smallest window that has this many and spreads along every axis.
 constexpr std::size_t kWanted = 8;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -163,7 +163,16 @@ void GridFieldSource::fit(std::size_t field, MaterialId material, const Site& si
   const Vec3 here{coordinate(0, site[0]), coordinate(1, site[1]), coordinate(2, site[2])};
   std::vector<Vec3> offsets;
   std::vector<double> values;
-  for (std::int32_t reach = 1; reach <= kReach && offsets.size() < kWanted; ++reach) {
+  // A slope along an axis takes sites at two places of it.
+  std::array<Site, 2> extent{Site{1 << 30, 1 << 30, 1 << 30}, Site{-1, -1, -1}};
+  const auto enough = [&] {
+    if (offsets.size() < kWanted) return false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (sites(a) > 1 && extent[0][a] == extent[1][a]) return false;
+    }
+    return true;
+  };
+  for (std::int32_t reach = 1; reach <= kReach && !enough(); ++reach) {
     // The shell of sites `reach` steps away.
     for (std::int32_t dk = -reach; dk <= reach; ++dk) {
       for (std::int32_t dj = -reach; dj <= reach; ++dj) {
@@ -173,8 +182,13 @@ void GridFieldSource::fit(std::size_t field, MaterialId material, const Site& si
           if (!inside(other) || !states(field, material, index(other))) continue;
           offsets.push_back(Vec3{coordinate(0, other[0]), coordinate(1, other[1]), coordinate(2, other[2])} -
                             here);
-          for (std::size_t c = 0; c < components; ++c)
+          for (std::size_t c = 0; c < components; ++c) {
             values.push_back(stated(field, material, index(other), static_cast<int>(c)));
+          }
+          for (std::size_t a = 0; a < 3; ++a) {
+            extent[0][a] = std::min(extent[0][a], other[a]);
+            extent[1][a] = std::max(extent[1][a], other[a]);
+          }
         }
       }
     }

@@ -12,6 +12,10 @@ namespace {
 /// Measuring and refining again usually ends after two or three rounds; the bound is for what cannot be
 /// mended.
 constexpr int kMostRounds = 12;
+/// Cells this small, in relation to the target, are not split further: what is wrong there does not go away,
+/// as where the input's interfaces have an open border and the approximation closes the gap.
+constexpr double kFinestForInput = 1e-3;
+constexpr double kFinestForApproximation = 0.25;
 /// Relative slack of the measured bounds: to tell what is within the target, and for the figure that is
 /// reported.
 constexpr double kSharp = 0.005;
@@ -89,12 +93,14 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
   });
   std::vector<TetrahedronId> result;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (bad[i] != 0) result.push_back(all[i]);
+    if (bad[i] != 0 && frame(all[i]).diameter() > kFinestForInput * target) result.push_back(all[i]);
   }
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (!(to.triangle_upper[t] > target)) continue;
     const auto& p = extracted.mesh.points;
-    result.push_back(leaf_at((1.0 / 3) * (p[triangles[t][0]] + p[triangles[t][1]] + p[triangles[t][2]])));
+    const TetrahedronId leaf =
+        leaf_at((1.0 / 3) * (p[triangles[t][0]] + p[triangles[t][1]] + p[triangles[t][2]]));
+    if (frame(leaf).diameter() > kFinestForApproximation * target) result.push_back(leaf);
   }
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());

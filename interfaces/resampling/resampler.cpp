@@ -152,8 +152,8 @@ void Resampler::evaluate_interface(TetrahedronId t) {
   CellRecord& cell = hierarchy_.payload(t);
   CellOwnership owners;
   ownership(t, owners);
-  cell.interface =
-      estimate_interface_error(*source_.network, frame(t), owners, cell.triangles, estimate_target(), cell.trusted);
+  cell.interface = estimate_interface_error(*source_.network, frame(t), owners, cell.triangles,
+                                            estimate_target(), cell.trusted);
   cell.evaluated = true;
 }
 
@@ -237,6 +237,7 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
     CellOwnership owners;
     for (std::size_t i = first; i < last; ++i) {
       ownership(cells[i], owners);
+      if (!owners.pure()) keep_owners(owners.problem);
       for (const VertexId v : hierarchy_.vertices(cells[i])) {
         for (const auto& candidate : owners.problem.candidates)
           needs[first / kChunk].emplace_back(v, BodyId(candidate.owner));
@@ -247,19 +248,49 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
   for (const auto& part : needs) all.insert(all.end(), part.begin(), part.end());
   compute_rows(std::move(all));
   const std::size_t fields = source_.fields->fields().size();
+  const double warp =
+      distance_ ? std::max(options_.interface_error, distance_->upper) : options_.interface_error;
+  const CellsInBox nearby = [this](const Box3& box, const auto& visit) { cells_in_box(box, visit); };
   parallel_for(cells.size(), 64, [&](std::size_t i) {
-    CellOwnership owners;
-    ownership(cells[i], owners);
     CellRecord& cell = hierarchy_.payload(cells[i]);
-    const auto v = hierarchy_.vertices(cells[i]);
     cell.fields.assign(fields, {});
+    if (cell.first_element == cell.last_element) return;
     measure_field_errors(
-        source_, frame(cells[i]), owners,
-        {&hierarchy_.payload(v[0]), &hierarchy_.payload(v[1]), &hierarchy_.payload(v[2]),
-         &hierarchy_.payload(v[3])},
-        std::span(element_order_).subspan(cell.first_element, cell.last_element - cell.first_element),
-        options_.interface_error, cell.fields);
+        source_, view(cells[i]),
+        std::span(element_order_).subspan(cell.first_element, cell.last_element - cell.first_element), warp,
+        nearby, cell.fields);
   });
+}
+
+CellView Resampler::view(TetrahedronId t) const {
+  const auto v = hierarchy_.vertices(t);
+  CellView result{frame(t),
+                  {},
+                  {&hierarchy_.payload(v[0]), &hierarchy_.payload(v[1]), &hierarchy_.payload(v[2]),
+                   &hierarchy_.payload(v[3])}};
+  ownership(t, result.owners);
+  if (!result.owners.pure()) keep_owners(result.owners.problem);
+  return result;
+}
+
+void Resampler::cells_in_box(const Box3& box, const std::function<void(const CellView&)>& visit) const {
+  std::vector<TetrahedronId> stack(hierarchy_.roots().rbegin(), hierarchy_.roots().rend());
+  while (!stack.empty()) {
+    const TetrahedronId t = stack.back();
+    stack.pop_back();
+    Box3 bounds;
+    for (const VertexId v : hierarchy_.vertices(t)) bounds.extend(hierarchy_.position(v));
+    bool apart = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      apart = apart || bounds.min[axis] > box.max[axis] || bounds.max[axis] < box.min[axis];
+    }
+    if (apart) continue;
+    if (hierarchy_.is_leaf(t)) {
+      visit(view(t));
+    } else {
+      for (const TetrahedronId child : hierarchy_.children(t)) stack.push_back(child);
+    }
+  }
 }
 
 void Resampler::complete_fields() {
@@ -363,7 +394,10 @@ void Resampler::refine() {
   measure_fields(leaves());
   const std::size_t before = hierarchy_.leaf_count();
   refine_to_targets(leaves());
-  if (options_.certify && hierarchy_.leaf_count() != before) certify();
+  if (hierarchy_.leaf_count() == before) return;
+  if (options_.certify) certify();
+  // Errors of elements near an interface depend on the cells round theirs.
+  measure_fields(leaves());
 }
 
 TetrahedronId Resampler::leaf_at(const Vec3& p) const {

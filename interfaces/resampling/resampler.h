@@ -32,7 +32,7 @@ struct CellRecord {
   std::vector<FieldError> fields;  ///< empty where not measured
   /// Cells larger than this must show the interfaces in them; falls where measuring has found one missing.
   double trusted = std::numeric_limits<double>::infinity();
-  bool evaluated = false;          ///< the triangles and the interface error are up to date
+  bool evaluated = false;  ///< the triangles and the interface error are up to date
 };
 
 /// Two-sided distance between the input's interfaces and the approximated ones.
@@ -77,6 +77,8 @@ class Resampler {
   void evaluate_interface(TetrahedronId t);
   void distribute(TetrahedronId parent);
   std::vector<TetrahedronId> process(const std::vector<Split>& splits);
+  [[nodiscard]] CellView view(TetrahedronId t) const;
+  void cells_in_box(const Box3& box, const std::function<void(const CellView&)>& visit) const;
   void measure_fields(const std::vector<TetrahedronId>& cells);
   void compute_rows(std::vector<std::pair<VertexId, BodyId>> needs);
   [[nodiscard]] Priority priority(TetrahedronId t) const;
