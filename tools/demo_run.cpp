@@ -17,8 +17,10 @@ RunFigures figures_of(const Resampler& resampler, const ResampledMesh& mesh) {
   std::vector<ContactPolygon> contacts;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
     mesh.ownership(c, ownership);
+    if (ownership.pure()) continue;
     contacts.clear();
-    if (!ownership.pure()) contact_polygons(ownership.problem, contacts);
+    drop_hopeless(ownership.problem);
+    contact_polygons(ownership.problem, contacts);
     if (!contacts.empty()) ++figures.interface_tetrahedra;
   }
   resampler.hierarchy().for_each_leaf([&](TetrahedronId t) {
