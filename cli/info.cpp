@@ -222,6 +222,13 @@ bool has_data(const FileSummary& s, const InputOptions& options) {
          });
 }
 
+/// Polygons are interfaces where they have materials on both sides.
+bool is_network(const FileSummary& s, const InputOptions& options) {
+  if (file_extension(options.path) != ".vtp") return true;
+  const auto front = [](const ArraySummary& a) { return a.of == "cells" && a.name == "front"; };
+  return std::any_of(s.arrays.begin(), s.arrays.end(), front);
+}
+
 void print_details(const FileSummary& s, const InputOptions& options, Console& console, Figures& figures) {
   switch (input_kind(options.path)) {
     case InputKind::kGrid:
@@ -236,13 +243,9 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
       }
       return print_arrays(s, console, figures);
     }
-    case InputKind::kNetwork: {
-      const bool labelled = file_extension(options.path) != ".vtp";
-      if (labelled || !s.materials.empty()) {
-        return print_network(read_given_interfaces(options), console, figures);
-      }
+    case InputKind::kNetwork:
+      if (is_network(s, options)) return print_network(read_given_interfaces(options), console, figures);
       return print_arrays(s, console, figures);
-    }
     case InputKind::kSurface:
       break;
   }

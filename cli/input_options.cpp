@@ -116,7 +116,7 @@ void print_fraction_report(const MultiMaterialData& data, Console& console) {
   const FractionReport& r = data.report;
   if (r.negative == 0 && r.traces == 0 && r.renormalised == 0) return;
   console.print(
-      "Volume fractions mended: sums from {:.6g} to {:.6g}, {} sites scaled to 1, {} negative and "
+      "Volume fractions were mended: sums from {:.6g} to {:.6g}, {} sites scaled to 1, {} negative and "
       "{} traces set to 0\n",
       r.sum_min, r.sum_max, r.renormalised, r.negative, r.traces);
 }

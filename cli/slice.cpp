@@ -54,7 +54,7 @@ std::string split_fields(InputOptions& input) {
   return shown;
 }
 
-std::vector<SliceMode> modes(const Options& options, const SliceInput& input) {
+std::vector<SliceMode> modes(const Options& options, const SliceInput& input, bool with_field) {
   if (!input.mesh) {
     if (options.mode.empty() || options.mode == "input") return {SliceMode::kInput};
     wrong_usage("--mode {}: expected a resampled mesh (.vtu) as INPUT, found {}", options.mode,
@@ -65,8 +65,11 @@ std::vector<SliceMode> modes(const Options& options, const SliceInput& input) {
   if (options.mode == "input") return {SliceMode::kInput};
   if (options.mode == "plain") return {SliceMode::kPlain};
   if (options.mode != "all") return {SliceMode::kMaterials};
-  if (has_data) return {SliceMode::kInput, SliceMode::kPlain, SliceMode::kMaterials};
-  return {SliceMode::kPlain, SliceMode::kMaterials};
+  std::vector<SliceMode> all{SliceMode::kMaterials};
+  // Without a field the two modes of the mesh show the same.
+  if (with_field) all.insert(all.begin(), SliceMode::kPlain);
+  if (has_data) all.insert(all.begin(), SliceMode::kInput);
+  return all;
 }
 
 SliceOptions picture_size(const Options& options) {
@@ -137,7 +140,7 @@ void run(const Options& options, Session& session) {
   const bool polygons = file_extension(options.output) == ".vtp";
 
   const SliceInput input = load_slice_input(from, options.original, style.interfaces && !polygons, console);
-  const std::vector<SliceMode> wanted = modes(options, input);
+  const std::vector<SliceMode> wanted = modes(options, input, !style.field.empty());
   if (polygons && wanted.size() > 1) wrong_usage("--mode all: expected a picture as output, found a .vtp");
   style.cells = options.cells || (!options.no_cells && input.mesh.has_value());
   console.step("cutting", -1);

@@ -1,5 +1,7 @@
 #include "cli/slice_panels.h"
 
+#include <array>
+
 #include "core/base/error.h"
 #include "core/picture/palette.h"
 
@@ -55,9 +57,9 @@ SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle&
                       const CrossSection& section) {
   const PlaneFrame frame = plane_frame(style.plane);
   SlicePanel panel;
-  panel.title = mode == SliceMode::kInput   ? "input"
-                : mode == SliceMode::kPlain ? "plain linear"
-                                            : "per material";
+  constexpr std::array kTitles{"input", "plain linear interpolation", "fields per material"};
+  panel.title =
+      style.field.empty() && mode != SliceMode::kInput ? "mesh" : kTitles.at(static_cast<std::size_t>(mode));
   panel.polygons.reserve(section.pieces.size());
   for (const SectionPiece& piece : section.pieces) {
     FieldPolygon polygon;

@@ -1,0 +1,163 @@
+// What the program says of input that cannot be used: one line that names the file, what was expected and
+// what was found; exit status 1; no output.
+
+#include <cmath>
+#include <limits>
+
+#include "program.h"
+
+namespace adamas::test {
+
+namespace {
+
+class BadData : public ProgramTest {
+ protected:
+  /// Every command that reads gridded data refuses the input.
+  void expect_refused(std::vector<std::string> input, const std::vector<std::string>& parts) const {
+    const auto with = [&input](std::vector<std::string> command, const std::vector<std::string>& rest) {
+      command.insert(command.end(), input.begin(), input.end());
+      command.insert(command.end(), rest.begin(), rest.end());
+      return command;
+    };
+    expect_failure(with({"resample"}, {"-o", "m.vtu", "--interfaces-out", "i.vtp", "--json", "j.json"}),
+                   parts);
+    expect_failure(with({"reconstruct"}, {"-o", "r.vtp", "--picture", "r.png"}), parts);
+    expect_failure(with({"slice"}, {"--plane", "x=1", "-o", "s.png"}), parts);
+    expect_failure(with({"probe"}, {"--point", "1,1,1", "-o", "p.csv"}), parts);
+  }
+};
+
+TEST_F(BadData, Missing) {
+  expect_refused({"none.vtr"}, {"none.vtr"});
+  expect_failure({"info", "none.vtr", "--json", "j.json"}, {"none.vtr"});
+}
+
+TEST_F(BadData, Empty) {
+  for (const std::string name : {"empty.vtr", "empty.vti", "empty.nrrd"}) {
+    write(name, "");
+    expect_refused({name}, {name, "empty"});
+    expect_failure({"info", name, "--json", "j.json"}, {name, "empty"});
+  }
+}
+
+TEST_F(BadData, Truncated) {
+  make_scene("sphere");
+  const std::string whole = read("scene.vtr");
+  for (const std::size_t part : {whole.size() / 2, whole.size() - 40, std::size_t{200}}) {
+    write("cut.vtr", whole.substr(0, part));
+    expect_failure({"resample", "cut.vtr", "-o", "m.vtu"}, {"cut.vtr"});
+    expect_failure({"info", "cut.vtr", "--json", "j.json"}, {"cut.vtr"});
+  }
+}
+
+TEST_F(BadData, WrongType) {
+  write("text.vtr", "this is no grid\n");
+  expect_refused({"text.vtr"}, {"text.vtr"});
+  make_scene("sphere");
+  write("name.nrrd", read("scene.vtr"));
+  expect_failure({"resample", "name.nrrd", "-o", "m.vtu"}, {"name.nrrd"});
+  write("name.xyz", "1 2 3\n");
+  expect_failure({"info", "name.xyz"}, {"name.xyz"});
+  // A mesh of the wrong kind for the command.
+  run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
+  expect_failure({"resample", "m.vtu", "-o", "n.vtu"}, {"m.vtu", "expected data on a grid", "found"});
+  run_well({"generate", "scene", "sphere", "--interfaces", "s.vtp"});
+  expect_failure({"reconstruct", "s.vtp", "-o", "r.vtp"}, {"s.vtp", "expected data on a grid", "found"});
+  expect_failure({"slice", "s.vtp", "--plane", "x=0.5", "-o", "s.png"}, {"s.vtp", "expected", "found"});
+}
+
+TEST_F(BadData, AFolder) { expect_refused({"."}, {".", "expected", "found"}); }
+
+TEST_F(BadData, NoMaterial) {
+  write_image("a.nrrd", 4, [](std::size_t i) { return static_cast<float>(i) + 0.5f; });
+  expect_refused({"a.nrrd"}, {"a.nrrd", "expected", "Volume Fraction", "found"});
+}
+
+TEST_F(BadData, UnknownArrays) {
+  make_scene("sphere");
+  expect_refused({"scene.vtr", "--fraction", "a=nothing"}, {"scene.vtr", "'nothing'", "expected", "found"});
+  expect_refused({"scene.vtr", "--extensive", "nothing"}, {"scene.vtr", "nothing", "expected"});
+  expect_failure({"resample", "scene.vtr", "-o", "m.vtu", "--field-error", "nothing=1"},
+                 {"scene.vtr", "expected", "'mixed smooth'", "found 'nothing'"});
+  expect_failure({"slice", "scene.vtr", "--plane", "x=0.5", "-o", "s.png", "--field", "nothing"},
+                 {"scene.vtr", "expected", "mixed smooth", "found 'nothing'"});
+}
+
+TEST_F(BadData, FractionsThatDoNotAddUp) {
+  write_image("a.nrrd", 4, [](std::size_t) { return 0.3f; });
+  write_image("b.nrrd", 4, [](std::size_t i) { return i == 37 ? 0.2f : 0.7f; });
+  expect_refused({"a.nrrd", "--fraction", "a=a.nrrd", "--fraction", "b=b.nrrd"},
+                 {"a.nrrd", "expected a sum of 1", "found 0.5", "37"});
+}
+
+TEST_F(BadData, FractionsThatAreNoNumbers) {
+  write_image("a.nrrd", 4,
+              [](std::size_t i) { return i == 11 ? std::numeric_limits<float>::quiet_NaN() : 1.0f; });
+  expect_refused({"a.nrrd", "--fraction", "a=a.nrrd", "--rest", "b"},
+                 {"a.nrrd", "expected a number", "nan", "11"});
+}
+
+TEST_F(BadData, NegativeFractionsAreMendedOrRefused) {
+  write_image("a.nrrd", 4, [](std::size_t i) { return i == 5 ? -0.01f : i < 32 ? 1.0f : 0.0f; });
+  write_image("b.nrrd", 4, [](std::size_t i) { return i == 5 ? 1.01f : i < 32 ? 0.0f : 1.0f; });
+  const RunResult mended =
+      run_well({"reconstruct", "a.nrrd", "--fraction", "a=a.nrrd", "--fraction", "b=b.nrrd", "-o", "r.vtp"});
+  EXPECT_NE(mended.out.find("1 negative"), std::string::npos) << mended.out;
+  write_image("a.nrrd", 4, [](std::size_t i) { return i == 5 ? -0.5f : 1.0f; });
+  expect_refused({"a.nrrd", "--fraction", "a=a.nrrd", "--fraction", "b=b.nrrd"},
+                 {"a.nrrd", "expected a sum of 1", "found"});
+}
+
+TEST_F(BadData, FieldsOfOtherLength) {
+  write_image("a.nrrd", 4, [](std::size_t i) { return i < 32 ? 1.0f : 0.0f; });
+  write_image("f.nrrd", 5, [](std::size_t) { return 1.0f; });
+  expect_refused({"a.nrrd", "--fraction", "a=a.nrrd", "--rest", "b", "--field", "f=f.nrrd"},
+                 {"f.nrrd", "expected the grid of a.nrrd", "4", "found 5"});
+}
+
+TEST_F(BadData, FieldsThatAreNoNumbers) {
+  write_image("a.nrrd", 4, [](std::size_t i) { return i < 32 ? 1.0f : 0.0f; });
+  write_image("f.nrrd", 4,
+              [](std::size_t i) { return i == 9 ? std::numeric_limits<float>::infinity() : 1.0f; });
+  expect_refused({"a.nrrd", "--fraction", "a=a.nrrd", "--rest", "b", "--field", "f=f.nrrd"},
+                 {"a.nrrd", "'f'", "expected finite values", "inf", "9"});
+}
+
+TEST_F(BadData, DomainsWithoutVolume) {
+  write_image("a.nrrd", 1, [](std::size_t) { return 1.0f; });
+  expect_refused({"a.nrrd", "--fraction", "a=a.nrrd", "--rest", "b"}, {"a.nrrd", "expected", "found"});
+  const std::string head =
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 3 3\nX_COORDINATES 3 "
+      "float\n";
+  const std::string tail =
+      "\nY_COORDINATES 3 float\n0 1 2\nZ_COORDINATES 3 float\n0 1 2\nCELL_DATA 8\n"
+      "SCALARS volume_fraction_a float 1\nLOOKUP_TABLE default\n1 1 1 1 1 1 1 1\n";
+  write("inverted.vtk", head + "2 1 0" + tail);
+  expect_refused({"inverted.vtk"}, {"inverted.vtk", "expected ascending coordinates along x", "found"});
+  write("flat.vtk", head + "1 1 1" + tail);
+  expect_refused({"flat.vtk"}, {"flat.vtk", "expected ascending coordinates along x", "found"});
+}
+
+TEST_F(BadData, RegionsOutside) {
+  make_scene("sphere");
+  expect_refused({"scene.vtr", "--region", "5,6,5,6,5,6"}, {"scene.vtr", "expected", "found"});
+}
+
+TEST_F(BadData, PointsFiles) {
+  make_scene("sphere");
+  write("p.csv", "x,y,z\n0.5,0.5,0.5\n0.5,oops,0.5\n");
+  expect_failure({"probe", "scene.vtr", "--points", "p.csv", "-o", "o.csv"}, {"p.csv:3", "expected", "oops"});
+  write("p.csv", "x,y,z\n");
+  expect_failure({"probe", "scene.vtr", "--points", "p.csv", "-o", "o.csv"},
+                 {"p.csv", "expected", "found none"});
+  expect_failure({"probe", "scene.vtr", "--points", "none.csv", "-o", "o.csv"}, {"none.csv"});
+}
+
+TEST_F(BadData, PlanesBesideTheDomain) {
+  make_scene("sphere");
+  expect_failure({"slice", "scene.vtr", "--plane", "x=7", "-o", "s.png"}, {"scene.vtr", "expected", "x=7"});
+}
+
+}  // namespace
+
+}  // namespace adamas::test

@@ -1,0 +1,118 @@
+// Interface meshes that cannot be used.
+
+#include "program.h"
+
+namespace adamas::test {
+
+namespace {
+
+/// A tetrahedron with outward normals, moved along x.
+std::string tetrahedron(double x, int first = 1) {
+  const auto at = [x](double a, const char* rest) { return "v " + std::to_string(x + a) + rest; };
+  std::string text = at(0, " 0 0\n") + at(1, " 0 0\n") + at(0, " 1 0\n") + at(0, " 0 1\n");
+  const auto face = [first](int a, int b, int c) {
+    return "f " + std::to_string(first + a) + " " + std::to_string(first + b) + " " +
+           std::to_string(first + c) + "\n";
+  };
+  return text + face(0, 2, 1) + face(0, 1, 3) + face(0, 3, 2) + face(1, 2, 3);
+}
+
+class BadInterfaces : public ProgramTest {
+ protected:
+  void expect_refused(const std::string& file, const std::vector<std::string>& parts) const {
+    expect_failure({"resample", "--interface", file + "=air,metal", "-o", "m.vtu", "--json", "j.json"},
+                   parts);
+  }
+};
+
+TEST_F(BadInterfaces, SoundOnesWork) {
+  write("t.obj", tetrahedron(0));
+  run_well({"resample", "--interface", "t.obj=air,metal", "-o", "m.vtu", "--json", "j.json",
+            "--interface-error", "2%"});
+  const auto figures = read_json("j.json");
+  ASSERT_EQ(figures["materials"].size(), 2u);
+  for (const auto& material : figures["materials"]) {
+    EXPECT_TRUE(material["volume_input"].is_null());
+    if (material["name"] == "metal") {
+      EXPECT_NEAR(material["volume_mesh"].get<double>(), 1.0 / 6, 0.02);
+    } else {
+      EXPECT_NEAR(material["volume_mesh"].get<double>(), 1.1 * 1.1 * 1.1 - 1.0 / 6, 0.02);
+    }
+  }
+  EXPECT_LE(figures["interface_error"].get<double>(), figures["interface_error_target"].get<double>());
+}
+
+TEST_F(BadInterfaces, MissingAndEmpty) {
+  expect_refused("none.obj", {"none.obj"});
+  write("empty.obj", "");
+  expect_refused("empty.obj", {"empty.obj", "empty"});
+  write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  expect_refused("points.obj", {"points.obj", "expected", "found"});
+  write("t.dat", tetrahedron(0));
+  expect_refused("t.dat", {"t.dat", "expected a surface", "found"});
+}
+
+TEST_F(BadInterfaces, WithoutArea) {
+  write("line.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n");
+  expect_refused("line.obj", {"line.obj", "expected triangles with an area", "found none"});
+}
+
+TEST_F(BadInterfaces, NonManifold) {
+  write("fin.obj", tetrahedron(0) + "v 2 2 2\nf 1 2 5\n");
+  expect_refused("fin.obj", {"fin.obj", "expected the same material", "found"});
+}
+
+TEST_F(BadInterfaces, SelfIntersecting) {
+  write("two.obj", tetrahedron(0) + tetrahedron(0.2, 5));
+  expect_refused("two.obj", {"two.obj", "expected triangles that meet at common points only", "found"});
+}
+
+TEST_F(BadInterfaces, BadlyOriented) {
+  std::string text = tetrahedron(0);
+  text.replace(text.find("f 2 3 4"), 7, "f 2 4 3");
+  write("turned.obj", text);
+  expect_refused("turned.obj", {"turned.obj", "turned the wrong way", "found"});
+}
+
+TEST_F(BadInterfaces, OpenOnesAreNoted) {
+  std::string text = tetrahedron(0);
+  text.erase(text.find("f 2 3 4"));
+  write("open.obj", text);
+  const RunResult result =
+      run({"resample", "--interface", "open.obj=air,metal", "--max-tetrahedra", "500", "-o", "m.vtu"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("adamas: note: open.obj: 3 edges are open borders"), std::string::npos)
+      << result.err;
+}
+
+TEST_F(BadInterfaces, MaterialsOfTheOption) {
+  write("t.obj", tetrahedron(0));
+  for (const std::string pair : {"air", "air,air", ",metal", "air,"}) {
+    expect_wrong_usage({"resample", "--interface", "t.obj=" + pair, "-o", "m.vtu"},
+                       {"--interface", "expected"});
+  }
+  expect_wrong_usage({"resample", "--interface", "t.obj", "-o", "m.vtu"},
+                     {"--interface", "expected", "t.obj"});
+  make_scene("sphere");
+  expect_failure({"resample", "scene.vtr", "--interface", "t.obj=air,inside", "-o", "m.vtu"},
+                 {"t.obj", "expected the materials of scene.vtr (outside, inside)", "found 'air'"});
+}
+
+TEST_F(BadInterfaces, Boxes) {
+  write("t.obj", tetrahedron(0));
+  for (const std::string box : {"0,0,0,1,0,1", "1,0,0,1,0,1", "0,1,0,1,0", "0,1,0,1,0,nan", "a"}) {
+    expect_wrong_usage({"resample", "--interface", "t.obj=air,metal", "--box", box, "-o", "m.vtu"},
+                       {"--box", "expected", box});
+  }
+}
+
+TEST_F(BadInterfaces, Networks) {
+  write("cut.arec", "4\n0 0 0\n1 0 0\n0 1 0\n");
+  expect_failure({"resample", "cut.arec", "-o", "m.vtu"}, {"cut.arec", "expected"});
+  write("index.arec", "3\n0 0 0\n1 0 0\n0 1 0\n1\n0 1 7 0 1\n");
+  expect_failure({"resample", "index.arec", "-o", "m.vtu"}, {"index.arec", "expected", "7"});
+}
+
+}  // namespace
+
+}  // namespace adamas::test

@@ -1,0 +1,131 @@
+// Outputs that cannot be written, and runs that are stopped: nothing is left behind.
+
+#include <unistd.h>
+
+#include "program.h"
+
+namespace adamas::test {
+
+namespace {
+
+class Outputs : public ProgramTest {};
+
+TEST_F(Outputs, FolderMissing) {
+  make_scene("sphere", 4);
+  const std::vector<std::string> parts{"none/", "expected an existing output folder"};
+  expect_failure({"resample", "scene.vtr", "-o", "none/m.vtu"}, parts);
+  expect_failure({"resample", "scene.vtr", "-o", "m.vtu", "--json", "none/j.json"}, parts);
+  expect_failure({"reconstruct", "scene.vtr", "-o", "none/r.vtp"}, parts);
+  expect_failure({"slice", "scene.vtr", "--plane", "x=0.5", "-o", "none/s.png"}, parts);
+  expect_failure({"probe", "scene.vtr", "--point", "0.5,0.5,0.5", "-o", "none/p.csv"}, parts);
+  expect_failure({"generate", "scene", "sphere", "--dimensions", "4,4,4", "-o", "none/s.vtr"}, parts);
+  expect_failure({"info", "scene.vtr", "--json", "none/j.json"}, parts);
+}
+
+TEST_F(Outputs, FolderReadOnly) {
+  make_scene("sphere", 4);
+  // Not even the superuser can make files in /proc.
+  expect_failure({"resample", "scene.vtr", "--interface-error", "5%", "-o", "/proc/adamas-test.vtu"},
+                 {"/proc/adamas-test.vtu"});
+  expect_failure({"slice", "scene.vtr", "--plane", "x=0.5", "-o", "/proc/adamas-test.png"},
+                 {"/proc/adamas-test.png"});
+  expect_failure({"info", "scene.vtr", "--json", "/proc/adamas-test.json"}, {"/proc/adamas-test.json"});
+}
+
+TEST_F(Outputs, FolderWithoutPermission) {
+  if (geteuid() == 0) GTEST_SKIP() << "the superuser may write anywhere";
+  make_scene("sphere", 4);
+  std::filesystem::create_directory(folder() / "locked");
+  std::filesystem::permissions(folder() / "locked", std::filesystem::perms(0555));
+  expect_failure({"resample", "scene.vtr", "-o", "locked/m.vtu"},
+                 {"locked/m.vtu", "expected a writable output folder", "found locked read-only"});
+}
+
+TEST_F(Outputs, NameOfAFolderOrDevice) {
+  make_scene("sphere", 4);
+  std::filesystem::create_directory(folder() / "m.vtu");
+  expect_failure({"resample", "scene.vtr", "-o", "m.vtu"},
+                 {"m.vtu", "expected an output file", "found a folder"});
+  expect_failure({"info", "scene.vtr", "--json", "/dev/null"}, {"/dev/null", "expected", "found"});
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_F(Outputs, DiskFull) {
+  make_scene("sphere", 8);
+  RunOptions full;
+  full.file_size_limit = 3000;
+  expect_failure({"generate", "scene", "sphere", "--dimensions", "12,12,12", "-o", "big.vtr"}, {"big.vtr"},
+                 full);
+  expect_failure({"resample", "scene.vtr", "--interface-error", "3%", "-o", "m.vtu"}, {"m.vtu"}, full);
+  expect_failure({"reconstruct", "scene.vtr", "-o", "r.vtp"}, {"r.vtp"}, full);
+  expect_failure({"reconstruct", "scene.vtr", "-o", "r.arec"}, {"r.arec"}, full);
+  expect_failure({"slice", "scene.vtr", "--plane", "x=0.5", "-o", "s.png"}, {"s.png"}, full);
+  expect_failure({"probe", "scene.vtr", "--line", "0,0,0..1,1,1,1000", "-o", "p.csv"}, {"p.csv"}, full);
+}
+
+TEST_F(Outputs, NoneOfSeveralUnlessAll) {
+  make_scene("sphere", 8);
+  // The mesh fits, the interfaces after it do not, or the other way round.
+  RunOptions full;
+  full.file_size_limit = 20000;
+  const auto before = files();
+  const RunResult result = run({"resample", "scene.vtr", "--interface-error", "2%", "--interfaces-out",
+                                "i.stl", "-o", "m.vtu", "--cut-mesh", "c.vtu", "--json", "j.json"},
+                               full);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(files(), before);
+  run_well({"resample", "scene.vtr", "--interface-error", "2%", "--interfaces-out", "i.stl", "-o", "m.vtu",
+            "--cut-mesh", "c.vtu", "--json", "j.json"});
+  std::size_t fit = 0;
+  for (const char* name : {"i.stl", "m.vtu", "c.vtu", "j.json"}) {
+    if (std::filesystem::file_size(folder() / name) <= 20000) ++fit;
+  }
+  EXPECT_GE(fit, 1u);
+  EXPECT_LT(fit, 4u);
+}
+
+TEST_F(Outputs, AnOldFileOutlivesAFailure) {
+  make_scene("sphere", 8);
+  write("m.vtu", "precious");
+  RunOptions full;
+  full.file_size_limit = 3000;
+  expect_failure({"resample", "scene.vtr", "--interface-error", "3%", "-o", "m.vtu"}, {"m.vtu"}, full);
+  EXPECT_EQ(read("m.vtu"), "precious");
+}
+
+TEST_F(Outputs, InterruptedRuns) {
+  make_scene("voronoi10", 20);
+  const auto before = files();
+  for (const std::string stage : {"read", "reconstructing", "refining"}) {
+    RunOptions stop;
+    stop.interrupt_at = stage;
+    const RunResult result = run({"resample", "scene.vtr", "--interface-error", "0.02%", "--verbose", "-o",
+                                  "m.vtu", "--json", "j.json"},
+                                 stop);
+    EXPECT_EQ(result.status, 130) << stage << ": " << result.err;
+    ASSERT_FALSE(result.err_lines().empty());
+    EXPECT_EQ(result.err_lines().back(), "adamas: cancelled");
+    EXPECT_EQ(result.err.find("error"), std::string::npos) << result.err;
+    EXPECT_EQ(files(), before);
+  }
+}
+
+TEST_F(Outputs, ClosedPipe) {
+  make_scene("sphere", 6);
+  RunOptions closed;
+  closed.close_stdout = true;
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"info", "scene.vtr"},
+           {"--help"},
+           {"probe", "scene.vtr", "--line", "0,0,0..1,1,1,5000"},
+           {"resample", "scene.vtr", "-o", "m.vtu", "--interface-error", "5%"}}) {
+    const RunResult result = run(command, closed);
+    EXPECT_EQ(result.status, 0) << command[0] << ": " << result.err;
+    EXPECT_EQ(result.err, "");
+  }
+  EXPECT_TRUE(files().contains("m.vtu"));
+}
+
+}  // namespace
+
+}  // namespace adamas::test
