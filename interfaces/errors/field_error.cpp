@@ -10,6 +10,9 @@ namespace adamas {
 
 namespace {
 
+/// The box round a displaced element grows by this factor, three times.
+constexpr double kGrowth = 3;
+
 class Measurer {
  public:
   Measurer(const ResamplingSource& source, const CellView& cell, double warp, const CellsInBox& cells_in_box)
@@ -19,19 +22,36 @@ class Measurer {
         cells_in_box_(cells_in_box),
         native_(source.fields->row_size()) {}
 
-  void measure(const NativeElement& element, std::span<FieldError> errors) {
-    source_.fields->native_values(element, native_);
+  /// The errors at an element whose place the mesh gives to its own material; false for others.
+  bool measure(const NativeElement& element, std::span<FieldError> errors) {
     const Weights weights = cell_.frame.weights(element.position);
     const OwnershipProblem& problem = cell_.owners.problem;
     const BodyId owner(cell_.owners.pure() ? problem.candidates[0].owner : problem.owner(weights));
+    if (material(owner) != element.material) return false;
+    source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
-    if (material(owner) == element.material) {
-      for (std::size_t f = 0; f < fields.size(); ++f)
-        add(error_at(cell_, fields[f], owner, weights), errors[f]);
-      return;
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      add(error_at(cell_, fields[f], owner, weights), errors[f]);
+    return true;
+  }
+
+  /// The errors at a displaced element. The box grows to its full size only while an error is above its
+  /// limit.
+  void measure_displaced(const NativeElement& element, std::span<const double> limits,
+                         std::span<FieldError> errors) {
+    source_.fields->native_values(element, native_);
+    const auto& fields = source_.fields->fields();
+    std::vector<double> least(fields.size());
+    for (double reach = warp_ / kGrowth / kGrowth / kGrowth;; reach = std::min(kGrowth * reach, warp_)) {
+      find_parts(element, reach);
+      bool good = true;
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        least[f] = error_nearby(fields[f]);
+        good = good && !(least[f] > limits[f]);
+      }
+      if (good || reach >= warp_) break;
     }
-    find_parts(element);
-    for (std::size_t f = 0; f < fields.size(); ++f) add(error_nearby(fields[f]), errors[f]);
+    for (std::size_t f = 0; f < fields.size(); ++f) add(least[f], errors[f]);
   }
 
  private:
@@ -60,12 +80,12 @@ class Measurer {
     return std::sqrt(squared);
   }
 
-  void find_parts(const NativeElement& element) {
+  void find_parts(const NativeElement& element, double half_width) {
     parts_.clear();
-    const Vec3 reach{warp_, warp_, warp_};
+    const Vec3 reach{half_width, half_width, half_width};
     const Box3 box{element.position - reach, element.position + reach};
     std::vector<OwnedTetrahedron> pieces;
-    cells_in_box_(box, [&](const CellView& cell) {
+    cells_in_box_(box, element.material, [&](const CellView& cell) {
       const auto& candidates = cell.owners.problem.candidates;
       const bool concerned = std::any_of(candidates.begin(), candidates.end(), [&](const auto& candidate) {
         return material(BodyId(candidate.owner)) == element.material;
@@ -132,12 +152,26 @@ class Measurer {
 
 }  // namespace
 
-void measure_field_errors(const ResamplingSource& source, const CellView& cell,
-                          std::span<const std::uint32_t> elements, double warp,
-                          const CellsInBox& cells_in_box, std::span<FieldError> errors) {
+std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, const CellView& cell,
+                                                std::span<const std::uint32_t> elements,
+                                                std::span<FieldError> errors) {
+  const CellsInBox none;
+  Measurer measurer(source, cell, 0, none);
+  const auto& all = source.fields->native_elements();
+  std::vector<std::uint32_t> displaced;
+  for (const std::uint32_t e : elements) {
+    if (!measurer.measure(all[e], errors)) displaced.push_back(e);
+  }
+  return displaced;
+}
+
+void measure_displaced_errors(const ResamplingSource& source, const CellView& cell,
+                              std::span<const std::uint32_t> displaced, double warp,
+                              const CellsInBox& cells_in_box, std::span<const double> limits,
+                              std::span<FieldError> errors) {
   Measurer measurer(source, cell, warp, cells_in_box);
   const auto& all = source.fields->native_elements();
-  for (const std::uint32_t e : elements) measurer.measure(all[e], errors);
+  for (const std::uint32_t e : displaced) measurer.measure_displaced(all[e], limits, errors);
 }
 
 }  // namespace adamas

@@ -37,15 +37,22 @@ struct CellView {
   CellOwnership owners;  ///< candidates that own a part
   std::array<const VertexRecord*, 4> vertices;
 };
-/// Calls back for every cell that may meet a box.
-using CellsInBox = std::function<void(const Box3&, const std::function<void(const CellView&)>&)>;
+/// Calls back for every cell that may meet a box and hold a material.
+using CellsInBox = std::function<void(const Box3&, MaterialId, const std::function<void(const CellView&)>&)>;
 
-/// Difference between the input and the linear approximation of each field at the native elements of a cell
-/// (SPEC 2.5, D 3.6): of the element's own material; where the mesh gives the element's place to another
-/// material, the least over its own material's part of the mesh in the box of half-width `warp` round it.
-/// Vectors by length.
-void measure_field_errors(const ResamplingSource& source, const CellView& cell,
-                          std::span<const std::uint32_t> elements, double warp,
-                          const CellsInBox& cells_in_box, std::span<FieldError> errors);
+/// Difference between the input and the linear approximation of each field at the native elements of a cell,
+/// of the element's own material (SPEC 2.5); vectors by length. Returns the displaced elements, which are
+/// left out: those whose place the mesh gives to another material.
+std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, const CellView& cell,
+                                                std::span<const std::uint32_t> elements,
+                                                std::span<FieldError> errors);
+
+/// The same for displaced elements (D 3.6): the least over the element's own material's part of the mesh in
+/// the box of half-width `warp` round it. The box is searched from the inside outwards, until the errors of
+/// all fields are within `limits`.
+void measure_displaced_errors(const ResamplingSource& source, const CellView& cell,
+                              std::span<const std::uint32_t> displaced, double warp,
+                              const CellsInBox& cells_in_box, std::span<const double> limits,
+                              std::span<FieldError> errors);
 
 }  // namespace adamas

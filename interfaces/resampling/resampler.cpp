@@ -248,17 +248,30 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
   for (const auto& part : needs) all.insert(all.end(), part.begin(), part.end());
   compute_rows(std::move(all));
   const std::size_t fields = source_.fields->fields().size();
-  const double warp =
-      distance_ ? std::max(options_.interface_error, distance_->upper) : options_.interface_error;
-  const CellsInBox nearby = [this](const Box3& box, const auto& visit) { cells_in_box(box, visit); };
+  std::vector<std::vector<std::uint32_t>> displaced(cells.size());
   parallel_for(cells.size(), 64, [&](std::size_t i) {
     CellRecord& cell = hierarchy_.payload(cells[i]);
     cell.fields.assign(fields, {});
-    if (cell.first_element == cell.last_element) return;
-    measure_field_errors(
-        source_, view(cells[i]),
-        std::span(element_order_).subspan(cell.first_element, cell.last_element - cell.first_element), warp,
-        nearby, cell.fields);
+    const std::uint32_t count = cell.last_element - cell.first_element;
+    if (count == 0) return;
+    const auto elements = std::span(element_order_).subspan(cell.first_element, count);
+    displaced[i] = measure_field_errors(source_, view(cells[i]), elements, cell.fields);
+  });
+  // Of displaced elements no more is asked than the target, or what the others have anyway.
+  std::vector<double> limits(fields, 0.0);
+  for (std::size_t f = 0; f < fields; ++f) {
+    for (const TetrahedronId t : cells) limits[f] = std::max(limits[f], hierarchy_.payload(t).fields[f].max);
+    if (options_.field_errors[f]) limits[f] = *options_.field_errors[f];
+  }
+  const double warp =
+      distance_ ? std::max(options_.interface_error, distance_->upper) : options_.interface_error;
+  const CellsInBox nearby = [this](const Box3& box, MaterialId material, const auto& visit) {
+    cells_in_box(box, material, visit);
+  };
+  parallel_for(cells.size(), 16, [&](std::size_t i) {
+    if (displaced[i].empty()) return;
+    measure_displaced_errors(source_, view(cells[i]), displaced[i], warp, nearby, limits,
+                             hierarchy_.payload(cells[i]).fields);
   });
 }
 
@@ -273,7 +286,22 @@ CellView Resampler::view(TetrahedronId t) const {
   return result;
 }
 
-void Resampler::cells_in_box(const Box3& box, const std::function<void(const CellView&)>& visit) const {
+bool Resampler::may_hold(TetrahedronId t, MaterialId material) const {
+  const InterfaceTable& table = source_.network->table();
+  for (const VertexId v : hierarchy_.vertices(t)) {
+    const VertexDistances& known = hierarchy_.payload(v).distances;
+    if (table.material(known.body) == material) return true;
+    for (const NearDistance& near : known.near) {
+      for (const BodyId side : table.sides(near.interface)) {
+        if (table.material(side) == material) return true;
+      }
+    }
+  }
+  return false;
+}
+
+void Resampler::cells_in_box(const Box3& box, MaterialId material,
+                             const std::function<void(const CellView&)>& visit) const {
   std::vector<TetrahedronId> stack(hierarchy_.roots().rbegin(), hierarchy_.roots().rend());
   while (!stack.empty()) {
     const TetrahedronId t = stack.back();
@@ -286,7 +314,7 @@ void Resampler::cells_in_box(const Box3& box, const std::function<void(const Cel
     }
     if (apart) continue;
     if (hierarchy_.is_leaf(t)) {
-      visit(view(t));
+      if (may_hold(t, material)) visit(view(t));
     } else {
       for (const TetrahedronId child : hierarchy_.children(t)) stack.push_back(child);
     }
