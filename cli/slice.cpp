@@ -118,7 +118,7 @@ void report_areas(const SliceInput& input, const CrossSection& section, Session&
   for (MaterialId m(0); m.value < input.materials().size(); ++m.value) {
     const double area = m.value < section.material_area.size() ? section.material_area[m] : 0;
     figures["materials"].push_back({{"name", input.materials()[m]}, {"area", area}});
-    if (area > 0 && rows.size() <= 40) {
+    if (area > 1e-9 * section.area && rows.size() <= 40) {
       rows.push_back(
           {input.materials()[m], volume_text(area), fmt::format("{:.3f}%", 100 * area / section.area)});
     }
@@ -139,7 +139,8 @@ void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});
   const bool polygons = file_extension(options.output) == ".vtp";
 
-  const SliceInput input = load_slice_input(from, options.original, style.interfaces && !polygons, console);
+  const SliceInput input = load_slice_input(from, options.original,
+                                            style.interfaces && !polygons ? &style.plane : nullptr, console);
   const std::vector<SliceMode> wanted = modes(options, input, !style.field.empty());
   if (polygons && wanted.size() > 1) wrong_usage("--mode all: expected a picture as output, found a .vtp");
   style.cells = options.cells || (!options.no_cells && input.mesh.has_value());

@@ -5,6 +5,7 @@
 
 #include "cli/input_options.h"
 #include "core/data/interface_mesh.h"
+#include "core/geometry/plane.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
 namespace adamas {
@@ -26,8 +27,8 @@ struct SliceInput {
 ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
 
 /// Reads the positional input, a resampled mesh or gridded data, and for a mesh the original data or
-/// interfaces, where given. Interfaces of gridded data are reconstructed if `with_interfaces`.
-SliceInput load_slice_input(const InputOptions& options, const std::string& original, bool with_interfaces,
+/// interfaces, where given. Interfaces of gridded data are reconstructed round `plane`, unless it is null.
+SliceInput load_slice_input(const InputOptions& options, const std::string& original, const Plane* plane,
                             Console& console);
 
 }  // namespace adamas

@@ -11,6 +11,8 @@ namespace {
 
 /// More materials than this make no legend.
 constexpr std::size_t kMostNames = 30;
+/// A smaller part of a section is round-off.
+constexpr double kSeen = 1e-9;
 
 Vec2 to_plane(const PlaneFrame& frame, const Vec3& p) {
   const auto c = frame.coordinates(p);
@@ -89,7 +91,7 @@ std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vec
   for (MaterialId m(0); m.value < input.materials().size(); ++m.value) {
     bool shown = false;
     for (const CrossSection& s : sections) {
-      shown = shown || (m.value < s.material_area.size() && s.material_area[m] > 0);
+      shown = shown || (m.value < s.material_area.size() && s.material_area[m] > kSeen * s.area);
     }
     if (shown) entries.push_back({input.materials()[m], material_area_colour(m.value)});
   }

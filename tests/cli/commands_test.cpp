@@ -228,6 +228,17 @@ TEST_F(Commands, SlicesOfAllModes) {
                      {"--original"});
 }
 
+TEST_F(Commands, InterfacesRoundAPlaneAreThoseOfTheWhole) {
+  make_scene("reflex", 12);
+  run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
+  run_well({"reconstruct", "scene.vtr", "-o", "r.vtp"});
+  for (const std::string plane : {"x=0.02", "y=0.5", "z=0.71", "z=1"}) {
+    run_well({"slice", "m.vtu", "--original", "scene.vtr", "--plane", plane, "-o", "near.png"});
+    run_well({"slice", "m.vtu", "--original", "r.vtp", "--plane", plane, "-o", "whole.png"});
+    EXPECT_TRUE(read("near.png") == read("whole.png")) << plane;
+  }
+}
+
 TEST_F(Commands, ProbeKnowsMaterialsAndIntegrals) {
   make_scene("sphere", 12);
   run_well({"resample", "scene.vtr", "--interface-error", "1%", "-o", "m.vtu"});
@@ -253,7 +264,7 @@ TEST_F(Commands, ProbeKnowsMaterialsAndIntegrals) {
 }
 
 TEST_F(Commands, ThreadsChangeNoByte) {
-  make_scene("voronoi10", 6);
+  make_scene("reflex", 6);
   const std::vector<std::string> names{"m.vtu", "i.ply", "c.vtu", "s.png"};
   std::vector<std::string> bytes;
   std::vector<nlohmann::json> figures;
