@@ -57,7 +57,7 @@ class Measurer {
  private:
   /// A part of the element's own material within the box, by its corners.
   struct Part {
-    CellView cell;
+    const CellView* cell;
     BodyId body;
     std::vector<Vec3> corners;
   };
@@ -84,27 +84,13 @@ class Measurer {
     parts_.clear();
     const Vec3 reach{half_width, half_width, half_width};
     const Box3 box{element.position - reach, element.position + reach};
-    std::vector<OwnedTetrahedron> pieces;
     cells_in_box_(box, element.material, [&](const CellView& cell) {
-      const auto& candidates = cell.owners.problem.candidates;
-      const bool concerned = std::any_of(candidates.begin(), candidates.end(), [&](const auto& candidate) {
-        return material(BodyId(candidate.owner)) == element.material;
-      });
-      if (!concerned) return;
-      pieces.clear();
-      if (cell.owners.pure()) {
-        pieces.push_back(
-            {candidates[0].owner,
-             {Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0}, Weights{0, 0, 0, 1}}});
-      } else {
-        partition_tetrahedron(cell.owners.problem, pieces);
-      }
-      for (const OwnedTetrahedron& piece : pieces) {
+      for (const OwnedTetrahedron& piece : cell.parts) {
         if (material(BodyId(piece.owner)) != element.material) continue;
         std::array<Vec3, 4> corners;
         for (std::size_t c = 0; c < 4; ++c) corners[c] = cell.frame.point(piece.corners[c]);
         std::vector<Vec3> inside = clip_to_box(corners, box);
-        if (!inside.empty()) parts_.push_back({cell, BodyId(piece.owner), std::move(inside)});
+        if (!inside.empty()) parts_.push_back({&cell, BodyId(piece.owner), std::move(inside)});
       }
     });
   }
@@ -131,11 +117,12 @@ class Measurer {
     double least = std::numeric_limits<double>::infinity();
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Vec3& corner : part.corners) {
-      const Weights w = part.cell.frame.weights(corner);
-      least = std::min(least, error_at(part.cell, field, part.body, w));
+      const Weights w = part.cell->frame.weights(corner);
+      least = std::min(least, error_at(*part.cell, field, part.body, w));
       if (field.components > 1) continue;
       double value = 0;
-      for (std::size_t v = 0; v < 4; ++v) value += w[v] * part.cell.vertices[v]->row(part.body)[field.offset];
+      for (std::size_t v = 0; v < 4; ++v)
+        value += w[v] * part.cell->vertices[v]->row(part.body)[field.offset];
       low = std::min(low, value), high = std::max(high, value);
     }
     const double native = native_[field.offset];

@@ -36,8 +36,9 @@ struct CellView {
   Tetrahedron frame;
   CellOwnership owners;  ///< candidates that own a part
   std::array<const VertexRecord*, 4> vertices;
+  std::vector<OwnedTetrahedron> parts;  ///< the cell divided by owner
 };
-/// Calls back for every cell that may meet a box and hold a material.
+/// Calls back for every cell that may meet a box and hold a material, with views that stay.
 using CellsInBox = std::function<void(const Box3&, MaterialId, const std::function<void(const CellView&)>&)>;
 
 /// Difference between the input and the linear approximation of each field at the native elements of a cell,

@@ -8,40 +8,70 @@ namespace {
 
 constexpr std::uint64_t kLonelyKey = std::uint64_t{1} << 63;
 
-/// A body the cell knows: is it within reach of each vertex, and its functions.
-struct KnownBody {
-  BodyId body;
-  std::array<bool, 4> within{};
-  std::vector<std::uint64_t> keys;
-  std::vector<std::array<double, 4>> functions;
+/// What a cell knows, worked out in memory that is used again for the next cell.
+struct Knowledge {
+  struct Found {
+    InterfaceId id;
+    std::uint32_t first, second;  ///< positions of its bodies
+  };
+  std::vector<BodyId> bodies;         ///< ascending
+  std::vector<std::uint8_t> within;   ///< per body: bit v, within reach of vertex v
+  std::vector<std::uint32_t> counts;  ///< per body: interfaces with other known bodies
+  std::vector<Found> found;           ///< by id
+
+  [[nodiscard]] std::size_t position(BodyId body) const {
+    return static_cast<std::size_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
+  }
+  [[nodiscard]] bool knows(BodyId body) const {
+    return std::binary_search(bodies.begin(), bodies.end(), body);
+  }
+
+  void find_bodies(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices) {
+    bodies.clear();
+    for (const VertexDistances* v : vertices) {
+      bodies.push_back(v->body);
+      for (const NearDistance& near : v->near) {
+        const auto& sides = table.sides(near.interface);
+        bodies.insert(bodies.end(), sides.begin(), sides.end());
+      }
+    }
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    within.assign(bodies.size(), 0);
+    for (std::size_t v = 0; v < 4; ++v) {
+      const auto mark = [&](BodyId body) {
+        within[position(body)] = static_cast<std::uint8_t>(within[position(body)] | 1u << v);
+      };
+      mark(vertices[v]->body);
+      for (const NearDistance& near : vertices[v]->near) {
+        for (const BodyId side : table.sides(near.interface)) mark(side);
+      }
+    }
+  }
+
+  void find_interfaces(const InterfaceTable& table) {
+    found.clear();
+    counts.assign(bodies.size(), 0);
+    const auto add = [&](InterfaceId id, std::size_t a, std::size_t b) {
+      found.push_back({id, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+      ++counts[a];
+      ++counts[b];
+    };
+    for (std::size_t a = 0; a < bodies.size(); ++a) {
+      const auto& neighbours = table.neighbours(bodies[a]);
+      if (neighbours.size() < bodies.size()) {
+        for (const auto& [other, id] : neighbours) {
+          if (bodies[a] < other && knows(other)) add(id, a, position(other));
+        }
+        continue;
+      }
+      for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+        if (const auto id = table.find(bodies[a], bodies[b])) add(*id, a, b);
+      }
+    }
+    std::sort(found.begin(), found.end(), [](const Found& x, const Found& y) { return x.id < y.id; });
+  }
 };
-
-KnownBody& entry(std::vector<KnownBody>& known, BodyId body) {
-  return *std::lower_bound(known.begin(), known.end(), body,
-                           [](const KnownBody& k, BodyId b) { return k.body < b; });
-}
-
-std::vector<KnownBody> known_bodies(const InterfaceTable& table,
-                                    const std::array<const VertexDistances*, 4>& vertices) {
-  std::vector<BodyId> bodies;
-  for (const VertexDistances* v : vertices) {
-    bodies.push_back(v->body);
-    for (const NearDistance& near : v->near) {
-      bodies.insert(bodies.end(), table.sides(near.interface).begin(), table.sides(near.interface).end());
-    }
-  }
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  std::vector<KnownBody> known(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) known[i].body = bodies[i];
-  for (std::size_t v = 0; v < 4; ++v) {
-    entry(known, vertices[v]->body).within[v] = true;
-    for (const NearDistance& near : vertices[v]->near) {
-      for (const BodyId side : table.sides(near.interface)) entry(known, side).within[v] = true;
-    }
-  }
-  return known;
-}
 
 }  // namespace
 
@@ -56,73 +86,53 @@ std::size_t CellOwnership::candidate(BodyId body) const {
 
 void find_cell_ownership(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices,
                          CellOwnership& ownership) {
-  ownership.problem.clear();
+  OwnershipProblem& problem = ownership.problem;
+  problem.clear();
   ownership.interfaces.clear();
   const bool alone = std::all_of(vertices.begin(), vertices.end(), [&](const VertexDistances* v) {
     return v->near.empty() && v->body == vertices[0]->body;
   });
   if (alone) {
-    ownership.problem.add_candidate(vertices[0]->body.value);
+    problem.add_candidate(vertices[0]->body.value);
     return;
   }
-  std::vector<KnownBody> known = known_bodies(table, vertices);
-  struct Found {
-    InterfaceId id;
-    std::size_t first, second;
-  };
-  std::vector<Found> found;
-  for (std::size_t a = 0; a < known.size(); ++a) {
-    const auto& neighbours = table.neighbours(known[a].body);
-    if (neighbours.size() < known.size()) {
-      for (const auto& [other, id] : neighbours) {
-        if (!(known[a].body < other)) continue;
-        const auto at = std::lower_bound(known.begin(), known.end(), other,
-                                         [](const KnownBody& k, BodyId b) { return k.body < b; });
-        if (at != known.end() && at->body == other)
-          found.push_back({id, a, static_cast<std::size_t>(at - known.begin())});
+  thread_local Knowledge known;
+  known.find_bodies(table, vertices);
+  known.find_interfaces(table);
+  for (std::size_t b = 0, first = 0; b < known.bodies.size(); ++b) {
+    // A body without an interface to another known one owns only what is nearest to the vertices inside it.
+    const std::uint32_t functions = std::max(known.counts[b], 1u);
+    problem.candidates.push_back({known.bodies[b].value, static_cast<std::uint32_t>(first), functions});
+    problem.functions.resize(first + functions);
+    if (known.counts[b] == 0) {
+      LinearFunction& lonely = problem.functions[first];
+      lonely.key = kLonelyKey + known.bodies[b].value;
+      for (std::size_t v = 0; v < 4; ++v) {
+        lonely.values[v] = vertices[v]->body == known.bodies[b] ? vertices[v]->radius : -vertices[v]->radius;
       }
-      continue;
     }
-    for (std::size_t b = a + 1; b < known.size(); ++b) {
-      if (const auto id = table.find(known[a].body, known[b].body)) found.push_back({*id, a, b});
-    }
+    first += functions;
+    known.counts[b] = 0;  // from here on: functions that have been filled in
   }
-  std::sort(found.begin(), found.end(), [](const Found& x, const Found& y) { return x.id < y.id; });
-  for (const Found& f : found) {
-    std::array<double, 4> first{}, second{};
+  for (const Knowledge::Found& f : known.found) {
+    const std::uint32_t towards_first = problem.candidates[f.first].first + known.counts[f.first]++;
+    const std::uint32_t towards_second = problem.candidates[f.second].first + known.counts[f.second]++;
+    ownership.interfaces.push_back({f.id, towards_first, towards_second});
+    LinearFunction &first = problem.functions[towards_first], &second = problem.functions[towards_second];
+    first.key = 2 * std::uint64_t{f.id.value};
+    second.key = first.key + 1;
     for (std::size_t v = 0; v < 4; ++v) {
       const auto& near = vertices[v]->near;
       const auto at = std::lower_bound(near.begin(), near.end(), f.id,
                                        [](const NearDistance& n, InterfaceId i) { return n.interface < i; });
       // Far from the interface: a value that no other exceeds, or falls below where the body itself is far.
-      const auto far_value = [&](const KnownBody& body) {
-        return body.within[v] ? vertices[v]->radius : -vertices[v]->radius;
+      const auto far_value = [&](std::uint32_t body) {
+        return (known.within[body] >> v & 1u) != 0u ? vertices[v]->radius : -vertices[v]->radius;
       };
       const bool is_near = at != near.end() && at->interface == f.id;
-      first[v] = is_near ? at->distance : far_value(known[f.first]);
-      second[v] = is_near ? -at->distance : far_value(known[f.second]);
+      first.values[v] = is_near ? at->distance : far_value(f.first);
+      second.values[v] = is_near ? -at->distance : far_value(f.second);
     }
-    ownership.interfaces.push_back({f.id, static_cast<std::uint32_t>(known[f.first].functions.size()),
-                                    static_cast<std::uint32_t>(known[f.second].functions.size())});
-    known[f.first].functions.push_back(first);
-    known[f.first].keys.push_back(2 * std::uint64_t{f.id.value});
-    known[f.second].functions.push_back(second);
-    known[f.second].keys.push_back(2 * std::uint64_t{f.id.value} + 1);
-  }
-  for (const KnownBody& body : known) {
-    ownership.problem.add_candidate(body.body.value);
-    for (std::size_t f = 0; f < body.functions.size(); ++f)
-      ownership.problem.add_function(body.functions[f], body.keys[f]);
-    if (!body.functions.empty() || known.size() == 1) continue;
-    // No interface with another known body: it owns only what is nearest to the vertices inside it.
-    std::array<double, 4> values{};
-    for (std::size_t v = 0; v < 4; ++v)
-      values[v] = vertices[v]->body == body.body ? vertices[v]->radius : -vertices[v]->radius;
-    ownership.problem.add_function(values, kLonelyKey + body.body.value);
-  }
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    ownership.interfaces[i].towards_first += ownership.problem.candidates[found[i].first].first;
-    ownership.interfaces[i].towards_second += ownership.problem.candidates[found[i].second].first;
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <memory>
 #include <numeric>
 #include <queue>
 
@@ -18,6 +20,30 @@ constexpr std::size_t kRoundsPart = 16;
 /// Estimates are held to this part of the interface error that is wanted, so that the measured distance,
 /// which looks at every point, seldom exceeds it.
 constexpr double kEstimatePart = 0.95;
+
+/// Views of cells, worked out by whichever thread needs one first and kept.
+class ViewCache {
+ public:
+  explicit ViewCache(std::size_t cells) : views_(cells) {}
+  ~ViewCache() {
+    for (const auto& view : views_) delete view.load();
+  }
+  ViewCache(const ViewCache&) = delete;
+  ViewCache& operator=(const ViewCache&) = delete;
+
+  template <class Make>
+  const CellView& get(TetrahedronId t, Make&& make) {
+    std::atomic<const CellView*>& slot = views_[t.value];
+    if (const CellView* found = slot.load(std::memory_order_acquire)) return *found;
+    auto fresh = std::make_unique<const CellView>(make());
+    const CellView* expected = nullptr;
+    if (slot.compare_exchange_strong(expected, fresh.get())) return *fresh.release();
+    return *expected;
+  }
+
+ private:
+  std::vector<std::atomic<const CellView*>> views_;
+};
 
 }  // namespace
 
@@ -265,8 +291,10 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
   }
   const double warp =
       distance_ ? std::max(options_.interface_error, distance_->upper) : options_.interface_error;
-  const CellsInBox nearby = [this](const Box3& box, MaterialId material, const auto& visit) {
-    cells_in_box(box, material, visit);
+  ViewCache cache(hierarchy_.tetrahedron_slots());
+  const CellsInBox nearby = [&](const Box3& box, MaterialId material, const auto& visit) {
+    cells_in_box(box, material,
+                 [&](TetrahedronId t) { visit(cache.get(t, [&] { return view_with_parts(t); })); });
   };
   parallel_for(cells.size(), 16, [&](std::size_t i) {
     if (displaced[i].empty()) return;
@@ -280,9 +308,22 @@ CellView Resampler::view(TetrahedronId t) const {
   CellView result{frame(t),
                   {},
                   {&hierarchy_.payload(v[0]), &hierarchy_.payload(v[1]), &hierarchy_.payload(v[2]),
-                   &hierarchy_.payload(v[3])}};
+                   &hierarchy_.payload(v[3])},
+                  {}};
   ownership(t, result.owners);
   if (!result.owners.pure()) keep_owners(result.owners.problem);
+  return result;
+}
+
+CellView Resampler::view_with_parts(TetrahedronId t) const {
+  CellView result = view(t);
+  if (result.owners.pure()) {
+    const std::array<Weights, 4> whole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0},
+                                       Weights{0, 0, 0, 1}};
+    result.parts.push_back({result.owners.problem.candidates[0].owner, whole});
+  } else {
+    partition_tetrahedron(result.owners.problem, result.parts);
+  }
   return result;
 }
 
@@ -301,7 +342,7 @@ bool Resampler::may_hold(TetrahedronId t, MaterialId material) const {
 }
 
 void Resampler::cells_in_box(const Box3& box, MaterialId material,
-                             const std::function<void(const CellView&)>& visit) const {
+                             const std::function<void(TetrahedronId)>& visit) const {
   std::vector<TetrahedronId> stack(hierarchy_.roots().rbegin(), hierarchy_.roots().rend());
   while (!stack.empty()) {
     const TetrahedronId t = stack.back();
@@ -314,7 +355,7 @@ void Resampler::cells_in_box(const Box3& box, MaterialId material,
     }
     if (apart) continue;
     if (hierarchy_.is_leaf(t)) {
-      if (may_hold(t, material)) visit(view(t));
+      if (may_hold(t, material)) visit(t);
     } else {
       for (const TetrahedronId child : hierarchy_.children(t)) stack.push_back(child);
     }

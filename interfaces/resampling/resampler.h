@@ -78,8 +78,9 @@ class Resampler {
   void distribute(TetrahedronId parent);
   std::vector<TetrahedronId> process(const std::vector<Split>& splits);
   [[nodiscard]] CellView view(TetrahedronId t) const;
+  [[nodiscard]] CellView view_with_parts(TetrahedronId t) const;
   void cells_in_box(const Box3& box, MaterialId material,
-                    const std::function<void(const CellView&)>& visit) const;
+                    const std::function<void(TetrahedronId)>& visit) const;
   [[nodiscard]] bool may_hold(TetrahedronId t, MaterialId material) const;
   void measure_fields(const std::vector<TetrahedronId>& cells);
   void compute_rows(std::vector<std::pair<VertexId, BodyId>> needs);
