@@ -31,21 +31,29 @@ ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, co
   source.name = mesh.source;
   source.box = box;
   source.materials = mesh.materials;
-  auto network = std::make_shared<InterfaceNetwork>(mesh, box);
+  const bool fields = data != nullptr && !data->fields.empty();
+  InterfaceMesh renamed = mesh;
+  if (fields) {
+    // The data's numbers for the materials of both.
+    source.materials = renamed.materials = data->materials;
+    const auto in_data = [&](MaterialId m) {
+      const auto found = std::find(data->materials.begin(), data->materials.end(), mesh.materials[m]);
+      if (found != data->materials.end())
+        return MaterialId(static_cast<std::size_t>(found - data->materials.begin()));
+      fail("{}: expected the materials of {}, found '{}'", mesh.source, data->source, mesh.materials[m]);
+    };
+    for (InterfaceTriangle& t : renamed.triangles) {
+      t.front = in_data(t.front);
+      t.back = in_data(t.back);
+    }
+  }
+  auto network = std::make_shared<InterfaceNetwork>(renamed, box);
   source.network = network;
   source.body_at = [network](const Vec3& p, bool* flagged) { return network->body_at(p, flagged); };
-  if (data == nullptr || data->fields.empty()) return source;
-  // The mesh's materials in the order of the data's.
-  std::vector<MaterialId> as_in_data;
-  for (const std::string& name : mesh.materials) {
-    const auto found = std::find(data->materials.begin(), data->materials.end(), name);
-    if (found == data->materials.end()) {
-      fail("{}: expected the materials of {}, found '{}'", mesh.source, data->source, name);
-    }
-    as_in_data.emplace_back(static_cast<std::size_t>(found - data->materials.begin()));
+  if (fields) {
+    source.fields = std::make_shared<GridFieldSource>(
+        *data, [&](const Vec3& p) { return network->table().material(network->body_at(p)); });
   }
-  source.fields = std::make_shared<GridFieldSource>(
-      *data, [&](const Vec3& p) { return as_in_data[network->table().material(network->body_at(p)).value]; });
   return source;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 /// A site states a value of a field per material where the material's fraction is at least this,
 constexpr float kPresent = 1e-3f;
-/// and of a mixed field where it is at least this.
+/// and of a mixed field where it is at least this, or where no site round it has as much.
 constexpr float kPure = 0.99f;
 /// Sites looked at for a fit lie within this many steps.
 constexpr std::int32_t kReach = 6;
@@ -74,6 +74,7 @@ GridFieldSource::GridFieldSource(const MultiMaterialData& data,
       }
     }
   });
+  find_mixed_sites();
   std::vector<double> row(row_size_);
   std::vector<bool> seen(fields_.size());
   for (const NativeElement& element : elements_) {
@@ -108,12 +109,32 @@ std::size_t GridFieldSource::index(const Site& s) const {
 
 bool GridFieldSource::states(std::size_t field, MaterialId material, std::size_t site) const {
   const Field& f = data_.fields[field];
+  if (!f.per_material()) return mixed_stated_[site] != 0 && owner_[site] == material.value;
+  if (material.value >= f.material_values.size() || f.material_values[material].empty()) return false;
   const bool fractions = data_.labels.empty() && !data_.fractions.empty();
-  if (f.per_material()) {
-    if (material.value >= f.material_values.size() || f.material_values[material].empty()) return false;
-    return fractions ? data_.fractions[material][site] >= kPresent : owner_[site] == material.value;
-  }
-  return fractions ? data_.fractions[material][site] >= kPure : owner_[site] == material.value;
+  return fractions ? data_.fractions[material][site] >= kPresent : owner_[site] == material.value;
+}
+
+void GridFieldSource::find_mixed_sites() {
+  mixed_stated_.assign(owner_.size(), 1);
+  if (data_.fractions.empty()) return;
+  const auto pure = [&](std::size_t site) {
+    return data_.fractions[MaterialId(owner_[site])][site] >= kPure;
+  };
+  parallel_for(data_.grid.sites(2), 1, [&](std::size_t k) {
+    const auto z = static_cast<std::int32_t>(k);
+    for (std::int32_t y = 0; y < sites(1); ++y) {
+      for (std::int32_t x = 0; x < sites(0); ++x) {
+        const std::size_t site = index({x, y, z});
+        if (pure(site)) continue;
+        for (std::int32_t n = 0; n < 27 && mixed_stated_[site] != 0; ++n) {
+          const Site other{x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1};
+          if (inside(other) && owner_[index(other)] == owner_[site] && pure(index(other)))
+            mixed_stated_[site] = 0;
+        }
+      }
+    }
+  });
 }
 
 double GridFieldSource::stated(std::size_t field, MaterialId material, std::size_t site,

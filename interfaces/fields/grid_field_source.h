@@ -43,6 +43,7 @@ class GridFieldSource final : public FieldSource {
   }
   [[nodiscard]] bool inside(const Site& s) const;
   [[nodiscard]] std::size_t index(const Site& s) const;
+  void find_mixed_sites();
   /// Whether the site states a value of the field for the material.
   [[nodiscard]] bool states(std::size_t field, MaterialId material, std::size_t site) const;
   [[nodiscard]] double stated(std::size_t field, MaterialId material, std::size_t site, int component) const;
@@ -56,6 +57,7 @@ class GridFieldSource final : public FieldSource {
   std::size_t row_size_ = 0;
   std::array<std::vector<double>, 3> coordinates_;  ///< of sites -1, 0, ..., n
   std::vector<std::uint16_t> owner_;
+  std::vector<std::uint8_t> mixed_stated_;  ///< whether a site's values of mixed fields are its owner's
   std::vector<NativeElement> elements_;
   std::unique_ptr<Cache> cache_;
 };
