@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
-#include <tuple>
 
 #include "core/geometry/triangulate.h"
 
@@ -133,43 +131,7 @@ void ContactMeshBuilder::order_lines() {
   }
 }
 
-void ContactMeshBuilder::weld_crowded_points() {
-  welded_.resize(points_.size());
-  std::iota(welded_.begin(), welded_.end(), 0u);
-  const auto box_of = [](std::int64_t i, std::int64_t j, std::int64_t k) {
-    return mix(mix(mix(static_cast<std::uint64_t>(i)) + static_cast<std::uint64_t>(j)) +
-               static_cast<std::uint64_t>(k));
-  };
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> boxes;
-  for (std::uint32_t p = 0; p < points_.size(); ++p) {
-    if (crowded_[p] == 0) continue;
-    const Vec3& x = points_[p];
-    std::array<std::int64_t, 3> low{}, high{}, own{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const double scaled = x[axis] / (4 * tolerance_);
-      low[a] = static_cast<std::int64_t>(std::floor(scaled - 0.25));
-      high[a] = static_cast<std::int64_t>(std::floor(scaled + 0.25));
-      own[a] = static_cast<std::int64_t>(std::floor(scaled));
-    }
-    std::uint32_t found = p;
-    for (std::int64_t i = low[0]; i <= high[0]; ++i) {
-      for (std::int64_t j = low[1]; j <= high[1]; ++j) {
-        for (std::int64_t k = low[2]; k <= high[2]; ++k) {
-          const auto box = boxes.find(box_of(i, j, k));
-          if (box == boxes.end()) continue;
-          for (const std::uint32_t q : box->second) {
-            if (distance(points_[q], x) <= tolerance_) found = std::min(found, q);
-          }
-        }
-      }
-    }
-    welded_[p] = welded_[found];
-    if (found == p) boxes[box_of(own[0], own[1], own[2])].push_back(p);
-  }
-}
-
-void ContactMeshBuilder::emit(const Polygon& polygon, InterfaceMesh& mesh) const {
+std::vector<std::uint32_t> ContactMeshBuilder::loop_of(const Polygon& polygon) const {
   std::vector<std::uint32_t> loop;
   for (std::uint32_t c = 0; c < polygon.count; ++c) {
     const std::size_t here = polygon.first + c;
@@ -185,76 +147,17 @@ void ContactMeshBuilder::emit(const Polygon& polygon, InterfaceMesh& mesh) const
     for (auto p = first; p < last; ++p) loop.push_back(welded_[p->second]);
     if (to < from) std::reverse(loop.begin() + begin, loop.end());
   }
-  loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
-  while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
-  if (loop.size() < 3) return;
+  drop_repeated(loop);
+  return loop;
+}
+
+void ContactMeshBuilder::emit(const Polygon& polygon, const std::vector<std::uint32_t>& loop,
+                              InterfaceMesh& mesh) const {
+  if (loop.empty()) return;
   triangulate_convex(points_, loop, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (a == b || b == c || c == a) return;
     mesh.triangles.push_back({{a, b, c}, MaterialId(polygon.front), MaterialId(polygon.back)});
   });
-}
-
-void ContactMeshBuilder::cancel_coinciding(InterfaceMesh& mesh) const {
-  // Triangles by their corners, turned so that these run upwards with the smallest first.
-  struct Side {
-    std::array<std::uint32_t, 3> points;
-    std::uint32_t triangle;
-    auto operator<=>(const Side&) const = default;
-  };
-  std::vector<Side> sides;
-  const auto turned = [](const InterfaceTriangle& t) {
-    auto p = t.points;
-    std::sort(p.begin(), p.end());
-    return p;
-  };
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
-    if (crowded_[p[0]] != 0 && crowded_[p[1]] != 0 && crowded_[p[2]] != 0)
-      sides.push_back({turned(mesh.triangles[t]), t});
-  }
-  std::sort(sides.begin(), sides.end());
-  const auto even = [&](const InterfaceTriangle& t) {
-    const auto& p = t.points;
-    return (p[0] < p[1]) == (p[1] < p[2]) ? p[0] < p[1] : p[2] < p[0];
-  };
-  std::vector<char> gone(mesh.triangles.size(), 0);
-  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
-    while (last < sides.size() && sides[last].points == sides[first].points) ++last;
-    if (last - first < 2) continue;
-    // How often each region lies in front of the stack of triangles rather than behind it.
-    std::vector<std::pair<std::uint32_t, int>> net;
-    const auto count = [&](MaterialId side, int by) {
-      const auto found =
-          std::find_if(net.begin(), net.end(), [&](const auto& entry) { return entry.first == side.value; });
-      if (found == net.end()) {
-        net.emplace_back(side.value, by);
-      } else {
-        found->second += by;
-      }
-    };
-    for (std::size_t i = first; i < last; ++i) {
-      const InterfaceTriangle& t = mesh.triangles[sides[i].triangle];
-      count(t.front, even(t) ? 1 : -1);
-      count(t.back, even(t) ? -1 : 1);
-      gone[sides[i].triangle] = 1;
-    }
-    std::erase_if(net, [](const auto& entry) { return entry.second == 0; });
-    if (net.empty()) continue;
-    if (net.size() != 2 || std::abs(net[0].second) != 1) {
-      for (std::size_t i = first; i < last; ++i) gone[sides[i].triangle] = 0;
-      continue;
-    }
-    InterfaceTriangle& kept = mesh.triangles[sides[first].triangle];
-    if ((net[0].second > 0) != even(kept)) std::swap(net[0], net[1]);
-    kept.front = MaterialId(net[0].first);
-    kept.back = MaterialId(net[1].first);
-    gone[sides[first].triangle] = 0;
-  }
-  std::size_t left = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (gone[t] == 0) mesh.triangles[left++] = mesh.triangles[t];
-  }
-  mesh.triangles.resize(left);
 }
 
 /// Points in the order of their first use.
@@ -278,7 +181,11 @@ InterfaceMesh ContactMeshBuilder::finish() {
   point_by_key_.clear();
   InterfaceMesh mesh;
   mesh.triangles.reserve(2 * polygons_.size());
-  for (const Polygon& polygon : polygons_) emit(polygon, mesh);
+  std::vector<std::vector<std::uint32_t>> loops;
+  loops.reserve(polygons_.size());
+  for (const Polygon& polygon : polygons_) loops.push_back(loop_of(polygon));
+  close_flat_loops(loops);
+  for (std::size_t p = 0; p < polygons_.size(); ++p) emit(polygons_[p], loops[p], mesh);
   cancel_coinciding(mesh);
   number_points(mesh);
   *this = ContactMeshBuilder(tolerance_);

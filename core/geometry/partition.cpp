@@ -409,26 +409,71 @@ void drop_hopeless(OwnershipProblem& problem) {
   });
 }
 
+namespace {
+
+/// Whether a contender is below the part's owner by more than `margin` all over the part.
+bool is_clearly_below(const OwnershipProblem& problem, const OwnedTetrahedron& part, const Contender& other,
+                      const std::array<double, 4>& heights, double margin) {
+  return std::any_of(other.functions.begin(), other.functions.end(), [&](std::uint32_t m) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (!(evaluate(problem.functions[m].values, part.corners[c]) + margin < heights[c])) return false;
+    }
+    return true;
+  });
+}
+
+/// Drops functions that are at no vertex less than some one other of their contender; of equal ones that with
+/// the smaller key counts as greater.
+void drop_never_least(const OwnershipProblem& problem, Contender& contender) {
+  const std::vector<std::uint32_t> all = contender.functions;
+  std::erase_if(contender.functions, [&](std::uint32_t f) {
+    const auto& own = problem.functions[f];
+    return std::any_of(all.begin(), all.end(), [&](std::uint32_t g) {
+      const auto& other = problem.functions[g];
+      const bool first = std::pair(other.key, g) > std::pair(own.key, f);
+      bool at_most = g != f;
+      for (std::size_t v = 0; v < 4; ++v) {
+        at_most = at_most && (other.values[v] < own.values[v] || (other.values[v] == own.values[v] && first));
+      }
+      return at_most;
+    });
+  });
+}
+
+}  // namespace
+
 void keep_owners(OwnershipProblem& problem) {
   if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
   drop_hopeless(problem);
   std::vector<OwnedTetrahedron> parts;
   partition_tetrahedron(problem, parts);
-  OwnershipProblem kept;
-  const TetrahedronCorners whole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0},
-                                 Weights{0, 0, 0, 1}};
   std::vector<Contender> contenders = all_contenders(problem);
-  std::erase_if(contenders, [&](const Contender& contender) {
-    return std::none_of(parts.begin(), parts.end(),
-                        [&](const auto& part) { return part.owner == contender.owner; });
-  });
-  const ValueTable values(problem, whole, contenders);
-  for (Contender& contender : contenders) {
-    drop_redundant(problem, values, contender);
-    kept.add_candidate(contender.owner);
-    for (const std::uint32_t f : contender.functions) {
+  double size = 0;
+  for (const LinearFunction& f : problem.functions) {
+    for (const double value : f.values) size = std::max(size, std::abs(value));
+  }
+  // The owner's values at the corners of each part.
+  std::vector<std::array<double, 4>> heights(parts.size());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const auto owner = std::find_if(problem.candidates.begin(), problem.candidates.end(),
+                                    [&](const auto& c) { return c.owner == parts[p].owner; });
+    for (std::size_t c = 0; c < 4; ++c) heights[p][c] = problem.value(*owner, parts[p].corners[c]);
+  }
+  // Who touches a part may own a sliver that round-off has taken.
+  const auto touches = [&](const Contender& contender, std::size_t p) {
+    return contender.owner == parts[p].owner ||
+           !is_clearly_below(problem, parts[p], contender, heights[p], 1e-10 * size);
+  };
+  OwnershipProblem kept;
+  for (const Contender& contender : contenders) {
+    bool needs = false;
+    for (std::size_t p = 0; p < parts.size() && !needs; ++p) needs = touches(contender, p);
+    if (!needs) continue;
+    Contender needed = contender;
+    drop_never_least(problem, needed);
+    kept.add_candidate(needed.owner);
+    for (const std::uint32_t f : needed.functions)
       kept.add_function(problem.functions[f].values, problem.functions[f].key);
-    }
   }
   problem = std::move(kept);
 }

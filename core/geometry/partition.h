@@ -84,14 +84,14 @@ void partition_polygon(const OwnershipProblem& problem, const std::vector<Weight
 /// Leaves out candidates that own no point by far, so that the others can be divided faster.
 void drop_hopeless(OwnershipProblem& problem);
 
-/// Leaves out all candidates that own no part of the tetrahedron, and functions that are nowhere the least of
-/// theirs.
+/// Leaves out candidates that own and touch no part of the tetrahedron, and functions that are nowhere the
+/// least of theirs. What touches stays, so that contacts still fit those of other tetrahedra.
 void keep_owners(OwnershipProblem& problem);
 
-/// The polygons where two owners touch inside the tetrahedron. Which polygons there are, and between which functions
-/// their corners lie, is decided exactly, for functions that are each greater by an infinitesimal, the more so the
-/// smaller their key: so polygons of one tetrahedron, and of two that share a face, fit together however close to
-/// coincidence functions are. Corners are only as exact as doubles.
+/// The polygons where two owners touch inside the tetrahedron. Which polygons there are, and between which
+/// functions their corners lie, is decided exactly, for functions that are each greater by an infinitesimal,
+/// the more so the smaller their key: so polygons of one tetrahedron, and of two that share a face, fit
+/// together however close to coincidence functions are. Corners are only as exact as doubles.
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
 
 /// Volume of a part as a fraction of the tetrahedron's.

@@ -124,7 +124,7 @@ Extracted extract(const RandomLattice& lattice) {
   return result;
 }
 
-void expect_laws(const RandomLattice& lattice, bool generic) {
+void expect_laws(const RandomLattice& lattice, Data data) {
   const Extracted found = extract(lattice);
   const auto triangles = test::sided_by_material(found.mesh);
   const auto edges = test::check_edges(found.mesh.points, triangles, lattice.box(), 2e-11);
@@ -132,15 +132,26 @@ void expect_laws(const RandomLattice& lattice, bool generic) {
   EXPECT_EQ(edges.open, 0u) << edges.first;
   EXPECT_EQ(edges.lonely, 0u) << edges.first;
   EXPECT_EQ(edges.degenerate, 0u);
-  if (generic) {
+  if (data == Data::kGeneric) {
     EXPECT_EQ(edges.uneven, 0u);
-    const std::uint32_t far = lattice.last_point();
-    const auto corner = lattice.problem({far, far, far, far}).owner({1, 0, 0, 0});
+  }
+  // Where functions differ by round-off over a whole cell, so do volumes.
+  if (data == Data::kNearZeros) return;
+  // Several may own the last point.
+  const std::uint32_t far = lattice.last_point();
+  const OwnershipProblem last = lattice.problem({far, far, far, far});
+  const double greatest = test::brute_owner(last, {1, 0, 0, 0}, 0).value;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t corner = 0; corner < lattice.owners(); ++corner) {
+    if (test::candidate_value(last, corner, {1, 0, 0, 0}) < greatest) continue;
     const auto enclosed =
         test::enclosed_volumes(found.mesh.points, triangles, lattice.owners(), lattice.box(), corner, 2e-11);
+    double error = 0;
     for (std::size_t owner = 0; owner < enclosed.size(); ++owner)
-      EXPECT_NEAR(enclosed[owner], found.volumes[owner], 1e-10) << owner;
+      error = std::max(error, std::abs(enclosed[owner] - found.volumes[owner]));
+    least = std::min(least, error);
   }
+  EXPECT_LT(least, 1e-9);
 }
 
 void expect_laws_of_many(Data data, int count) {
@@ -148,15 +159,15 @@ void expect_laws_of_many(Data data, int count) {
     SCOPED_TRACE(seed);
     expect_laws(
         RandomLattice(static_cast<std::uint64_t>(seed), 3, 2 + static_cast<std::uint32_t>(seed % 4), data),
-        data == Data::kGeneric);
+        data);
   }
 }
 
-TEST(ContactMesh, RandomLatticesAreClosed) { expect_laws_of_many(Data::kGeneric, 20); }
-TEST(ContactMesh, LatticesWithZerosAreClosed) { expect_laws_of_many(Data::kZeros, 20); }
-TEST(ContactMesh, LatticesWithNearZerosAreClosed) { expect_laws_of_many(Data::kNearZeros, 20); }
-TEST(ContactMesh, LatticesOfLabelsAreClosed) { expect_laws_of_many(Data::kLabels, 20); }
-TEST(ContactMesh, LatticesOfHalvesAreClosed) { expect_laws_of_many(Data::kHalves, 20); }
+TEST(ContactMesh, RandomLatticesAreClosed) { expect_laws_of_many(Data::kGeneric, 10); }
+TEST(ContactMesh, LatticesWithZerosAreClosed) { expect_laws_of_many(Data::kZeros, 10); }
+TEST(ContactMesh, LatticesWithNearZerosAreClosed) { expect_laws_of_many(Data::kNearZeros, 10); }
+TEST(ContactMesh, LatticesOfLabelsAreClosed) { expect_laws_of_many(Data::kLabels, 10); }
+TEST(ContactMesh, LatticesOfHalvesAreClosed) { expect_laws_of_many(Data::kHalves, 10); }
 
 }  // namespace
 }  // namespace adamas

@@ -1,0 +1,196 @@
+// What becomes of points that coincide: they are welded, and the loops and triangles that have lost their
+// area go.
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/geometry/contact_mesh.h"
+
+namespace adamas {
+
+void ContactMeshBuilder::weld_crowded_points() {
+  welded_.resize(points_.size());
+  std::iota(welded_.begin(), welded_.end(), 0u);
+  const auto box_of = [](std::int64_t i, std::int64_t j, std::int64_t k) {
+    std::uint64_t hash = 0;
+    for (const std::int64_t index : {i, j, k})
+      hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9e3779b97f4a7c15ull + (hash >> 29);
+    return hash;
+  };
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> boxes;
+  for (std::uint32_t p = 0; p < points_.size(); ++p) {
+    if (crowded_[p] == 0) continue;
+    const Vec3& x = points_[p];
+    std::array<std::int64_t, 3> low{}, high{}, own{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double scaled = x[axis] / (4 * tolerance_);
+      low[a] = static_cast<std::int64_t>(std::floor(scaled - 0.25));
+      high[a] = static_cast<std::int64_t>(std::floor(scaled + 0.25));
+      own[a] = static_cast<std::int64_t>(std::floor(scaled));
+    }
+    std::uint32_t found = p;
+    for (std::int64_t i = low[0]; i <= high[0]; ++i) {
+      for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+        for (std::int64_t k = low[2]; k <= high[2]; ++k) {
+          const auto box = boxes.find(box_of(i, j, k));
+          if (box == boxes.end()) continue;
+          for (const std::uint32_t q : box->second) {
+            if (distance(points_[q], x) <= tolerance_) found = std::min(found, q);
+          }
+        }
+      }
+    }
+    welded_[p] = welded_[found];
+    if (found == p) boxes[box_of(own[0], own[1], own[2])].push_back(p);
+  }
+}
+
+void ContactMeshBuilder::drop_repeated(std::vector<std::uint32_t>& loop) {
+  // Also ways there and back.
+  for (std::size_t before = 0; before != loop.size();) {
+    before = loop.size();
+    loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
+    while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+    for (std::size_t i = 0; loop.size() > 2 && i < loop.size(); ++i) {
+      const std::size_t next = (i + 1) % loop.size(), last = (i + 2) % loop.size();
+      if (loop[i] != loop[last]) continue;
+      loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(next));
+      break;
+    }
+  }
+  if (loop.size() < 3) loop.clear();
+}
+
+bool ContactMeshBuilder::find_flat(const std::vector<std::uint32_t>& loop, Line& line) const {
+  line = {points_[loop.front()], {}, {}};
+  for (int pass = 0; pass < 2; ++pass) {
+    // From the first point to the farthest, from there to the farthest of all.
+    Vec3 farthest = line.origin;
+    for (const std::uint32_t p : loop) {
+      if (crowded_[p] == 0) return false;
+      if (distance(points_[p], line.origin) > distance(farthest, line.origin)) farthest = points_[p];
+    }
+    line.direction = normalized(line.origin - farthest);
+    line.origin = farthest;
+  }
+  for (const std::uint32_t p : loop) {
+    line.points.push_back(line.place(p, points_[p]));
+    if (norm(cross(points_[p] - line.origin, line.direction)) > tolerance_) return false;
+  }
+  std::sort(line.points.begin(), line.points.end());
+  return true;
+}
+
+void ContactMeshBuilder::close_flat_loops(std::vector<std::vector<std::uint32_t>>& loops) const {
+  // Each round makes edges shorter; the bound is for what round-off may do.
+  constexpr int kMostRounds = 32;
+  const auto edge = [](std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+  };
+  for (int round = 0; round < kMostRounds; ++round) {
+    // Points of flat loops that its longer edges pass, from the edge's lower point on.
+    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> passed;
+    for (auto& loop : loops) {
+      Line line;
+      if (loop.empty() || !find_flat(loop, line)) continue;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+        const double from = line.place(a, points_[a]).first, to = line.place(b, points_[b]).first;
+        std::vector<std::uint32_t> between;
+        for (const auto& [at, p] : line.points) {
+          if (at > std::min(from, to) + tolerance_ && at < std::max(from, to) - tolerance_)
+            between.push_back(p);
+        }
+        if (between.empty()) continue;
+        if ((a < b) != (from < to)) std::reverse(between.begin(), between.end());
+        passed.try_emplace(edge(a, b), std::move(between));
+      }
+    }
+    if (passed.empty()) break;
+    for (auto& loop : loops) {
+      std::vector<std::uint32_t> longer;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+        longer.push_back(a);
+        const auto found = passed.find(edge(a, b));
+        if (found == passed.end()) continue;
+        const auto& points = found->second;
+        if (a < b) {
+          longer.insert(longer.end(), points.begin(), points.end());
+        } else {
+          longer.insert(longer.end(), points.rbegin(), points.rend());
+        }
+      }
+      if (longer.size() == loop.size()) continue;
+      loop = std::move(longer);
+      drop_repeated(loop);
+    }
+  }
+}
+
+void ContactMeshBuilder::cancel_coinciding(InterfaceMesh& mesh) const {
+  // Triangles by their corners, turned so that these run upwards with the smallest first.
+  struct Side {
+    std::array<std::uint32_t, 3> points;
+    std::uint32_t triangle;
+    auto operator<=>(const Side&) const = default;
+  };
+  std::vector<Side> sides;
+  const auto turned = [](const InterfaceTriangle& t) {
+    auto p = t.points;
+    std::sort(p.begin(), p.end());
+    return p;
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& p = mesh.triangles[t].points;
+    if (crowded_[p[0]] != 0 && crowded_[p[1]] != 0 && crowded_[p[2]] != 0)
+      sides.push_back({turned(mesh.triangles[t]), t});
+  }
+  std::sort(sides.begin(), sides.end());
+  const auto even = [&](const InterfaceTriangle& t) {
+    const auto& p = t.points;
+    return (p[0] < p[1]) == (p[1] < p[2]) ? p[0] < p[1] : p[2] < p[0];
+  };
+  std::vector<char> gone(mesh.triangles.size(), 0);
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    while (last < sides.size() && sides[last].points == sides[first].points) ++last;
+    if (last - first < 2) continue;
+    // How often each region lies in front of the stack of triangles rather than behind it.
+    std::vector<std::pair<std::uint32_t, int>> net;
+    const auto count = [&](MaterialId side, int by) {
+      const auto found =
+          std::find_if(net.begin(), net.end(), [&](const auto& entry) { return entry.first == side.value; });
+      if (found == net.end()) {
+        net.emplace_back(side.value, by);
+      } else {
+        found->second += by;
+      }
+    };
+    for (std::size_t i = first; i < last; ++i) {
+      const InterfaceTriangle& t = mesh.triangles[sides[i].triangle];
+      count(t.front, even(t) ? 1 : -1);
+      count(t.back, even(t) ? -1 : 1);
+      gone[sides[i].triangle] = 1;
+    }
+    std::erase_if(net, [](const auto& entry) { return entry.second == 0; });
+    if (net.empty()) continue;
+    if (net.size() != 2 || std::abs(net[0].second) != 1) {
+      for (std::size_t i = first; i < last; ++i) gone[sides[i].triangle] = 0;
+      continue;
+    }
+    InterfaceTriangle& kept = mesh.triangles[sides[first].triangle];
+    if ((net[0].second > 0) != even(kept)) std::swap(net[0], net[1]);
+    kept.front = MaterialId(net[0].first);
+    kept.back = MaterialId(net[1].first);
+    gone[sides[first].triangle] = 0;
+  }
+  std::size_t left = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (gone[t] == 0) mesh.triangles[left++] = mesh.triangles[t];
+  }
+  mesh.triangles.resize(left);
+}
+
+}  // namespace adamas
