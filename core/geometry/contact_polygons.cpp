@@ -11,6 +11,8 @@ namespace adamas {
 namespace {
 
 constexpr std::uint32_t kFaceTag = 0x80000000u;
+/// Functions that differ by less are equal to the accuracy of a corner's weights, relative to their values.
+constexpr double kEqual = 1e-14;
 
 /// A corner of the polygon under construction: where `equal` functions are equal, on the face of the vertices
 /// that are not in `zeros`.
@@ -301,7 +303,14 @@ class ContactFinder {
     const double size = std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
     if (!(std::abs(sum) >= 0.999999 * size) || size == 0) return std::nullopt;
     Weights w{};
-    for (std::size_t i = 0; i < 3; ++i) w[v[i]] = std::max(0.0, x[i] / sum);
+    double scale = 0, p_there = 0, q_there = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      w[v[i]] = std::max(0.0, x[i] / sum);
+      p_there += p[i] * w[v[i]];
+      q_there += q[i] * w[v[i]];
+      for (const std::uint32_t f : equal) scale = std::max(scale, std::abs(function(f).values[v[i]]));
+    }
+    if (std::abs(p_there) > kEqual * scale || std::abs(q_there) > kEqual * scale) return std::nullopt;
     return w;
   }
 
