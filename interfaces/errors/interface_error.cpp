@@ -7,7 +7,7 @@ namespace adamas {
 
 namespace {
 
-/// A cell that knows more bodies than this is split before its partition is worked out.
+/// A cell that may show more bodies than this is split before its partition is worked out.
 constexpr std::size_t kCrowd = 64;
 /// From this many triangles on, a first look takes every so manyth.
 constexpr std::size_t kManyTriangles = 256;
@@ -16,14 +16,13 @@ constexpr double kFar = std::numeric_limits<double>::max();
 
 class Estimator {
  public:
-  Estimator(const InterfaceNetwork& network, const Tetrahedron& cell, const CellOwnership& ownership)
+  Estimator(const InterfaceNetwork& network, const Tetrahedron& cell, const CellOwnership& ownership,
+            OwnershipProblem owners)
       : network_(network),
         cell_(cell),
         ownership_(ownership),
         diameter_(cell.diameter()),
-        owners_(ownership.problem) {
-    keep_owners(owners_);
-  }
+        owners_(std::move(owners)) {}
 
   [[nodiscard]] double diameter() const { return diameter_; }
 
@@ -116,10 +115,14 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
                                         const CellOwnership& ownership,
                                         std::span<const std::uint32_t> triangles, double target,
                                         double trusted) {
-  Estimator estimator(network, cell, ownership);
-  if (ownership.pure()) return {triangles.empty() ? 0 : estimator.diameter(), !triangles.empty()};
-  if (ownership.problem.candidates.size() > kCrowd && estimator.diameter() > target)
-    return {estimator.diameter(), false};
+  const double diameter = cell.diameter();
+  if (ownership.pure()) return {triangles.empty() ? 0 : diameter, !triangles.empty()};
+  OwnershipProblem owners = ownership.problem;
+  drop_hopeless(owners);
+  if (owners.candidates.size() > kCrowd && diameter > target) return {diameter, false};
+  keep_owners(owners);
+  if (triangles.empty() && owners.candidates.size() == 1) return {};
+  Estimator estimator(network, cell, ownership, std::move(owners));
   InterfaceError error;
   if (triangles.size() >= kManyTriangles) {
     error.distance = estimator.of_triangles(triangles, triangles.size() / (kManyTriangles / 4));

@@ -73,6 +73,7 @@ void add_cell_arrays(const ResampledMesh& mesh, UnstructuredMesh& file) {
   CellOwnership ownership;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
     mesh.ownership(c, ownership);
+    if (!ownership.pure()) keep_owners(ownership.problem);
     const BodyId body(ownership.problem.candidates[0].owner);
     material.push_back(ownership.pure() ? integer(mesh.table.material(body).value) : -1);
     level.push_back(mesh.cells[c].level);

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "interfaces/resampling/resampler.h"
+
+namespace adamas {
+
+void Resampler::place_roots() {
+  std::vector<VertexId> vertices;
+  hierarchy_.for_each_vertex([&](VertexId v) { vertices.push_back(v); });
+  evaluate_vertices(vertices);
+  const auto& roots = hierarchy_.roots();
+  if (source_.fields) {
+    const auto& elements = source_.fields->native_elements();
+    std::vector<std::uint32_t> root_of(elements.size());
+    std::vector<Tetrahedron> frames;
+    for (const TetrahedronId t : roots) frames.push_back(frame(t));
+    const Domain& domain = hierarchy_.domain();
+    const auto counts = domain.roots();
+    parallel_for(elements.size(), 4096, [&](std::size_t e) {
+      std::array<std::size_t, 3> cube{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const double part = (elements[e].position[axis] - domain.box().min[axis]) / domain.box().size()[axis];
+        cube[a] = static_cast<std::size_t>(std::clamp(part * counts[a], 0.0, counts[a] - 1.0));
+      }
+      const std::size_t first = 6 * (cube[0] + static_cast<std::size_t>(counts[0]) *
+                                                   (cube[1] + static_cast<std::size_t>(counts[1]) * cube[2]));
+      double best = -1e300;
+      for (std::size_t r = first; r < first + 6; ++r) {
+        const Weights w = frames[r].weights(elements[e].position);
+        const double least = std::min({w[0], w[1], w[2], w[3]});
+        if (least > best) best = least, root_of[e] = static_cast<std::uint32_t>(r);
+      }
+    });
+    element_order_.resize(elements.size());
+    std::iota(element_order_.begin(), element_order_.end(), 0u);
+    std::stable_sort(element_order_.begin(), element_order_.end(),
+                     [&](auto a, auto b) { return root_of[a] < root_of[b]; });
+    for (std::uint32_t r = 0, e = 0; r < roots.size(); ++r) {
+      CellRecord& cell = hierarchy_.payload(roots[r]);
+      cell.first_element = e;
+      while (e < element_order_.size() && root_of[element_order_[e]] == r) ++e;
+      cell.last_element = e;
+    }
+  }
+  parallel_for(roots.size(), 1, [&](std::size_t r) {
+    const Tetrahedron cell = frame(roots[r]);
+    Box3 box;
+    for (const Vec3& corner : cell.corners) box.extend(corner);
+    std::vector<std::uint32_t> near;
+    source_.network->tree().overlapping(box, near);
+    for (const std::uint32_t t : near) {
+      const auto& corners = source_.network->triangle_corners(t);
+      if (!ClippedTriangle(cell, corners[0], corners[1], corners[2]).empty())
+        hierarchy_.payload(roots[r]).triangles.push_back(t);
+    }
+    evaluate_interface(roots[r]);
+  });
+}
+
+void Resampler::evaluate_vertices(const std::vector<VertexId>& vertices) {
+  parallel_for(vertices.size(), 64, [&](std::size_t i) {
+    VertexRecord& record = hierarchy_.payload(vertices[i]);
+    const Vec3 position = hierarchy_.position(vertices[i]);
+    record.distances.radius = hierarchy_.domain().diameter(hierarchy_.lattice(vertices[i]));
+    record.distances.body = source_.body_at(position, &record.distances.flagged);
+    std::vector<NearInterface> near;
+    source_.network->near_interfaces(position, record.distances.radius, record.distances.body, near,
+                                     options_.distance);
+    for (const NearInterface& n : near) {
+      record.distances.near.push_back({n.interface, n.signed_distance});
+      record.closest.push_back(n.closest);
+    }
+  });
+}
+
+void Resampler::evaluate_interface(TetrahedronId t) {
+  CellRecord& cell = hierarchy_.payload(t);
+  CellOwnership owners;
+  ownership(t, owners);
+  cell.interface = estimate_interface_error(*source_.network, frame(t), owners, cell.triangles,
+                                            estimate_target(), cell.trusted);
+  cell.evaluated = true;
+}
+
+void Resampler::distribute(TetrahedronId parent) {
+  CellRecord& from = hierarchy_.payload(parent);
+  const Tetrahedron whole = frame(parent);
+  const auto children = hierarchy_.children(parent);
+  const auto begin = element_order_.begin();
+  std::uint32_t middle = from.first_element;
+  if (source_.fields) {
+    const auto& elements = source_.fields->native_elements();
+    const auto at =
+        std::stable_partition(begin + from.first_element, begin + from.last_element, [&](std::uint32_t e) {
+          const Weights w = whole.weights(elements[e].position);
+          return w[0] >= w[1];
+        });
+    middle = static_cast<std::uint32_t>(at - begin);
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    CellRecord& to = hierarchy_.payload(children[side]);
+    to.first_element = side == 0 ? from.first_element : middle;
+    to.last_element = side == 0 ? middle : from.last_element;
+    to.trusted = from.trusted;
+    const Tetrahedron part = frame(children[side]);
+    for (const std::uint32_t t : from.triangles) {
+      const auto& corners = source_.network->triangle_corners(t);
+      if (!ClippedTriangle(part, corners[0], corners[1], corners[2]).empty()) to.triangles.push_back(t);
+    }
+    if (hierarchy_.is_leaf(children[side])) {
+      evaluate_interface(children[side]);
+    } else {
+      distribute(children[side]);
+    }
+  }
+  from.triangles = {};
+  from.evaluated = false;
+}
+
+std::vector<TetrahedronId> Resampler::process(const std::vector<Split>& splits) {
+  std::vector<VertexId> vertices;
+  std::vector<TetrahedronId> parents, created;
+  for (const Split& split : splits) {
+    if (!hierarchy_.payload(split.vertex).distances.body.valid()) vertices.push_back(split.vertex);
+    if (hierarchy_.payload(split.parent).evaluated) parents.push_back(split.parent);
+    for (const TetrahedronId child : split.children) {
+      if (hierarchy_.is_leaf(child)) created.push_back(child);
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  evaluate_vertices(vertices);
+  parallel_for(parents.size(), 16, [&](std::size_t i) { distribute(parents[i]); });
+  if (fields_active_) measure_fields(created);
+  return created;
+}
+
+}  // namespace adamas
