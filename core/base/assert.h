@@ -7,11 +7,11 @@
 #ifdef NDEBUG
 #define ADAMAS_ASSERT(condition) static_cast<void>(sizeof(!(condition)))
 #else
-#define ADAMAS_ASSERT(condition)                                                                            \
-  do {                                                                                                      \
-    if (!(condition)) {                                                                                     \
-      std::fprintf(stderr, "%s:%d: broken invariant: %s\n", __FILE__, __LINE__, #condition);                \
-      std::abort();                                                                                         \
-    }                                                                                                       \
+#define ADAMAS_ASSERT(condition)                                                             \
+  do {                                                                                       \
+    if (!(condition)) {                                                                      \
+      std::fprintf(stderr, "%s:%d: broken invariant: %s\n", __FILE__, __LINE__, #condition); \
+      std::abort();                                                                          \
+    }                                                                                        \
   } while (false)
 #endif

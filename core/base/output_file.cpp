@@ -14,7 +14,8 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (!std::filesystem::is_directory(folder, code)) {
     fail("{}: expected an existing output folder, found none at {}", path_.string(), folder.string());
   }
-  if (std::filesystem::is_directory(path_, code)) fail("{}: expected an output file, found a folder", path_.string());
+  if (std::filesystem::is_directory(path_, code))
+    fail("{}: expected an output file, found a folder", path_.string());
   if (::access(folder.c_str(), W_OK) != 0) {
     fail("{}: expected a writable output folder, found {} read-only", path_.string(), folder.string());
   }

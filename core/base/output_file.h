@@ -4,8 +4,9 @@
 
 namespace adamas {
 
-/// A file that gets its final name only when it is whole: write to `temporary()`, then `commit()`. Without a commit the
-/// temporary file is removed. The temporary name keeps the extension, since libraries choose formats by it.
+/// A file that gets its final name only when it is whole: write to `temporary()`, then `commit()`. Without a
+/// commit the temporary file is removed. The temporary name keeps the extension, since libraries choose
+/// formats by it.
 class OutputFile {
  public:
   /// Throws Error when the folder is missing or cannot be written.

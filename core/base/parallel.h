@@ -5,10 +5,11 @@
 
 namespace adamas {
 
-/// Runs `body(begin, end)` over disjoint chunks of [0, count) on the threads allowed by set_thread_limit, at most
-/// `grain` items a chunk. Chunk borders depend on `count` and `grain` alone, so results that are kept per item or per
-/// chunk are the same on any number of threads. An exception of one chunk is rethrown here.
-void parallel_chunks(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+/// Runs `body(begin, end)` over disjoint chunks of [0, count) on the threads allowed by set_thread_limit, at
+/// most `grain` items a chunk. Chunk borders depend on `count` and `grain` alone, so results that are kept
+/// per item or per chunk are the same on any number of threads. An exception of one chunk is rethrown here.
+void parallel_chunks(std::size_t count, std::size_t grain,
+                     const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Runs `body(i)` for every i in [0, count).
 template <class Body>

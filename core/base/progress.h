@@ -10,7 +10,8 @@ namespace adamas {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// `fraction` in [0, 1], or negative where the amount of work is not known; `stage` names what is being done.
+  /// `fraction` in [0, 1], or negative where the amount of work is not known; `stage` names what is being
+  /// done.
   virtual void report(std::string_view stage, double fraction) = 0;
   [[nodiscard]] virtual bool cancelled() const { return false; }
 

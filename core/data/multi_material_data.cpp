@@ -19,9 +19,11 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
       fail("{}: expected a grid with volume, found {} node(s) along {}", source, nodes.size(), name);
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (!std::isfinite(nodes[i])) fail("{}: expected finite coordinates, found {} along {}", source, nodes[i], name);
+      if (!std::isfinite(nodes[i]))
+        fail("{}: expected finite coordinates, found {} along {}", source, nodes[i], name);
       if (i > 0 && !(nodes[i] > nodes[i - 1])) {
-        fail("{}: expected ascending coordinates along {}, found {} after {}", source, name, nodes[i], nodes[i - 1]);
+        fail("{}: expected ascending coordinates along {}, found {} after {}", source, name, nodes[i],
+             nodes[i - 1]);
       }
     }
   }
@@ -34,7 +36,8 @@ void check_array(const std::string& source, const std::string& name, const std::
   }
   const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
   if (bad != values.end()) {
-    fail("{}: array '{}': expected finite values, found {} at index {}", source, name, *bad, bad - values.begin());
+    fail("{}: array '{}': expected finite values, found {} at index {}", source, name, *bad,
+         bad - values.begin());
   }
 }
 
@@ -45,12 +48,14 @@ void MultiMaterialData::check() const {
   const std::size_t count = grid.site_count();
   if (materials.empty()) fail("{}: expected at least one material, found none", source);
   if (labels.empty() && fractions.size() != materials.size()) {
-    fail("{}: expected volume fractions of {} materials, found {}", source, materials.size(), fractions.size());
+    fail("{}: expected volume fractions of {} materials, found {}", source, materials.size(),
+         fractions.size());
   }
   if (!labels.empty() && labels.size() != count) {
     fail("{}: labels: expected {} values, found {}", source, count, labels.size());
   }
-  for (MaterialId m(0); m.value < fractions.size(); ++m.value) check_array(source, materials[m], fractions[m], count);
+  for (MaterialId m(0); m.value < fractions.size(); ++m.value)
+    check_array(source, materials[m], fractions[m], count);
   for (const Field& field : fields) {
     const std::size_t expected = count * static_cast<std::size_t>(field.components);
     if (!field.per_material()) check_array(source, field.name, field.values, expected);
@@ -70,8 +75,8 @@ void MultiMaterialData::normalise(double tolerance) {
     for (MaterialId m(0); m.value < fractions.size(); ++m.value) {
       float& f = fractions[m][site];
       if (!std::isfinite(f)) {
-        fail("{}: volume fraction of '{}': expected a number in [0, 1], found {} at index {}", source, materials[m], f,
-             site);
+        fail("{}: volume fraction of '{}': expected a number in [0, 1], found {} at index {}", source,
+             materials[m], f, site);
       }
       sum += static_cast<double>(f);
       if (f < 0) ++report.negative;
@@ -82,8 +87,8 @@ void MultiMaterialData::normalise(double tolerance) {
     report.sum_max = first ? sum : std::max(report.sum_max, sum);
     first = false;
     if (!(std::abs(sum - 1) <= tolerance)) {
-      fail("{}: volume fractions: expected a sum of 1 within {}, found {:.6g} at index {}", source, tolerance, sum,
-           site);
+      fail("{}: volume fractions: expected a sum of 1 within {}, found {:.6g} at index {}", source, tolerance,
+           sum, site);
     }
     double kept = 0;
     for (auto& f : fractions) kept += static_cast<double>(f[site]);

@@ -10,8 +10,8 @@
 
 namespace adamas {
 
-/// A field on the sites of a grid: scalar or vector, mixed (one value per site whatever the material) or with values of
-/// its own for each material.
+/// A field on the sites of a grid: scalar or vector, mixed (one value per site whatever the material) or with
+/// values of its own for each material.
 struct Field {
   std::string name;
   std::string unit;  ///< empty where the source states none
@@ -26,14 +26,14 @@ struct Field {
 
 /// What was found and mended in volume fractions while reading them.
 struct FractionReport {
-  double sum_min = 1, sum_max = 1;   ///< of the sums over materials, before normalisation
-  std::size_t negative = 0;          ///< fractions below zero, set to zero
-  std::size_t traces = 0;            ///< fractions too small to matter, set to zero
-  std::size_t renormalised = 0;      ///< sites whose fractions did not add up to one
+  double sum_min = 1, sum_max = 1;  ///< of the sums over materials, before normalisation
+  std::size_t negative = 0;         ///< fractions below zero, set to zero
+  std::size_t traces = 0;           ///< fractions too small to matter, set to zero
+  std::size_t renormalised = 0;     ///< sites whose fractions did not add up to one
 };
 
-/// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a label per
-/// site, and fields.
+/// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a
+/// label per site, and fields.
 struct MultiMaterialData {
   std::string source;  ///< the file or generator, for messages
   RectilinearGrid grid;
@@ -48,11 +48,12 @@ struct MultiMaterialData {
   [[nodiscard]] float fraction(MaterialId m, std::size_t site) const {
     return labels.empty() ? fractions[m][site] : (labels[site] == m.value ? 1.0f : 0.0f);
   }
-  /// Sets negative fractions and traces to zero and scales each site to 1; fills `report`. Throws Error, naming the
-  /// source, at NaN, at sites whose fractions are all zero, and where sums are off by more than `tolerance`.
+  /// Sets negative fractions and traces to zero and scales each site to 1; fills `report`. Throws Error,
+  /// naming the source, at NaN, at sites whose fractions are all zero, and where sums are off by more than
+  /// `tolerance`.
   void normalise(double tolerance = 0.05);
-  /// Throws Error that names the first array whose length is not that of the grid, a grid without volume, unsorted or
-  /// non-finite nodes, non-finite field values, no material.
+  /// Throws Error that names the first array whose length is not that of the grid, a grid without volume,
+  /// unsorted or non-finite nodes, non-finite field values, no material.
   void check() const;
 };
 

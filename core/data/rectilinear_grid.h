@@ -11,8 +11,8 @@ namespace adamas {
 /// Where the values of a grid live.
 enum class Centering { kCells, kPoints };
 
-/// A rectilinear grid: ascending node coordinates per axis. Its *sites* are what values belong to: the cell centres or
-/// the nodes. Sites are numbered x fastest.
+/// A rectilinear grid: ascending node coordinates per axis. Its *sites* are what values belong to: the cell
+/// centres or the nodes. Sites are numbered x fastest.
 struct RectilinearGrid {
   std::array<std::vector<double>, 3> nodes;
   Centering centering = Centering::kCells;
@@ -36,10 +36,11 @@ struct RectilinearGrid {
   }
   /// The box spanned by the nodes.
   [[nodiscard]] Box3 domain() const {
-    return {{nodes[0].front(), nodes[1].front(), nodes[2].front()}, {nodes[0].back(), nodes[1].back(), nodes[2].back()}};
+    return {{nodes[0].front(), nodes[1].front(), nodes[2].front()},
+            {nodes[0].back(), nodes[1].back(), nodes[2].back()}};
   }
-  /// Volume that site (i, j, k) stands for: its cell, or the part of the domain nearer to it than to other sites along
-  /// each axis.
+  /// Volume that site (i, j, k) stands for: its cell, or the part of the domain nearer to it than to other
+  /// sites along each axis.
   [[nodiscard]] double site_volume(std::size_t i, std::size_t j, std::size_t k) const;
 };
 

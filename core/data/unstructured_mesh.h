@@ -9,7 +9,8 @@
 
 namespace adamas {
 
-/// A named array attached to the points or cells of a mesh, or to the mesh itself. `components` values per item.
+/// A named array attached to the points or cells of a mesh, or to the mesh itself. `components` values per
+/// item.
 struct NamedArray {
   std::string name;
   int components = 1;

@@ -10,7 +10,7 @@ namespace adamas {
 
 /// A tetrahedron in space with the gradients of its barycentric weights.
 struct Tetrahedron {
-  explicit Tetrahedron(const std::array<Vec3, 4>& corners_) : corners(corners_) {
+  explicit Tetrahedron(const std::array<Vec3, 4>& points) : corners(points) {
     const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0];
     const double determinant = dot(cross(a, b), c);
     slopes[1] = (1 / determinant) * cross(b, c);
@@ -36,7 +36,8 @@ struct Tetrahedron {
   [[nodiscard]] double diameter() const {
     double greatest = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = i + 1; j < 4; ++j) greatest = std::max(greatest, squared_norm(corners[i] - corners[j]));
+      for (std::size_t j = i + 1; j < 4; ++j)
+        greatest = std::max(greatest, squared_norm(corners[i] - corners[j]));
     }
     return std::sqrt(greatest);
   }
@@ -46,7 +47,8 @@ struct Tetrahedron {
   double volume;               ///< positive for positive orientation
 };
 
-/// The part of a triangle inside a tetrahedron, as barycentric weights: a convex polygon of up to seven corners.
+/// The part of a triangle inside a tetrahedron, as barycentric weights: a convex polygon of up to seven
+/// corners.
 class ClippedTriangle {
  public:
   ClippedTriangle(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c);

@@ -162,8 +162,8 @@ class Arrays {
       fail("{}: array '{}{}': expected another type of values", source_, prefix_, name);
     }
     // Writers leave out arrays without values.
-    static const Values none;
-    return none;
+    static const Values kNone;
+    return kNone;
   }
   template <class Values>
   const Values& get(const std::string& name, std::size_t length) const {
