@@ -184,7 +184,7 @@ InterfaceMesh ContactMeshBuilder::finish() {
   std::vector<std::vector<std::uint32_t>> loops;
   loops.reserve(polygons_.size());
   for (const Polygon& polygon : polygons_) loops.push_back(loop_of(polygon));
-  close_flat_loops(loops);
+  close_spikes(loops);
   for (std::size_t p = 0; p < polygons_.size(); ++p) emit(polygons_[p], loops[p], mesh);
   cancel_coinciding(mesh);
   number_points(mesh);

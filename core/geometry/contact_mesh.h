@@ -90,11 +90,11 @@ class ContactMeshBuilder {
   /// Welded corners of a polygon and the points that its edges pass; empty where none is left.
   [[nodiscard]] std::vector<std::uint32_t> loop_of(const Polygon& polygon) const;
   static void drop_repeated(std::vector<std::uint32_t>& loop);
-  /// Whether all points of a loop lie on one line, which is found; its points by position, in units of
-  /// length.
-  bool find_flat(const std::vector<std::uint32_t>& loop, Line& line) const;
-  /// Divides all edges that pass points of a flat loop, so that flat loops become nothing.
-  void close_flat_loops(std::vector<std::vector<std::uint32_t>>& loops) const;
+  /// Whether p lies on the edge from a to b, away from its ends.
+  [[nodiscard]] bool passes(std::uint32_t a, std::uint32_t b, std::uint32_t p) const;
+  /// Where a loop turns back on itself, divides the longer edge, of all loops, at the end of the shorter one:
+  /// so that parts of loops that have no area become nothing.
+  void close_spikes(std::vector<std::vector<std::uint32_t>>& loops) const;
   void emit(const Polygon& polygon, const std::vector<std::uint32_t>& loop, InterfaceMesh& mesh) const;
   void cancel_coinciding(InterfaceMesh& mesh) const;
   void number_points(InterfaceMesh& mesh) const;

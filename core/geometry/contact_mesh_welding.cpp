@@ -63,65 +63,36 @@ void ContactMeshBuilder::drop_repeated(std::vector<std::uint32_t>& loop) {
   if (loop.size() < 3) loop.clear();
 }
 
-bool ContactMeshBuilder::find_flat(const std::vector<std::uint32_t>& loop, Line& line) const {
-  line = {points_[loop.front()], {}, {}};
-  for (int pass = 0; pass < 2; ++pass) {
-    // From the first point to the farthest, from there to the farthest of all.
-    Vec3 farthest = line.origin;
-    for (const std::uint32_t p : loop) {
-      if (crowded_[p] == 0) return false;
-      if (distance(points_[p], line.origin) > distance(farthest, line.origin)) farthest = points_[p];
-    }
-    line.direction = normalized(line.origin - farthest);
-    line.origin = farthest;
-  }
-  for (const std::uint32_t p : loop) {
-    line.points.push_back(line.place(p, points_[p]));
-    if (norm(cross(points_[p] - line.origin, line.direction)) > tolerance_) return false;
-  }
-  std::sort(line.points.begin(), line.points.end());
-  return true;
+bool ContactMeshBuilder::passes(std::uint32_t a, std::uint32_t b, std::uint32_t p) const {
+  const Vec3 along = points_[b] - points_[a], offset = points_[p] - points_[a];
+  const double length = norm(along), at = dot(offset, along) / length;
+  return at > tolerance_ && at < length - tolerance_ &&
+         squared_norm(cross(offset, along)) <= tolerance_ * tolerance_ * length * length;
 }
 
-void ContactMeshBuilder::close_flat_loops(std::vector<std::vector<std::uint32_t>>& loops) const {
+void ContactMeshBuilder::close_spikes(std::vector<std::vector<std::uint32_t>>& loops) const {
   // Each round makes edges shorter; the bound is for what round-off may do.
-  constexpr int kMostRounds = 32;
+  constexpr int kMostRounds = 64;
   const auto edge = [](std::uint32_t a, std::uint32_t b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
   };
   for (int round = 0; round < kMostRounds; ++round) {
-    // Points of flat loops that its longer edges pass, from the edge's lower point on.
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> passed;
-    for (auto& loop : loops) {
-      Line line;
-      if (loop.empty() || !find_flat(loop, line)) continue;
+    std::unordered_map<std::uint64_t, std::uint32_t> passed;
+    for (const auto& loop : loops) {
       for (std::size_t i = 0; i < loop.size(); ++i) {
-        const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-        const double from = line.place(a, points_[a]).first, to = line.place(b, points_[b]).first;
-        std::vector<std::uint32_t> between;
-        for (const auto& [at, p] : line.points) {
-          if (at > std::min(from, to) + tolerance_ && at < std::max(from, to) - tolerance_)
-            between.push_back(p);
-        }
-        if (between.empty()) continue;
-        if ((a < b) != (from < to)) std::reverse(between.begin(), between.end());
-        passed.try_emplace(edge(a, b), std::move(between));
+        const std::uint32_t a = loop[i], tip = loop[(i + 1) % loop.size()], b = loop[(i + 2) % loop.size()];
+        if (passes(a, tip, b)) passed.try_emplace(edge(a, tip), b);
+        if (passes(tip, b, a)) passed.try_emplace(edge(tip, b), a);
       }
     }
-    if (passed.empty()) break;
+    if (passed.empty()) return;
     for (auto& loop : loops) {
       std::vector<std::uint32_t> longer;
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
         longer.push_back(a);
-        const auto found = passed.find(edge(a, b));
-        if (found == passed.end()) continue;
-        const auto& points = found->second;
-        if (a < b) {
-          longer.insert(longer.end(), points.begin(), points.end());
-        } else {
-          longer.insert(longer.end(), points.rbegin(), points.rend());
-        }
+        if (const auto found = passed.find(edge(a, b)); found != passed.end())
+          longer.push_back(found->second);
       }
       if (longer.size() == loop.size()) continue;
       loop = std::move(longer);

@@ -2,37 +2,80 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/vec3.h"
 
 namespace adamas {
 
-/// Triangulates a (weakly) convex polygon, given by indices into `points`, by cutting off the best-shaped ear
-/// again and again; collinear corners make no triangle without area unless all are collinear. `emit(a, b, c)`
-/// keeps orientation.
-template <class Emit>
-void triangulate_convex(const std::vector<Vec3>& points, std::vector<std::uint32_t> loop, Emit&& emit) {
-  const auto quality = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    const Vec3 u = points[b] - points[a], v = points[c] - points[b], w = points[a] - points[c];
+/// The triangulation of a loop of points whose worst triangle is best, among all without new points. Quality
+/// is twice the area by the square of the longest side. For weakly convex loops; collinear corners make no
+/// triangle without area unless all but a part that turns back on itself are collinear.
+class BestTriangulation {
+ public:
+  BestTriangulation(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& loop)
+      : points_(points), loop_(loop), size_(loop.size()), best_(size_ * size_, {2, 0}) {
+    for (std::size_t length = 2; length < size_; ++length) {
+      for (std::size_t i = 0; i + length < size_; ++i) choose(i, i + length);
+    }
+  }
+
+  /// Calls emit(a, b, c) for each triangle, oriented as the loop.
+  template <class Emit>
+  void for_each(Emit&& emit) const {
+    std::vector<std::pair<std::size_t, std::size_t>> spans{{0, size_ - 1}};
+    while (!spans.empty()) {
+      const auto [i, j] = spans.back();
+      spans.pop_back();
+      if (j < i + 2) continue;
+      const std::size_t k = at(i, j).middle;
+      emit(loop_[i], loop_[k], loop_[j]);
+      spans.emplace_back(k, j);
+      spans.emplace_back(i, k);
+    }
+  }
+
+ private:
+  /// Of the part of the loop between two of its corners.
+  struct Choice {
+    double quality;
+    std::size_t middle;
+  };
+  [[nodiscard]] const Choice& at(std::size_t i, std::size_t j) const { return best_[i * size_ + j]; }
+
+  void choose(std::size_t i, std::size_t j) {
+    Choice best{-1, i + 1};
+    for (std::size_t k = i + 1; k < j; ++k) {
+      const double rest = std::min(at(i, k).quality, at(k, j).quality);
+      if (rest <= best.quality) continue;
+      const double all = std::min(rest, quality(loop_[i], loop_[k], loop_[j]));
+      if (all > best.quality) best = {all, k};
+    }
+    best_[i * size_ + j] = best;
+  }
+
+  [[nodiscard]] double quality(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const Vec3 u = points_[b] - points_[a], v = points_[c] - points_[b], w = points_[a] - points_[c];
     const double longest = std::max({squared_norm(u), squared_norm(v), squared_norm(w)});
     return longest > 0 ? norm(cross(u, v)) / longest : 0;
-  };
-  while (loop.size() > 3) {
-    const std::size_t n = loop.size();
-    std::size_t best = 0;
-    double best_quality = -1;
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::uint32_t a = loop[(i + n - 1) % n], b = loop[i], c = loop[(i + 1) % n];
-      // The ear's own shape and, for quadrilaterals, the shape of what is left.
-      double q = quality(a, b, c);
-      if (n == 4) q = std::min(q, quality(a, c, loop[(i + 2) % n]));
-      if (q > best_quality) best = i, best_quality = q;
-    }
-    emit(loop[(best + n - 1) % n], loop[best], loop[(best + 1) % n]);
-    loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(best));
   }
-  if (loop.size() == 3) emit(loop[0], loop[1], loop[2]);
+
+  const std::vector<Vec3>& points_;
+  const std::vector<std::uint32_t>& loop_;
+  std::size_t size_;
+  std::vector<Choice> best_;
+};
+
+/// Triangulates a (weakly) convex polygon, given by indices into `points`; `emit(a, b, c)` keeps orientation.
+template <class Emit>
+void triangulate_convex(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& loop,
+                        Emit&& emit) {
+  if (loop.size() == 3) {
+    emit(loop[0], loop[1], loop[2]);
+  } else if (loop.size() > 3) {
+    BestTriangulation(points, loop).for_each(emit);
+  }
 }
 
 }  // namespace adamas
