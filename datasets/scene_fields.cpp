@@ -37,11 +37,11 @@ Vec3 phase(MaterialId m, const Vec3& q) {
 }  // namespace
 
 const std::array<std::pair<SceneField, std::string_view>, 3>& scene_fields() {
-  static const std::array<std::pair<SceneField, std::string_view>, 3> fields{
+  static const std::array<std::pair<SceneField, std::string_view>, 3> kFields{
       {{SceneField::kConstant, "constant"},
        {SceneField::kLinear, "linear"},
        {SceneField::kSmooth, "smooth"}}};
-  return fields;
+  return kFields;
 }
 
 SceneField Scene::field_by_name(std::string_view name) const {

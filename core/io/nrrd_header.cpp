@@ -40,7 +40,7 @@ std::optional<T> number(std::string_view word) {
 }
 
 const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>>& types() {
-  static const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>> known{
+  static const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>> kKnown{
       {"signed char", {"int8", 1}},
       {"int8", {"int8", 1}},
       {"int8_t", {"int8", 1}},
@@ -76,7 +76,7 @@ const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>>& t
       {"uint64_t", {"uint64", 8}},
       {"float", {"float32", 4}},
       {"double", {"float64", 8}}};
-  return known;
+  return kKnown;
 }
 
 class Parser {

@@ -108,8 +108,8 @@ constexpr int child_at(DiamondType& type, LatticePoint offset) {
 }
 
 constexpr DiamondType make_type(std::size_t type_index) {
-  constexpr std::array<LatticePoint, kDiamondTypeCount> directions = diamond_directions();
-  DiamondType type = make_ring(directions[type_index]);
+  constexpr std::array<LatticePoint, kDiamondTypeCount> kDirections = diamond_directions();
+  DiamondType type = make_ring(kDirections[type_index]);
   std::array<DiamondType, 8> child_rings{};
   std::array<std::size_t, 8> placed{};
   for (int slot = 0; slot < type.tetrahedron_count; ++slot) {
@@ -121,7 +121,7 @@ constexpr DiamondType make_type(std::size_t type_index) {
         // Seen from the point 2 d of a lattice of step s / 2, whose diamond has this type.
         const LatticePoint point = 2 * type.direction + offset;
         type.child_types[child] = static_cast<std::uint8_t>(diamond_type(point, trailing_zeros(point)));
-        child_rings[child] = make_ring(directions[type.child_types[child]]);
+        child_rings[child] = make_ring(kDirections[type.child_types[child]]);
       }
       type.child_tetrahedra[child][placed[child]++] = place(c, slot, end, child_rings[child], offset);
     }

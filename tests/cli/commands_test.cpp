@@ -17,8 +17,8 @@ const nlohmann::json& find(const nlohmann::json& list, const std::string& name) 
     if (item.at("name") == name) return item;
   }
   ADD_FAILURE() << "no " << name;
-  static const nlohmann::json none;
-  return none;
+  static const nlohmann::json kNone;
+  return kNone;
 }
 
 double volume(const nlohmann::json& figures, const std::string& material, const std::string& key = "volume") {
