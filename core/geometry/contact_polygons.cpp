@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 
 #include "core/geometry/determinant_sign.h"
@@ -11,8 +10,6 @@ namespace adamas {
 namespace {
 
 constexpr std::uint32_t kFaceTag = 0x80000000u;
-/// Functions that differ by less are equal to the accuracy of a corner's weights, relative to their values.
-constexpr double kEqual = 1e-14;
 
 /// A corner of the polygon under construction: where `equal` functions are equal, on the face of the vertices
 /// that are not in `zeros`.
@@ -50,11 +47,6 @@ class ContactFinder {
   };
 
   [[nodiscard]] const LinearFunction& function(std::uint32_t f) const { return problem_.functions[f]; }
-  [[nodiscard]] double difference(std::uint32_t f, std::uint32_t g, const Weights& w) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) sum += (function(f).values[i] - function(g).values[i]) * w[i];
-    return sum;
-  }
   /// The order of the infinitesimals, the greatest first.
   [[nodiscard]] bool comes_first(std::uint32_t f, std::uint32_t g) const {
     return function(f).key < function(g).key || (function(f).key == function(g).key && f < g);
@@ -258,7 +250,7 @@ class ContactFinder {
       const std::size_t next = (c + 1) % size;
       (positive[c] ? divided.above : divided.below).push_back(polygon[c]);
       if (positive[c] == positive[next]) continue;
-      Corner cut = crossing(polygon[c], polygon[next], h);
+      Corner cut = crossing(polygon[c].line, h);
       (positive[c] ? divided.below : divided.above).push_back(cut);
       cut.line = h;  // the part that is left goes on along the cut
       (positive[c] ? divided.above : divided.below).push_back(cut);
@@ -266,51 +258,45 @@ class ContactFinder {
     return divided;
   }
 
-  [[nodiscard]] Corner crossing(const Corner& from, const Corner& to, std::uint32_t h) const {
-    const std::uint32_t line = from.line;
-    const double d_from = std::abs(difference(h, f_, from.weights)),
-                 d_to = std::abs(difference(h, f_, to.weights));
-    const double t = d_from + d_to > 0 ? d_from / (d_from + d_to) : 0.5;
-    Weights w;
-    for (std::size_t i = 0; i < 4; ++i) w[i] = (1 - t) * from.weights[i] + t * to.weights[i];
+  /// Where h meets the line of an edge.
+  [[nodiscard]] Corner crossing(std::uint32_t line, std::uint32_t h) const {
     if ((line & kFaceTag) == 0) {
       const std::array<std::uint32_t, 4> equal{f_, g_, line, h};
-      return make_corner(w, 0, equal, line);
+      return make_corner(weights_where(equal, 0), 0, equal, line);
     }
-    const std::uint32_t face = line & ~kFaceTag;
-    w[face] = 0;
     const std::array<std::uint32_t, 3> equal{f_, g_, h};
-    if (const auto exact = on_face(equal, face)) w = *exact;
-    return make_corner(w, static_cast<std::uint8_t>(1u << face), equal, line);
+    const auto zeros = static_cast<std::uint8_t>(1u << (line & ~kFaceTag));
+    return make_corner(weights_where(equal, zeros), zeros, equal, line);
   }
 
-  /// Where three functions are equal on a face, worked out the same way from either cell. None if that is no
-  /// point of the face to the accuracy of the arithmetic.
-  [[nodiscard]] std::optional<Weights> on_face(std::array<std::uint32_t, 3> equal, std::uint32_t face) const {
-    std::sort(equal.begin(), equal.end(), [&](auto x, auto y) { return function(x).key < function(y).key; });
-    std::array<std::size_t, 3> v{};
-    for (std::size_t i = 0, n = 0; i < 4; ++i) {
-      if (i != face) v[n++] = i;
-    }
-    std::array<double, 3> p, q;
-    for (std::size_t i = 0; i < 3; ++i) {
-      p[i] = function(equal[0]).values[v[i]] - function(equal[1]).values[v[i]];
-      q[i] = function(equal[0]).values[v[i]] - function(equal[2]).values[v[i]];
-    }
-    const std::array<double, 3> x{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
-                                  p[0] * q[1] - p[1] * q[0]};
-    const double sum = x[0] + x[1] + x[2];
-    const double size = std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
-    if (!(std::abs(sum) >= 0.999999 * size) || size == 0) return std::nullopt;
+  /// Where functions are equal on the face of the vertices that are not in `zeros`: each weight is the
+  /// determinant of the functions at the other vertices and a column of ones. On a face the same from either
+  /// tetrahedron.
+  [[nodiscard]] Weights weights_where(std::span<const std::uint32_t> equal, std::uint8_t zeros) const {
+    std::array<std::uint32_t, 4> sorted{};
+    std::copy(equal.begin(), equal.end(), sorted.begin());
+    const std::size_t count = equal.size();
+    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count),
+              [&](auto x, auto y) { return comes_first(x, y); });
     Weights w{};
-    double scale = 0, p_there = 0, q_there = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      w[v[i]] = std::max(0.0, x[i] / sum);
-      p_there += p[i] * w[v[i]];
-      q_there += q[i] * w[v[i]];
-      for (const std::uint32_t f : equal) scale = std::max(scale, std::abs(function(f).values[v[i]]));
+    double sum = 0;
+    bool negative = false;
+    for (std::size_t vertex = 0; vertex < 4; ++vertex) {
+      if ((zeros >> vertex & 1u) != 0) continue;
+      SmallMatrix rows{};
+      for (std::size_t r = 0; r < count; ++r) {
+        std::size_t column = 0;
+        for (std::size_t v = 0; v < 4; ++v) {
+          if (v != vertex && (zeros >> v & 1u) == 0) rows[r][column++] = function(sorted[r]).values[v];
+        }
+        rows[r][column] = 1;
+      }
+      w[vertex] = determinant_value(rows, count);
+      if (negative) w[vertex] = -w[vertex];
+      negative = !negative;
+      sum += w[vertex];
     }
-    if (std::abs(p_there) > kEqual * scale || std::abs(q_there) > kEqual * scale) return std::nullopt;
+    for (double& x : w) x = std::max(0.0, x / sum);
     return w;
   }
 

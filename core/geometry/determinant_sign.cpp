@@ -68,14 +68,13 @@ Number determinant(std::size_t n, const Number& zero, const Number& one, Accumul
   return minors[(1u << n) - 1];
 }
 
-int exact_sign(const SmallMatrix& matrix, std::size_t n) {
-  const Expansion value = determinant<Expansion>(
+Expansion exact_determinant(const SmallMatrix& matrix, std::size_t n) {
+  return determinant<Expansion>(
       n, Expansion{}, Expansion{1},
       [&](Expansion& sum, const Expansion& minor, std::size_t row, std::size_t column, bool negative) {
         const double entry = matrix[row][column];
         sum = sum_of(sum, product_of(minor, negative ? -entry : entry));
       });
-  return value.empty() ? 0 : value.back() > 0 ? 1 : -1;
 }
 
 /// A sum and the sum of the sizes of its terms.
@@ -83,10 +82,9 @@ struct Bounded {
   double value, size;
 };
 
-}  // namespace
-
-int determinant_sign(const SmallMatrix& matrix, std::size_t n) {
-  const Bounded found = determinant<Bounded>(
+/// The determinant in floating point and a bound of its error.
+Bounded rounded_determinant(const SmallMatrix& matrix, std::size_t n) {
+  Bounded found = determinant<Bounded>(
       n, {0, 0}, {1, 1},
       [&](Bounded& sum, const Bounded& minor, std::size_t row, std::size_t column, bool negative) {
         const double entry = matrix[row][column];
@@ -94,11 +92,26 @@ int determinant_sign(const SmallMatrix& matrix, std::size_t n) {
         sum.size += std::abs(entry) * minor.size;
       });
   // Each of the n levels rounds a product and at most n sums.
-  const double bound =
-      2 * static_cast<double>(n * (n + 1)) * std::numeric_limits<double>::epsilon() * found.size;
-  if (found.value > bound) return 1;
-  if (found.value < -bound) return -1;
-  return exact_sign(matrix, n);
+  found.size *= 2 * static_cast<double>(n * (n + 1)) * std::numeric_limits<double>::epsilon();
+  return found;
+}
+
+}  // namespace
+
+int determinant_sign(const SmallMatrix& matrix, std::size_t n) {
+  const auto [value, error] = rounded_determinant(matrix, n);
+  if (value > error) return 1;
+  if (value < -error) return -1;
+  const Expansion exact = exact_determinant(matrix, n);
+  return exact.empty() ? 0 : exact.back() > 0 ? 1 : -1;
+}
+
+double determinant_value(const SmallMatrix& matrix, std::size_t n) {
+  const auto [value, error] = rounded_determinant(matrix, n);
+  if (error <= 1e-13 * std::abs(value)) return value;
+  double sum = 0;
+  for (const double part : exact_determinant(matrix, n)) sum += part;
+  return sum;
 }
 
 }  // namespace adamas

@@ -13,4 +13,8 @@ using SmallMatrix = std::array<std::array<double, 5>, 5>;
 /// do not overlap (Shewchuk, Adaptive precision floating-point arithmetic, 1997).
 int determinant_sign(const SmallMatrix& matrix, std::size_t n);
 
+/// The determinant itself with a relative error below 1e-12, however nearly singular the matrix is; in the
+/// same way.
+double determinant_value(const SmallMatrix& matrix, std::size_t n);
+
 }  // namespace adamas

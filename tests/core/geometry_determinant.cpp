@@ -55,6 +55,12 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
     zeros += expected == 0 ? 1 : 0;
     ASSERT_EQ(determinant_sign(matrix, n), expected) << i;
     ASSERT_EQ(determinant_sign(scaled, n), expected) << i;
+    const double value = determinant_value(matrix, n);
+    ASSERT_EQ(value > 0 ? 1 : value < 0 ? -1 : 0, expected) << i;
+    // Integers up to 2^53 have no relative error to speak of.
+    if (std::abs(value) < 1e15) {
+      ASSERT_NEAR(value, std::round(value), 1e-12 * std::abs(value)) << i;
+    }
   }
   EXPECT_GT(zeros, 1000u);
 }

@@ -25,8 +25,10 @@ struct EdgeReport {
   std::size_t inner_edges = 0;  ///< that lie on no side of the box
   std::size_t open =
       0;  ///< inner edges that the boundary of some region leaves more often one way than the other
-  std::size_t lonely = 0;      ///< inner edges with one triangle
-  std::size_t uneven = 0;      ///< inner edges whose triangles are not as many as the regions that meet there
+  std::size_t lonely = 0;  ///< inner edges with one triangle
+  /// Inner edges whose triangles are not two, nor as many as the regions that meet there, counting a region
+  /// for each side from which it comes to the edge.
+  std::size_t uneven = 0;
   std::size_t degenerate = 0;  ///< triangles with one region on both sides or a repeated point
   std::string first;           ///< the first open or lonely edge, for messages
 };
