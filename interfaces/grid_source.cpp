@@ -48,6 +48,8 @@ ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, co
     }
   }
   auto network = std::make_shared<InterfaceNetwork>(renamed, box);
+  if (network->table().body_count() == 0)
+    fail("{}: expected triangles between two materials, found none", mesh.source);
   source.network = network;
   source.body_at = [network](const Vec3& p, bool* flagged) { return network->body_at(p, flagged); };
   if (fields) {
