@@ -27,7 +27,7 @@ class PlaneSides {
   [[nodiscard]] double snapped(double d) const { return d >= -tolerance_ && d <= tolerance_ ? 0 : d; }
   /// A way, far above round-off and far below anything seen, to the side whose cells are cut where cells meet
   /// in the plane: points moved by it are not in what coincides with the plane.
-  [[nodiscard]] Vec3 nudge() const { return (zero_above_ ? -256 : 256) * tolerance_ * normal_; }
+  [[nodiscard]] Vec3 nudge() const { return (zero_above_ ? -4096 : 4096) * tolerance_ * normal_; }
   /// The side of a point at this distance.
   [[nodiscard]] bool above(double distance) const { return distance > 0 || (distance == 0 && zero_above_); }
   /// Where the plane meets the way between two points on different sides of it. Points in the other order may

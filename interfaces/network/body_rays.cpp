@@ -8,8 +8,7 @@ namespace adamas {
 
 namespace {
 
-constexpr int kWalks = 48;
-constexpr int kBounces = 16;
+constexpr int kWalks = 24;
 constexpr double kCleanWeight = 1e-7;  // hits nearer to an edge, or more grazing than this, prove nothing
 constexpr double kCleanAngle = 1e-6;
 
@@ -30,19 +29,24 @@ Vec3 random_direction(std::uint64_t& state) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-/// Parameter at which a ray from inside leaves a box, and the face it leaves by.
-double exit_of(const Box3& box, const Vec3& origin, const Vec3& direction, Vec3& inward) {
+/// Parameter at which a ray from inside leaves a box.
+double exit_of(const Box3& box, const Vec3& origin, const Vec3& direction) {
   double leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == 0) continue;
     const double wall = direction[axis] > 0 ? box.max[axis] : box.min[axis];
-    const double t = std::max(0.0, (wall - origin[axis]) / direction[axis]);
-    if (t >= leave) continue;
-    leave = t;
-    inward = {};
-    inward[axis] = direction[axis] > 0 ? -1 : 1;
+    leave = std::min(leave, std::max(0.0, (wall - origin[axis]) / direction[axis]));
   }
   return leave;
+}
+
+/// A little inside, where the ends of the sheets at the boundary cannot be missed by round-off.
+Vec3 pulled_inside(const Box3& box, Vec3 p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double pull = 1e-9 * box.size()[axis];
+    p[axis] = std::clamp(p[axis], box.min[axis] + pull, box.max[axis] - pull);
+  }
+  return p;
 }
 
 }  // namespace
@@ -64,7 +68,7 @@ BodyRays::Result BodyRays::shoot(const std::vector<std::uint32_t>& part) const {
     const Vec3 origin = u * corner(side, 0) + v * corner(side, 1) + (1 - u - v) * corner(side, 2);
     Vec3 direction = random_direction(random);
     if (dot(direction, normal(side)) < 0) direction = -direction;
-    follow(side, origin, direction, random, result);
+    follow(side, origin, direction, result);
   }
   std::sort(result.seen.begin(), result.seen.end());
   result.seen.erase(std::unique(result.seen.begin(), result.seen.end()), result.seen.end());
@@ -76,61 +80,58 @@ void BodyRays::shoot_from_extremes(const std::vector<std::uint32_t>& part, Resul
     for (const double sign : {-1.0, 1.0}) {
       Vec3 direction;
       direction[axis] = sign;
-      double farthest = -std::numeric_limits<double>::infinity();
-      std::uint32_t best = part.front();
+      // Of equally far corners, as on a wall, the one that lies farthest on the way on.
+      std::array<double, 3> farthest{};
+      std::uint32_t best = kInfinity;
       std::size_t best_corner = 0;
       for (const std::uint32_t side : part) {
         if (dot(normal(side), direction) < 1e-3) continue;
         for (std::size_t i = 0; i < 3; ++i) {
-          const double reach = sign * corner(side, i)[axis];
-          if (reach > farthest) farthest = reach, best = side, best_corner = i;
+          const Vec3 p = corner(side, i);
+          const std::array<double, 3> reach{sign * p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]};
+          if (best == kInfinity || reach > farthest) farthest = reach, best = side, best_corner = i;
         }
       }
-      if (farthest == -std::numeric_limits<double>::infinity()) continue;
+      if (best == kInfinity) continue;
       const Vec3 middle = (1.0 / 3) * (corner(best, 0) + corner(best, 1) + corner(best, 2));
-      std::uint64_t random = best;
-      follow(best, 0.95 * corner(best, best_corner) + 0.05 * middle, direction, random, result);
+      follow(best, 0.95 * corner(best, best_corner) + 0.05 * middle, direction, result);
     }
   }
 }
 
-void BodyRays::follow(std::uint32_t side, Vec3 origin, Vec3 direction, std::uint64_t& random,
-                      Result& result) const {
+void BodyRays::follow(std::uint32_t side, Vec3 origin, Vec3 direction, Result& result) const {
   if (domain_ != nullptr && !domain_->contains(origin)) return;
   if (flat(side) || std::abs(dot(normal(side), direction)) < kCleanAngle) return;
-  std::uint32_t ignore = side / 2;
-  for (int bounce = 0; bounce <= kBounces; ++bounce) {
-    Vec3 inward;
-    const double leave = domain_ == nullptr ? std::numeric_limits<double>::infinity()
-                                            : exit_of(*domain_, origin, direction, inward);
-    const auto hit = tree_.first_hit(origin, direction, leave, ignore);
-    if (hit) {
-      const auto& w = hit->weights;
-      const Vec3 n = normal(2 * hit->triangle);
-      const double facing = dot(n, direction);
-      const bool clean = std::min({w[0], w[1], w[2]}) >= kCleanWeight && std::abs(facing) >= kCleanAngle;
-      if (!clean || flat(2 * hit->triangle)) return;
-      const std::uint32_t seen = 2 * hit->triangle + (facing < 0 ? 0 : 1);
-      if (material(seen) == material(side)) {
-        result.seen.push_back(seen);
-      } else {
-        ++result.inconsistent;
-      }
-      return;
-    }
-    if (domain_ == nullptr) {
-      result.seen.push_back(kInfinity);
-      return;
-    }
-    // A little inside, where the ends of the sheets at the boundary cannot be missed by round-off.
-    origin = origin + leave * direction;
+  const double leave =
+      domain_ == nullptr ? std::numeric_limits<double>::infinity() : exit_of(*domain_, origin, direction);
+  if (const auto hit = tree_.first_hit(origin, direction, leave, side / 2))
+    return arrive(side, direction, *hit, result);
+  if (domain_ != nullptr) {
+    origin = pulled_inside(*domain_, origin + leave * direction);
+    const Vec3 last = pulled_inside(*domain_, domain_->max);
     for (int axis = 0; axis < 3; ++axis) {
-      const double pull = 1e-9 * domain_->size()[axis];
-      origin[axis] = std::clamp(origin[axis], domain_->min[axis] + pull, domain_->max[axis] - pull);
+      direction = {};
+      direction[axis] = 1;
+      if (!(origin[axis] < last[axis])) continue;
+      const auto hit =
+          tree_.first_hit(origin, direction, last[axis] - origin[axis], ClosestPointTree::kNoTriangle);
+      if (hit) return arrive(side, direction, *hit, result);
+      origin[axis] = last[axis];
     }
-    direction = random_direction(random);
-    if (dot(direction, inward) < 0) direction = -direction;
-    ignore = ClosestPointTree::kNoTriangle;
+  }
+  result.seen.push_back(kInfinity);
+}
+
+void BodyRays::arrive(std::uint32_t side, const Vec3& direction, const RayHit& hit, Result& result) const {
+  const auto& w = hit.weights;
+  const double facing = dot(normal(2 * hit.triangle), direction);
+  const bool clean = std::min({w[0], w[1], w[2]}) >= kCleanWeight && std::abs(facing) >= kCleanAngle;
+  if (!clean || flat(2 * hit.triangle)) return;
+  const std::uint32_t seen = 2 * hit.triangle + (facing < 0 ? 0 : 1);
+  if (material(seen) == material(side)) {
+    result.seen.push_back(seen);
+  } else {
+    ++result.inconsistent;
   }
 }
 

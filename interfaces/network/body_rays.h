@@ -18,8 +18,9 @@ class BodyRays {
  public:
   static constexpr std::uint32_t kInfinity = 0xffffffffu;
   struct Result {
-    std::vector<std::uint32_t> seen;  ///< sides of the same material, or kInfinity
-    std::size_t inconsistent = 0;     ///< rays that arrived at a side of another material
+    std::vector<std::uint32_t>
+        seen;                      ///< sides of the same material, or kInfinity: what all see that reach it
+    std::size_t inconsistent = 0;  ///< rays that arrived at a side of another material
   };
 
   /// The arguments must outlive this object; `domain` may be null.
@@ -41,7 +42,10 @@ class BodyRays {
     return is_flat({corner(side, 0), corner(side, 1), corner(side, 2)});
   }
   void shoot_from_extremes(const std::vector<std::uint32_t>& part, Result& result) const;
-  void follow(std::uint32_t side, Vec3 origin, Vec3 direction, std::uint64_t& random, Result& result) const;
+  /// Follows a ray from a side; where it leaves the domain, on along the domain's walls to the greatest
+  /// corner, which counts as infinity.
+  void follow(std::uint32_t side, Vec3 origin, Vec3 direction, Result& result) const;
+  void arrive(std::uint32_t side, const Vec3& direction, const RayHit& hit, Result& result) const;
 
   const InterfaceMesh& mesh_;
   const ClosestPointTree& tree_;

@@ -1,10 +1,24 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/base/parallel.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
+
+namespace {
+
+/// Signed distances are rounded to this many binary places below the radius, so that those that differ only
+/// by the order of a sum are equal, and ties are told from the rest.
+constexpr int kPlaces = 40;
+
+double rounded(double distance, double radius) {
+  const double grain = std::ldexp(1.0, std::ilogb(radius) - kPlaces);
+  return std::nearbyint(distance / grain) * grain;
+}
+
+}  // namespace
 
 void Resampler::place_roots() {
   std::vector<VertexId> vertices;
@@ -70,7 +84,7 @@ void Resampler::evaluate_vertices(const std::vector<VertexId>& vertices) {
     source_.network->near_interfaces(position, record.distances.radius, record.distances.body, near,
                                      options_.distance);
     for (const NearInterface& n : near) {
-      record.distances.near.push_back({n.interface, n.signed_distance});
+      record.distances.near.push_back({n.interface, rounded(n.signed_distance, record.distances.radius)});
       record.closest.push_back(n.closest);
     }
   });

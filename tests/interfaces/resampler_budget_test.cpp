@@ -39,8 +39,10 @@ bool is_coarsening(const HierarchyTopology& coarse, const HierarchyTopology& fin
   return result;
 }
 
+/// `grows`: the mesh for each budget is a coarsening of the next. Not to be expected where an element's error
+/// depends on the cells round its own, and so on when it was measured.
 void expect_budgets(const std::string& scene, bool meshes, bool fields,
-                    const std::vector<std::size_t>& budgets) {
+                    const std::vector<std::size_t>& budgets, bool grows = true) {
   std::unique_ptr<ResampledScene> last;
   for (const std::size_t most : budgets) {
     SCOPED_TRACE(scene + " " + std::to_string(most));
@@ -50,7 +52,7 @@ void expect_budgets(const std::string& scene, bool meshes, bool fields,
     if (!all_within(*now->resampler)) {
       EXPECT_GE(static_cast<double>(hierarchy.leaf_count()), 0.9 * static_cast<double>(most));
     }
-    if (last) {
+    if (last && grows) {
       EXPECT_TRUE(is_coarsening(last->resampler->hierarchy(), hierarchy));
     }
     last = std::move(now);
@@ -63,9 +65,7 @@ TEST(ResamplerBudget, IsKeptUsedAndGrowsTheSameMesh) {
   expect_budgets("plate", false, false, {1000, 2000});
 }
 
-TEST(ResamplerBudget, DISABLED_OfFieldsIsKeptUsedAndGrowsTheSameMesh) {
-  expect_budgets("reflex", true, true, {200, 400, 800});
-}
+TEST(ResamplerBudget, OfFieldsIsKeptAndUsed) { expect_budgets("reflex", true, true, {200, 400, 800}, false); }
 
 TEST(LongResamplerBudget, IsKeptUsedAndGrowsTheSameMesh) {
   expect_budgets("shell3", true, false, {1000, 2000, 4000});

@@ -59,9 +59,9 @@ void expect_certified(bool meshes, const std::vector<double>& errors, std::size_
               ratios[ratios.size() / 2], ratios.back(), ratios.size());
 }
 
-TEST(LongCertifiedInterfaces, DISABLED_FromMeshes) { expect_certified(true, {0.06}, 100000); }
-TEST(LongCertifiedInterfaces, DISABLED_FromFractions) { expect_certified(false, {0.1, 0.03}, 100000); }
-TEST(CertifiedInterfaces, DISABLED_CoarseFromMeshes) { expect_certified(true, {0.2}, 1000); }
+TEST(LongCertifiedInterfaces, FromMeshes) { expect_certified(true, {0.06}, 100000); }
+TEST(LongCertifiedInterfaces, FromFractions) { expect_certified(false, {0.1, 0.03}, 100000); }
+TEST(CertifiedInterfaces, CoarseFromMeshes) { expect_certified(true, {0.2}, 1000); }
 
 }  // namespace
 }  // namespace adamas

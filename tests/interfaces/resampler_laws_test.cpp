@@ -31,7 +31,9 @@ TEST_P(ResamplerLaws, HoldAtACoarseError) { expect_laws(ResampledScene(with_erro
 TEST_P(LongResamplerLaws, HoldAtAFineError) { expect_laws(ResampledScene(with_error(0.02))); }
 
 /// The same materials in the opposite order, and another number of threads, change nothing.
-TEST_P(LongResamplerLaws, DISABLED_NothingDependsOnOrdersAndThreads) {
+class LongResamplerOrders : public ResamplerLaws {};
+
+TEST_P(LongResamplerOrders, ChangeNothing) {
   SceneCase c = with_error(0.08);
   c.options.max_tetrahedra = 500;
   const ResampledScene one(c);
@@ -59,6 +61,8 @@ std::string name_of(const testing::TestParamInfo<std::tuple<std::string, bool>>&
 const auto kFewMaterials = testing::Values("sphere", "shell3", "shell2", "plate", "tjunction", "reflex");
 const auto kAll = testing::Values("sphere", "shell3", "shell2", "plate", "tjunction", "reflex", "voronoi10");
 INSTANTIATE_TEST_SUITE_P(Scenes, ResamplerLaws, testing::Combine(kFewMaterials, testing::Bool()), name_of);
+INSTANTIATE_TEST_SUITE_P(Scenes, LongResamplerOrders, testing::Combine(kFewMaterials, testing::Bool()),
+                         name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, LongResamplerLaws, testing::Combine(kAll, testing::Bool()), name_of);
 
 /// Planes and spheres, thin layers that end, triple lines near vertices, edges and faces; the mesh stops at a
@@ -67,31 +71,34 @@ class LongRandomScenes : public testing::TestWithParam<int> {
  protected:
   static constexpr int kSeedsEach = 50;
   static SceneCase random_case(int seed, bool meshes) {
-    SceneCase c = make_case("random", meshes, 0.06);
+    SceneCase c = make_case("random", meshes, 0.1);
     c.seed = static_cast<std::uint64_t>(seed);
-    c.cells = 6;
+    c.cells = meshes ? 6 : 4;
     c.depth = 1;
-    c.options.max_tetrahedra = 400;
+    c.options.max_tetrahedra = meshes ? 40 : 150;
     return c;
   }
 };
 
-TEST_P(LongRandomScenes, DISABLED_KeepTheLaws) {
+TEST_P(LongRandomScenes, KeepTheLaws) {
   for (int seed = GetParam() * kSeedsEach; seed < (GetParam() + 1) * kSeedsEach; ++seed) {
-    for (const bool meshes : {false, true}) {
-      SCOPED_TRACE("seed " + std::to_string(seed) + (meshes ? " from meshes" : " from fractions"));
-      const SceneCase c = random_case(seed, meshes);
-      const ResampledScene resampled(c);
-      // Regions may be equal, but for round-off, over a part of a cell.
-      expect_laws(resampled, 1e-6);
-      if (seed % 5 != 0) continue;
-      SceneCase other = c;
-      other.reversed = true;
-      const ResampledScene again(other);
-      EXPECT_EQ(resampled.resampler->hierarchy().checksum(), again.resampler->hierarchy().checksum());
-      for (const std::string& material : resampled.source.materials)
-        EXPECT_NEAR(resampled.material_volume(material), again.material_volume(material), 1e-6) << material;
-    }
+    const bool meshes = seed % 2 == 0;
+    SCOPED_TRACE("seed " + std::to_string(seed) + (meshes ? " from meshes" : " from fractions"));
+    const SceneCase c = random_case(seed, meshes);
+    // On so coarse a lattice a small shape may leave no triangle.
+    if (meshes &&
+        scene_interfaces(make_scene(c.name, c.seed), 1.0 / static_cast<double>(c.cells)).triangles.empty())
+      continue;
+    const ResampledScene resampled(c);
+    // Two regions may be equal, but for round-off, over a part of a cell.
+    expect_laws(resampled, 1e-9);
+    if (seed % 10 > 1) continue;
+    SceneCase other = c;
+    other.reversed = true;
+    const ResampledScene again(other);
+    EXPECT_EQ(resampled.resampler->hierarchy().checksum(), again.resampler->hierarchy().checksum());
+    for (const std::string& material : resampled.source.materials)
+      EXPECT_NEAR(resampled.material_volume(material), again.material_volume(material), 1e-5) << material;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, LongRandomScenes, testing::Range(0, 20));
