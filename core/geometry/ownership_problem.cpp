@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
-#include "core/geometry/contenders.h"
-#include "core/geometry/partition.h"
+#include "core/geometry/convex_polyhedron.h"
+#include "core/geometry/divider.h"
 
 namespace adamas {
 
@@ -65,22 +66,26 @@ void drop_hopeless(OwnershipProblem& problem) {
 
 namespace {
 
-/// Whether a contender is below the part's owner by more than `margin` all over the part.
-bool is_clearly_below(const OwnershipProblem& problem, const OwnedTetrahedron& part, const Contender& other,
-                      const std::array<double, 4>& heights, double margin) {
-  return std::any_of(other.functions.begin(), other.functions.end(), [&](std::uint32_t m) {
-    for (std::size_t c = 0; c < 4; ++c) {
-      if (!(evaluate(problem.functions[m].values, part.corners[c]) + margin < heights[c])) return false;
-    }
-    return true;
-  });
+using Candidate = OwnershipProblem::Candidate;
+
+/// Whether a candidate is below the heights at all corners of a part by more than `margin`.
+bool is_clearly_below(const OwnershipProblem& problem, const Candidate& candidate,
+                      const std::vector<Weights>& corners, const std::vector<double>& heights,
+                      double margin) {
+  for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
+    bool below = true;
+    for (std::size_t c = 0; c < corners.size() && below; ++c)
+      below = evaluate(problem.functions[f].values, corners[c]) + margin < heights[c];
+    if (below) return true;
+  }
+  return false;
 }
 
 /// Drops functions that are at no vertex less than some one other of their contender; of equal ones that with
 /// the smaller key counts as greater.
-void drop_never_least(const OwnershipProblem& problem, Contender& contender) {
-  const std::vector<std::uint32_t> all = contender.functions;
-  std::erase_if(contender.functions, [&](std::uint32_t f) {
+void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t>& functions) {
+  const std::vector<std::uint32_t> all = functions;
+  std::erase_if(functions, [&](std::uint32_t f) {
     const auto& own = problem.functions[f];
     return std::any_of(all.begin(), all.end(), [&](std::uint32_t g) {
       const auto& other = problem.functions[g];
@@ -99,34 +104,41 @@ void drop_never_least(const OwnershipProblem& problem, Contender& contender) {
 void keep_owners(OwnershipProblem& problem) {
   if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
   drop_hopeless(problem);
-  std::vector<OwnedTetrahedron> parts;
-  partition_tetrahedron(problem, parts);
-  std::vector<Contender> contenders = all_contenders(problem);
   double size = 0;
   for (const LinearFunction& f : problem.functions) {
     for (const double value : f.values) size = std::max(size, std::abs(value));
   }
-  // The owner's values at the corners of each part.
-  std::vector<std::array<double, 4>> heights(parts.size());
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const auto owner = std::find_if(problem.candidates.begin(), problem.candidates.end(),
-                                    [&](const auto& c) { return c.owner == parts[p].owner; });
-    for (std::size_t c = 0; c < 4; ++c) heights[p][c] = problem.value(*owner, parts[p].corners[c]);
-  }
   // Who touches a part may own a sliver that round-off has taken.
-  const auto touches = [&](const Contender& contender, std::size_t p) {
-    return contender.owner == parts[p].owner ||
-           !is_clearly_below(problem, parts[p], contender, heights[p], 1e-10 * size);
-  };
+  const double margin = 1e-10 * size;
+  std::vector<char> needed(problem.candidates.size(), 0);
+  std::vector<double> heights;
+  thread_local Divider<ConvexPolyhedron> divider;
+  divider.divide(
+      problem, ConvexPolyhedron::unit(),
+      [&](std::uint32_t owner, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions) {
+        const auto& corners = part.corners();
+        heights.assign(corners.size(), std::numeric_limits<double>::infinity());
+        for (std::size_t c = 0; c < corners.size(); ++c) {
+          for (const std::uint32_t f : functions)
+            heights[c] = std::min(heights[c], evaluate(problem.functions[f].values, corners[c]));
+        }
+        for (std::size_t i = 0; i < needed.size(); ++i) {
+          const Candidate& candidate = problem.candidates[i];
+          if (needed[i] == 0 &&
+              (candidate.owner == owner || !is_clearly_below(problem, candidate, corners, heights, margin)))
+            needed[i] = 1;
+        }
+      });
   OwnershipProblem kept;
-  for (const Contender& contender : contenders) {
-    bool needs = false;
-    for (std::size_t p = 0; p < parts.size() && !needs; ++p) needs = touches(contender, p);
-    if (!needs) continue;
-    Contender needed = contender;
-    drop_never_least(problem, needed);
-    kept.add_candidate(needed.owner);
-    for (const std::uint32_t f : needed.functions)
+  std::vector<std::uint32_t> functions;
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    if (needed[i] == 0) continue;
+    const Candidate& candidate = problem.candidates[i];
+    functions.resize(candidate.count);
+    std::iota(functions.begin(), functions.end(), candidate.first);
+    drop_never_least(problem, functions);
+    kept.add_candidate(candidate.owner);
+    for (const std::uint32_t f : functions)
       kept.add_function(problem.functions[f].values, problem.functions[f].key);
   }
   problem = std::move(kept);

@@ -1,0 +1,337 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "core/geometry/partition.h"
+
+namespace adamas {
+
+/// Value of a linear function at a point.
+inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
+  return values[0] * w[0] + values[1] * w[1] + values[2] * w[2] + values[3] * w[3];
+}
+
+/// Divides a convex piece of a tetrahedron by owner: cuts it where two functions are equal, until one
+/// contender is left. Each cut takes a function or a contender away on either side. `Piece` has corners() and
+/// cut(d, positive, above, below). Memory is kept from one piece to the next.
+template <class Piece>
+class Divider {
+ public:
+  /// A candidate, with those of its functions that may still be its least.
+  struct Contender {
+    std::uint32_t owner;
+    std::uint32_t first, count;  ///< of `functions`
+  };
+
+  /// Calls emit(owner, piece, functions) for each part: the least of the functions is the owner's value
+  /// there.
+  template <class Emit>
+  void divide(const OwnershipProblem& problem, const Piece& piece, Emit&& emit) {
+    problem_ = &problem;
+    State& state = at(0);
+    state.contenders.clear();
+    state.functions.clear();
+    for (const auto& candidate : problem.candidates) {
+      state.add(candidate.owner);
+      for (std::uint32_t f = 0; f < candidate.count; ++f) state.add_function(candidate.first + f);
+    }
+    divide(piece, 0, emit);
+  }
+
+ private:
+  struct Function {
+    std::uint32_t id;
+    std::uint32_t row;  ///< of the table of values
+  };
+  /// What is to be left out: a contender, or one of its functions.
+  struct Removal {
+    std::size_t contender;
+    std::uint32_t function = kAll;
+  };
+  static constexpr std::uint32_t kAll = 0xffffffffu;
+
+  /// The contenders for a piece, and their functions' values at its corners.
+  struct State {
+    std::vector<Contender> contenders;
+    std::vector<Function> functions;
+    std::size_t corners = 0;
+    std::vector<double> values, least, greatest;  ///< by row; the latter two over all corners
+    std::vector<double> d;
+    std::vector<char> positive;
+    Piece above, below;
+
+    void add(std::uint32_t owner) {
+      contenders.push_back({owner, static_cast<std::uint32_t>(functions.size()), 0});
+    }
+    void add_function(std::uint32_t id) {
+      functions.push_back({id, 0});
+      ++contenders.back().count;
+    }
+    [[nodiscard]] Function& function(const Contender& c, std::size_t i) { return functions[c.first + i]; }
+    [[nodiscard]] const double* row(const Function& f) const { return values.data() + f.row * corners; }
+  };
+
+  State& at(std::size_t depth) {
+    while (states_.size() <= depth) states_.push_back(std::make_unique<State>());
+    return *states_[depth];
+  }
+  [[nodiscard]] std::uint64_t key(const Function& f) const { return problem_->functions[f.id].key; }
+  /// The order of equal functions: which counts as greater.
+  [[nodiscard]] bool comes_first(const Function& f, const Function& g) const {
+    return key(f) < key(g) || (key(f) == key(g) && f.id < g.id);
+  }
+
+  template <class Emit>
+  void divide(const Piece& piece, std::size_t depth, Emit&& emit) {
+    if (piece.corners().size() < 3) return;
+    State& s = at(depth);
+    find_values(piece, s);
+    while (true) {
+      const auto [x, y] = find_rivals(s);
+      if (s.contenders.size() == 1) return finish(piece, s, emit);
+      Function f, g;
+      Removal above, below;
+      const std::size_t crowded = s.contenders[x].count > 1 ? x : y;
+      if (s.contenders[crowded].count > 1) {
+        // Where which of two functions is the least of one contender.
+        f = s.function(s.contenders[crowded], 0), g = s.function(s.contenders[crowded], 1);
+        above = {crowded, f.id}, below = {crowded, g.id};
+      } else {
+        // Where which of two linear contenders is greater.
+        f = s.function(s.contenders[x], 0), g = s.function(s.contenders[y], 0);
+        above = {y}, below = {x};
+      }
+      const std::size_t positives = find_sides(s, f, g);
+      if (positives == s.corners || positives == 0) {
+        remove(s, positives == 0 ? below : above);
+        continue;
+      }
+      piece.cut(s.d, s.positive, s.above, s.below);
+      State& next = at(depth + 1);
+      copy_without(s, above, next);
+      divide(s.above, depth + 1, emit);
+      copy_without(s, below, next);
+      divide(s.below, depth + 1, emit);
+      return;
+    }
+  }
+
+  template <class Emit>
+  void finish(const Piece& piece, State& s, Emit&& emit) {
+    thread_local std::vector<std::uint32_t> functions;
+    functions.clear();
+    const Contender& last = s.contenders.front();
+    for (std::uint32_t i = 0; i < last.count; ++i) functions.push_back(s.function(last, i).id);
+    emit(last.owner, piece, functions);
+  }
+
+  void find_values(const Piece& piece, State& s) const {
+    const auto& corners = piece.corners();
+    s.corners = corners.size();
+    s.values.clear();
+    s.least.clear();
+    s.greatest.clear();
+    for (const Contender& c : s.contenders) {
+      for (std::uint32_t i = 0; i < c.count; ++i) {
+        Function& f = s.function(c, i);
+        f.row = static_cast<std::uint32_t>(s.least.size());
+        const auto& at_vertices = problem_->functions[f.id].values;
+        double least = std::numeric_limits<double>::infinity(), greatest = -least;
+        for (const Weights& w : corners) {
+          const double value = evaluate(at_vertices, w);
+          s.values.push_back(value);
+          least = std::min(least, value), greatest = std::max(greatest, value);
+        }
+        s.least.push_back(least);
+        s.greatest.push_back(greatest);
+      }
+    }
+  }
+
+  std::size_t find_sides(State& s, const Function& f, const Function& g) const {
+    const double *a = s.row(f), *b = s.row(g);
+    s.d.resize(s.corners);
+    s.positive.resize(s.corners);
+    std::size_t positives = 0;
+    for (std::size_t c = 0; c < s.corners; ++c) {
+      s.d[c] = a[c] - b[c];
+      s.positive[c] = s.d[c] > 0 || (s.d[c] == 0 && key(f) < key(g)) ? 1 : 0;
+      positives += s.positive[c] != 0 ? 1 : 0;
+    }
+    return positives;
+  }
+
+  static void remove(State& s, const Removal& removal) {
+    if (removal.function == kAll) {
+      s.contenders.erase(s.contenders.begin() + static_cast<std::ptrdiff_t>(removal.contender));
+      return;
+    }
+    Contender& c = s.contenders[removal.contender];
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      if (s.function(c, i).id != removal.function) s.function(c, kept++) = s.function(c, i);
+    }
+    c.count = kept;
+  }
+
+  static void copy_without(State& from, const Removal& removal, State& to) {
+    to.contenders.clear();
+    to.functions.clear();
+    for (std::size_t i = 0; i < from.contenders.size(); ++i) {
+      if (i == removal.contender && removal.function == kAll) continue;
+      const Contender& c = from.contenders[i];
+      to.add(c.owner);
+      for (std::uint32_t k = 0; k < c.count; ++k) {
+        const std::uint32_t id = from.function(c, k).id;
+        if (i != removal.contender || id != removal.function) to.add_function(id);
+      }
+    }
+  }
+
+  /// Two contenders that are greatest somewhere, or the one that is greatest at all corners and another that
+  /// may exceed it; leaves out who and what surely is not needed. With one contender left both are that one.
+  std::pair<std::size_t, std::size_t> find_rivals(State& s) const {
+    drop_low(s);
+    std::size_t x = greatest_at(s, 0), y = x;
+    for (std::size_t c = 1; c < s.corners && y == x; ++c) y = greatest_at(s, c);
+    drop_redundant(s, s.contenders[x]);
+    if (y == x) {
+      x = drop_beaten(s, x);
+      if (s.contenders.size() == 1) return {0, 0};
+      y = highest_rival(s, x);
+    }
+    drop_redundant(s, s.contenders[y]);
+    return {x, y};
+  }
+
+  /// Drops contenders that are below what another surely reaches everywhere.
+  static void drop_low(State& s) {
+    if (s.contenders.size() < 3) return;
+    double surely = -std::numeric_limits<double>::infinity();
+    for (const Contender& c : s.contenders) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::uint32_t i = 0; i < c.count; ++i) least = std::min(least, s.least[s.function(c, i).row]);
+      surely = std::max(surely, least);
+    }
+    std::erase_if(s.contenders, [&](const Contender& c) {
+      for (std::uint32_t i = 0; i < c.count; ++i) {
+        if (s.greatest[s.function(c, i).row] < surely) return true;
+      }
+      return false;
+    });
+  }
+
+  /// Whether g <= f all over the piece; equal functions are ordered.
+  [[nodiscard]] bool at_most(const State& s, const Function& g, const Function& f) const {
+    const double *a = s.row(g), *b = s.row(f);
+    bool strict = false;
+    for (std::size_t c = 0; c < s.corners; ++c) {
+      if (a[c] > b[c]) return false;
+      strict = strict || a[c] < b[c];
+    }
+    return strict || comes_first(f, g);
+  }
+
+  /// Drops functions that are nowhere the least of their contender.
+  void drop_redundant(State& s, Contender& c) const {
+    const auto keep_if = [&](const auto& wanted) {
+      std::uint32_t kept = 0;
+      for (std::uint32_t i = 0; i < c.count; ++i) {
+        if (wanted(s.function(c, i))) s.function(c, kept++) = s.function(c, i);
+      }
+      c.count = kept;
+    };
+    if (c.count > 2) {
+      // First those that are above the greatest value of another: that needs no pairs.
+      double ceiling = std::numeric_limits<double>::infinity();
+      for (std::uint32_t i = 0; i < c.count; ++i)
+        ceiling = std::min(ceiling, s.greatest[s.function(c, i).row]);
+      keep_if([&](const Function& f) { return s.least[f.row] <= ceiling; });
+    }
+    for (std::uint32_t i = 0; i < c.count && c.count > 1;) {
+      const Function f = s.function(c, i);
+      bool redundant = false;
+      for (std::uint32_t k = 0; k < c.count && !redundant; ++k)
+        redundant = k != i && at_most(s, s.function(c, k), f);
+      if (redundant) {
+        keep_if([&](const Function& other) { return other.id != f.id; });
+      } else {
+        ++i;
+      }
+    }
+  }
+
+  /// Drops contenders that are nowhere greater than x: one of their functions is at most each of x's. Returns
+  /// where x is then.
+  std::size_t drop_beaten(State& s, std::size_t x) const {
+    const Contender by = s.contenders[x];
+    const auto beaten = [&](const Contender& c) {
+      for (std::uint32_t i = 0; i < c.count; ++i) {
+        bool below = true;
+        for (std::uint32_t k = 0; k < by.count && below; ++k)
+          below = at_most(s, s.functions[c.first + i], s.functions[by.first + k]);
+        if (below) return true;
+      }
+      return false;
+    };
+    std::size_t kept = 0, place = 0;
+    for (std::size_t i = 0; i < s.contenders.size(); ++i) {
+      if (i == x) {
+        place = kept;
+      } else if (beaten(s.contenders[i])) {
+        continue;
+      }
+      s.contenders[kept++] = s.contenders[i];
+    }
+    s.contenders.resize(kept);
+    return place;
+  }
+
+  /// A contender's least function at a corner.
+  [[nodiscard]] std::pair<double, std::uint64_t> binding(const State& s, const Contender& c,
+                                                         std::size_t corner) const {
+    std::pair<double, std::uint64_t> least{std::numeric_limits<double>::infinity(), 0};
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      const Function& f = s.functions[c.first + i];
+      const double value = s.row(f)[corner];
+      if (value < least.first || (value == least.first && key(f) > least.second)) least = {value, key(f)};
+    }
+    return least;
+  }
+
+  [[nodiscard]] std::size_t greatest_at(const State& s, std::size_t corner) const {
+    std::size_t best = 0;
+    auto greatest = binding(s, s.contenders[0], corner);
+    for (std::size_t i = 1; i < s.contenders.size(); ++i) {
+      const auto other = binding(s, s.contenders[i], corner);
+      if (other.first > greatest.first || (other.first == greatest.first && other.second < greatest.second)) {
+        best = i;
+        greatest = other;
+      }
+    }
+    return best;
+  }
+
+  /// The contender, other than x, that may reach highest.
+  [[nodiscard]] static std::size_t highest_rival(const State& s, std::size_t x) {
+    std::size_t best = x == 0 ? 1 : 0;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < s.contenders.size(); ++i) {
+      const Contender& c = s.contenders[i];
+      double reach = std::numeric_limits<double>::infinity();
+      for (std::uint32_t k = 0; k < c.count; ++k)
+        reach = std::min(reach, s.greatest[s.functions[c.first + k].row]);
+      if (i != x && reach > highest) best = i, highest = reach;
+    }
+    return best;
+  }
+
+  const OwnershipProblem* problem_ = nullptr;
+  std::vector<std::unique_ptr<State>> states_;
+};
+
+}  // namespace adamas
