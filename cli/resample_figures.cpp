@@ -16,7 +16,7 @@ std::vector<char> find_interface_cells(const InterfaceTable& table, const CellSe
     for (std::size_t i = begin; i < end; ++i) {
       cells.ownership(table, cells.corners(i), ownership);
       if (ownership.pure()) continue;
-      drop_hopeless(ownership.problem);
+      keep_owners(ownership.problem);
       contacts.clear();
       contact_polygons(ownership.problem, contacts);
       result[i] = contacts.empty() ? 0 : 1;

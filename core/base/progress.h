@@ -15,9 +15,13 @@ class Progress {
   virtual void report(std::string_view stage, double fraction) = 0;
   [[nodiscard]] virtual bool cancelled() const { return false; }
 
-  /// Reports, and throws Cancelled where the user asked to stop.
-  void step(std::string_view stage, double fraction) {
+  /// Throws Cancelled where the user asked to stop.
+  void check() const {
     if (cancelled()) throw Cancelled();
+  }
+  /// The same, and reports.
+  void step(std::string_view stage, double fraction) {
+    check();
     report(stage, fraction);
   }
 };

@@ -58,6 +58,10 @@ struct Box3 {
   [[nodiscard]] constexpr bool contains(const Vec3& p) const {
     return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z;
   }
+  [[nodiscard]] constexpr bool touches(const Box3& other) const {
+    return min.x <= other.max.x && min.y <= other.max.y && min.z <= other.max.z && max.x >= other.min.x &&
+           max.y >= other.min.y && max.z >= other.min.z;
+  }
   constexpr void extend(const Vec3& p) {
     for (int axis = 0; axis < 3; ++axis) {
       if (p[axis] < min[axis]) min[axis] = p[axis];

@@ -88,7 +88,9 @@ class Measurer {
       for (const OwnedTetrahedron& piece : cell.parts) {
         if (material(BodyId(piece.owner)) != element.material) continue;
         std::array<Vec3, 4> corners;
-        for (std::size_t c = 0; c < 4; ++c) corners[c] = cell.frame.point(piece.corners[c]);
+        Box3 bounds;
+        for (std::size_t c = 0; c < 4; ++c) bounds.extend(corners[c] = cell.frame.point(piece.corners[c]));
+        if (!bounds.touches(box)) continue;
         std::vector<Vec3> inside = clip_to_box(corners, box);
         if (!inside.empty()) parts_.push_back({&cell, BodyId(piece.owner), std::move(inside)});
       }

@@ -91,8 +91,8 @@ class Estimator {
     double greatest = 0;
     for (const Weights& w : ClippedTriangle(cell_, corners[0], corners[1], corners[2])) {
       double highest = -std::numeric_limits<double>::infinity();
-      for (const auto& candidate : problem.candidates)
-        highest = std::max(highest, problem.value(candidate, w));
+      for (const auto& candidate : owners_.candidates)
+        highest = std::max(highest, owners_.value(candidate, w));
       const double gap = highest - std::min(problem.value(first, w), problem.value(second, w));
       greatest = std::max(greatest, gap <= 0                      ? 0
                                     : gap < 2 * slope * diameter_ ? gap / (2 * slope)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/base/parallel.h"
 
@@ -11,8 +12,20 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// The closest point of the target, as far as needed.
+struct Closest {
+  double distance = -1;  ///< negative: not known yet
+  std::uint32_t triangle = ClosestPointTree::kNoTriangle;
+};
+
+Closest find_closest(const ClosestPointTree& to, const Vec3& p) {
+  const auto closest = to.closest(p);
+  return closest ? Closest{std::sqrt(closest->squared_distance), closest->triangle} : Closest{kInfinity};
+}
+
 struct Piece {
   std::array<Vec3, 3> corners;
+  std::array<Closest, 3> closest;  ///< to the corners
   std::uint32_t triangle;
 };
 
@@ -47,10 +60,15 @@ Polygon clip(const Polygon& polygon, int axis, double wall, double sign) {
   return kept;
 }
 
+bool is_inside(const Piece& piece, const std::optional<Box3>& domain) {
+  return !domain || std::all_of(piece.corners.begin(), piece.corners.end(),
+                                [&](const Vec3& p) { return domain->contains(p); });
+}
+
 Polygon clipped(const Piece& piece, const std::optional<Box3>& domain) {
   Polygon polygon;
   for (const Vec3& p : piece.corners) polygon.add(p);
-  if (!domain) return polygon;
+  if (is_inside(piece, domain)) return polygon;
   for (int axis = 0; axis < 3; ++axis) {
     polygon = clip(polygon, axis, domain->max[axis], 1);
     polygon = clip(polygon, axis, domain->min[axis], -1);
@@ -71,10 +89,12 @@ Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optio
   std::array<std::uint32_t, 11> candidates;
   std::size_t count = 0;
   double at_center = 0, spread = 0, farthest = 0;
+  const bool whole = is_inside(piece, domain);
   for (std::size_t i = 0; i <= polygon.count; ++i) {
     const Vec3& p = i < polygon.count ? polygon.corners[i] : center;
-    const auto closest = to.closest(p);
-    const double d = closest ? std::sqrt(closest->squared_distance) : kInfinity;
+    const bool known = whole && i < 3 && piece.closest[i].distance >= 0;
+    const Closest closest = known ? piece.closest[i] : find_closest(to, p);
+    const double d = closest.distance;
     if (i == 0 || d > result.lower) {
       result.lower = d;
       result.worst = p;
@@ -82,9 +102,10 @@ Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optio
     if (i == polygon.count) at_center = d;
     farthest = std::max(farthest, d);
     spread = std::max(spread, distance(p, center));
-    if (closest && std::find(candidates.begin(), candidates.begin() + count, closest->triangle) ==
-                       candidates.begin() + count) {
-      candidates[count++] = closest->triangle;
+    const auto last = candidates.begin() + count;
+    if (closest.triangle != ClosestPointTree::kNoTriangle &&
+        std::find(candidates.begin(), last, closest.triangle) == last) {
+      candidates[count++] = closest.triangle;
     }
   }
   result.upper = at_center + spread;
@@ -103,18 +124,20 @@ Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optio
 
 void divide(const Piece& piece, std::vector<Piece>& out) {
   const auto& c = piece.corners;
+  const auto& known = piece.closest;
   const Vec3 ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), ca = 0.5 * (c[2] + c[0]);
-  out.push_back({{c[0], ab, ca}, piece.triangle});
-  out.push_back({{ab, c[1], bc}, piece.triangle});
-  out.push_back({{ca, bc, c[2]}, piece.triangle});
-  out.push_back({{ab, bc, ca}, piece.triangle});
+  out.push_back({{c[0], ab, ca}, {known[0], {}, {}}, piece.triangle});
+  out.push_back({{ab, c[1], bc}, {Closest{}, known[1], {}}, piece.triangle});
+  out.push_back({{ca, bc, c[2]}, {Closest{}, {}, known[2]}, piece.triangle});
+  out.push_back({{ab, bc, ca}, {}, piece.triangle});
 }
 
 }  // namespace
 
 DistanceBound directed_distance_bound(std::span<const Vec3> points,
                                       std::span<const ClosestPointTree::Triangle> triangles,
-                                      const ClosestPointTree& to, const HausdorffOptions& options) {
+                                      const ClosestPointTree& to, const HausdorffOptions& options,
+                                      const Progress& progress) {
   DistanceBound bound;
   bound.triangle_upper.assign(triangles.size(), 0.0);
   if (to.empty()) {
@@ -123,17 +146,28 @@ DistanceBound directed_distance_bound(std::span<const Vec3> points,
     return bound;
   }
   const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
+  // Asks for cancellation every so many of the work's items.
+  const auto in_blocks = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+    constexpr std::size_t kBlock = std::size_t{1} << 17;
+    for (std::size_t first = 0; first < count; first += kBlock) {
+      progress.check();
+      parallel_for(std::min(kBlock, count - first), 256, [&](std::size_t i) { work(first + i); });
+    }
+  };
+  std::vector<Closest> of_points(points.size());
+  in_blocks(points.size(), [&](std::size_t i) { of_points[i] = find_closest(to, points[i]); });
   std::vector<Piece> pieces, next;
+  pieces.reserve(triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const auto& v = triangles[t];
-    pieces.push_back({{points[v[0]], points[v[1]], points[v[2]]}, t});
+    pieces.push_back(
+        {{points[v[0]], points[v[1]], points[v[2]]}, {of_points[v[0]], of_points[v[1]], of_points[v[2]]}, t});
   }
   std::size_t measured = 0;
   std::vector<Measure> measures;
   while (!pieces.empty()) {
     measures.assign(pieces.size(), {});
-    parallel_for(pieces.size(), 256,
-                 [&](std::size_t i) { measures[i] = measure(pieces[i], to, options.domain); });
+    in_blocks(pieces.size(), [&](std::size_t i) { measures[i] = measure(pieces[i], to, options.domain); });
     measured += pieces.size();
     for (const Measure& m : measures) {
       if (m.lower > bound.lower) bound.lower = m.lower, bound.worst = m.worst;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/geometry/vec3.h"
 #include "interfaces/network/closest_point_tree.h"
 
@@ -37,9 +38,10 @@ struct DistanceBound {
 /// Bounds the distance of the triangles from the surface in the tree. The distance to one triangle is convex,
 /// so that over a piece it is greatest at a corner; pieces are divided until the least such bound, over
 /// triangles close to the piece, is good enough. Infinite where the tree is empty. The result does not depend
-/// on the number of threads.
+/// on the number of threads. Throws Cancelled where `progress` says so.
 DistanceBound directed_distance_bound(std::span<const Vec3> points,
                                       std::span<const ClosestPointTree::Triangle> triangles,
-                                      const ClosestPointTree& to, const HausdorffOptions& options = {});
+                                      const ClosestPointTree& to, const HausdorffOptions& options = {},
+                                      const Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

@@ -43,8 +43,9 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
   const auto measure = [&](double accept, double relative) {
     options.accept = accept;
     options.relative = relative;
-    return std::pair(directed_distance_bound(network.points(), network.triangles(), approximation, options),
-                     directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options));
+    return std::pair(
+        directed_distance_bound(network.points(), network.triangles(), approximation, options, progress_),
+        directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_));
   };
   const auto keep = [&](const std::pair<DistanceBound, DistanceBound>& both, double limit) {
     const auto& [from, to] = both;

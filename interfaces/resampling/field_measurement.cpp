@@ -148,11 +148,7 @@ void Resampler::cells_in_box(const Box3& box, MaterialId material,
     stack.pop_back();
     Box3 bounds;
     for (const VertexId v : hierarchy_.vertices(t)) bounds.extend(hierarchy_.position(v));
-    bool apart = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      apart = apart || bounds.min[axis] > box.max[axis] || bounds.max[axis] < box.min[axis];
-    }
-    if (apart) continue;
+    if (!bounds.touches(box)) continue;
     if (hierarchy_.is_leaf(t)) {
       if (may_hold(t, material)) visit(t);
     } else {
