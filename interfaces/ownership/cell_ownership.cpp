@@ -26,26 +26,25 @@ struct Knowledge {
     return std::binary_search(bodies.begin(), bodies.end(), body);
   }
 
-  void find_bodies(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices) {
+  void merge_bodies(const std::array<const VertexDistances*, 4>& vertices) {
     bodies.clear();
-    for (const VertexDistances* v : vertices) {
-      bodies.push_back(v->body);
-      for (const NearDistance& near : v->near) {
-        const auto& sides = table.sides(near.interface);
-        bodies.insert(bodies.end(), sides.begin(), sides.end());
+    within.clear();
+    std::array<std::vector<BodyId>::const_iterator, 4> next;
+    for (std::size_t v = 0; v < 4; ++v) next[v] = vertices[v]->bodies.begin();
+    while (true) {
+      BodyId least;
+      for (std::size_t v = 0; v < 4; ++v) {
+        if (next[v] != vertices[v]->bodies.end() && (!least.valid() || *next[v] < least)) least = *next[v];
       }
-    }
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    within.assign(bodies.size(), 0);
-    for (std::size_t v = 0; v < 4; ++v) {
-      const auto mark = [&](BodyId body) {
-        within[position(body)] = static_cast<std::uint8_t>(within[position(body)] | 1u << v);
-      };
-      mark(vertices[v]->body);
-      for (const NearDistance& near : vertices[v]->near) {
-        for (const BodyId side : table.sides(near.interface)) mark(side);
+      if (!least.valid()) return;
+      unsigned bits = 0;
+      for (std::size_t v = 0; v < 4; ++v) {
+        if (next[v] == vertices[v]->bodies.end() || *next[v] != least) continue;
+        bits |= 1u << v;
+        ++next[v];
       }
+      bodies.push_back(least);
+      within.push_back(static_cast<std::uint8_t>(bits));
     }
   }
 
@@ -75,6 +74,18 @@ struct Knowledge {
 
 }  // namespace
 
+void find_bodies(const InterfaceTable& table, VertexDistances& vertex) {
+  auto& bodies = vertex.bodies;
+  bodies.assign(1, vertex.body);
+  for (const NearDistance& near : vertex.near) {
+    const auto& sides = table.sides(near.interface);
+    bodies.insert(bodies.end(), sides.begin(), sides.end());
+  }
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  bodies.shrink_to_fit();
+}
+
 std::size_t CellOwnership::candidate(BodyId body) const {
   const auto& list = problem.candidates;
   const auto found =
@@ -97,7 +108,7 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
     return;
   }
   thread_local Knowledge known;
-  known.find_bodies(table, vertices);
+  known.merge_bodies(vertices);
   known.find_interfaces(table);
   for (std::size_t b = 0, first = 0; b < known.bodies.size(); ++b) {
     // A body without an interface to another known one owns only what is nearest to the vertices inside it.

@@ -21,7 +21,11 @@ struct VertexDistances {
   bool flagged = false;            ///< the body rests on an open border of the input
   double radius = 0;               ///< R: no cell round the vertex has a greater diameter
   std::vector<NearDistance> near;  ///< by interface: those within R
+  std::vector<BodyId> bodies;      ///< ascending: its own, and those of the near interfaces
 };
+
+/// Works out the bodies of a vertex from the rest.
+void find_bodies(const InterfaceTable& table, VertexDistances& vertex);
 
 /// Who owns what of one tetrahedron (SPEC 2.3). The functions of an interface that is near a vertex
 /// interpolate its signed distance there; at a vertex it is far from, a value that does not bind.

@@ -87,6 +87,7 @@ void Resampler::evaluate_vertices(const std::vector<VertexId>& vertices) {
       record.distances.near.push_back({n.interface, rounded(n.signed_distance, record.distances.radius)});
       record.closest.push_back(n.closest);
     }
+    find_bodies(source_.network->table(), record.distances);
   });
 }
 

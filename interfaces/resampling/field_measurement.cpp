@@ -129,12 +129,8 @@ CellView Resampler::view_with_parts(TetrahedronId t) const {
 bool Resampler::may_hold(TetrahedronId t, MaterialId material) const {
   const InterfaceTable& table = source_.network->table();
   for (const VertexId v : hierarchy_.vertices(t)) {
-    const VertexDistances& known = hierarchy_.payload(v).distances;
-    if (table.material(known.body) == material) return true;
-    for (const NearDistance& near : known.near) {
-      for (const BodyId side : table.sides(near.interface)) {
-        if (table.material(side) == material) return true;
-      }
+    for (const BodyId body : hierarchy_.payload(v).distances.bodies) {
+      if (table.material(body) == material) return true;
     }
   }
   return false;
