@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/geometry/triangulate.h"
 
 namespace adamas {
@@ -13,6 +14,7 @@ namespace {
 /// Points nearer to a vertex or an edge than this, in weights, may coincide with others.
 constexpr double kSmallWeight = 1e-9;
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
+constexpr std::size_t kPolygonsAPart = 16384;
 
 std::uint64_t mix(std::uint64_t x) {
   x ^= x >> 30;
@@ -81,14 +83,13 @@ void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const st
 }
 
 std::uint32_t ContactMeshBuilder::point_of(const ContactBuffer::Corner& corner) {
-  const auto [entry, fresh] =
-      point_by_key_.try_emplace(corner.key, static_cast<std::uint32_t>(points_.size()));
+  const auto [point, fresh] = point_by_key_.try_add(corner.key, static_cast<std::uint32_t>(points_.size()));
   if (fresh) {
     points_.push_back(corner.position);
     crowded_.push_back(0);
   }
-  if (corner.crowded) crowded_[entry->second] = 1;
-  return entry->second;
+  if (corner.crowded) crowded_[point] = 1;
+  return point;
 }
 
 void ContactMeshBuilder::append(const ContactBuffer& buffer) {
@@ -131,8 +132,8 @@ void ContactMeshBuilder::order_lines() {
   }
 }
 
-std::vector<std::uint32_t> ContactMeshBuilder::loop_of(const Polygon& polygon) const {
-  std::vector<std::uint32_t> loop;
+void ContactMeshBuilder::find_loop(const Polygon& polygon, std::vector<std::uint32_t>& loop) const {
+  loop.clear();
   for (std::uint32_t c = 0; c < polygon.count; ++c) {
     const std::size_t here = polygon.first + c;
     const std::uint32_t a = corners_[here], b = corners_[polygon.first + (c + 1) % polygon.count];
@@ -148,16 +149,38 @@ std::vector<std::uint32_t> ContactMeshBuilder::loop_of(const Polygon& polygon) c
     if (to < from) std::reverse(loop.begin() + begin, loop.end());
   }
   drop_repeated(loop);
-  return loop;
 }
 
-void ContactMeshBuilder::emit(const Polygon& polygon, const std::vector<std::uint32_t>& loop,
-                              InterfaceMesh& mesh) const {
-  if (loop.empty()) return;
-  triangulate_convex(points_, loop, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    if (a == b || b == c || c == a) return;
-    mesh.triangles.push_back({{a, b, c}, MaterialId(polygon.front), MaterialId(polygon.back)});
+std::vector<ContactMeshBuilder::Loops> ContactMeshBuilder::find_loops() const {
+  std::vector<Loops> parts((polygons_.size() + kPolygonsAPart - 1) / kPolygonsAPart);
+  parallel_chunks(polygons_.size(), kPolygonsAPart, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> loop;
+    for (std::size_t p = begin; p < end; ++p) {
+      find_loop(polygons_[p], loop);
+      parts[begin / kPolygonsAPart].add(loop);
+    }
   });
+  return parts;
+}
+
+std::vector<InterfaceTriangle> ContactMeshBuilder::triangulate(const std::vector<Loops>& parts) const {
+  std::vector<std::vector<InterfaceTriangle>> triangles(parts.size());
+  parallel_for(parts.size(), 1, [&](std::size_t part) {
+    parts[part].for_each([&](std::size_t i, std::span<const std::uint32_t> loop) {
+      const Polygon& polygon = polygons_[part * kPolygonsAPart + i];
+      triangulate_convex(points_, loop, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        if (a == b || b == c || c == a) return;
+        triangles[part].push_back({{a, b, c}, MaterialId(polygon.front), MaterialId(polygon.back)});
+      });
+    });
+  });
+  std::vector<InterfaceTriangle> all;
+  all.reserve(2 * polygons_.size());
+  for (auto& some : triangles) {
+    all.insert(all.end(), some.begin(), some.end());
+    some = {};
+  }
+  return all;
 }
 
 /// Points in the order of their first use.
@@ -180,12 +203,10 @@ InterfaceMesh ContactMeshBuilder::finish() {
   weld_crowded_points();
   point_by_key_.clear();
   InterfaceMesh mesh;
-  mesh.triangles.reserve(2 * polygons_.size());
-  std::vector<std::vector<std::uint32_t>> loops;
-  loops.reserve(polygons_.size());
-  for (const Polygon& polygon : polygons_) loops.push_back(loop_of(polygon));
+  std::vector<Loops> loops = find_loops();
   close_spikes(loops);
-  for (std::size_t p = 0; p < polygons_.size(); ++p) emit(polygons_[p], loops[p], mesh);
+  mesh.triangles = triangulate(loops);
+  loops = {};
   cancel_coinciding(mesh);
   number_points(mesh);
   *this = ContactMeshBuilder(tolerance_);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/data/interface_mesh.h"
+#include "core/geometry/digest_table.h"
 #include "core/geometry/partition.h"
 #include "core/geometry/vec3.h"
 
@@ -25,11 +26,8 @@ class ContactBuffer {
 
  private:
   friend class ContactMeshBuilder;
-  /// A 128-bit digest of the lattice feature a point lies on and of the functions that are equal there.
-  struct Key {
-    std::uint64_t low = 0, high = 0;
-    bool operator==(const Key&) const = default;
-  };
+  /// A digest of the lattice feature a point lies on and of the functions that are equal there.
+  using Key = DigestTable::Digest;
   struct KeyHash {
     std::size_t operator()(const Key& key) const { return key.low; }
   };
@@ -83,19 +81,35 @@ class ContactMeshBuilder {
     }
   };
   using Key = ContactBuffer::Key;
+  /// Loops of consecutive polygons.
+  struct Loops {
+    std::vector<std::uint32_t> corners;
+    std::vector<std::size_t> ends;  ///< of the loops, in `corners`
+
+    void add(const std::vector<std::uint32_t>& loop) {
+      corners.insert(corners.end(), loop.begin(), loop.end());
+      ends.push_back(corners.size());
+    }
+    template <class Visit>
+    void for_each(Visit&& visit) const {
+      for (std::size_t i = 0, begin = 0; i < ends.size(); begin = ends[i++])
+        visit(i, std::span(corners).subspan(begin, ends[i] - begin));
+    }
+  };
 
   std::uint32_t point_of(const ContactBuffer::Corner& corner);
   void order_lines();
   void weld_crowded_points();
   /// Welded corners of a polygon and the points that its edges pass; empty where none is left.
-  [[nodiscard]] std::vector<std::uint32_t> loop_of(const Polygon& polygon) const;
+  void find_loop(const Polygon& polygon, std::vector<std::uint32_t>& loop) const;
+  [[nodiscard]] std::vector<Loops> find_loops() const;
   static void drop_repeated(std::vector<std::uint32_t>& loop);
   /// Whether p lies on the edge from a to b, away from its ends.
   [[nodiscard]] bool passes(std::uint32_t a, std::uint32_t b, std::uint32_t p) const;
   /// Where a loop turns back on itself, divides the longer edge, of all loops, at the end of the shorter one:
   /// so that parts of loops that have no area become nothing.
-  void close_spikes(std::vector<std::vector<std::uint32_t>>& loops) const;
-  void emit(const Polygon& polygon, const std::vector<std::uint32_t>& loop, InterfaceMesh& mesh) const;
+  void close_spikes(std::vector<Loops>& parts) const;
+  [[nodiscard]] std::vector<InterfaceTriangle> triangulate(const std::vector<Loops>& parts) const;
   void cancel_coinciding(InterfaceMesh& mesh) const;
   void number_points(InterfaceMesh& mesh) const;
 
@@ -106,7 +120,7 @@ class ContactMeshBuilder {
   std::vector<std::uint32_t> corners_;
   std::vector<Key> leaving_;
   std::vector<Polygon> polygons_;
-  std::unordered_map<Key, std::uint32_t, ContactBuffer::KeyHash> point_by_key_;
+  DigestTable point_by_key_;
   std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< those with crowded edges
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/parallel.h"
 #include "core/geometry/contact_mesh.h"
 
 namespace adamas {
@@ -70,33 +71,42 @@ bool ContactMeshBuilder::passes(std::uint32_t a, std::uint32_t b, std::uint32_t 
          squared_norm(cross(offset, along)) <= tolerance_ * tolerance_ * length * length;
 }
 
-void ContactMeshBuilder::close_spikes(std::vector<std::vector<std::uint32_t>>& loops) const {
+void ContactMeshBuilder::close_spikes(std::vector<Loops>& parts) const {
   // Each round makes edges shorter; the bound is for what round-off may do.
   constexpr int kMostRounds = 64;
+  using Passed = std::pair<std::uint64_t, std::uint32_t>;  // an edge, and a point that it passes
   const auto edge = [](std::uint32_t a, std::uint32_t b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
   };
   for (int round = 0; round < kMostRounds; ++round) {
+    std::vector<std::vector<Passed>> found(parts.size());
+    parallel_for(parts.size(), 1, [&](std::size_t part) {
+      parts[part].for_each([&](std::size_t, std::span<const std::uint32_t> loop) {
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+          const std::uint32_t a = loop[i], tip = loop[(i + 1) % loop.size()], b = loop[(i + 2) % loop.size()];
+          if (passes(a, tip, b)) found[part].emplace_back(edge(a, tip), b);
+          if (passes(tip, b, a)) found[part].emplace_back(edge(tip, b), a);
+        }
+      });
+    });
     std::unordered_map<std::uint64_t, std::uint32_t> passed;
-    for (const auto& loop : loops) {
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const std::uint32_t a = loop[i], tip = loop[(i + 1) % loop.size()], b = loop[(i + 2) % loop.size()];
-        if (passes(a, tip, b)) passed.try_emplace(edge(a, tip), b);
-        if (passes(tip, b, a)) passed.try_emplace(edge(tip, b), a);
-      }
-    }
+    for (const auto& some : found) passed.insert(some.begin(), some.end());
     if (passed.empty()) return;
-    for (auto& loop : loops) {
+    for (Loops& part : parts) {
+      Loops divided;
       std::vector<std::uint32_t> longer;
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-        longer.push_back(a);
-        if (const auto found = passed.find(edge(a, b)); found != passed.end())
-          longer.push_back(found->second);
-      }
-      if (longer.size() == loop.size()) continue;
-      loop = std::move(longer);
-      drop_repeated(loop);
+      part.for_each([&](std::size_t, std::span<const std::uint32_t> loop) {
+        longer.clear();
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+          const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+          longer.push_back(a);
+          if (const auto point = passed.find(edge(a, b)); point != passed.end())
+            longer.push_back(point->second);
+        }
+        if (longer.size() != loop.size()) drop_repeated(longer);
+        divided.add(longer);
+      });
+      part = std::move(divided);
     }
   }
 }
