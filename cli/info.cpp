@@ -57,27 +57,6 @@ void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
   if (rows.size() > 1) console.table(rows);
 }
 
-/// Volumes of the materials as their fractions or labels say.
-IdVector<MaterialId, double> volumes(const MultiMaterialData& data) {
-  IdVector<MaterialId, double> result(data.materials.size(), 0.0);
-  std::size_t site = 0;
-  for (std::size_t k = 0; k < data.grid.sites(2); ++k) {
-    for (std::size_t j = 0; j < data.grid.sites(1); ++j) {
-      for (std::size_t i = 0; i < data.grid.sites(0); ++i, ++site) {
-        const double volume = data.grid.site_volume(i, j, k);
-        if (!data.labels.empty()) {
-          result[MaterialId(data.labels[site])] += volume;
-          continue;
-        }
-        for (MaterialId m(0); m.value < result.size(); ++m.value) {
-          result[m] += volume * static_cast<double>(data.fractions[m][site]);
-        }
-      }
-    }
-  }
-  return result;
-}
-
 void print_volumes(const IdVector<MaterialId, std::string>& names, const IdVector<MaterialId, double>& of,
                    Console& console, Figures& figures) {
   double whole = 0;
@@ -133,7 +112,7 @@ void print_fields(const MultiMaterialData& data, Console& console, Figures& figu
 void print_data(const InputOptions& options, Console& console, Figures& figures) {
   const MultiMaterialData data = load_data(options, console);
   console.print("\n");
-  print_volumes(data.materials, volumes(data), console, figures);
+  print_volumes(data.materials, data.volumes(), console, figures);
   print_fraction_report(data, console);
   if (data.labels.empty()) {
     figures["fraction_sum_min"] = data.report.sum_min;

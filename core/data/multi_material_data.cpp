@@ -65,6 +65,26 @@ void MultiMaterialData::check() const {
   }
 }
 
+IdVector<MaterialId, double> MultiMaterialData::volumes() const {
+  IdVector<MaterialId, double> result(materials.size(), 0.0);
+  std::size_t site = 0;
+  for (std::size_t k = 0; k < grid.sites(2); ++k) {
+    for (std::size_t j = 0; j < grid.sites(1); ++j) {
+      for (std::size_t i = 0; i < grid.sites(0); ++i, ++site) {
+        const double volume = grid.site_volume(i, j, k);
+        if (!labels.empty()) {
+          result[MaterialId(labels[site])] += volume;
+          continue;
+        }
+        for (MaterialId m(0); m.value < result.size(); ++m.value) {
+          result[m] += volume * static_cast<double>(fractions[m][site]);
+        }
+      }
+    }
+  }
+  return result;
+}
+
 void MultiMaterialData::normalise(double tolerance) {
   if (!labels.empty()) return;
   report = {};

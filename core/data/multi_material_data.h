@@ -52,6 +52,9 @@ struct MultiMaterialData {
   /// naming the source, at NaN, at sites whose fractions are all zero, and where sums are off by more than
   /// `tolerance`.
   void normalise(double tolerance = 0.05);
+  /// The volume of each material, as the fractions or labels say, in the cube of the unit of length.
+  [[nodiscard]] IdVector<MaterialId, double> volumes() const;
+
   /// Throws Error that names the first array whose length is not that of the grid, a grid without volume,
   /// unsorted or non-finite nodes, non-finite field values, no material.
   void check() const;

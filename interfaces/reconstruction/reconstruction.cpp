@@ -68,22 +68,7 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress
     t.back = body_materials_[bodies_.back()[1]];
   }
 
-  volume_input_.assign(data.materials.size(), 0);
-  std::size_t site = 0;
-  for (std::size_t k = 0; k < data.grid.sites(2); ++k) {
-    for (std::size_t j = 0; j < data.grid.sites(1); ++j) {
-      for (std::size_t i = 0; i < data.grid.sites(0); ++i, ++site) {
-        const double volume = data.grid.site_volume(i, j, k);
-        if (!data.labels.empty()) {
-          volume_input_[MaterialId(data.labels[site])] += volume;
-          continue;
-        }
-        for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
-          volume_input_[m] += volume * static_cast<double>(data.fractions[m][site]);
-        }
-      }
-    }
-  }
+  volume_input_ = data.volumes();
 }
 
 void Reconstruction::extract_layer(std::uint32_t k, Layer& layer) const {
