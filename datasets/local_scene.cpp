@@ -30,7 +30,7 @@ void LocalScene::restrict_to(const LocalScene& parent, const Box3& box) {
   }
   double best_low = -std::numeric_limits<double>::infinity();
   const auto least = [this](const SceneCandidate& candidate) {
-    ValueRange range{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    FunctionRange range{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (const std::uint32_t index : candidate.functions) {
       range.low = std::min(range.low, ranges_[index].low);
       range.high = std::min(range.high, ranges_[index].high);

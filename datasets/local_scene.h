@@ -40,7 +40,7 @@ class LocalScene {
   std::vector<SceneCandidate> pool_;  // the first count_ are in use; the others keep their memory
   std::size_t count_ = 0;
   std::vector<std::uint32_t> functions_;
-  std::vector<ValueRange> ranges_;  // by function, valid for functions in use
+  std::vector<FunctionRange> ranges_;  // by function, valid for functions in use
   bool linear_ = true;
 };
 

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "datasets/random_numbers.h"
+#include "datasets/shortest_side.h"
 
 namespace adamas {
 
@@ -19,11 +20,6 @@ constexpr double kLeastCap = 0.003, kGreatestCap = 0.012;
 
 /// Where all functions are positive.
 using Shape = std::vector<SceneFunction>;
-
-double shortest_side(const Box3& box) {
-  const Vec3 size = box.size();
-  return std::min({size.x, size.y, size.z});
-}
 
 class ShapeMaker {
  public:

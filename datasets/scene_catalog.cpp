@@ -7,6 +7,7 @@
 #include "datasets/random_numbers.h"
 #include "datasets/random_scene.h"
 #include "datasets/scene.h"
+#include "datasets/shortest_side.h"
 
 namespace adamas {
 
@@ -22,11 +23,6 @@ SceneDescription describe(std::string_view name, const Box3& box, std::vector<st
   d.box = box;
   d.materials.assign(materials.begin(), materials.end());
   return d;
-}
-
-double shortest_side(const Box3& box) {
-  const Vec3 size = box.size();
-  return std::min({size.x, size.y, size.z});
 }
 
 double ball_volume(double radius) { return 4.0 / 3 * pi * radius * radius * radius; }

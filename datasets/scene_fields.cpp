@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <numbers>
 
 #include "core/base/error.h"
 #include "datasets/scene.h"
+#include "datasets/shortest_side.h"
 
 namespace adamas {
 
@@ -11,11 +13,6 @@ namespace {
 // side, which keeps a jump at every interface.
 constexpr double kJump = 10;
 constexpr double kSlope = 2;
-
-double shortest_side(const Box3& box) {
-  const Vec3 size = box.size();
-  return std::min({size.x, size.y, size.z});
-}
 
 double level(MaterialId m) { return kJump * (1 + static_cast<double>(m.value)); }
 

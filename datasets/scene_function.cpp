@@ -6,7 +6,7 @@ namespace adamas {
 
 namespace {
 
-ValueRange linear_range(const SceneFunction& f, const Box3& box) {
+FunctionRange linear_range(const SceneFunction& f, const Box3& box) {
   const Vec3 half = 0.5 * box.size();
   const double middle = f.value(box.center());
   double reach = 0;
@@ -14,7 +14,7 @@ ValueRange linear_range(const SceneFunction& f, const Box3& box) {
   return {middle - reach, middle + reach};
 }
 
-ValueRange sphere_range(const SceneFunction& f, const Box3& box) {
+FunctionRange sphere_range(const SceneFunction& f, const Box3& box) {
   double nearest = 0, farthest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double below = box.min[axis] - f.center[axis], above = f.center[axis] - box.max[axis];
@@ -28,7 +28,7 @@ ValueRange sphere_range(const SceneFunction& f, const Box3& box) {
 
 }  // namespace
 
-ValueRange SceneFunction::range(const Box3& box) const {
+FunctionRange SceneFunction::range(const Box3& box) const {
   return is_linear() ? linear_range(*this, box) : sphere_range(*this, box);
 }
 

@@ -7,7 +7,7 @@
 namespace adamas {
 
 /// Least and greatest value of a function over a box.
-struct ValueRange {
+struct FunctionRange {
   double low = 0, high = 0;
 };
 
@@ -55,7 +55,7 @@ struct SceneFunction {
   /// |f(p) - f(q)| <= lipschitz() |p - q|.
   [[nodiscard]] double lipschitz() const { return is_linear() ? norm(gradient) : std::abs(slope); }
   /// Exact range over a box, to round-off.
-  [[nodiscard]] ValueRange range(const Box3& box) const;
+  [[nodiscard]] FunctionRange range(const Box3& box) const;
 
   bool operator==(const SceneFunction&) const = default;
 };

@@ -8,7 +8,6 @@ namespace adamas {
 
 namespace {
 
-constexpr double kRoundOff = 1e-12;
 constexpr int kGreatestDepth = 8;
 constexpr double kGibibyte = 1024.0 * 1024 * 1024;
 
@@ -58,11 +57,20 @@ class Sampler {
   }
 
   void set(std::size_t site, const std::vector<double>& fractions) {
+    double kept = 0;
+    for (const double f : fractions) kept += is_trace(f) ? 0 : f;
     for (std::size_t m = 0; m < fractions.size(); ++m) {
       data_.fractions[MaterialId(m)][site] =
-          fractions[m] < kRoundOff ? 0.0f : static_cast<float>(fractions[m]);
+          is_trace(fractions[m]) ? 0.0f : static_cast<float>(fractions[m] / kept);
     }
-    if (data_.fields.empty()) return;
+    if (!data_.fields.empty()) set_fields(site, fractions);
+  }
+
+ private:
+  /// With room for the rounding to float: normalise() shall find nothing to mend.
+  static bool is_trace(double fraction) { return fraction < 1.001 * static_cast<double>(kFractionTrace); }
+
+  void set_fields(std::size_t site, const std::vector<double>& fractions) {
     const RectilinearGrid& grid = data_.grid;
     const std::size_t nx = grid.sites(0), ny = grid.sites(1);
     const Vec3 center = grid.site(site % nx, site / nx % ny, site / (nx * ny));
@@ -70,7 +78,7 @@ class Sampler {
     for (std::size_t f = 0; f < fields.size(); ++f) {
       double sum = 0, weights = 0;
       for (MaterialId m(0); m.value < fractions.size(); ++m.value) {
-        if (fractions[m.value] < kRoundOff) continue;
+        if (is_trace(fractions[m.value])) continue;
         const double value = scene_.field(fields[f].first, m, center);
         data_.fields[f].material_values[m][site] = static_cast<float>(value);
         sum += fractions[m.value] * value;
@@ -80,7 +88,6 @@ class Sampler {
     }
   }
 
- private:
   const Scene& scene_;
   MultiMaterialData& data_;
 };

@@ -21,9 +21,9 @@ struct SamplingOptions {
 /// Volume fractions of a scene on dims[0] x dims[1] x dims[2] equal cells, and its fields: "constant",
 /// "linear" and "smooth" per material, with the value at the cell's centre wherever the material has a
 /// fraction (zero elsewhere), and "mixed constant", "mixed linear" and "mixed smooth", averaged by volume.
-/// Fractions below 1e-12 are round-off and set to zero. `integral`, where given, receives the volumes before
-/// rounding to float, and their errors. Throws Error for zero dimensions, a depth out of range and more data
-/// than the machine's memory.
+/// Fractions are as normalise() leaves them: those below kFractionTrace are zero. `integral`, where given,
+/// receives the volumes before rounding to float, and their errors. Throws Error for zero dimensions, a depth
+/// out of range and more data than the machine's memory.
 MultiMaterialData sample_scene(const Scene& scene, const std::array<std::size_t, 3>& dims,
                                const SamplingOptions& options = {},
                                Progress& progress = SilentProgress::instance(),

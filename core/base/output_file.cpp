@@ -2,11 +2,26 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <system_error>
 
 #include "core/base/error.h"
 
 namespace adamas {
+
+namespace {
+
+/// A short name: the file's own may be as long as names can be, and outputs of outputs nest. The number tells
+/// those of one process apart.
+std::string temporary_name(const std::filesystem::path& path) {
+  static std::atomic<unsigned> count = 0;
+  constexpr std::size_t kLongestExtension = 32;
+  const std::string extension = path.extension().string();
+  return ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++) +
+         (extension.size() <= kLongestExtension ? extension : "");
+}
+
+}  // namespace
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
@@ -19,7 +34,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (::access(folder.c_str(), W_OK) != 0) {
     fail("{}: expected a writable output folder, found {} read-only", path_.string(), folder.string());
   }
-  temporary_ = folder / (".partial-" + std::to_string(::getpid()) + "-" + path_.filename().string());
+  temporary_ = folder / temporary_name(path_);
 }
 
 OutputFile::~OutputFile() {

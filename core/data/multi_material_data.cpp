@@ -9,7 +9,8 @@ namespace adamas {
 
 namespace {
 
-constexpr float kTrace = 1e-6f;
+/// Sums of fractions that are off by less are right but for the rounding of numbers in files.
+constexpr double kRoundOff = 1e-5;
 
 void check_nodes(const std::string& source, const RectilinearGrid& grid) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -41,6 +42,37 @@ void check_array(const std::string& source, const std::string& name, const std::
   }
 }
 
+void check_labels(const MultiMaterialData& data) {
+  if (!data.fractions.empty()) fail("{}: expected labels or volume fractions, found both", data.source);
+  if (data.labels.size() != data.grid.site_count()) {
+    fail("{}: labels: expected {} values, found {}", data.source, data.grid.site_count(), data.labels.size());
+  }
+  const auto bad = std::find_if(data.labels.begin(), data.labels.end(),
+                                [&](std::uint16_t label) { return label >= data.materials.size(); });
+  if (bad != data.labels.end()) {
+    fail("{}: labels: expected materials below {}, found {} at index {}", data.source, data.materials.size(),
+         *bad, bad - data.labels.begin());
+  }
+}
+
+/// "cell (1, 2, 3)", counted from 0.
+std::string site_name(const RectilinearGrid& grid, std::size_t site) {
+  const std::size_t nx = grid.sites(0), ny = grid.sites(1);
+  return fmt::format("{} ({}, {}, {})", grid.centering == Centering::kCells ? "cell" : "point", site % nx,
+                     site / nx % ny, site / (nx * ny));
+}
+
+/// What may be wrong with fractions whose sum is: their greatest value tells another scale, such as 255 or
+/// percent.
+std::string scale_hint(const MultiMaterialData& data) {
+  float greatest = 0;
+  for (const auto& values : data.fractions) {
+    for (const float v : values) greatest = std::max(greatest, v);
+  }
+  if (greatest > 0.5f && greatest < 2) return {};
+  return fmt::format("; values go up to {:.6g}: are they scaled?", greatest);
+}
+
 }  // namespace
 
 void MultiMaterialData::check() const {
@@ -51,9 +83,7 @@ void MultiMaterialData::check() const {
     fail("{}: expected volume fractions of {} materials, found {}", source, materials.size(),
          fractions.size());
   }
-  if (!labels.empty() && labels.size() != count) {
-    fail("{}: labels: expected {} values, found {}", source, count, labels.size());
-  }
+  if (!labels.empty()) check_labels(*this);
   for (MaterialId m(0); m.value < fractions.size(); ++m.value)
     check_array(source, materials[m], fractions[m], count);
   for (const Field& field : fields) {
@@ -95,24 +125,28 @@ void MultiMaterialData::normalise(double tolerance) {
     for (MaterialId m(0); m.value < fractions.size(); ++m.value) {
       float& f = fractions[m][site];
       if (!std::isfinite(f)) {
-        fail("{}: volume fraction of '{}': expected a number in [0, 1], found {} at index {}", source,
-             materials[m], f, site);
+        fail("{}: volume fraction of '{}': expected a number in [0, 1], found {} in {}", source, materials[m],
+             f, site_name(grid, site));
       }
       sum += static_cast<double>(f);
       if (f < 0) ++report.negative;
-      if (f > 0 && f < kTrace) ++report.traces;
-      if (f < kTrace) f = 0;
+      if (f > 0 && f < kFractionTrace) ++report.traces;
+      if (f < kFractionTrace) f = 0;
     }
     report.sum_min = first ? sum : std::min(report.sum_min, sum);
     report.sum_max = first ? sum : std::max(report.sum_max, sum);
     first = false;
     if (!(std::abs(sum - 1) <= tolerance)) {
-      fail("{}: volume fractions: expected a sum of 1 within {}, found {:.6g} at index {}", source, tolerance,
-           sum, site);
+      fail("{}: volume fractions: expected a sum of 1 within {}, found {:.6g} in {}{}", source, tolerance,
+           sum, site_name(grid, site), scale_hint(*this));
     }
     double kept = 0;
     for (auto& f : fractions) kept += static_cast<double>(f[site]);
-    if (std::abs(kept - 1) > 1e-6) ++report.renormalised;
+    if (!(kept > 0)) {
+      fail("{}: volume fractions: expected a material, found none in {}", source, site_name(grid, site));
+    }
+    if (std::abs(kept - 1) <= static_cast<double>(kFractionTrace)) continue;
+    if (std::abs(kept - 1) > kRoundOff) ++report.renormalised;
     for (auto& f : fractions) f[site] = static_cast<float>(static_cast<double>(f[site]) / kept);
   }
 }

@@ -24,12 +24,15 @@ struct Field {
   [[nodiscard]] bool per_material() const { return values.empty(); }
 };
 
+/// Fractions below it are no material, but what mixing and rounding have left.
+inline constexpr float kFractionTrace = 1e-6f;
+
 /// What was found and mended in volume fractions while reading them.
 struct FractionReport {
   double sum_min = 1, sum_max = 1;  ///< of the sums over materials, before normalisation
   std::size_t negative = 0;         ///< fractions below zero, set to zero
   std::size_t traces = 0;           ///< fractions too small to matter, set to zero
-  std::size_t renormalised = 0;     ///< sites whose fractions did not add up to one
+  std::size_t renormalised = 0;     ///< sites whose fractions did not add up to one, but for round-off
 };
 
 /// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a
@@ -56,7 +59,8 @@ struct MultiMaterialData {
   [[nodiscard]] IdVector<MaterialId, double> volumes() const;
 
   /// Throws Error that names the first array whose length is not that of the grid, a grid without volume,
-  /// unsorted or non-finite nodes, non-finite field values, no material.
+  /// unsorted or non-finite nodes, non-finite field values, no material, labels beyond the materials or
+  /// beside fractions.
   void check() const;
 };
 

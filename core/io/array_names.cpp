@@ -126,6 +126,7 @@ FieldName parse_field_name(const std::string& array, const std::vector<std::stri
     field.material = m;
   }
   if (field.material && field.unit.empty()) field.unit = split_unit(field.name);
+  field.name_with_axis = field.name;
   field.axis = split_axis(field.name);
   return field;
 }

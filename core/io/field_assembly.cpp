@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/io/array_names.h"
@@ -18,37 +19,55 @@ struct Part {
   std::vector<float> values;
 };
 
-/// Joins x, y and z parts of one name and material to vectors; a part that lacks the others keeps its full
-/// name.
-std::vector<Part> join_axes(std::vector<Part> parts) {
-  std::map<std::pair<std::string, std::size_t>, std::array<int, 3>> triples;
-  const auto key = [](const Part& part) {
-    return std::pair(plain_name(part.name.name), part.name.material.value_or(static_cast<std::size_t>(-1)));
-  };
+[[noreturn]] void fail_twice(const std::string& source, const std::string& name) {
+  fail("{}: expected fields of different names, found '{}' twice", source, name);
+}
+
+/// Where the x, y and z part of one name and material are in the list; -1 for what is missing.
+using Triple = std::array<int, 3>;
+using TripleKey = std::pair<std::string, std::size_t>;
+
+TripleKey key_of(const Part& part) {
+  return {plain_name(part.name.name), part.name.material.value_or(static_cast<std::size_t>(-1))};
+}
+
+std::map<TripleKey, Triple> find_triples(const std::string& source, const std::vector<Part>& parts) {
+  std::map<TripleKey, Triple> triples;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!parts[i].name.axis) continue;
-    auto& slots = triples.try_emplace(key(parts[i]), std::array<int, 3>{-1, -1, -1}).first->second;
-    slots[static_cast<std::size_t>(*parts[i].name.axis)] = static_cast<int>(i);
+    Triple& triple = triples.try_emplace(key_of(parts[i]), Triple{-1, -1, -1}).first->second;
+    int& slot = triple[static_cast<std::size_t>(*parts[i].name.axis)];
+    if (slot >= 0) fail_twice(source, parts[i].name.name_with_axis);
+    slot = static_cast<int>(i);
   }
+  return triples;
+}
+
+Part join(const std::vector<Part>& parts, const Triple& triple, const FieldName& name) {
+  Part vector{name, 3, {}};
+  vector.values.resize(parts[static_cast<std::size_t>(triple[0])].values.size() * 3);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& values = parts[static_cast<std::size_t>(triple[axis])].values;
+    for (std::size_t site = 0; site < values.size(); ++site) vector.values[3 * site + axis] = values[site];
+  }
+  return vector;
+}
+
+/// Joins x, y and z parts of one name and material to vectors; a part that lacks the others keeps its full
+/// name.
+std::vector<Part> join_axes(const std::string& source, std::vector<Part> parts) {
+  const auto triples = find_triples(source, parts);
   std::vector<Part> result;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part& part = parts[i];
     if (part.name.axis) {
-      const auto& slots = triples.at(key(part));
-      const bool whole = std::all_of(slots.begin(), slots.end(), [](int slot) { return slot >= 0; });
-      if (whole) {
-        const int first = *std::min_element(slots.begin(), slots.end());
-        if (static_cast<int>(i) != first) continue;
-        Part vector{part.name, 3, std::vector<float>(part.values.size() * 3)};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const auto& values = parts[static_cast<std::size_t>(slots[axis])].values;
-          for (std::size_t site = 0; site < values.size(); ++site)
-            vector.values[3 * site + axis] = values[site];
-        }
-        result.push_back(std::move(vector));
+      const Triple& triple = triples.at(key_of(part));
+      const int first = *std::min_element(triple.begin(), triple.end());
+      if (first >= 0) {
+        if (static_cast<int>(i) == first) result.push_back(join(parts, triple, part.name));
         continue;
       }
-      part.name.name = std::string(1, "XYZ"[*part.name.axis]) + " " + part.name.name;
+      part.name.name = part.name.name_with_axis;
     }
     result.push_back(std::move(part));
   }
@@ -74,6 +93,14 @@ Field& field_for(const Part& part, MultiMaterialData& data) {
   return data.fields.back();
 }
 
+/// Fields are asked for by name: of two of one name the second would never be seen again.
+void check_names(const MultiMaterialData& data) {
+  std::set<std::string> names;
+  for (const Field& field : data.fields) {
+    if (!names.insert(field.name).second) fail_twice(data.source, field.name);
+  }
+}
+
 template <class T>
 std::vector<T> cropped(const std::vector<T>& values, const RectilinearGrid& grid,
                        const std::array<std::size_t, 3>& begin, const std::array<std::size_t, 3>& end) {
@@ -97,7 +124,7 @@ void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data) {
   for (GridArray& array : arrays) {
     Part part{parse_field_name(array.name, data.materials), array.components, {}};
     if (array.components != 1 && part.name.axis) {
-      part.name.name = std::string(1, "XYZ"[*part.name.axis]) + " " + part.name.name;
+      part.name.name = part.name.name_with_axis;
       part.name.axis.reset();
     }
     const RectilinearGrid from{data.grid.nodes, array.centering};
@@ -108,7 +135,7 @@ void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data) {
     }
     parts.push_back(std::move(part));
   }
-  for (Part& part : join_axes(std::move(parts))) {
+  for (Part& part : join_axes(data.source, std::move(parts))) {
     Field& field = field_for(part, data);
     if (part.name.material) {
       field.material_values[MaterialId(*part.name.material)] = std::move(part.values);
@@ -116,6 +143,7 @@ void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data) {
       field.values = std::move(part.values);
     }
   }
+  check_names(data);
 }
 
 void make_intensive(const std::string& name, MultiMaterialData& data) {

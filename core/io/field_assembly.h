@@ -10,7 +10,7 @@ namespace adamas {
 
 /// Turns arrays on `data.grid`'s nodes into fields of the data by their names (parse_field_name): the pieces
 /// of a field per material come together, as do the three parts of a vector; values move to the data's
-/// centering.
+/// centering. Throws Error where two fields have one name.
 void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data);
 
 /// Divides amounts per cell by the volume of their material in the cell. Throws Error where no field has that

@@ -42,8 +42,9 @@ struct GridFile {
 
 /// Reads .vti, .vtr, legacy .vtk, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .tif(f) and the other image
 /// formats of VTK, in a child process (read_in_child). The array of a format that names none is called like
-/// the file. NIfTI values are scaled as their header says; its origin is taken where its axes are those of
-/// space. Throws Error, with the file's name, at anything that is not a whole file of its kind.
+/// the file. NIfTI values are scaled as their header says; axes that are parallel to x, y and z
+/// are exchanged and reversed so that positions are right, and others refused. Throws Error, with the file's
+/// name, at anything that is not a whole file of its kind.
 GridFile read_grid_file(const std::filesystem::path& path);
 
 }  // namespace adamas

@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/io/inflate_stream.h"
@@ -16,6 +17,10 @@ namespace adamas {
 namespace {
 
 using Header = std::map<std::string, std::string>;
+
+bool is_matrix(const std::string& key) {
+  return key == "TransformMatrix" || key == "Rotation" || key == "Orientation";
+}
 
 /// "Key = value" lines up to ElementDataFile, which is always the last; leaves the stream behind that line.
 Header read_header(std::ifstream& stream, const std::string& name) {
@@ -28,7 +33,7 @@ Header read_header(std::ifstream& stream, const std::string& name) {
     std::string key, value;
     std::istringstream(line.substr(0, equal)) >> key;
     std::istringstream(line.substr(equal + 1)) >> std::ws >> value;
-    if (key == "DimSize") value = line.substr(equal + 1);
+    if (key == "DimSize" || is_matrix(key)) value = line.substr(equal + 1);
     header[key] = value;
     if (key == "ElementDataFile") return header;
   }
@@ -97,6 +102,26 @@ void check_meta_image(const std::filesystem::path& path) {
     found = inflate_stream(bytes, name, [](std::string_view) {});
   }
   if (found < expected) fail("{}: expected {} bytes of data, found {}", name, expected, found);
+}
+
+std::optional<std::array<Vec3, 3>> meta_image_directions(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  const Header header = read_header(stream, path.string());
+  const auto found =
+      std::find_if(header.begin(), header.end(), [](const auto& entry) { return is_matrix(entry.first); });
+  if (found == header.end()) return {};
+  std::istringstream text(found->second);
+  std::vector<double> numbers;
+  for (double number = 0; numbers.size() <= 9 && text >> number;) numbers.push_back(number);
+  if (numbers.size() != 4 && numbers.size() != 9) {
+    fail("{}: {}: expected four or nine numbers, found {}", path.string(), found->first, numbers.size());
+  }
+  const std::size_t dimension = numbers.size() == 4 ? 2 : 3;
+  std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    directions[i / dimension][static_cast<int>(i % dimension)] = numbers[i];
+  }
+  return directions;
 }
 
 }  // namespace adamas

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
+
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 
@@ -8,5 +12,9 @@ namespace adamas {
 /// header states or cannot be decompressed, neither of which VTK's reader reports. Images in several files
 /// and in text pass.
 void check_meta_image(const std::filesystem::path& path);
+
+/// The directions of the array's axes that the header states (TransformMatrix), of which VTK's reader knows
+/// nothing; nothing where it states none. Throws Error where they are not four or nine numbers.
+std::optional<std::array<Vec3, 3>> meta_image_directions(const std::filesystem::path& path);
 
 }  // namespace adamas

@@ -1,7 +1,9 @@
 #include "core/io/multi_material_reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/io/array_names.h"
@@ -32,6 +34,15 @@ void check_same_grid(const std::string& name, const GridFile& file, const std::s
       }
     }
   }
+}
+
+/// A name as one word of a command line.
+std::string as_argument(const std::string& name) {
+  const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./:,+").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  return plain ? name : "'" + name + "'";
 }
 
 class Reader {
@@ -76,23 +87,34 @@ class Reader {
     if (!options_.rest.empty()) add_rest();
   }
 
+  /// What write_multi_material_data has written, or else what the user may have meant.
   void read_labels_unasked() {
-    const bool one = main_.arrays.size() == 1;
-    const bool whole = one && main_.arrays[0].integral() && main_.arrays[0].components == 1;
-    if (whole && options_.labels_auto) return read_labels(take(0));
-    if (whole) {
-      fail(
-          "{}: expected volume fractions or labels, found one array of whole numbers, '{}': pass it as "
-          "labels if its "
-          "values name materials, or as the fraction of a material",
-          data_.source, main_.arrays[0].name);
+    for (std::size_t i = 0; i < main_.arrays.size(); ++i) {
+      const GridArray& array = main_.arrays[i];
+      if (array.name == "labels" && array.integral() && array.components == 1 &&
+          !main_.material_names.empty()) {
+        return read_labels(take(i));
+      }
     }
-    fail("{}: expected arrays named \"Volume Fraction for ...\", found {}: name labels or fractions",
-         data_.source, main_.array_names());
+    const bool one = main_.arrays.size() == 1;
+    const std::string name = main_.arrays.empty() ? "ARRAY" : as_argument(main_.arrays[0].name);
+    if (one && main_.arrays[0].integral() && main_.arrays[0].components == 1) {
+      fail(
+          "{}: expected volume fractions or labels, found one array of whole numbers, '{}': pass --labels {} "
+          "if its "
+          "values name materials, or --fraction NAME={} if it is the fraction of a material",
+          data_.source, main_.arrays[0].name, name, name);
+    }
+    fail(
+        "{}: expected arrays named \"Volume Fraction for ...\", found {}: name others by --fraction NAME={}, "
+        "or an "
+        "array of labels by --labels",
+        data_.source, main_.array_names(), name);
   }
 
   GridArray take(std::size_t i) {
     GridArray array = std::move(main_.arrays[i]);
+    taken_.push_back(array.name);
     main_.arrays.erase(main_.arrays.begin() + static_cast<std::ptrdiff_t>(i));
     return array;
   }
@@ -102,6 +124,7 @@ class Reader {
     for (std::size_t i = 0; i < main_.arrays.size(); ++i) {
       if (main_.arrays[i].name == value) return take(i);
     }
+    if (std::find(taken_.begin(), taken_.end(), value) != taken_.end()) fail_used_twice(option, value);
     std::error_code code;
     std::filesystem::path file = value;
     if (!std::filesystem::exists(file, code)) file = path_.parent_path() / value;
@@ -110,6 +133,7 @@ class Reader {
            option, value, main_.array_names());
     }
     if (std::filesystem::equivalent(file, path_, code)) {
+      if (main_.arrays.empty()) fail_used_twice(option, value);
       if (main_.arrays.size() != 1) {
         fail("{}: {}: expected a file of one array, found {}", data_.source, option, main_.array_names());
       }
@@ -122,6 +146,10 @@ class Reader {
       fail("{}: {}: expected a file of one array, found {}", file.string(), option, other.array_names());
     }
     return std::move(other.arrays[0]);
+  }
+
+  [[noreturn]] void fail_used_twice(const std::string& option, const std::string& value) const {
+    fail("{}: {}: expected an array that is not in use, found '{}' used twice", data_.source, option, value);
   }
 
   void require_scalar(const GridArray& array) const {
@@ -218,6 +246,7 @@ class Reader {
   const MaterialDataOptions& options_;
   Progress& progress_;
   GridFile main_;
+  std::vector<std::string> taken_;  // arrays of the main file that have found their use
   MultiMaterialData data_;
 };
 

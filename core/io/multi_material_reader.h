@@ -20,8 +20,9 @@ struct MaterialDataOptions {
   std::vector<std::pair<std::string, std::string>> fractions;
   double fraction_scale = 1;  ///< what a volume fraction of 1 is stored as (255, 100)
   std::string rest;           ///< one more material, of what the others leave of 1
-  std::string labels;         ///< FILE-or-ARRAY of whole numbers that name the material of a site
-  bool labels_auto = false;   ///< a file of one array of whole numbers holds labels
+  /// FILE-or-ARRAY of whole numbers that name the material of a site. Where neither it nor `fractions` is
+  /// given and no array is a volume fraction, an array "labels" of a file with material names is taken.
+  std::string labels;
   /// Further fields: NAME, FILE-or-ARRAY.
   std::vector<std::pair<std::string, std::string>> fields;
   /// Fields, by name, whose values are amounts per cell: they are divided by their material's volume there,

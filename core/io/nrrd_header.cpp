@@ -51,6 +51,7 @@ const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>>& t
       {"short", {"int16", 2}},
       {"short int", {"int16", 2}},
       {"signed short", {"int16", 2}},
+      {"signed short int", {"int16", 2}},
       {"int16", {"int16", 2}},
       {"int16_t", {"int16", 2}},
       {"ushort", {"uint16", 2}},
@@ -68,10 +69,14 @@ const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>>& t
       {"uint32_t", {"uint32", 4}},
       {"longlong", {"int64", 8}},
       {"long long", {"int64", 8}},
+      {"long long int", {"int64", 8}},
+      {"signed long long", {"int64", 8}},
+      {"signed long long int", {"int64", 8}},
       {"int64", {"int64", 8}},
       {"int64_t", {"int64", 8}},
       {"ulonglong", {"uint64", 8}},
       {"unsigned long long", {"uint64", 8}},
+      {"unsigned long long int", {"uint64", 8}},
       {"uint64", {"uint64", 8}},
       {"uint64_t", {"uint64", 8}},
       {"float", {"float32", 4}},
@@ -233,27 +238,33 @@ class Parser {
   }
 
   void set_places() {
-    bool straight = !directions_.empty();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t at = axis + first_;
-      double& spacing = header_.spacing[axis];
-      if (const auto value = entry(spacings_, at)) spacing = std::abs(*value);
-      if (const auto value = entry(mins_, at)) header_.origin[axis] = *value;
-      if (at >= directions_.size()) continue;
-      double squares = 0;
-      for (std::size_t i = 0; i < directions_[at].size(); ++i) {
-        const double component = entry(directions_[at], i).value_or(0);
-        squares += component * component;
-        straight = straight && (i == axis ? component > 0 : component == 0);
-      }
-      spacing = std::sqrt(squares);
+    auto& [directions, origin] = header_.axes;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t at = static_cast<std::size_t>(axis) + first_;
+      const double spacing = entry(spacings_, at).value_or(1);
+      directions[static_cast<std::size_t>(axis)][axis] = spacing != 0 ? spacing : 1;
+      origin[axis] = entry(mins_, at).value_or(0);
     }
-    for (double& spacing : header_.spacing) {
-      if (!(spacing > 0) || !std::isfinite(spacing)) spacing = 1;
+    if (directions_.empty()) return;
+    for (std::size_t axis = 0; axis + first_ < sizes_.size(); ++axis) {
+      directions[axis] = direction(axis + first_);
     }
-    for (std::size_t axis = 0; straight && axis < 3; ++axis) {
-      header_.origin[axis] = entry(origin_, axis).value_or(0);
+    // The third axis of a plane image is across its two.
+    if (sizes_.size() - first_ == 2) directions[2] = normalized(cross(directions[0], directions[1]));
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = entry(origin_, static_cast<std::size_t>(axis)).value_or(0);
     }
+  }
+
+  [[nodiscard]] Vec3 direction(std::size_t at) const {
+    if (at >= directions_.size() || directions_[at].size() < 2 || directions_[at].size() > 3) {
+      fail("{}: expected a space direction of two or three numbers for axis {}, found none", name_, at);
+    }
+    Vec3 result;
+    for (int i = 0; i < 3; ++i) {
+      result[i] = entry(directions_[at], static_cast<std::size_t>(i)).value_or(0);
+    }
+    return result;
   }
 
   std::string_view text_;

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/io/grid_axes.h"
+
 namespace adamas {
 
 enum class NrrdEncoding { kRaw, kGzip, kText };
@@ -17,8 +19,7 @@ struct NrrdHeader {
   std::size_t type_bytes = 0;
   std::array<std::size_t, 3> sizes{1, 1, 1};
   std::size_t components = 1;
-  std::array<double, 3> spacing{1, 1, 1};
-  std::array<double, 3> origin{};  ///< where the axes are those of space; else zero
+  GridAxes axes;  ///< a step along each axis and the place of the first value
   NrrdEncoding encoding = NrrdEncoding::kRaw;
   bool big_endian = false;
   std::string data_file;  ///< empty: the data follow the header

@@ -143,10 +143,11 @@ GridFile read_nrrd(const std::filesystem::path& path) {
   file.kind = "NRRD";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < header.sizes[axis]; ++i) {
-      file.nodes[axis].push_back(header.origin[axis] + static_cast<double>(i) * header.spacing[axis]);
+      file.nodes[axis].push_back(static_cast<double>(i));
     }
   }
   file.arrays.push_back(std::move(array));
+  lay_out(name, header.axes, file);
   return file;
 }
 

@@ -19,9 +19,12 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/base/error.h"
+#include "core/io/grid_axes.h"
 #include "core/io/input_file.h"
+#include "core/io/meta_image_check.h"
 #include "core/io/tiff_reader.h"
 #include "core/io/vtk_messages.h"
 
@@ -109,16 +112,27 @@ void add_arrays(vtkDataSetAttributes& attributes, Centering centering, GridFile&
   }
 }
 
-void add_axes(const std::string& name, vtkImageData& image, GridFile& file) {
-  if (!image.GetDirectionMatrix()->IsIdentity())
-    fail("{}: expected axes along x, y and z, found turned ones", name);
+/// Nodes as distances along the array's axes.
+void add_axes(vtkImageData& image, GridFile& file) {
   const int* extent = image.GetExtent();
   for (int axis = 0; axis < 3; ++axis) {
     auto& nodes = file.nodes[static_cast<std::size_t>(axis)];
     for (int i = extent[2 * axis]; i <= extent[2 * axis + 1]; ++i) {
-      nodes.push_back(image.GetOrigin()[axis] + i * image.GetSpacing()[axis]);
+      nodes.push_back(i * image.GetSpacing()[axis]);
     }
   }
+}
+
+GridAxes axes_of(vtkImageData& image) {
+  GridAxes axes;
+  for (int row = 0; row < 3; ++row) {
+    axes.origin[row] = image.GetOrigin()[row];
+    for (int column = 0; column < 3; ++column) {
+      axes.directions[static_cast<std::size_t>(column)][row] =
+          image.GetDirectionMatrix()->GetElement(row, column);
+    }
+  }
+  return axes;
 }
 
 void add_axes(vtkRectilinearGrid& grid, GridFile& file) {
@@ -131,9 +145,12 @@ void add_axes(vtkRectilinearGrid& grid, GridFile& file) {
   }
 }
 
-void add_data(const std::string& name, vtkDataObject* data, GridFile& file) {
-  if (auto* image = vtkImageData::SafeDownCast(data)) {
-    add_axes(name, *image, file);
+/// `axes`: where those of an image are, if its reader does not say so.
+void add_data(const std::string& name, vtkDataObject* data, GridFile& file,
+              const std::optional<GridAxes>& axes = {}) {
+  auto* image = vtkImageData::SafeDownCast(data);
+  if (image != nullptr) {
+    add_axes(*image, file);
   } else if (auto* grid = vtkRectilinearGrid::SafeDownCast(data)) {
     add_axes(*grid, file);
   } else {
@@ -148,6 +165,7 @@ void add_data(const std::string& name, vtkDataObject* data, GridFile& file) {
   for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i) {
     file.material_names.push_back(names->GetValue(i));
   }
+  if (image != nullptr) lay_out(name, axes.value_or(axes_of(*image)), file);
 }
 
 template <class Reader>
@@ -167,28 +185,30 @@ vtkSmartPointer<vtkDataObject> run_if_readable(const std::string& name, const ch
   return run(*reader, name, messages);
 }
 
-/// The header's scaling, and its origin where the axes of the voxels are those of space.
-void place_nifti(vtkNIFTIImageReader& reader, GridFile& file) {
+void scale_nifti(vtkNIFTIImageReader& reader, GridFile& file) {
   const double slope = reader.GetRescaleSlope(), intercept = reader.GetRescaleIntercept();
-  if (slope != 0 && (slope != 1 || intercept != 0)) {
-    for (GridArray& array : file.arrays) {
-      std::vector<float> values = array.take_floats();
-      for (float& v : values) v = static_cast<float>(slope * static_cast<double>(v) + intercept);
-      array.values = std::move(values);
-    }
+  if (slope == 0 || (slope == 1 && intercept == 0)) return;
+  for (GridArray& array : file.arrays) {
+    std::vector<float> values = array.take_floats();
+    for (float& v : values) v = static_cast<float>(slope * static_cast<double>(v) + intercept);
+    array.values = std::move(values);
   }
+}
+
+/// What the header's matrices say; VTK keeps them apart from the image. They fit its order of slices and
+/// spacing.
+std::optional<GridAxes> nifti_axes(vtkNIFTIImageReader& reader) {
   vtkMatrix4x4* matrix =
       reader.GetSFormMatrix() != nullptr ? reader.GetSFormMatrix() : reader.GetQFormMatrix();
-  if (matrix == nullptr) return;
+  if (matrix == nullptr) return {};
+  GridAxes axes;
   for (int row = 0; row < 3; ++row) {
+    axes.origin[row] = matrix->GetElement(row, 3);
     for (int column = 0; column < 3; ++column) {
-      const double entry = matrix->GetElement(row, column);
-      if (row == column ? !(entry > 0) : std::abs(entry) > 1e-6) return;
+      axes.directions[static_cast<std::size_t>(column)][row] = matrix->GetElement(row, column);
     }
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    for (double& node : file.nodes[static_cast<std::size_t>(axis)]) node += matrix->GetElement(axis, 3);
-  }
+  return axes;
 }
 
 GridFile read_nifti(const std::string& name, const VtkMessages& messages) {
@@ -196,8 +216,23 @@ GridFile read_nifti(const std::string& name, const VtkMessages& messages) {
   file.kind = "NIfTI";
   const auto reader = vtkSmartPointer<vtkNIFTIImageReader>::New();
   if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected NIfTI, found something else", name);
-  add_data(name, run(*reader, name, messages), file);
-  place_nifti(*reader, file);
+  const auto data = run(*reader, name, messages);
+  add_data(name, data, file, nifti_axes(*reader));
+  scale_nifti(*reader, file);
+  return file;
+}
+
+GridFile read_meta_image(const std::filesystem::path& path, const VtkMessages& messages) {
+  GridFile file;
+  file.kind = "MetaImage";
+  const std::string name = path.string();
+  const auto data = run_if_readable<vtkMetaImageReader>(name, "MetaImage", messages);
+  std::optional<GridAxes> axes;
+  if (auto* image = vtkImageData::SafeDownCast(data)) {
+    axes = axes_of(*image);
+    if (const auto directions = meta_image_directions(path)) axes->directions = *directions;
+  }
+  add_data(name, data, file, axes);
   return file;
 }
 
@@ -229,8 +264,7 @@ GridFile read_image(const std::filesystem::path& path, const std::string& extens
   GridFile file;
   vtkSmartPointer<vtkDataObject> data;
   if (extension == ".mhd" || extension == ".mha") {
-    file.kind = "MetaImage";
-    data = run_if_readable<vtkMetaImageReader>(name, "MetaImage", messages);
+    file = read_meta_image(path, messages);
   } else if (extension == ".nii" || extension == ".nii.gz") {
     file = read_nifti(name, messages);
   } else if (extension == ".tif" || extension == ".tiff") {

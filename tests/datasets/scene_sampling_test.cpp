@@ -191,6 +191,16 @@ TEST(SceneSampling, TheSameOnAnyNumberOfThreads) {
   }
 }
 
+TEST(SceneSampling, NothingIsLeftToNormalise) {
+  for (const std::string& name : scene_names()) {
+    MultiMaterialData data = sample_scene(make_scene(name, 3), {9, 8, 7});
+    const auto before = data.fractions;
+    data.normalise();
+    EXPECT_EQ(data.fractions, before) << name;
+    EXPECT_EQ(data.report.negative + data.report.traces + data.report.renormalised, 0u) << name;
+  }
+}
+
 TEST(SceneSampling, BadRequestsAreRefused) {
   const Scene scene = make_scene("sphere");
   EXPECT_THROW(sample_scene(scene, {0, 4, 4}), Error);

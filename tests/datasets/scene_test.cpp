@@ -61,7 +61,7 @@ TEST(Scene, FunctionRangesHoldOverBoxesAndAreReached) {
     SceneFunction f = trial % 2 == 0 ? SceneFunction::linear(random.direction(), corner, 0.1)
                                      : SceneFunction::sphere(random.point({{0, 0, 0}, {1, 1, 1}}), 0.4);
     if (trial % 3 == 0) f = f.negated();
-    const ValueRange range = f.range(box);
+    const FunctionRange range = f.range(box);
     double low = 1e9, high = -1e9;
     for (int i = 0; i <= 20; ++i) {
       for (int j = 0; j <= 20; ++j) {

@@ -268,9 +268,9 @@ TEST(BadInput, OneWholeNumberArraySaysWhatToPass) {
   const auto samples = image_samples(scratch);
   put_bytes(scratch / "a.nrrd", samples[0].bytes);
   const auto message = error_of([&] { read_multi_material_data(scratch / "a.nrrd"); });
-  EXPECT_TRUE(says(message, "found one array of whole numbers, 'a': pass it as labels"));
+  EXPECT_TRUE(says(message, "found one array of whole numbers, 'a': pass --labels a if"));
   MaterialDataOptions options;
-  options.labels_auto = true;
+  options.labels = "a";
   const MultiMaterialData data = read_multi_material_data(scratch / "a.nrrd", options);
   EXPECT_EQ(data.labels.size(), 120u);
   EXPECT_TRUE(std::is_sorted(data.materials.begin(), data.materials.end(),

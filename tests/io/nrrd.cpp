@@ -16,8 +16,8 @@ TEST(NrrdHeader, AxesOfSpaceAndComponents) {
       parse_nrrd_header(kStart + "sizes: 2 3 4\nspacings: 1 nan 0.5\naxis mins: 7 8 9\n\nx", "n");
   EXPECT_EQ(plain.components, 1u) << "a short first axis is one of space";
   EXPECT_EQ(plain.sizes, (std::array<std::size_t, 3>{2, 3, 4}));
-  EXPECT_EQ(plain.spacing, (std::array<double, 3>{1, 1, 0.5}));
-  EXPECT_EQ(plain.origin, (std::array<double, 3>{7, 8, 9}));
+  EXPECT_EQ(plain.axes.directions, (std::array<Vec3, 3>{{{1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}}));
+  EXPECT_EQ(plain.axes.origin, (Vec3{7, 8, 9}));
 
   const NrrdHeader vectors = parse_nrrd_header(kStart +
                                                    "dimension: 4\nsizes: 3 5 6 7\nspace directions: none "
@@ -25,13 +25,35 @@ TEST(NrrdHeader, AxesOfSpaceAndComponents) {
                                                "n");
   EXPECT_EQ(vectors.components, 3u);
   EXPECT_EQ(vectors.sizes, (std::array<std::size_t, 3>{5, 6, 7}));
-  EXPECT_EQ(vectors.spacing, (std::array<double, 3>{2, 3, 4}));
-  EXPECT_EQ(vectors.origin, (std::array<double, 3>{1, 2, -3}));
+  EXPECT_EQ(vectors.axes.directions, (std::array<Vec3, 3>{{{2, 0, 0}, {0, 3, 0}, {0, 0, 4}}}));
+  EXPECT_EQ(vectors.axes.origin, (Vec3{1, 2, -3}));
 
   const NrrdHeader turned = parse_nrrd_header(
       kStart + "sizes: 5 6 7\nspace directions: (-2,0,0) (0,3,4) (0,-4,3)\nspace origin: (1,2,-3)\n\nx", "n");
-  EXPECT_EQ(turned.spacing, (std::array<double, 3>{2, 5, 5}));
-  EXPECT_EQ(turned.origin, (std::array<double, 3>{0, 0, 0}));
+  EXPECT_EQ(turned.axes.directions, (std::array<Vec3, 3>{{{-2, 0, 0}, {0, 3, 4}, {0, -4, 3}}}));
+  EXPECT_EQ(turned.axes.origin, (Vec3{1, 2, -3}));
+}
+
+TEST(NrrdHeader, AllSpellingsOfTypes) {
+  const std::vector<std::pair<const char*, std::vector<const char*>>> spellings{
+      {"int8", {"signed char", "int8", "int8_t"}},
+      {"uint8", {"uchar", "unsigned char", "uint8", "uint8_t"}},
+      {"int16", {"short", "short int", "signed short", "signed short int", "int16", "int16_t"}},
+      {"uint16", {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}},
+      {"int32", {"int", "signed int", "int32", "int32_t"}},
+      {"uint32", {"uint", "unsigned int", "uint32", "uint32_t"}},
+      {"int64",
+       {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64",
+        "int64_t"}},
+      {"uint64", {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"}},
+      {"float32", {"float"}},
+      {"float64", {"double"}}};
+  for (const auto& [type, names] : spellings) {
+    for (const char* name : names) {
+      const std::string text = "NRRD0004\ntype: " + std::string(name) + "\nencoding: raw\nsizes: 1 1 1\n\nx";
+      EXPECT_EQ(parse_nrrd_header(text, "n").type, type) << name;
+    }
+  }
 }
 
 TEST(NrrdHeader, BadHeadersAreNamedWithTheirLine) {

@@ -92,8 +92,9 @@ TEST(RealData, ElectrodeAndItsTiffAgree) {
   ADAMAS_SKIP_WITHOUT(stack);
   ADAMAS_SKIP_WITHOUT(labels);
   MaterialDataOptions options;
-  options.labels_auto = true;
+  options.labels = stack.filename().string();
   const MultiMaterialData tiff = read_multi_material_data(stack, options);
+  options.labels = labels.filename().string();
   const MultiMaterialData nrrd = read_multi_material_data(labels, options);
   EXPECT_EQ(tiff.materials, (IdVector<MaterialId, std::string>{"0", "85", "170"}));
   EXPECT_EQ(nrrd.materials, (IdVector<MaterialId, std::string>{"0", "1", "2"}));
@@ -110,7 +111,7 @@ TEST(RealData, SteelGrains) {
   const auto path = shared_data("derived/labels/al6xn_grains_46x64x68.nrrd");
   ADAMAS_SKIP_WITHOUT(path);
   MaterialDataOptions options;
-  options.labels_auto = true;
+  options.labels = path.filename().string();
   const MultiMaterialData data = read_multi_material_data(path, options);
   EXPECT_EQ(data.materials.size(), 92u);
   EXPECT_NEAR(data.grid.nodes[0][1] - data.grid.nodes[0][0], 3.6, 1e-9);

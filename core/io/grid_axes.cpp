@@ -1,0 +1,103 @@
+#include "core/io/grid_axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace adamas {
+
+namespace {
+
+/// How far off, relative to its length, a parallel direction may be: headers state rotations in single
+/// precision.
+constexpr double kParallel = 1e-4;
+
+/// By axis of space: the axis of the array that is parallel to it, and whether the array runs the other way.
+struct Layout {
+  std::array<std::size_t, 3> source{};
+  std::array<bool, 3> reversed{};
+};
+
+/// By axis of space, the axis of the array that is parallel to it.
+std::array<std::size_t, 3> find_sources(const std::string& name, const GridAxes& axes) {
+  std::array<std::size_t, 3> sources{};
+  std::array<bool, 3> taken{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3& d = axes.directions[a];
+    int along = 0;
+    for (int s = 1; s < 3; ++s) {
+      if (std::abs(d[s]) > std::abs(d[along])) along = s;
+    }
+    const double across = std::abs(d[(along + 1) % 3]) + std::abs(d[(along + 2) % 3]);
+    const auto s = static_cast<std::size_t>(along);
+    if (!(std::abs(d[along]) > 0) || !(across <= kParallel * std::abs(d[along])) || taken[s]) {
+      fail(
+          "{}: expected axes parallel to x, y and z, one to each, found the {} axis along ({:.6g}, {:.6g}, "
+          "{:.6g})",
+          name, std::array{"first", "second", "third"}[a], d.x, d.y, d.z);
+    }
+    taken[s] = true;
+    sources[s] = a;
+  }
+  return sources;
+}
+
+/// The values of an array of `sizes` sites per axis in the order of the axes of space.
+template <class T>
+std::vector<T> rearranged(const std::vector<T>& values, std::size_t components, const Layout& layout,
+                          const std::array<std::size_t, 3>& sizes) {
+  const std::array<std::size_t, 3> stride{1, sizes[0], sizes[0] * sizes[1]};
+  std::array<std::size_t, 3> n{};
+  for (std::size_t s = 0; s < 3; ++s) n[s] = sizes[layout.source[s]];
+  const auto offset = [&](std::size_t s, std::size_t i) {
+    return stride[layout.source[s]] * (layout.reversed[s] ? n[s] - 1 - i : i);
+  };
+  std::vector<T> result;
+  result.reserve(values.size());
+  for (std::size_t k = 0; k < n[2]; ++k) {
+    for (std::size_t j = 0; j < n[1]; ++j) {
+      for (std::size_t i = 0; i < n[0]; ++i) {
+        const std::size_t site = offset(0, i) + offset(1, j) + offset(2, k);
+        for (std::size_t c = 0; c < components; ++c) result.push_back(values[site * components + c]);
+      }
+    }
+  }
+  return result;
+}
+
+void rearrange(GridArray& array, const Layout& layout, const GridFile& file) {
+  std::array<std::size_t, 3> sizes{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t nodes = file.nodes[a].size();
+    sizes[a] = array.centering == Centering::kPoints ? nodes : nodes - std::min<std::size_t>(nodes, 1);
+  }
+  const auto components = static_cast<std::size_t>(std::max(array.components, 0));
+  // An array of another size is an error, which read_grid_file reports.
+  if (array.size() != sizes[0] * sizes[1] * sizes[2] * components) return;
+  std::visit([&](auto& values) { values = rearranged(values, components, layout, sizes); }, array.values);
+}
+
+}  // namespace
+
+void lay_out(const std::string& name, const GridAxes& axes, GridFile& file) {
+  Layout layout{find_sources(name, axes), {}};
+  std::array<std::vector<double>, 3> nodes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto s = static_cast<std::size_t>(axis);
+    const double step = axes.directions[layout.source[s]][axis];
+    for (const double t : file.nodes[layout.source[s]]) nodes[s].push_back(axes.origin[axis] + step * t);
+    // A file may also count backwards by a negative spacing.
+    layout.reversed[s] = !nodes[s].empty() && nodes[s].front() > nodes[s].back();
+    if (layout.reversed[s]) std::reverse(nodes[s].begin(), nodes[s].end());
+  }
+  const bool in_order =
+      layout.source == std::array<std::size_t, 3>{0, 1, 2} &&
+      std::none_of(layout.reversed.begin(), layout.reversed.end(), [](bool r) { return r; });
+  for (GridArray& array : file.arrays) {
+    if (!in_order) rearrange(array, layout, file);
+  }
+  file.nodes = std::move(nodes);
+}
+
+}  // namespace adamas
