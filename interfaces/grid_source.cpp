@@ -13,8 +13,11 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progr
   source.box = data.grid.domain();
   source.materials = data.materials;
   source.volumes = reconstruction->volume_input();
-  source.network = std::make_shared<InterfaceNetwork>(
-      reconstruction->mesh(), source.box, Bodies{reconstruction->bodies(), reconstruction->body_materials()});
+  {
+    const InterfaceMesh mesh = reconstruction->take_mesh();
+    source.network = std::make_shared<InterfaceNetwork>(
+        mesh, source.box, Bodies{reconstruction->take_bodies(), reconstruction->body_materials()});
+  }
   source.body_at = [reconstruction](const Vec3& p, bool* flagged) {
     if (flagged != nullptr) *flagged = false;
     return reconstruction->body_at(p);

@@ -3,8 +3,9 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
+
+#include "core/base/assert.h"
 
 namespace adamas {
 
@@ -15,7 +16,9 @@ struct TypedId {
   std::uint32_t value = kInvalidValue;
 
   constexpr TypedId() = default;
-  constexpr explicit TypedId(std::size_t v) : value(static_cast<std::uint32_t>(v)) {}
+  constexpr explicit TypedId(std::size_t v) : value(static_cast<std::uint32_t>(v)) {
+    ADAMAS_ASSERT(v <= kInvalidValue);
+  }
   [[nodiscard]] constexpr bool valid() const { return value != kInvalidValue; }
   constexpr auto operator<=>(const TypedId&) const = default;
 };
@@ -45,8 +48,3 @@ class IdVector : public std::vector<T> {
 };
 
 }  // namespace adamas
-
-template <class Tag>
-struct std::hash<adamas::TypedId<Tag>> {
-  std::size_t operator()(adamas::TypedId<Tag> id) const noexcept { return id.value * 0x9e3779b97f4a7c15ull; }
-};

@@ -20,13 +20,16 @@ void ContactMeshBuilder::weld_crowded_points() {
     return hash;
   };
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> boxes;
+  const auto first = std::find(crowded_.begin(), crowded_.end(), 1);
+  const Vec3 origin =
+      first == crowded_.end() ? Vec3{} : points_[static_cast<std::size_t>(first - crowded_.begin())];
   for (std::uint32_t p = 0; p < points_.size(); ++p) {
     if (crowded_[p] == 0) continue;
     const Vec3& x = points_[p];
     std::array<std::int64_t, 3> low{}, high{}, own{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      const double scaled = x[axis] / (4 * tolerance_);
+      const double scaled = (x[axis] - origin[axis]) / (4 * tolerance_);
       low[a] = static_cast<std::int64_t>(std::floor(scaled - 0.25));
       high[a] = static_cast<std::int64_t>(std::floor(scaled + 0.25));
       own[a] = static_cast<std::int64_t>(std::floor(scaled));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "core/geometry/partition.h"
 #include "core/geometry/vec3.h"
@@ -18,6 +20,12 @@ struct Tetrahedron {
     slopes[3] = (1 / determinant) * cross(a, b);
     slopes[0] = -(slopes[1] + slopes[2] + slopes[3]);
     volume = determinant / 6;
+    double farthest = 0, steepest = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (int axis = 0; axis < 3; ++axis) farthest = std::max(farthest, std::abs(corners[i][axis]));
+      steepest = std::max(steepest, norm(slopes[i]));
+    }
+    slack = std::max(1e-12, 16 * std::numeric_limits<double>::epsilon() * farthest * steepest);
   }
 
   [[nodiscard]] Weights weights(const Vec3& p) const {
@@ -45,6 +53,8 @@ struct Tetrahedron {
   std::array<Vec3, 4> corners;
   std::array<Vec3, 4> slopes;  ///< gradients of the weights
   double volume;               ///< positive for positive orientation
+  double slack;  ///< weights this little below zero count as inside, so that what lies in a face is in both
+                 ///< cells
 };
 
 /// The part of a triangle inside a tetrahedron, as barycentric weights: a convex polygon of up to seven

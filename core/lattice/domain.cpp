@@ -10,9 +10,9 @@
 namespace adamas {
 namespace {
 
-// Sides beyond these would make the volumes of small tetrahedra vanish or overflow.
-constexpr double kMinSide = 1e-80;
-constexpr double kMaxSide = 1e80;
+// So that products of four lengths neither overflow nor underflow, their rounding errors included.
+constexpr double kMinSide = 1e-50;
+constexpr double kMaxSide = 1e50;
 
 void check_box(const Box3& box) {
   for (int axis = 0; axis < 3; ++axis) {

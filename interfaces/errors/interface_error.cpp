@@ -1,15 +1,17 @@
 #include "interfaces/errors/interface_error.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace adamas {
 
 namespace {
 
-/// A cell that may show more bodies than this is split before its partition is worked out.
+/// A cell that may show more bodies than this is split before its partition is worked out; what lies in it
+/// counts as lost.
 constexpr std::size_t kCrowd = 64;
-/// From this many triangles on, a first look takes every so manyth.
+/// From this many triangles on, a first look takes some of them only.
 constexpr std::size_t kManyTriangles = 256;
 /// Where nothing tells the distance.
 constexpr double kFar = std::numeric_limits<double>::max();
@@ -22,35 +24,42 @@ class Estimator {
         cell_(cell),
         ownership_(ownership),
         diameter_(cell.diameter()),
-        owners_(std::move(owners)) {}
+        owners_(std::move(owners)) {
+    contact_polygons(owners_, contacts_);
+  }
 
   [[nodiscard]] double diameter() const { return diameter_; }
 
-  /// Greatest distance of the given triangles' parts from the cell's interfaces. Before the contacts are
-  /// known, and for interfaces that the cell shows, at most the diameter.
-  double of_triangles(std::span<const std::uint32_t> triangles, std::size_t stride) const {
+  /// Greatest distance of the given triangles' parts from the cell's interfaces, at most the diameter; of one
+  /// triangle in `stride`.
+  [[nodiscard]] double of_triangles(std::span<const std::uint32_t> triangles, std::size_t stride) const {
     double greatest = 0;
-    for (std::size_t i = 0; i < triangles.size(); i += stride) {
-      greatest = std::max(greatest, std::min(diameter_, of_triangle(triangles[i])));
+    for (const std::uint32_t t : triangles) {
+      if (stride > 1 && digest(t) % stride != 0) continue;
+      greatest = std::max(greatest, std::min(diameter_, of_triangle(t)));
       if (greatest >= diameter_) break;
     }
     return greatest;
   }
 
-  /// Greatest distance of the parts of triangles whose interface the cell does not show.
-  double of_hidden_triangles(std::span<const std::uint32_t> triangles) const {
+  /// Greatest distance of the parts of triangles whose interface the cell does not show; what is above
+  /// `enough` may be less than the greatest.
+  [[nodiscard]] double of_hidden_triangles(std::span<const std::uint32_t> triangles, double enough) const {
     double greatest = 0;
+    InterfaceId last;
+    bool hidden = false;
     for (const std::uint32_t t : triangles) {
-      if (!shows(network_.interface_of(t))) greatest = std::max(greatest, of_triangle(t));
+      const InterfaceId id = network_.interface_of(t);
+      if (id != last) hidden = !shows(id), last = id;
+      if (hidden) greatest = std::max(greatest, of_triangle(t));
+      if (greatest > enough) break;
     }
     return greatest;
   }
 
   /// Greatest distance of the cell's interfaces from the input's; between bodies that do not touch in the
-  /// input, from any of its interfaces. Notes which interfaces the cell shows.
-  double of_contacts() {
-    contacts_.clear();
-    contact_polygons(owners_, contacts_);
+  /// input, from any of its interfaces.
+  [[nodiscard]] double of_contacts() const {
     double greatest = 0;
     for (const ContactPolygon& contact : contacts_) {
       const auto id = network_.table().find(BodyId(contact.front), BodyId(contact.back));
@@ -73,6 +82,18 @@ class Estimator {
   }
 
  private:
+  /// The same in whatever order the triangles and their corners are listed.
+  [[nodiscard]] std::uint64_t digest(std::uint32_t triangle) const {
+    std::uint64_t bits = 0;
+    for (const Vec3& p : network_.triangle_corners(triangle)) {
+      std::uint64_t corner = 0;
+      for (const double x : {p.x, p.y, p.z})
+        corner = (corner ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15ull;
+      bits ^= corner;
+    }
+    return bits >> 32;
+  }
+
   [[nodiscard]] double of_triangle(std::uint32_t triangle) const {
     const InterfaceId id = network_.interface_of(triangle);
     const auto known = std::lower_bound(ownership_.interfaces.begin(), ownership_.interfaces.end(), id,
@@ -119,17 +140,21 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
   if (ownership.pure()) return {triangles.empty() ? 0 : diameter, !triangles.empty()};
   OwnershipProblem owners = ownership.problem;
   drop_hopeless(owners);
-  if (owners.candidates.size() > kCrowd && diameter > target) return {diameter, false};
+  if (owners.candidates.size() > kCrowd && diameter > target) return {diameter, !triangles.empty()};
   keep_owners(owners);
   if (triangles.empty() && owners.candidates.size() == 1) return {};
   Estimator estimator(network, cell, ownership, std::move(owners));
   InterfaceError error;
   if (triangles.size() >= kManyTriangles) {
-    error.distance = estimator.of_triangles(triangles, triangles.size() / (kManyTriangles / 4));
-    if (error.distance > target) return error;
+    const std::size_t stride = triangles.size() / (kManyTriangles / 4);
+    error.distance = estimator.of_triangles(triangles, stride);
+    if (error.distance > target) {
+      error.lost = estimator.of_hidden_triangles(triangles, target) > target;
+      return error;
+    }
   }
   error.distance = std::max(estimator.of_triangles(triangles, 1), estimator.of_contacts());
-  double hidden = estimator.of_hidden_triangles(triangles);
+  double hidden = estimator.of_hidden_triangles(triangles, kFar);
   if (hidden > 0 && estimator.diameter() > trusted) hidden = kFar;
   error.lost = hidden > target;
   error.distance = std::max(error.distance, hidden);

@@ -21,21 +21,11 @@ Vec3 closest_on_body(const InterfaceNetwork& network, const Vec3& position, cons
     if (d < least) least = d, best = vertex.closest[i];
   }
   if (least < std::numeric_limits<double>::infinity()) return best;
-  for (const auto& [other, id] : network.table().neighbours(body)) {
-    const auto closest = network.tree(id).closest(position, std::sqrt(least));
-    if (closest && closest->squared_distance < least)
-      least = closest->squared_distance, best = closest->point;
-  }
-  return best;
+  const auto closest = network.closest_of_body(body, position);
+  return closest ? closest->point : position;
 }
 
 }  // namespace
-
-std::optional<GhostMode> parse_ghost_mode(std::string_view name) {
-  if (name == "constant") return GhostMode::kConstant;
-  if (name == "linear") return GhostMode::kLinear;
-  return std::nullopt;
-}
 
 std::span<const double> VertexRecord::row(BodyId body) const {
   const auto found =

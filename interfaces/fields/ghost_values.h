@@ -1,8 +1,6 @@
 #pragma once
 
-#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "interfaces/ownership/cell_ownership.h"
@@ -15,7 +13,6 @@ enum class GhostMode {
   kConstant,  ///< the value at the closest point of the material's interfaces (D 3.5.1)
   kLinear,    ///< that, plus the one-sided gradient there times the offset
 };
-std::optional<GhostMode> parse_ghost_mode(std::string_view name);
 
 /// What the resampled mesh knows at one vertex.
 struct VertexRecord {
@@ -28,7 +25,8 @@ struct VertexRecord {
   };
   std::vector<BodyRow> rows;
 
-  /// The row of a body; of the nearest in number where the body owns no part of any cell round the vertex.
+  /// The row of a body; of the next one by number, or the last, where the body owns no part of any cell round
+  /// the vertex.
   [[nodiscard]] std::span<const double> row(BodyId body) const;
 };
 

@@ -75,6 +75,7 @@ GridFieldSource::GridFieldSource(const MultiMaterialData& data,
     }
   });
   find_mixed_sites();
+  find_stated_fields();
   std::vector<double> row(row_size_);
   std::vector<bool> seen(fields_.size());
   for (const NativeElement& element : elements_) {
@@ -137,6 +138,17 @@ void GridFieldSource::find_mixed_sites() {
   });
 }
 
+void GridFieldSource::find_stated_fields() {
+  stated_somewhere_.resize(fields_.size());
+  parallel_for(fields_.size(), 1, [&](std::size_t f) {
+    stated_somewhere_[f].assign(data_.materials.size(), 0);
+    for (MaterialId m(0); m.value < data_.materials.size(); ++m.value) {
+      for (std::size_t site = 0; site < owner_.size() && stated_somewhere_[f][m] == 0; ++site)
+        stated_somewhere_[f][m] = states(f, m, site) ? 1 : 0;
+    }
+  });
+}
+
 double GridFieldSource::stated(std::size_t field, MaterialId material, std::size_t site,
                                int component) const {
   const Field& f = data_.fields[field];
@@ -162,7 +174,7 @@ void GridFieldSource::site_values(std::size_t field, MaterialId material, const 
       out[static_cast<std::size_t>(c)] = stated(field, material, index(site), c);
     return;
   }
-  std::uint64_t key = material.value * 4096ull + field;
+  std::uint64_t key = material.value * fields_.size() + field;
   for (std::size_t a = 0; a < 3; ++a)
     key = key * static_cast<std::uint64_t>(sites(a) + 2) + static_cast<std::uint64_t>(site[a] + 1);
   auto& shard = cache_->shards[(key * 0x9e3779b97f4a7c15ull) >> 58];
@@ -178,43 +190,70 @@ void GridFieldSource::site_values(std::size_t field, MaterialId material, const 
   shard.rows.try_emplace(key, out.begin(), out.begin() + fields_[field].components);
 }
 
-void GridFieldSource::fit(std::size_t field, MaterialId material, const Site& site,
-                          std::span<double> out) const {
-  const auto components = static_cast<std::size_t>(fields_[field].components);
-  const Vec3 here{coordinate(0, site[0]), coordinate(1, site[1]), coordinate(2, site[2])};
+/// Sites that state values, seen from one that does not.
+struct GridFieldSource::Sample {
   std::vector<Vec3> offsets;
   std::vector<double> values;
-  // A slope along an axis takes sites at two places of it.
   std::array<Site, 2> extent{Site{1 << 30, 1 << 30, 1 << 30}, Site{-1, -1, -1}};
-  const auto enough = [&] {
-    if (offsets.size() < kWanted) return false;
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (sites(a) > 1 && extent[0][a] == extent[1][a]) return false;
-    }
-    return true;
-  };
-  for (std::int32_t reach = 1; reach <= kReach && !enough(); ++reach) {
-    // The shell of sites `reach` steps away.
-    for (std::int32_t dk = -reach; dk <= reach; ++dk) {
-      for (std::int32_t dj = -reach; dj <= reach; ++dj) {
-        const bool face = std::abs(dk) == reach || std::abs(dj) == reach;
-        for (std::int32_t di = -reach; di <= reach; di += face ? 1 : 2 * reach) {
-          const Site other{site[0] + di, site[1] + dj, site[2] + dk};
-          if (!inside(other) || !states(field, material, index(other))) continue;
-          offsets.push_back(Vec3{coordinate(0, other[0]), coordinate(1, other[1]), coordinate(2, other[2])} -
-                            here);
-          for (std::size_t c = 0; c < components; ++c) {
-            values.push_back(stated(field, material, index(other), static_cast<int>(c)));
-          }
-          for (std::size_t a = 0; a < 3; ++a) {
-            extent[0][a] = std::min(extent[0][a], other[a]);
-            extent[1][a] = std::max(extent[1][a], other[a]);
-          }
+};
+
+template <class States>
+void GridFieldSource::add_shell(std::size_t field, MaterialId material, const Site& site, std::int32_t reach,
+                                const States& states, Sample& sample) const {
+  const Vec3 here{coordinate(0, site[0]), coordinate(1, site[1]), coordinate(2, site[2])};
+  for (std::int32_t dk = -reach; dk <= reach; ++dk) {
+    for (std::int32_t dj = -reach; dj <= reach; ++dj) {
+      const bool face = std::abs(dk) == reach || std::abs(dj) == reach;
+      for (std::int32_t di = -reach; di <= reach; di += face ? 1 : 2 * reach) {
+        const Site other{site[0] + di, site[1] + dj, site[2] + dk};
+        if (!inside(other) || !states(index(other))) continue;
+        sample.offsets.push_back(
+            Vec3{coordinate(0, other[0]), coordinate(1, other[1]), coordinate(2, other[2])} - here);
+        for (int c = 0; c < fields_[field].components; ++c)
+          sample.values.push_back(stated(field, material, index(other), c));
+        for (std::size_t a = 0; a < 3; ++a) {
+          sample.extent[0][a] = std::min(sample.extent[0][a], other[a]);
+          sample.extent[1][a] = std::max(sample.extent[1][a], other[a]);
         }
       }
     }
   }
-  fit_linear_at_origin(offsets, values, components, out.subspan(0, components));
+}
+
+void GridFieldSource::fit(std::size_t field, MaterialId material, const Site& site,
+                          std::span<double> out) const {
+  Sample sample;
+  // A slope along an axis takes sites at two places of it.
+  const auto enough = [&] {
+    if (sample.offsets.size() < kWanted) return false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (sites(a) > 1 && sample.extent[0][a] == sample.extent[1][a]) return false;
+    }
+    return true;
+  };
+  const auto own = [&](std::size_t other) { return states(field, material, other); };
+  for (std::int32_t reach = 1; reach <= kReach && !enough(); ++reach)
+    add_shell(field, material, site, reach, own, sample);
+  // In a layer thinner than the sites: what holds some of the material states a mixed field well enough.
+  const bool mixed = !data_.fields[field].per_material();
+  if (sample.offsets.empty() && mixed && !data_.fractions.empty()) {
+    const auto some = [&](std::size_t other) { return data_.fractions[material][other] >= kPresent; };
+    if (inside(site) && some(index(site))) {
+      for (int c = 0; c < fields_[field].components; ++c)
+        out[static_cast<std::size_t>(c)] = stated(field, material, index(site), c);
+      return;
+    }
+    for (std::int32_t reach = 1; reach <= kReach && !enough(); ++reach)
+      add_shell(field, material, site, reach, some, sample);
+  }
+  // Far from all its sites: the nearest.
+  const std::int32_t farthest = std::max({sites(0), sites(1), sites(2)});
+  if (sample.offsets.empty() && stated_somewhere_[field][material] != 0) {
+    for (std::int32_t reach = kReach + 1; reach <= farthest && sample.offsets.empty(); ++reach)
+      add_shell(field, material, site, reach, own, sample);
+  }
+  fit_linear_at_origin(sample.offsets, sample.values, static_cast<std::size_t>(fields_[field].components),
+                       out.subspan(0, static_cast<std::size_t>(fields_[field].components)));
 }
 
 GridFieldSource::Cell GridFieldSource::locate(const Vec3& p) const {

@@ -15,7 +15,8 @@ namespace adamas {
 /// value of its own: of a field per material where its fraction is no trace, of a mixed field where the site
 /// is (nearly) pure. Sites that state none get the weighted least-squares linear fit of the nearest that do,
 /// so that a linear field per material is reproduced exactly up to the interface and to the domain's
-/// boundary.
+/// boundary. A material of which no site near by states a mixed field, as in a thin layer, takes it from
+/// sites that hold some of the material, else from the nearest that states one.
 class GridFieldSource final : public FieldSource {
  public:
   /// `material_at` owns each site's centre: native elements are of that material. `data` must outlive this.
@@ -44,11 +45,17 @@ class GridFieldSource final : public FieldSource {
   [[nodiscard]] bool inside(const Site& s) const;
   [[nodiscard]] std::size_t index(const Site& s) const;
   void find_mixed_sites();
+  void find_stated_fields();
   /// Whether the site states a value of the field for the material.
   [[nodiscard]] bool states(std::size_t field, MaterialId material, std::size_t site) const;
   [[nodiscard]] double stated(std::size_t field, MaterialId material, std::size_t site, int component) const;
   /// Value at a site, stated or fitted; sites one step outside the grid are fitted.
   void site_values(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
+  struct Sample;
+  /// Adds the sites `reach` steps away for which `states` holds.
+  template <class States>
+  void add_shell(std::size_t field, MaterialId material, const Site& site, std::int32_t reach,
+                 const States& states, Sample& sample) const;
   void fit(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
   [[nodiscard]] Cell locate(const Vec3& p) const;
 
@@ -57,6 +64,7 @@ class GridFieldSource final : public FieldSource {
   std::size_t row_size_ = 0;
   std::array<std::vector<double>, 3> coordinates_;  ///< of sites -1, 0, ..., n
   std::vector<std::uint16_t> owner_;
+  std::vector<IdVector<MaterialId, char>> stated_somewhere_;  ///< by field
   std::vector<std::uint8_t> mixed_stated_;  ///< whether a site's values of mixed fields are its owner's
   std::vector<NativeElement> elements_;
   std::unique_ptr<Cache> cache_;

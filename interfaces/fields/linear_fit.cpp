@@ -1,6 +1,8 @@
 #include "interfaces/fields/linear_fit.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace adamas {
@@ -11,6 +13,13 @@ void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<do
     for (double& value : out) value = std::numeric_limits<double>::quiet_NaN();
     return;
   }
+  // Axes are scaled alike, so that flat cells lose no slope.
+  Vec3 scale;
+  for (const Vec3& offset : offsets) {
+    for (int axis = 0; axis < 3; ++axis) scale[axis] = std::max(scale[axis], std::abs(offset[axis]));
+  }
+  for (int axis = 0; axis < 3; ++axis) scale[axis] = scale[axis] > 0 ? 1 / scale[axis] : 1;
+  const auto scaled = [&](const Vec3& d) { return Vec3{d.x * scale.x, d.y * scale.y, d.z * scale.z}; };
   double total = 0;
   Vec3 center;
   std::vector<double> mean(components);
@@ -19,7 +28,7 @@ void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<do
     const double weight = 1 / squared_norm(offsets[i]);
     weights.push_back(weight);
     total += weight;
-    center += weight * offsets[i];
+    center += weight * scaled(offsets[i]);
     for (std::size_t c = 0; c < components; ++c) mean[c] += weight * values[i * components + c];
   }
   center *= 1 / total;
@@ -28,7 +37,7 @@ void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<do
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   Eigen::Matrix3Xd moment = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(components));
   for (std::size_t i = 0; i < offsets.size(); ++i) {
-    const Vec3 d = offsets[i] - center;
+    const Vec3 d = scaled(offsets[i]) - center;
     const Eigen::Vector3d e(d.x, d.y, d.z);
     spread += weights[i] * e * e.transpose();
     for (std::size_t c = 0; c < components; ++c) {

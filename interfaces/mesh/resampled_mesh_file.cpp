@@ -245,7 +245,7 @@ void read_vertices(const Arrays& arrays, const Integers& bodies, std::size_t row
           {InterfaceId(arrays.index(interfaces[near], mesh.table.interface_count(), "vertex interfaces")),
            distances[near]});
     }
-    find_bodies(mesh.table, known);
+    list_known_bodies(mesh.table, known);
     for (std::int32_t i = 0; i < row_counts[v]; ++i, ++row) {
       const auto first = rows.begin() + static_cast<std::ptrdiff_t>(row * row_size);
       mesh.vertices[v].rows.push_back(

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 
 namespace adamas {
@@ -40,7 +40,8 @@ struct Polygon {
   std::array<Vec3, 10> corners;
   std::size_t count = 0;
   void add(const Vec3& p) {
-    if (count < corners.size()) corners[count++] = p;
+    ADAMAS_ASSERT(count < corners.size());
+    corners[count++] = p;
   }
 };
 
@@ -132,6 +133,35 @@ void divide(const Piece& piece, std::vector<Piece>& out) {
   out.push_back({{ab, bc, ca}, {}, piece.triangle});
 }
 
+/// Divides pieces until their bounds are good enough, or `most` of them have been looked at.
+void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const HausdorffOptions& options,
+                  double accept, std::size_t most, const Progress& progress, DistanceBound& bound) {
+  std::vector<Piece> next;
+  std::vector<Measure> measures;
+  for (std::size_t measured = 0; !pieces.empty(); pieces.swap(next)) {
+    progress.check();
+    measures.assign(pieces.size(), {});
+    parallel_for(pieces.size(), 256,
+                 [&](std::size_t i) { measures[i] = measure(pieces[i], to, options.domain); });
+    measured += pieces.size();
+    for (const Measure& m : measures) {
+      if (m.lower > bound.lower) bound.lower = m.lower, bound.worst = m.worst;
+    }
+    next.clear();
+    const bool last = measured + 4 * pieces.size() > most;
+    const double enough = std::max(accept, (1 + options.relative) * bound.lower);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const double upper = measures[i].upper;
+      if (upper <= enough || last) {
+        double& of_triangle = bound.triangle_upper[pieces[i].triangle];
+        of_triangle = std::max(of_triangle, upper);
+      } else {
+        divide(pieces[i], next);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 DistanceBound directed_distance_bound(std::span<const Vec3> points,
@@ -146,45 +176,25 @@ DistanceBound directed_distance_bound(std::span<const Vec3> points,
     return bound;
   }
   const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
-  // Asks for cancellation every so many of the work's items.
-  const auto in_blocks = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
-    constexpr std::size_t kBlock = std::size_t{1} << 17;
-    for (std::size_t first = 0; first < count; first += kBlock) {
-      progress.check();
-      parallel_for(std::min(kBlock, count - first), 256, [&](std::size_t i) { work(first + i); });
-    }
-  };
+  constexpr std::size_t kBlock = std::size_t{1} << 17;
   std::vector<Closest> of_points(points.size());
-  in_blocks(points.size(), [&](std::size_t i) { of_points[i] = find_closest(to, points[i]); });
-  std::vector<Piece> pieces, next;
-  pieces.reserve(triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const auto& v = triangles[t];
-    pieces.push_back(
-        {{points[v[0]], points[v[1]], points[v[2]]}, {of_points[v[0]], of_points[v[1]], of_points[v[2]]}, t});
+  for (std::size_t first = 0; first < points.size(); first += kBlock) {
+    progress.check();
+    parallel_for(std::min(kBlock, points.size() - first), 256,
+                 [&](std::size_t i) { of_points[first + i] = find_closest(to, points[first + i]); });
   }
-  std::size_t measured = 0;
-  std::vector<Measure> measures;
-  while (!pieces.empty()) {
-    measures.assign(pieces.size(), {});
-    in_blocks(pieces.size(), [&](std::size_t i) { measures[i] = measure(pieces[i], to, options.domain); });
-    measured += pieces.size();
-    for (const Measure& m : measures) {
-      if (m.lower > bound.lower) bound.lower = m.lower, bound.worst = m.worst;
+  const double share = static_cast<double>(options.most_pieces) / static_cast<double>(triangles.size());
+  for (std::size_t first = 0; first < triangles.size(); first += kBlock) {
+    std::vector<Piece> pieces;
+    const std::size_t last = std::min(triangles.size(), first + kBlock);
+    for (std::size_t t = first; t < last; ++t) {
+      const auto& v = triangles[t];
+      pieces.push_back({{points[v[0]], points[v[1]], points[v[2]]},
+                        {of_points[v[0]], of_points[v[1]], of_points[v[2]]},
+                        static_cast<std::uint32_t>(t)});
     }
-    next.clear();
-    const bool last = measured + 4 * pieces.size() > options.most_pieces;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const double upper = measures[i].upper;
-      const bool good = upper <= std::max({accept, (1 + options.relative) * bound.lower});
-      if (good || last) {
-        double& of_triangle = bound.triangle_upper[pieces[i].triangle];
-        of_triangle = std::max(of_triangle, upper);
-      } else {
-        divide(pieces[i], next);
-      }
-    }
-    pieces.swap(next);
+    const auto most = static_cast<std::size_t>(share * static_cast<double>(last - first));
+    bound_pieces(std::move(pieces), to, options, accept, most, progress, bound);
   }
   for (const double upper : bound.triangle_upper) bound.upper = std::max(bound.upper, upper);
   return bound;

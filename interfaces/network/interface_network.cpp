@@ -65,7 +65,6 @@ void InterfaceNetwork::group(const InterfaceMesh& mesh, const Bodies& bodies) {
     ++interfaces_.back().count;
     for (const std::uint32_t v : e.points) interfaces_.back().bounds.extend(points_[v]);
     triangles_.push_back(e.points);
-    source_.push_back(e.source);
     interface_of_.push_back(InterfaceId(interfaces_.size() - 1));
     const Vec3 &p = points_[e.points[0]], &q = points_[e.points[1]], &r = points_[e.points[2]];
     normals_.push_back(normalized(cross(q - p, r - p)));
@@ -154,14 +153,11 @@ void InterfaceNetwork::find_flat() {
 void InterfaceNetwork::build_trees() {
   const std::span<const ClosestPointTree::Triangle> all(triangles_);
   tree_ = ClosestPointTree(points_, all);
-  trees_.resize(interfaces_.size());
   std::vector<Box3> boxes;
   for (const Interface& i : interfaces_) boxes.push_back(i.bounds);
   box_tree_ = BoxTree(boxes);
-  if (interfaces_.size() == 1) {
-    trees_[InterfaceId(0)] = tree_;
-    return;
-  }
+  if (interfaces_.size() == 1) return;
+  trees_.resize(interfaces_.size());
   parallel_for(interfaces_.size(), 1, [&](std::size_t i) {
     const Interface& interface = interfaces_[InterfaceId(i)];
     trees_[InterfaceId(i)] = ClosestPointTree(points_, all.subspan(interface.first, interface.count));

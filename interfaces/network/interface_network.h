@@ -63,14 +63,14 @@ class InterfaceNetwork {
   /// Unit normal, towards the lower body; zero for a triangle without area.
   [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
   [[nodiscard]] InterfaceId interface_of(std::uint32_t triangle) const { return interface_of_[triangle]; }
-  /// Number of a triangle in the mesh that the network was made of.
-  [[nodiscard]] std::uint32_t source_triangle(std::uint32_t triangle) const { return source_[triangle]; }
-  /// What find_bodies had to report; zeros where the bodies were given.
+  /// Edges and rays that did not match, as `Bodies` reports them.
   [[nodiscard]] std::size_t inconsistencies() const { return inconsistencies_; }
 
   /// Closest points of the whole network, by number of triangle, and of one interface, by number within it.
   [[nodiscard]] const ClosestPointTree& tree() const { return tree_; }
-  [[nodiscard]] const ClosestPointTree& tree(InterfaceId i) const { return trees_[i]; }
+  [[nodiscard]] const ClosestPointTree& tree(InterfaceId i) const {
+    return trees_.empty() ? tree_ : trees_[i];
+  }
   /// Closest point of all interfaces of a body, by number of triangle; none where it has none so near.
   [[nodiscard]] std::optional<ClosestPoint> closest_of_body(
       BodyId body, const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
@@ -129,7 +129,6 @@ class InterfaceNetwork {
   std::vector<ClosestPointTree::Triangle> triangles_;
   std::vector<Vec3> normals_;
   std::vector<InterfaceId> interface_of_;
-  std::vector<std::uint32_t> source_;
   std::vector<std::uint16_t> borders_;
   InterfaceTable table_;
   IdVector<InterfaceId, Interface> interfaces_;
@@ -137,7 +136,7 @@ class InterfaceNetwork {
   std::vector<std::uint32_t> point_triangles_;
   std::size_t inconsistencies_ = 0;
   ClosestPointTree tree_;
-  IdVector<InterfaceId, ClosestPointTree> trees_;
+  IdVector<InterfaceId, ClosestPointTree> trees_;  ///< empty where there is one interface
   BoxTree box_tree_;
 
   struct VertexTrees;

@@ -191,7 +191,7 @@ std::optional<ClosestPoint> InterfaceNetwork::closest_of_body(BodyId body, const
     // Wider than the bound itself, since squares of roots are not exact.
     const double bound = best ? std::sqrt(best->squared_distance) * (1 + 1e-15) : max_distance;
     if (squared_distance(interfaces_[i].bounds, p) > bound * bound) continue;
-    auto closest = trees_[i].closest(p, bound);
+    auto closest = tree(i).closest(p, bound);
     if (!closest || (best && closest->squared_distance >= best->squared_distance)) continue;
     closest->triangle += interfaces_[i].first;
     best = closest;
@@ -223,7 +223,7 @@ std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, con
                                                               BodyId body, DistanceMode mode) const {
   const Interface& interface = interfaces_[i];
   const bool exact = mode == DistanceMode::kExact;
-  const auto closest = (exact ? trees_[i] : vertex_trees_->trees[i].tree).closest(p, radius);
+  const auto closest = (exact ? tree(i) : vertex_trees_->trees[i].tree).closest(p, radius);
   if (!closest) return std::nullopt;
   std::uint32_t triangle = interface.first + closest->triangle;
   TriangleFeature feature = closest->feature;
@@ -237,7 +237,7 @@ std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, con
   bool border = false;
   if (near_flat(triangle, feature)) {
     thread_local std::vector<Touch> touching;
-    border = find_touching(trees_[i], interface.first, closest->point, kEdgeOfInterface, touching);
+    border = find_touching(tree(i), interface.first, closest->point, kEdgeOfInterface, touching);
     for (const Touch& touch : touching) normal += touch.weight * normals_[touch.triangle];
     normal = normalized(normal);
   } else {

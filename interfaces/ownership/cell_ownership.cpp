@@ -74,7 +74,7 @@ struct Knowledge {
 
 }  // namespace
 
-void find_bodies(const InterfaceTable& table, VertexDistances& vertex) {
+void list_known_bodies(const InterfaceTable& table, VertexDistances& vertex) {
   auto& bodies = vertex.bodies;
   bodies.assign(1, vertex.body);
   for (const NearDistance& near : vertex.near) {

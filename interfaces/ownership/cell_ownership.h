@@ -24,8 +24,8 @@ struct VertexDistances {
   std::vector<BodyId> bodies;      ///< ascending: its own, and those of the near interfaces
 };
 
-/// Works out the bodies of a vertex from the rest.
-void find_bodies(const InterfaceTable& table, VertexDistances& vertex);
+/// Works out `bodies` of a vertex from the rest.
+void list_known_bodies(const InterfaceTable& table, VertexDistances& vertex);
 
 /// Who owns what of one tetrahedron (SPEC 2.3). The functions of an interface that is near a vertex
 /// interpolate its signed distance there; at a vertex it is far from, a value that does not bind.
@@ -37,7 +37,7 @@ struct CellOwnership {
   /// Candidates are bodies, by id, owner = body index. One candidate without functions where the cell lies in
   /// one body.
   OwnershipProblem problem;
-  std::vector<Interface> interfaces;  ///< by id
+  std::vector<Interface> interfaces;  ///< by id; their functions are gone once the problem has been reduced
 
   [[nodiscard]] bool pure() const { return problem.candidates.size() == 1; }
   /// Position of a body among the candidates, or the number of candidates.

@@ -1,8 +1,6 @@
 #include "interfaces/reconstruction/fraction_lattice.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "core/base/error.h"
@@ -82,7 +80,7 @@ void FractionLattice::extend(const MultiMaterialData& data) {
         }
       }
     });
-    labels_ = owner_;
+    of_labels_ = true;
     return;
   }
   fractions_.resize(data.materials.size());
@@ -111,11 +109,11 @@ void FractionLattice::extend(const MultiMaterialData& data) {
       }
     });
   }
-  normalise_boundary();
+  normalise();
   find_owners();
 }
 
-void FractionLattice::normalise_boundary() {
+void FractionLattice::normalise() {
   parallel_for(point_count(), 1 << 16, [&](std::size_t p) {
     double sum = 0;
     for (const auto& f : fractions_) sum += static_cast<double>(f[p]);
@@ -157,12 +155,12 @@ void FractionLattice::ownership(const std::array<std::uint32_t, 4>& corners,
     problem.add_candidate(m.value);
     problem.add_function(values, rank_[m]);
   };
-  if (labels_.empty()) {
+  if (!of_labels_) {
     for (MaterialId m(0); m.value < fractions_.size(); ++m.value) consider(m);
     return;
   }
   std::array<std::uint16_t, 4> labels{};
-  for (std::size_t c = 0; c < 4; ++c) labels[c] = labels_[corners[c]];
+  for (std::size_t c = 0; c < 4; ++c) labels[c] = owner_[corners[c]];
   std::sort(labels.begin(), labels.end());
   for (std::size_t c = 0; c < 4; ++c) {
     if (c == 0 || labels[c] != labels[c - 1]) consider(MaterialId(labels[c]));

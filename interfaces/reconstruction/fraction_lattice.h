@@ -36,16 +36,17 @@ class FractionLattice {
   [[nodiscard]] std::size_t material_count() const { return rank_.size(); }
   /// Fraction of a material at a lattice point.
   [[nodiscard]] float fraction(MaterialId m, std::uint32_t point) const {
-    return labels_.empty() ? fractions_[m][point] : (owner_[point] == m.value ? 1.0f : 0.0f);
+    return !of_labels_ ? fractions_[m][point] : (owner_[point] == m.value ? 1.0f : 0.0f);
   }
   /// Material with the greatest fraction at a lattice point.
   [[nodiscard]] MaterialId owner(std::uint32_t point) const { return MaterialId(owner_[point]); }
   /// Whether one material has the fraction 1 there.
-  [[nodiscard]] bool pure(std::uint32_t point) const { return labels_.size() > 0 || pure_[point]; }
+  [[nodiscard]] bool pure(std::uint32_t point) const { return of_labels_ || pure_[point]; }
 
   /// Corners of a tetrahedron of the lattice cell at `cell`, from the lowest on.
   [[nodiscard]] std::array<Index, 4> tetrahedron(const Index& cell, std::size_t path) const;
-  /// Who owns what of a tetrahedron; materials that own none of it by far are left out. Owners are materials.
+  /// Who owns what of a tetrahedron; materials without any fraction at its corners are left out. Owners are
+  /// materials.
   void ownership(const std::array<std::uint32_t, 4>& corners, OwnershipProblem& problem) const;
   /// The lattice cell, the tetrahedron and the weights of a point; points outside the domain count as the
   /// nearest inside.
@@ -58,14 +59,14 @@ class FractionLattice {
 
  private:
   void extend(const MultiMaterialData& data);
-  void normalise_boundary();
+  void normalise();
   void find_owners();
 
   std::array<std::vector<double>, 3> coordinates_;
   std::array<std::uint32_t, 3> margin_{};     ///< 1 along an axis with extra boundary points
   IdVector<MaterialId, std::uint32_t> rank_;  ///< position in the order of names
   IdVector<MaterialId, std::vector<float>> fractions_;
-  std::vector<std::uint16_t> labels_;  ///< not empty where the data are labels; the same as owner_
+  bool of_labels_ = false;
   std::vector<std::uint16_t> owner_;
   std::vector<bool> pure_;
 };

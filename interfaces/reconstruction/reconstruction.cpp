@@ -149,10 +149,11 @@ Reconstruction::Part Reconstruction::part_in(const FractionLattice::Index& cell,
     if (lattice_.owner(p) == m) return p;
   }
   // A tetrahedron has at most four regions that hold a corner; those that hold none are told apart by the
-  // position of their material among the materials present, which is below 4 but for the most crowded
-  // tetrahedra.
+  // position of their material among those that may own something. More than four such in one tetrahedron,
+  // which hardly comes about, count as one.
   OwnershipProblem problem;
   lattice_.ownership(corners, problem);
+  drop_hopeless(problem);
   std::uint32_t slot = 0;
   for (const auto& candidate : problem.candidates) {
     if (candidate.owner == m.value) break;
@@ -226,6 +227,7 @@ void Reconstruction::number_bodies() {
       body_of_pointless_[part] = body_of_pointless_.at(root);
     }
   }
+  pointless_ = {};
   parent_ = {};
   pointless_parent_ = {};
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -24,7 +25,10 @@ class Reconstruction {
   /// Bodies in front and behind each triangle of the mesh.
   [[nodiscard]] const std::vector<std::array<BodyId, 2>>& bodies() const { return bodies_; }
   [[nodiscard]] const IdVector<BodyId, MaterialId>& body_materials() const { return body_materials_; }
-  /// The body that owns a point; exact.
+  /// The mesh and its triangles' bodies, for those who do not ask again.
+  [[nodiscard]] InterfaceMesh take_mesh() { return std::move(mesh_); }
+  [[nodiscard]] std::vector<std::array<BodyId, 2>> take_bodies() { return std::move(bodies_); }
+  /// The body that owns a point, as the tetrahedron of fractions round it says.
   [[nodiscard]] BodyId body_at(const Vec3& p) const;
   /// Volume of each material as the fractions say and as the interfaces enclose it.
   [[nodiscard]] const IdVector<MaterialId, double>& volume_input() const { return volume_input_; }

@@ -83,11 +83,13 @@ void Resampler::evaluate_vertices(const std::vector<VertexId>& vertices) {
     std::vector<NearInterface> near;
     source_.network->near_interfaces(position, record.distances.radius, record.distances.body, near,
                                      options_.distance);
+    record.distances.near.reserve(near.size());
+    record.closest.reserve(near.size());
     for (const NearInterface& n : near) {
       record.distances.near.push_back({n.interface, rounded(n.signed_distance, record.distances.radius)});
       record.closest.push_back(n.closest);
     }
-    find_bodies(source_.network->table(), record.distances);
+    list_known_bodies(source_.network->table(), record.distances);
   });
 }
 

@@ -47,16 +47,17 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
         directed_distance_bound(network.points(), network.triangles(), approximation, options, progress_),
         directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_));
   };
-  const auto keep = [&](const std::pair<DistanceBound, DistanceBound>& both, double limit) {
+  const auto keep = [&](const std::pair<DistanceBound, DistanceBound>& both) {
     const auto& [from, to] = both;
-    distance_ = InterfaceDistance{std::min(limit, std::max(from.upper, to.upper)),
-                                  std::min(limit, std::max(from.lower, to.lower)), triangles.size()};
+    distance_ =
+        InterfaceDistance{std::max(from.upper, to.upper), std::max(from.lower, to.lower), triangles.size()};
   };
   report("measuring interfaces");
   const auto both = measure(target, kSharp);
-  keep(both, source_.box.diagonal());
+  keep(both);
   if (distance_->upper <= target) {
-    keep(measure(0.01 * target, kTight), target);
+    keep(measure(0.01 * target, kTight));
+    distance_->upper = std::min(distance_->upper, target);
     return {};
   }
   const DistanceBound &from = both.first, &to = both.second;

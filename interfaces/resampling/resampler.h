@@ -35,7 +35,8 @@ struct CellRecord {
   bool evaluated = false;  ///< the triangles and the interface error are up to date
 };
 
-/// Two-sided distance between the input's interfaces and the approximated ones.
+/// Two-sided distance between the input's interfaces and the approximated ones; infinite where there are none
+/// of the latter.
 struct InterfaceDistance {
   double upper = 0;           ///< certified: no point of either is further from the other
   double lower = 0;           ///< attained at some point

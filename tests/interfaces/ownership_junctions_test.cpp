@@ -74,7 +74,7 @@ Wrong measure(const std::array<double, 3>& degrees, int cells) {
       std::vector<NearInterface> near;
       junction.network().near_interfaces(corners[v], distances[v].radius, distances[v].body, near);
       for (const NearInterface& n : near) distances[v].near.push_back({n.interface, n.signed_distance});
-      find_bodies(junction.network().table(), distances[v]);
+      list_known_bodies(junction.network().table(), distances[v]);
     }
     CellOwnership ownership;
     find_cell_ownership(junction.network().table(),
