@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/io/array_names.h"
 #include "core/io/grid_file.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
@@ -17,7 +16,6 @@ namespace {
 
 template <class T>
 void set_range(const std::vector<T>& values, ArraySummary& summary) {
-  summary.count = values.size();
   summary.min = std::numeric_limits<double>::infinity();
   summary.max = -summary.min;
   if constexpr (std::is_arithmetic_v<T>) {
@@ -56,13 +54,11 @@ FileSummary summarize_grid(const std::filesystem::path& path) {
     summary.box.extend(corner(false));
     summary.box.extend(corner(true));
   }
-  summary.materials = file.material_names;
   for (const GridArray& array : file.arrays) {
     ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
                       array.components};
     std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
     summary.arrays.push_back(std::move(item));
-    if (const auto material = fraction_material(array.name)) summary.materials.push_back(*material);
   }
   return summary;
 }
@@ -73,8 +69,6 @@ void add_arrays(const char* of, const std::vector<NamedArray>& arrays, FileSumma
     ArraySummary item{array.name, kTypes.at(array.values.index()), of, array.components};
     std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
     summary.arrays.push_back(std::move(item));
-    const auto* names = std::get_if<std::vector<std::string>>(&array.values);
-    if (names != nullptr && array.name == "material_names") summary.materials = *names;
   }
 }
 
@@ -96,20 +90,16 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 
 FileSummary summarize_file(const std::filesystem::path& path) {
   const std::string extension = file_extension(path);
-  const auto one_of = [&extension](std::initializer_list<const char*> list) {
-    return std::find(list.begin(), list.end(), extension) != list.end();
-  };
-  if (one_of({".vtu", ".vtp"})) return summarize_mesh(path);
+  if (extension == ".vtu" || extension == ".vtp") return summarize_mesh(path);
   FileSummary summary;
-  if (one_of({".arec", ".txt"})) {
+  if (is_network_file(path)) {
     const InterfaceMesh mesh = read_labelled_network(path);
     summary.kind = "labelled network";
     set_points(mesh.points, summary);
     summary.cells = mesh.triangles.size();
-    summary.materials = mesh.materials;
     return summary;
   }
-  if (one_of({".obj", ".off", ".ply", ".stl"})) {
+  if (is_surface_file(path)) {
     const PolygonSoup soup = read_polygon_soup(path);
     summary.kind = "surface";
     set_points(soup.points, summary);

@@ -16,7 +16,6 @@ struct ArraySummary {
   std::string type;  ///< "uint8", "float32", "string"
   std::string of;    ///< "cells", "points" or "mesh"
   int components = 1;
-  std::size_t count = 0;  ///< values in all
   double min = 0, max = 0;
 };
 
@@ -27,7 +26,6 @@ struct FileSummary {
   std::size_t points = 0, cells = 0;   ///< cells: of a grid, tetrahedra, polygons, lines, triangles
   Box3 box;                            ///< of all points
   std::vector<ArraySummary> arrays;
-  std::vector<std::string> materials;  ///< names, where the file itself has them
 };
 
 /// Reads a grid or image (read_grid_file), mesh (.vtu, .vtp), labelled network (.arec, .txt) or surface

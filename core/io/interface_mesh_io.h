@@ -8,6 +8,11 @@
 
 namespace adamas {
 
+/// Whether a file is read as a labelled network (.arec, .txt), or as a surface without labels (.obj, .off,
+/// .ply, .stl), by its extension.
+bool is_network_file(const std::filesystem::path& path);
+bool is_surface_file(const std::filesystem::path& path);
+
 /// Reads a labelled network (LabelledNetwork); `region_names` is an optional file of "LABEL NAME" lines. All
 /// readers here throw Error, with the file's name, at missing, corrupt or truncated files.
 InterfaceMesh read_labelled_network(const std::filesystem::path& path,

@@ -56,7 +56,17 @@ InterfaceMesh from_polygons(const UnstructuredMesh& polygons, const std::string&
   return mesh;
 }
 
+bool has_extension(const std::filesystem::path& path, std::initializer_list<const char*> list) {
+  return std::find(list.begin(), list.end(), file_extension(path)) != list.end();
+}
+
 }  // namespace
+
+bool is_network_file(const std::filesystem::path& path) { return has_extension(path, {".arec", ".txt"}); }
+
+bool is_surface_file(const std::filesystem::path& path) {
+  return has_extension(path, {".obj", ".off", ".ply", ".stl"});
+}
 
 InterfaceMesh read_labelled_network(const std::filesystem::path& path,
                                     const std::filesystem::path& region_names) {

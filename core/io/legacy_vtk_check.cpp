@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 
@@ -22,15 +23,14 @@ std::string lower(std::string text) {
 
 /// Bits of a value; 0 for a type that is not known.
 std::uint64_t type_bits(const std::string& type) {
-  if (type == "bit") return 1;
-  if (type == "char" || type == "unsigned_char" || type == "signed_char") return 8;
-  if (type == "short" || type == "unsigned_short") return 16;
-  if (type == "int" || type == "unsigned_int" || type == "float") return 32;
-  if (type == "long" || type == "unsigned_long" || type == "double" || type == "vtktypeint64" ||
-      type == "vtkidtype") {
-    return type == "vtkidtype" ? 32 : 64;
-  }
-  return 0;
+  static const std::map<std::string, std::uint64_t> kBits{
+      {"bit", 1},         {"char", 8},          {"unsigned_char", 8},
+      {"signed_char", 8}, {"short", 16},        {"unsigned_short", 16},
+      {"int", 32},        {"unsigned_int", 32}, {"float", 32},
+      {"vtkidtype", 32},  {"long", 64},         {"unsigned_long", 64},
+      {"double", 64},     {"vtktypeint64", 64}};
+  const auto found = kBits.find(type);
+  return found != kBits.end() ? found->second : 0;
 }
 
 class Walker {

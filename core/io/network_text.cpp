@@ -5,19 +5,13 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/io/printable.h"
 
 namespace adamas {
 
 namespace {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
-
-/// Printable beginning of what was found, for messages.
-std::string shown(std::string_view word) {
-  std::string text;
-  for (const char c : word.substr(0, 20)) text += c >= ' ' && c <= '~' ? c : '?';
-  return text;
-}
 
 /// Words of a text, with the line they are on.
 class Words {
@@ -48,7 +42,7 @@ class Words {
     T value{};
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (code != std::errc() || end != word.data() + word.size()) {
-      fail("{}: line {}: expected the {}, found '{}'", name_, line_, what, shown(word));
+      fail("{}: line {}: expected the {}, found '{}'", name_, line_, what, printable(word, 20));
     }
     return value;
   }
@@ -70,7 +64,8 @@ class Words {
 
   void expect_end() {
     const std::string_view word = next();
-    if (!word.empty()) fail("{}: line {}: expected the file's end, found '{}'", name_, line_, shown(word));
+    if (!word.empty())
+      fail("{}: line {}: expected the file's end, found '{}'", name_, line_, printable(word, 20));
   }
 
   [[nodiscard]] std::size_t line() const { return line_; }
@@ -135,7 +130,8 @@ std::map<std::int32_t, std::string> parse_region_names(std::string_view text, co
     const bool separated = !label_name.empty() && is_space(label_name[0]);
     while (!label_name.empty() && is_space(label_name.front())) label_name.remove_prefix(1);
     if (code != std::errc() || !separated || label_name.empty()) {
-      fail("{}: line {}: expected a label and its region's name, found '{}'", name, number, shown(line));
+      fail("{}: line {}: expected a label and its region's name, found '{}'", name, number,
+           printable(line, 20));
     }
     if (!names.try_emplace(label, label_name).second) {
       fail("{}: line {}: expected one name for each label, found a second for {}", name, number, label);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/io/printable.h"
 
 namespace adamas {
 
@@ -23,12 +24,6 @@ Words split(std::string_view text, std::string_view separators) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return words;
-}
-
-std::string shown(std::string_view text) {
-  std::string result;
-  for (const char c : text.substr(0, 40)) result += c >= ' ' && c <= '~' ? c : '?';
-  return result;
 }
 
 template <class T>
@@ -117,7 +112,7 @@ class Parser {
   }
 
   [[noreturn]] void fail_field(std::string_view expected, std::string_view found) const {
-    fail("{}: line {}: expected {}, found '{}'", name_, line_, expected, shown(found));
+    fail("{}: line {}: expected {}, found '{}'", name_, line_, expected, printable(found, 40));
   }
 
   void read_line(std::string_view line) {

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "core/base/error.h"
 #include "core/picture/text.h"
 
@@ -45,8 +42,6 @@ tbody tr:hover { background: var(--panel); }
 figure { margin: 1.4rem 0; }
 figure img { display: block; max-width: 100%; height: auto; background: #ffffff; border: 1px solid var(--line); border-radius: .4rem; }
 figcaption { color: var(--soft); font-size: .92rem; margin-top: .5rem; max-width: 52rem; }
-pre { background: var(--panel); border: 1px solid var(--line); border-radius: .4rem; padding: .8rem 1rem; overflow-x: auto;
-  font: .85rem/1.45 ui-monospace, "DejaVu Sans Mono", monospace; }
 @media print { main { padding: 0; } h2 { break-after: avoid; } figure, tr { break-inside: avoid; } nav { display: none; } }
 )css";
 
@@ -104,24 +99,6 @@ void HtmlReport::heading(std::string_view text, int level) {
 
 void HtmlReport::paragraph(std::string_view text) { body_ += fmt::format("<p>{}</p>\n", escaped(text)); }
 
-void HtmlReport::list(const std::vector<std::string>& items) {
-  body_ += "<ul>\n";
-  for (const std::string& item : items) body_ += fmt::format("<li>{}</li>\n", escaped(item));
-  body_ += "</ul>\n";
-}
-
-void HtmlReport::preformatted(std::string_view text) {
-  body_ += "<pre>";
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    body_ += escaped(text.substr(0, end));
-    if (end == std::string_view::npos) break;
-    body_ += '\n';
-    text.remove_prefix(end + 1);
-  }
-  body_ += "</pre>\n";
-}
-
 void HtmlReport::key_figures(const std::vector<KeyFigure>& figures) {
   body_ += "<dl class=\"figures\">\n";
   for (const KeyFigure& figure : figures) {
@@ -162,15 +139,6 @@ void HtmlReport::picture(std::string_view bytes, PictureFormat format, std::stri
   body_ += fmt::format(
       "<figure><img src=\"data:{};base64,{}\" alt=\"{}\">\n<figcaption>Figure {}. {}</figcaption></figure>\n",
       type, base64(bytes), escaped(caption), pictures_, escaped(caption));
-}
-
-void HtmlReport::picture(const std::filesystem::path& path, std::string_view caption) {
-  const PictureFormat format = picture_format(path);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail("{}: expected a picture for the report, found no readable file", path.string());
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (bytes.empty()) fail("{}: expected a picture for the report, found an empty file", path.string());
-  picture(bytes, format, caption);
 }
 
 std::string HtmlReport::html() const {

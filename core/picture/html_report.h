@@ -32,16 +32,11 @@ class HtmlReport {
   /// A section's heading; those of level 2 make the table of contents. Throws Error for a level outside 2..4.
   void heading(std::string_view text, int level = 2);
   void paragraph(std::string_view text);
-  void list(const std::vector<std::string>& items);
-  /// Text as it stands, as a configuration file.
-  void preformatted(std::string_view text);
   void key_figures(const std::vector<KeyFigure>& figures);
   /// Throws Error for a row with more or fewer cells than the header.
   void table(const ReportTable& table);
   /// A picture by the bytes of a PNG or SVG file. Throws Error for PDF.
   void picture(std::string_view bytes, PictureFormat format, std::string_view caption);
-  /// A picture from a .png or .svg file; throws Error when it cannot be read.
-  void picture(const std::filesystem::path& path, std::string_view caption);
 
   [[nodiscard]] std::string html() const;
   /// Through OutputFile; throws Error when the file cannot be written.

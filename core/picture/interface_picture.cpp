@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/picture/axes.h"
@@ -25,16 +26,28 @@ Box3 framed_box(const InterfacePicture& picture) {
   return box;
 }
 
-bool cut_off(const CutAway& cut, const PictureTriangle& triangle) {
-  const Vec3 centroid = (1.0 / 3) * (triangle.points[0] + triangle.points[1] + triangle.points[2]);
-  return dot(centroid - cut.point, cut.normal) > 0;
-}
-
-std::vector<PictureTriangle> kept_triangles(const InterfacePicture& picture) {
-  std::vector<PictureTriangle> kept = picture.triangles;
-  if (picture.cut_away)
-    std::erase_if(kept, [&](const PictureTriangle& t) { return cut_off(*picture.cut_away, t); });
-  return kept;
+/// The legend of the colours that are to be seen, by a picture of half the size.
+std::vector<LegendEntry> visible_materials(const InterfacePicture& picture, const Box3& box,
+                                           const InterfacePictureOptions& options) {
+  const int width = static_cast<int>(options.width / 2), height = static_cast<int>(options.height / 2);
+  Rasteriser rasteriser(Camera(picture.projection, box, picture.direction, width, height), width, height);
+  rasteriser.draw(picture.triangles);
+  std::vector<bool> seen(picture.triangles.size() + 1);  // the last: no triangle
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      seen[std::min<std::size_t>(rasteriser.triangle_at(x, y), picture.triangles.size())] = true;
+    }
+  }
+  std::set<std::array<double, 3>> colours;
+  for (std::size_t i = 0; i < picture.triangles.size(); ++i) {
+    const Colour& c = picture.triangles[i].colour;
+    if (seen[i]) colours.insert({c.r, c.g, c.b});
+  }
+  std::vector<LegendEntry> entries = picture.materials;
+  std::erase_if(entries, [&](const LegendEntry& e) {
+    return e.area && !colours.contains({e.colour.r, e.colour.g, e.colour.b});
+  });
+  return entries;
 }
 
 void draw_box(const Rasteriser& rasteriser, Raster& raster, const Camera& camera, const Box3& box,
@@ -94,7 +107,8 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
         options.width, options.height, options.samples, f);
   }
   Canvas canvas(format, options.width, options.height);
-  const Legend legend(picture.materials, options.width - 2 * kMargin * f, f);
+  const Box3 box = framed_box(picture);
+  const Legend legend(visible_materials(picture, box, options), options.width - 2 * kMargin * f, f);
   const double top = std::ceil((0.5 * kMargin + (picture.title.empty() ? 0 : kTitleHeight)) * f);
   const double bottom = std::ceil(legend.height() + (legend.height() > 0 ? 1.5 : 0.5) * kMargin * f);
   const int width = static_cast<int>(options.width), height = static_cast<int>(options.height - top - bottom);
@@ -102,12 +116,11 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
     fail("interface picture: expected room for the picture, found a height of {}", options.height);
 
   const int samples = options.samples;
-  const Box3 box = framed_box(picture);
   const Camera camera(picture.projection, box, picture.direction, samples * width, samples * height);
-  const std::vector<PictureTriangle> triangles = kept_triangles(picture);
   Rasteriser rasteriser(camera, samples * width, samples * height);
-  rasteriser.draw(triangles);
+  rasteriser.draw(picture.triangles);
   RasteriserStyle style{.triangle_edges = options.triangle_edges, .outlines = options.outlines};
+  style.crease_angle = options.crease_angle;
   style.edge_width = samples * options.width / 1600;
   style.depth_jump = 0.02 * box.diagonal();
   Raster raster = rasteriser.shade(style);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,18 +10,13 @@
 
 namespace adamas {
 
-/// A plane through `point`; what lies on the side of `normal` is cut away.
-struct CutAway {
-  Vec3 point, normal;
-};
-
 /// A picture of surfaces in space: shaded triangles in a wireframe box on white.
 struct InterfacePicture {
   std::string title{};
   std::vector<PictureTriangle> triangles{};
   Box3 domain{};  ///< drawn as a wireframe and framed; empty: that of the triangles, not drawn
-  std::optional<CutAway> cut_away{};  ///< leaves out triangles by their centroid
-  std::vector<LegendEntry> materials{};
+  std::vector<LegendEntry>
+      materials{};  ///< the legend; areas whose colour is not to be seen are left out of it
   Vec3 direction{-0.62, 0.72, -0.42};  ///< the way the camera looks
   Projection projection = Projection::kPerspective;
 };
@@ -33,7 +27,9 @@ struct InterfacePictureOptions {
   double font_size = 0;  ///< 0: by the width
   int samples = 3;       ///< per pixel along each axis, 1 to 4
   bool triangle_edges = false;
-  bool outlines = true;
+  bool outlines = true;       ///< silhouettes and borders between colours
+  double crease_angle = 180;  ///< degrees between normals from which edges are lines: 180 for none, since the
+                              ///< steps of a reconstructed surface are no creases
   bool axes = true;  ///< a small cross of the axes in the lower left corner
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace adamas {
 namespace {
@@ -75,13 +76,6 @@ std::vector<Colour> make_palette() {
 Colour material_colour(std::size_t index) {
   static const std::vector<Colour> kPalette = make_palette();
   return kPalette[index % kPalette.size()];
-}
-
-std::vector<Colour> material_palette(std::size_t count) {
-  std::vector<Colour> colours;
-  colours.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) colours.push_back(material_colour(i));
-  return colours;
 }
 
 Colour material_area_colour(std::size_t index) { return mix(material_colour(index), {1, 1, 1}, 0.45); }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "core/picture/colour.h"
 
@@ -14,9 +13,6 @@ inline constexpr std::size_t kPaletteSize = 40;
 /// Design"), the others are chosen one by one to lie as far as possible from all before them, also as
 /// colour-blind readers see them.
 Colour material_colour(std::size_t index);
-
-/// The first `count` material colours.
-std::vector<Colour> material_palette(std::size_t count);
 
 /// A colour for flat areas beneath lines: the material's colour, lightened.
 Colour material_area_colour(std::size_t index);

@@ -196,8 +196,4 @@ std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions&
   return PlotDrawing(plot, options).draw(format);
 }
 
-void write_plot(const Plot& plot, const std::filesystem::path& path, const PlotOptions& options) {
-  write_bytes(path, draw_plot(plot, picture_format(path), options));
-}
-
 }  // namespace adamas

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,8 +46,5 @@ struct PlotOptions {
 /// The file's bytes. Throws Error for a series whose x and y differ in number, or a range that is empty or
 /// not positive on a logarithmic axis.
 std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions& options = {});
-
-/// Writes a .png, .svg or .pdf file; also throws Error when it cannot be written.
-void write_plot(const Plot& plot, const std::filesystem::path& path, const PlotOptions& options = {});
 
 }  // namespace adamas

@@ -1,17 +1,10 @@
-#include "core/io/network_text.h"
-
 #include <cstdint>
 
-#include "core/base/error.h"
+#include "tests/fuzz/targets.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    adamas::to_interface_mesh(adamas::parse_labelled_network(text, "fuzz"), {}, "fuzz");
-  } catch (const adamas::Error&) {
-  }
-  try {
-    adamas::parse_region_names(text, "fuzz");
+    adamas::fuzz::network_text({reinterpret_cast<const char*>(data), size});
   } catch (const adamas::Error&) {
   }
   return 0;

@@ -1,12 +1,10 @@
-#include "core/io/nrrd_header.h"
+#include <cstdint>
 
-#include "core/base/error.h"
+#include "tests/fuzz/targets.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    const adamas::NrrdHeader header = adamas::parse_nrrd_header(text, "fuzz");
-    if (header.header_bytes > size || header.value_count() == 0) __builtin_trap();
+    adamas::fuzz::nrrd_header({reinterpret_cast<const char*>(data), size});
   } catch (const adamas::Error&) {
   }
   return 0;

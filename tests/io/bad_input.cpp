@@ -12,7 +12,7 @@
 #include "core/io/multi_material_writer.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "sample_data.h"
-#include "scratch.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {

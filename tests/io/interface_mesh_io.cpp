@@ -7,7 +7,7 @@
 #include "core/io/network_text.h"
 #include "core/io/polygon_soup.h"
 #include "sample_data.h"
-#include "scratch.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {

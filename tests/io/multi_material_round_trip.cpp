@@ -1,10 +1,9 @@
 #include <cmath>
 
-#include "core/io/file_summary.h"
 #include "core/io/multi_material_reader.h"
 #include "core/io/multi_material_writer.h"
 #include "sample_data.h"
-#include "scratch.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {
@@ -70,7 +69,6 @@ TEST(MultiMaterialRoundTrip, LabelsKeepTheirNames) {
   MaterialDataOptions options;
   options.labels = "labels";
   expect_equal(read_multi_material_data(scratch / "a.vti", options), data, 1e-12);
-  EXPECT_EQ(summarize_file(scratch / "a.vti").materials, std::vector<std::string>(data.materials));
 }
 
 TEST(MultiMaterialRoundTrip, SameDataGiveSameBytes) {

@@ -1,6 +1,6 @@
 #include "core/io/grid_file.h"
 #include "core/io/nrrd_header.h"
-#include "scratch.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {

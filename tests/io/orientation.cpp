@@ -1,7 +1,7 @@
 #include <cstring>
 
 #include "core/io/grid_file.h"
-#include "scratch.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_reader.h"
 #include "sample_data.h"
-#include "scratch.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {

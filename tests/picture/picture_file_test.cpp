@@ -6,9 +6,9 @@
 #include <csignal>
 
 #include "core/base/error.h"
-#include "core/picture/png.h"
 #include "core/picture/text.h"
-#include "scratch_folder.h"
+#include "decode_png.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {
@@ -21,7 +21,7 @@ TEST(PictureFile, FormatByExtension) {
 }
 
 TEST(PictureFile, NothingIsLeftWhenTheBytesDoNotFit) {
-  const ScratchFolder folder;
+  const test::Scratch folder;
   // A limit on file sizes stands for a full disk.
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -31,26 +31,26 @@ TEST(PictureFile, NothingIsLeftWhenTheBytesDoNotFit) {
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
   std::string message;
   try {
-    write_bytes(folder.path() / "full.png", std::string(100000, 'x'));
+    write_bytes(folder / "full.png", std::string(100000, 'x'));
   } catch (const Error& error) {
     message = error.what();
   }
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_NE(message.find("full.png"), std::string::npos) << message;
-  EXPECT_EQ(folder.files(), 0u);
+  EXPECT_EQ(folder.entries(), 0);
 }
 
 TEST(PictureFile, WritesAndReplaces) {
-  const ScratchFolder folder;
+  const test::Scratch folder;
   const std::string first(10000, 'a'), second = "b";
-  write_bytes(folder.path() / "x.bin", first);
-  EXPECT_EQ(bytes_of(folder.path() / "x.bin"), first);
-  write_bytes(folder.path() / "x.bin", second);
-  EXPECT_EQ(bytes_of(folder.path() / "x.bin"), second);
-  EXPECT_EQ(folder.files(), 1u);
-  EXPECT_THROW(write_bytes(folder.path() / "no" / "x.bin", first), Error);
-  EXPECT_THROW(write_bytes(folder.path(), first), Error);
+  write_bytes(folder / "x.bin", first);
+  EXPECT_EQ(test::bytes_of(folder / "x.bin"), first);
+  write_bytes(folder / "x.bin", second);
+  EXPECT_EQ(test::bytes_of(folder / "x.bin"), second);
+  EXPECT_EQ(folder.entries(), 1);
+  EXPECT_THROW(write_bytes(folder / "no" / "x.bin", first), Error);
+  EXPECT_THROW(write_bytes(folder.folder(), first), Error);
 }
 
 TEST(Text, OneLineIsValidUtf8) {
@@ -78,8 +78,8 @@ TEST(Text, Base64TestVectors) {  // RFC 4648, section 10
 }
 
 TEST(Png, OtherBytesAreAnError) {
-  EXPECT_THROW(decode_png(""), Error);
-  EXPECT_THROW(decode_png("no picture"), Error);
+  EXPECT_THROW(test::decode_png(""), Error);
+  EXPECT_THROW(test::decode_png("no picture"), Error);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 #include "core/base/error.h"
 #include "core/picture/axes.h"
-#include "core/picture/png.h"
-#include "scratch_folder.h"
+#include "decode_png.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {
@@ -39,6 +39,21 @@ std::vector<Vec2> blobs(const Raster& raster, const Colour& colour, double gap) 
   return centres;
 }
 
+/// The box round the pixels of nearly one colour; empty (min > max) where there are none.
+Box2 box_of(const Raster& raster, const Colour& colour) {
+  const auto bytes = to_bytes(colour);
+  const auto near = [](int a, int b) { return std::abs(a - b) < 40; };
+  Box2 box;
+  for (int y = 0; y < raster.height(); ++y) {
+    for (int x = 0; x < raster.width(); ++x) {
+      const Raster::Pixel& p = raster.at(x, y);
+      if (near(p.r, bytes[0]) && near(p.g, bytes[1]) && near(p.b, bytes[2]))
+        box.extend({static_cast<double>(x), static_cast<double>(y)});
+    }
+  }
+  return box;
+}
+
 TEST(Plot, MarkersLieWhereTheValuesSay) {
   for (const bool logarithmic : {false, true}) {
     Plot plot;
@@ -46,7 +61,7 @@ TEST(Plot, MarkersLieWhereTheValuesSay) {
     if (logarithmic) plot.x.kind = plot.y.kind = AxisKind::kLogarithmic;
     const std::vector<double> x{1, 20, 60, 100}, y{5, 90, 10, 50};
     plot.series = {{.x = x, .y = y, .line = false, .colour = colour}};
-    const std::vector<Vec2> found = blobs(decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3);
+    const std::vector<Vec2> found = blobs(test::decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3);
     ASSERT_EQ(found.size(), x.size());
     const auto scaled = [&](double v) { return logarithmic ? std::log(v) : v; };
     // The first and the last point fix the scales, the others must fit.
@@ -65,9 +80,9 @@ TEST(Plot, PointsThatCannotBeShownAreLeftOut) {
   Plot plot = error_plot();
   const Colour colour{1, 0, 1};
   plot.series = {{.x = {1, 10, 100, -5, 1000}, .y = {1, 0, 2, 3, NAN}, .line = false, .colour = colour}};
-  EXPECT_EQ(blobs(decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3).size(), 2u);
+  EXPECT_EQ(blobs(test::decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3).size(), 2u);
   plot.series[0].y = {NAN, NAN, NAN, NAN, NAN};
-  EXPECT_EQ(blobs(decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3).size(), 0u);
+  EXPECT_EQ(blobs(test::decode_png(draw_plot(plot, PictureFormat::kPng)), colour, 3).size(), 0u);
 }
 
 TEST(Plot, LinesAreClippedToTheRange) {
@@ -77,18 +92,30 @@ TEST(Plot, LinesAreClippedToTheRange) {
   EXPECT_EQ(b, (Vec2{1, 0.5}));
   a = {-1, 0.5}, b = {0.5, 2.1};
   EXPECT_FALSE(clip_segment({{0, 0}, {1, 1}}, a, b));
+  // A line that runs far beyond the frame colours no pixel that the same axes without it leave alone outside
+  // of it.
   Plot plot = error_plot();
-  plot.x.low = 500, plot.x.high = 600, plot.y.high = 0.2, plot.y.low = 0.01;
-  EXPECT_FALSE(draw_plot(plot, PictureFormat::kPng).empty());
+  const Colour colour{1, 0, 1};
+  plot.x = {.low = 1, .high = 2};
+  plot.y = {.low = 1, .high = 2};
+  plot.series = {{.x = {1, 1, 2, 2, 1}, .y = {1, 2, 2, 1, 1}, .markers = false, .colour = colour}};
+  const Box2 frame = box_of(test::decode_png(draw_plot(plot, PictureFormat::kPng)), colour);
+  plot.series[0].x = {-50, 50}, plot.series[0].y = {-50, 50};
+  const Box2 diagonal = box_of(test::decode_png(draw_plot(plot, PictureFormat::kPng)), colour);
+  for (const bool lower : {true, false}) {
+    const Vec2 &expected = lower ? frame.min : frame.max, &found = lower ? diagonal.min : diagonal.max;
+    EXPECT_NEAR(found.x, expected.x, 4);
+    EXPECT_NEAR(found.y, expected.y, 4);
+  }
+  plot.series[0].x = {-50, 0}, plot.series[0].y = {1.5, 1.5};
+  EXPECT_GT(box_of(test::decode_png(draw_plot(plot, PictureFormat::kPng)), colour).min.x,
+            box_of(test::decode_png(draw_plot(plot, PictureFormat::kPng)), colour).max.x)
+      << "all of it lies outside";
 }
 
-TEST(Plot, FilesOfAllFormats) {
-  const ScratchFolder folder;
-  for (const char* name : {"a.png", "b.svg", "c.pdf"}) {
-    write_plot(error_plot(), folder.path() / name);
-    EXPECT_GT(std::filesystem::file_size(folder.path() / name), 1000u);
-  }
-  const std::string svg = bytes_of(folder.path() / "b.svg");
+TEST(Plot, AllFormats) {
+  EXPECT_EQ(draw_plot(error_plot(), PictureFormat::kPdf).substr(0, 5), "%PDF-");
+  const std::string svg = draw_plot(error_plot(), PictureFormat::kSvg);
   for (const char* text : {"Error", "tetrahedra", "error [cm]", "adamas", "peer", "10³"})
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   EXPECT_EQ(svg, draw_plot(error_plot(), PictureFormat::kSvg));

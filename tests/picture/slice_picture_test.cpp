@@ -6,9 +6,9 @@
 
 #include "core/base/error.h"
 #include "core/picture/palette.h"
-#include "core/picture/png.h"
 #include "core/picture/slice_contents.h"
-#include "scratch_folder.h"
+#include "decode_png.h"
+#include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {
@@ -49,7 +49,7 @@ TEST(SlicePicture, AreasKeepTheirProportionsAndPlaces) {
   picture.window = Box2{{0, 0}, {4, 3}};
   picture.panels = {
       {"", {{{{1, 1}, {3, 1}, {3, 2}, {1, 2}}, {}, a}, {{{0, 2}, {4, 2}, {4, 3}, {0, 3}}, {}, b}}, {}}};
-  const Raster raster = decode_png(draw_slice(picture, PictureFormat::kPng));
+  const Raster raster = test::decode_png(draw_slice(picture, PictureFormat::kPng));
   const Vec2 inner = extent_of(raster, a).size(), upper = extent_of(raster, b).size();
   EXPECT_NEAR(inner.x / inner.y, 2, 0.02);
   EXPECT_NEAR(upper.x / inner.x, 2, 0.02);
@@ -61,7 +61,7 @@ TEST(SlicePicture, FieldValuesTakeTheColoursOfTheMap) {
     SlicePicture picture;
     picture.range = ValueRange{0, 1};
     picture.panels = {{"", {{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {value, value, value, value}}}, {}}};
-    const Raster raster = decode_png(draw_slice(picture, PictureFormat::kPng, {.width = 600}));
+    const Raster raster = test::decode_png(draw_slice(picture, PictureFormat::kPng, {.width = 600}));
     const Vec2 size = extent_of(raster, picture.map.at(value)).size();
     EXPECT_GT(size.x, 300) << value;
     EXPECT_GT(size.y, 300) << value;
@@ -70,13 +70,13 @@ TEST(SlicePicture, FieldValuesTakeTheColoursOfTheMap) {
 
 TEST(SlicePicture, IsAsWideAsAskedForAndNeverTallerThanAllowed) {
   for (const double width : {600.0, 1600.0, 2400.0}) {
-    const Raster raster = decode_png(
+    const Raster raster = test::decode_png(
         draw_slice(three_panels(), PictureFormat::kPng, {.width = width, .greatest_height = 5000}));
     EXPECT_LE(raster.width(), width);
     EXPECT_GT(raster.width(), 0.97 * width);
   }
-  const Raster low =
-      decode_png(draw_slice(three_panels(), PictureFormat::kPng, {.width = 1600, .greatest_height = 500}));
+  const Raster low = test::decode_png(
+      draw_slice(three_panels(), PictureFormat::kPng, {.width = 1600, .greatest_height = 500}));
   EXPECT_LE(low.height(), 520);
 }
 
@@ -123,10 +123,15 @@ TEST(SlicePicture, SharedEdgesAreDrawnOnce) {
               draw_slice(twice, PictureFormat::kPng, {.width = 400}));
 }
 
-TEST(SlicePicture, OddContents) {
+TEST(SlicePicture, AnEmptyPanelIsWhite) {
   SlicePicture empty;
   empty.panels.resize(1);
-  EXPECT_FALSE(draw_slice(empty, PictureFormat::kPng).empty());
+  const Raster raster = test::decode_png(draw_slice(empty, PictureFormat::kPng, {.width = 600}));
+  EXPECT_GT(raster.width(), 500);
+  EXPECT_EQ(raster.at(raster.width() / 2, raster.height() / 2), (Raster::Pixel{255, 255, 255, 255}));
+}
+
+TEST(SlicePicture, OddContents) {
   SlicePicture odd = three_panels();
   odd.title = std::string(500, 'W') + "\xff\x01";
   odd.panels[0].title = "\xc3";
@@ -134,14 +139,30 @@ TEST(SlicePicture, OddContents) {
   odd.panels[0].polygons.push_back({{{0, 0}, {1e9, 1e9}}, {1, 2}});
   odd.panels[0].lines.push_back({"far away", cell_stroke(), {{-1e15, -1e15}, {1e15, 1.1e15}, {7, 7}}});
   odd.window = Box2{{0, 0}, {2, 2}};
-  for (const PictureFormat format : {PictureFormat::kPng, PictureFormat::kSvg, PictureFormat::kPdf}) {
-    EXPECT_FALSE(draw_slice(odd, format, {.width = 800}).empty());
-  }
-  EXPECT_NE(draw_slice(odd, PictureFormat::kSvg).find("no data"), std::string::npos);
+  const std::string svg = draw_slice(odd, PictureFormat::kSvg, {.width = 800});
+  EXPECT_NE(svg.find("no data"), std::string::npos);
+  EXPECT_EQ(svg.find('\xff'), std::string::npos) << "no byte that XML cannot have";
+  EXPECT_NE(svg.find("</svg>"), std::string::npos);
+  EXPECT_NE(draw_slice(odd, PictureFormat::kPdf, {.width = 800}).find("%%EOF"), std::string::npos);
+  const Raster raster = test::decode_png(draw_slice(odd, PictureFormat::kPng, {.width = 800}));
+  EXPECT_LE(raster.width(), 800);
+  EXPECT_FALSE(extent_of(raster, ColourMap::no_data()).empty()) << "the polygon without numbers";
+}
+
+TEST(SlicePicture, ThinContentsStillShowTheirLine) {
   for (const double thin : {0.0, 1e-12, 1e12}) {
     SlicePicture line;
-    line.panels = {{"", {}, {{"", cell_stroke(), {{0, 0}, {1, thin}}}}}};
-    EXPECT_FALSE(draw_slice(line, PictureFormat::kPng, {.width = 400}).empty());
+    Stroke stroke = cell_stroke();
+    stroke.colour = {1, 0, 1};
+    stroke.width = 4;
+    stroke.opacity = 1;
+    line.panels = {{"", {}, {{"", stroke, {{0, 0}, {1, thin}}}}}};
+    const Raster raster = test::decode_png(draw_slice(line, PictureFormat::kPng, {.width = 400}));
+    int pixels = 0;
+    for (int y = 0; y < raster.height(); ++y) {
+      for (int x = 0; x < raster.width(); ++x) pixels += raster.at(x, y).r > raster.at(x, y).g + 100 ? 1 : 0;
+    }
+    EXPECT_GT(pixels, 100) << thin;
   }
 }
 
@@ -161,15 +182,15 @@ TEST(SlicePicture, BadInputIsAnError) {
 }
 
 TEST(SlicePicture, FilesAreWholeOrAbsent) {
-  const ScratchFolder folder;
+  const test::Scratch folder;
   for (const char* name : {"a.png", "b.SVG", "c.pdf"}) {
-    write_slice(three_panels(), folder.path() / name);
-    EXPECT_GT(std::filesystem::file_size(folder.path() / name), 1000u);
+    write_slice(three_panels(), folder / name);
+    EXPECT_GT(std::filesystem::file_size(folder / name), 1000u);
   }
-  EXPECT_EQ(bytes_of(folder.path() / "a.png"), draw_slice(three_panels(), PictureFormat::kPng));
-  EXPECT_THROW(write_slice(three_panels(), folder.path() / "d.jpg"), Error);
-  EXPECT_THROW(write_slice(three_panels(), folder.path() / "missing" / "d.png"), Error);
-  EXPECT_EQ(folder.files(), 3u);
+  EXPECT_EQ(test::bytes_of(folder / "a.png"), draw_slice(three_panels(), PictureFormat::kPng));
+  EXPECT_THROW(write_slice(three_panels(), folder / "d.jpg"), Error);
+  EXPECT_THROW(write_slice(three_panels(), folder / "missing" / "d.png"), Error);
+  EXPECT_EQ(folder.entries(), 3);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ MAY_INCLUDE = {
     "core/io": ["core"],
     "core/picture": ["core"],
     "interfaces": ["core"],
-    "datasets": ["core", "core/io"],
+    "datasets": ["core"],
     "cli": ["core", "core/io", "core/picture", "interfaces", "datasets"],
     "tools": ["core", "core/io", "core/picture", "interfaces", "datasets"],
     "tests": ["core", "core/io", "core/picture", "interfaces", "datasets", "cli"],

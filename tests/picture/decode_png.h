@@ -4,9 +4,9 @@
 
 #include "core/picture/raster.h"
 
-namespace adamas {
+namespace adamas::test {
 
 /// The pixels of a PNG file's bytes, by Cairo. Throws Error for anything else.
 Raster decode_png(std::string_view bytes);
 
-}  // namespace adamas
+}  // namespace adamas::test

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -18,7 +19,7 @@ class Scratch {
   Scratch() {
     static int count = 0;
     folder_ = std::filesystem::temp_directory_path() /
-              ("adamas-io-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+              ("adamas-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
     std::filesystem::create_directories(folder_);
   }
   ~Scratch() {
@@ -69,8 +70,11 @@ inline ::testing::AssertionResult says(const std::string& message, const std::st
   return ::testing::AssertionFailure() << "expected '" << part << "' in: " << message;
 }
 
-/// A file of the published data beside the project, which not every machine has.
+/// A file of the published data, which not every machine has: in the folder that the variable ADAMAS_DATA
+/// names, or else beside the checkout.
 inline std::filesystem::path shared_data(const std::string& name) {
+  const char* folder = std::getenv("ADAMAS_DATA");
+  if (folder != nullptr && *folder != '\0') return std::filesystem::path(folder) / name;
   return std::filesystem::path(ADAMAS_SOURCE_DIR) / ".." / "shared" / "data" / name;
 }
 

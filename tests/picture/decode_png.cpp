@@ -1,4 +1,4 @@
-#include "core/picture/png.h"
+#include "decode_png.h"
 
 #include <cairo.h>
 
@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::test {
 namespace {
 
 cairo_status_t take(void* closure, unsigned char* data, unsigned int length) {
@@ -52,4 +52,4 @@ Raster decode_png(std::string_view bytes) {
   return raster;
 }
 
-}  // namespace adamas
+}  // namespace adamas::test

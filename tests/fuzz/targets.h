@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/io/inflate_stream.h"
+#include "core/io/legacy_vtk_check.h"
+#include "core/io/meta_image_check.h"
+#include "core/io/network_text.h"
+#include "core/io/nrrd_header.h"
+
+/// What is done with any bytes, by the fuzz targets and by the tests that replay the corpus. Each lets Error
+/// through at bad input; anything else that it throws is a fault.
+namespace adamas::fuzz {
+
+inline void require(bool law, const char* what) {
+  if (!law) throw std::logic_error(what);
+}
+
+inline void network_text(std::string_view bytes) {
+  const InterfaceMesh mesh = to_interface_mesh(parse_labelled_network(bytes, "fuzz"), {}, "fuzz");
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    for (const auto corner : t.points) require(corner < mesh.points.size(), "corner out of range");
+  }
+}
+
+inline void region_names(std::string_view bytes) {
+  for (const auto& [label, name] : parse_region_names(bytes, "fuzz")) require(!name.empty(), "empty name");
+}
+
+inline void nrrd_header(std::string_view bytes) {
+  const NrrdHeader header = parse_nrrd_header(bytes, "fuzz");
+  require(header.header_bytes <= bytes.size(), "header longer than the text");
+  require(header.value_count() > 0, "no values");
+}
+
+inline void inflate(std::string_view bytes) {
+  std::size_t received = 0;
+  const std::size_t size =
+      inflate_stream(bytes, "fuzz", [&received](std::string_view piece) { received += piece.size(); });
+  require(size == received, "another size than the pieces'");
+}
+
+/// The bytes as a file, for what reads files.
+class TemporaryFile {
+ public:
+  TemporaryFile(std::string_view bytes, const char* extension) {
+    std::string pattern = (std::filesystem::temp_directory_path() / "adamas-fuzz-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder_ = pattern;
+    path_ = folder_ / (std::string("a") + extension);
+    std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+  ~TemporaryFile() {
+    std::error_code code;
+    std::filesystem::remove_all(folder_, code);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path folder_, path_;
+};
+
+inline void legacy_vtk(std::string_view bytes) {
+  const TemporaryFile file(bytes, ".vtk");
+  check_legacy_vtk(file.path());
+}
+
+inline void meta_image(std::string_view bytes) {
+  const TemporaryFile file(bytes, ".mha");
+  check_meta_image(file.path());
+  meta_image_directions(file.path());
+}
+
+}  // namespace adamas::fuzz
