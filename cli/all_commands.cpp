@@ -4,6 +4,8 @@
 
 #include "cli/command.h"
 #include "cli/config_file.h"
+#include "cli/help_formatter.h"
+#include "cli/option_checks.h"
 #include "cli/version.h"
 
 namespace adamas {
@@ -11,7 +13,7 @@ namespace adamas {
 void add_all_commands(CLI::App& app, Session& session) {
   app.set_help_flag("--help,-h", "Print this and stop");
   app.set_version_flag("--version", std::string("adamas ") + kVersion, "Print the version and stop");
-  app.get_formatter()->column_width(36);
+  app.formatter(std::make_shared<HelpFormatter>());
   // Each command has an option of this name that hands its file on to here.
   app.set_config("--config")->group("");
   app.config_formatter(std::make_shared<ConfigFile>(app));
@@ -24,6 +26,7 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_slice(app, session);
   add_probe(app, session);
   add_completion(app, session);
+  add_common_checks(app);
 }
 
 }  // namespace adamas

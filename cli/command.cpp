@@ -16,14 +16,8 @@ constexpr std::size_t kMostThreads = 4096;
 /// The options of the root that a subcommand's `--config FILE` is handed to.
 CLI::App& root_of(CLI::App& app) { return app.get_parent() == nullptr ? app : root_of(*app.get_parent()); }
 
-std::string full_name(const CLI::App& app) {
-  const CLI::App* parent = app.get_parent();
-  return parent == nullptr || parent->get_parent() == nullptr ? app.get_name()
-                                                              : full_name(*parent) + " " + app.get_name();
-}
-
 void add_common_options(CLI::App& command, Session& session) {
-  command.add_option("--json", session.json, "Write the figures of the run as JSON")
+  command.add_option("--json", session.json, "Write the figures of the run: .json")
       ->type_name("FILE")
       ->group("Common");
   command.add_option("--threads", session.threads, "Number of threads (default: all cores)")
@@ -35,7 +29,11 @@ void add_common_options(CLI::App& command, Session& session) {
   CLI::Option* config = root_of(command).get_config_ptr();
   command
       .add_option_function<std::string>(
-          "--config", [config](const std::string& file) { config->add_result(file); },
+          "--config",
+          [config, &session](const std::string& file) {
+            config->add_result(file);
+            session.config = file;
+          },
           "Read options from a file of lines NAME = VALUE; those given here win")
       ->trigger_on_parse()
       ->configurable(false)
@@ -53,7 +51,8 @@ void Session::begin() {
   if (!threads.empty()) count = parse_count("--threads", threads);
   if (count > kMostThreads) wrong_usage("--threads: expected at most {}, found {}", kMostThreads, threads);
   set_thread_limit(static_cast<unsigned>(count));
-  outputs.declare("--json", json);
+  outputs.protect(config);
+  outputs.declare("--json", json, {".json"});
 }
 
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
@@ -61,10 +60,7 @@ CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
   CLI::App* command = app.add_subcommand(name, description);
   command->footer("Example:\n  " + example);
   add_common_options(*command, session);
-  command->final_callback([command, &session, run = std::move(run)] {
-    session.command = full_name(*command);
-    session.run = run;
-  });
+  command->final_callback([&session, run = std::move(run)] { session.run = run; });
   return command;
 }
 

@@ -14,11 +14,11 @@ namespace adamas {
 struct Session {
   std::string json;     ///< --json, empty where not given
   std::string threads;  ///< --threads
+  std::string config;   ///< --config
   Console console;
   OutputSet outputs;
-  std::string command;  ///< that was chosen
-  std::function<void()>
-      run;  ///< set by the chosen command; called when the command line is known to be sound
+  /// Set by the chosen command; called when the command line is known to be sound.
+  std::function<void()> run;
 
   /// The program's own start: what has to be done between parsing and running.
   void begin();

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
@@ -23,7 +24,7 @@ struct Options {
 };
 
 std::uint64_t parse_seed(const std::string& text) {
-  return text.empty() || text == "0" ? 0 : parse_count("--seed", text);
+  return text.empty() ? 0 : parse_count("--seed", text, 0);
 }
 
 /// As fine as the grid, or 1/64 of the shortest side.
@@ -72,6 +73,9 @@ void run(const Options& options, Session& session) {
   if (options.output.empty() && options.interfaces.empty()) {
     wrong_usage("expected -o or --interfaces, found neither");
   }
+  if (!options.resolution.empty() && options.interfaces.empty()) {
+    wrong_usage("--resolution: expected --interfaces as well");
+  }
   if (!options.output.empty() && options.dimensions.empty()) {
     wrong_usage("-o: expected --dimensions X,Y,Z as well");
   }
@@ -117,7 +121,7 @@ void add_generate(CLI::App& app, Session& session) {
   command->add_option("name", options->name, "The scene")
       ->required()
       ->type_name("NAME")
-      ->check(CLI::IsMember(scene_names()));
+      ->check(one_of(scene_names()));
   command->add_option("--dimensions", options->dimensions, "Numbers of cells")->type_name("X,Y,Z");
   command->add_option("--seed", options->seed, "Which of the scenes of a kind (voronoi10, random)")
       ->type_name("N");

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "cli/figures.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/io/array_names.h"
@@ -10,8 +12,10 @@
 #include "core/io/grid_file.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
+#include "interfaces/cross_section/field_choice.h"
 #include "interfaces/grid_source.h"
 #include "interfaces/network/check.h"
+#include "interfaces/network/closest_point_tree.h"
 
 namespace adamas {
 
@@ -60,7 +64,7 @@ MultiMaterialData read_fields(const InputOptions& options) {
 }
 
 bool has_materials(const InputOptions& options) {
-  if (options.any_material_option()) return true;
+  if (!options.material_option().empty()) return true;
   const GridFile file = read_grid_file(options.path);
   return std::any_of(file.arrays.begin(), file.arrays.end(),
                      [](const GridArray& array) { return fraction_material(array.name).has_value(); });
@@ -80,6 +84,29 @@ void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
   }
   for (InterfaceTriangle& t : mesh.triangles) t.front = renamed[t.front], t.back = renamed[t.back];
   mesh.materials = data.materials;
+}
+
+/// Interfaces beside the domain would leave it to one material, which is hardly what was meant.
+void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
+  Box3 found;
+  bool finite = true;
+  for (const Vec3& p : mesh.points) {
+    finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    found.extend(p);
+  }
+  // Other faults are told better by the check of the mesh.
+  if (!finite || mesh.triangles.empty()) return;
+  const auto meets = [&](const InterfaceTriangle& t) {
+    std::array<Vec3, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (t.points[i] >= mesh.points.size()) return true;
+      corners[i] = mesh.points[t.points[i]];
+    }
+    return overlaps(corners, domain);
+  };
+  if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), meets)) return;
+  fail("{}: expected interfaces inside the box {}, found them in {}", mesh.source, box_text(domain),
+       box_text(found));
 }
 
 void print_report(const InterfaceMeshReport& report, const std::string& name, Console& console) {
@@ -107,13 +134,15 @@ bool has_given_interfaces(const InputOptions& options) {
 
 InterfaceMesh read_given_interfaces(const InputOptions& options) {
   std::vector<InterfaceMesh> meshes;
-  if (!options.path.empty() && input_kind(options.path) == InputKind::kNetwork) {
+  const bool network = !options.path.empty() && input_kind(options.path) == InputKind::kNetwork;
+  const bool named = network && file_extension(options.path) == ".vtp";
+  if (!options.region_names.empty() && (!network || named)) {
+    wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
+  }
+  if (network) {
     check_input_file(options.path);
-    meshes.push_back(file_extension(options.path) == ".vtp"
-                         ? read_interface_mesh(options.path)
-                         : read_labelled_network(options.path, options.region_names));
-  } else if (!options.region_names.empty()) {
-    wrong_usage("--region-names: expected a labelled network as INPUT");
+    meshes.push_back(named ? read_interface_mesh(options.path)
+                           : read_labelled_network(options.path, options.region_names));
   }
   for (const std::string& text : options.interfaces) meshes.push_back(read_surface_option(text));
   if (meshes.size() == 1) return std::move(meshes.front());
@@ -123,13 +152,13 @@ InterfaceMesh read_given_interfaces(const InputOptions& options) {
 }
 
 ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_ptr<MultiMaterialData>& data,
-                                       Console& console) {
+                                       Console& console, const InputCheck& check) {
   const bool gridded = !options.path.empty() && input_kind(options.path) == InputKind::kGrid;
   if (!options.path.empty() && !gridded && input_kind(options.path) != InputKind::kNetwork) {
     fail("{}: expected a grid or a labelled network beside --interface, found a mesh", options.path);
   }
-  if (!gridded && options.any_material_option()) {
-    wrong_usage("options of volume fractions, labels and fields: expected a grid as INPUT");
+  if (!gridded && !options.material_option().empty()) {
+    wrong_usage("{}: expected data on a grid as INPUT", options.material_option());
   }
   std::optional<Box3> box;
   if (!options.box.empty()) box = to_box(parse_bounds("--box", options.box));
@@ -146,6 +175,8 @@ ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_
     data->labels.clear();
   }
   if (!box && !mesh.triangles.empty()) box = data ? data->grid.domain() : domain_of(mesh);
+  if (box) check_domain(mesh, *box);
+  if (check && box) check(mesh.source, *box, data ? field_infos(*data) : std::vector<FieldInfo>());
   console.step("checking interfaces", -1);
   const InterfaceCheckOptions how{options.tolerant, options.tolerant};
   print_report(check_interface_mesh(mesh, box ? &*box : nullptr, how), mesh.source, console);

@@ -16,6 +16,6 @@ InterfaceMesh read_given_interfaces(const InputOptions& options);
 /// fractions are used for fields per material alone; where it has none, all its arrays are fields. Throws
 /// UsageError and Error.
 ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_ptr<MultiMaterialData>& data,
-                                       Console& console);
+                                       Console& console, const InputCheck& check);
 
 }  // namespace adamas

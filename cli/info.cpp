@@ -11,6 +11,7 @@
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
+#include "cli/usage_error.h"
 #include "core/io/array_names.h"
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
@@ -113,7 +114,6 @@ void print_data(const InputOptions& options, Console& console, Figures& figures)
   const MultiMaterialData data = load_data(options, console);
   console.print("\n");
   print_volumes(data.materials, data.volumes(), console, figures);
-  print_fraction_report(data, console);
   if (data.labels.empty()) {
     figures["fraction_sum_min"] = data.report.sum_min;
     figures["fraction_sum_max"] = data.report.sum_max;
@@ -196,9 +196,9 @@ void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures
 }
 
 bool has_data(const FileSummary& s, const InputOptions& options) {
-  return options.any_material_option() || std::any_of(s.arrays.begin(), s.arrays.end(), [](const auto& a) {
-           return fraction_material(a.name).has_value();
-         });
+  return !options.material_option().empty() ||
+         std::any_of(s.arrays.begin(), s.arrays.end(),
+                     [](const auto& a) { return fraction_material(a.name).has_value(); });
 }
 
 /// Polygons are interfaces where they have materials on both sides.
@@ -230,7 +230,19 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
   }
 }
 
+void check_options(const InputOptions& options) {
+  const InputKind kind = input_kind(options.path);
+  if (kind != InputKind::kGrid && !options.material_option().empty()) {
+    wrong_usage("{}: expected data on a grid as INPUT", options.material_option());
+  }
+  if (kind != InputKind::kNetwork && !options.region_names.empty()) {
+    wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
+  }
+}
+
 void run(const InputOptions& options, Session& session) {
+  protect_inputs(options, options.path, session.outputs);
+  check_options(options);
   check_input_file(options.path);
   session.console.step("reading " + options.path, -1);
   const FileSummary summary = summarize_file(options.path);
@@ -248,7 +260,11 @@ void add_info(CLI::App& app, Session& session) {
   const auto options = std::make_shared<InputOptions>();
   CLI::App* command = add_command(app, session, "info", "What is in a file", "adamas info cth.vtr",
                                   [options, &session] { run(*options, session); });
-  command->add_option("input", options->path, "Data on a grid, a mesh, interfaces or a surface")
+  command
+      ->add_option("input", options->path,
+                   std::string("Any file that can be read: ") + kGridFiles +
+                       ", a mesh (.vtu), interfaces (.vtp, .arec, .txt) or a surface "
+                       "(.obj, .off, .ply, .stl)")
       ->required()
       ->type_name("FILE");
   add_material_options(*command, *options);

@@ -7,14 +7,47 @@
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
+#include "interfaces/cross_section/field_choice.h"
 #include "interfaces/grid_source.h"
 
 namespace adamas {
 
 namespace {
 
-bool one_of(const std::string& text, std::initializer_list<const char*> list) {
+bool is_one_of(const std::string& text, std::initializer_list<const char*> list) {
   return std::find(list.begin(), list.end(), text) != list.end();
+}
+
+/// "1 site", "2 sites".
+std::string counted(std::size_t count, const std::string& thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+/// Says what was mended in volume fractions, unless it is round-off.
+void note_mended_fractions(const MultiMaterialData& data, Console& console) {
+  const FractionReport& r = data.report;
+  if (r.renormalised == 0 && r.negative == 0) return;
+  std::string what;
+  const auto add = [&what](const std::string& text) { what += (what.empty() ? "" : ", ") + text; };
+  if (r.renormalised > 0) {
+    const std::string low = fmt::format("{:.6g}", r.sum_min), high = fmt::format("{:.6g}", r.sum_max);
+    const std::string sums = low == high ? "" : fmt::format(" (sums from {} to {})", low, high);
+    add(counted(r.renormalised, "site") + " scaled to 1" + sums);
+  }
+  if (r.negative > 0) add(counted(r.negative, "negative fraction") + " set to 0");
+  if (r.traces > 0) add(counted(r.traces, "trace") + " below a millionth set to 0");
+  console.note("{}: volume fractions were mended: {}", data.source, what);
+}
+
+/// Names are the same everywhere to the letter; the reader is less strict with these.
+void check_extensive(const InputOptions& options, const MultiMaterialData& data) {
+  for (const std::string& name : options.extensive) {
+    const auto same = [&name](const Field& field) { return field.name == name; };
+    if (std::any_of(data.fields.begin(), data.fields.end(), same)) continue;
+    std::string known;
+    for (const Field& field : data.fields) known += (known.empty() ? "'" : ", '") + field.name + "'";
+    fail("{}: --extensive: expected one of its fields ({}), found '{}'", data.source, known, name);
+  }
 }
 
 CLI::Option* add_repeatable(CLI::App& command, const char* name, std::vector<std::string>& values,
@@ -24,11 +57,27 @@ CLI::Option* add_repeatable(CLI::App& command, const char* name, std::vector<std
 
 }  // namespace
 
+std::string InputOptions::material_option() const {
+  if (!fractions.empty()) return "--fraction";
+  if (!fraction_scale.empty()) return "--fraction-scale";
+  if (!rest.empty()) return "--rest";
+  if (!labels.empty()) return "--labels";
+  if (!fields.empty()) return "--field";
+  if (!extensive.empty()) return "--extensive";
+  return region.empty() ? "" : "--region";
+}
+
+std::string InputOptions::interface_option() const {
+  if (!region_names.empty()) return "--region-names";
+  if (!box.empty()) return "--box";
+  return tolerant ? "--tolerant" : "";
+}
+
 InputKind input_kind(const std::string& path) {
   const std::string extension = file_extension(path);
   if (extension == ".vtu") return InputKind::kMesh;
-  if (one_of(extension, {".vtp", ".arec", ".txt"})) return InputKind::kNetwork;
-  if (one_of(extension, {".obj", ".off", ".ply", ".stl"})) return InputKind::kSurface;
+  if (is_one_of(extension, {".vtp", ".arec", ".txt"})) return InputKind::kNetwork;
+  if (is_one_of(extension, {".obj", ".off", ".ply", ".stl"})) return InputKind::kSurface;
   return InputKind::kGrid;
 }
 
@@ -57,7 +106,7 @@ void add_material_options(CLI::App& command, InputOptions& options, const char* 
       ->group("Input");
 }
 
-void add_interface_options(CLI::App& command, InputOptions& options) {
+void add_interface_options(CLI::App& command, InputOptions& options, bool resampled) {
   add_repeatable(command, "--interface", options.interfaces,
                  "A surface (.obj, .off, .ply, .stl) between two materials, the first where its normals "
                  "point to; repeatable")
@@ -66,6 +115,7 @@ void add_interface_options(CLI::App& command, InputOptions& options) {
       .add_option("--region-names", options.region_names, "Names of a network's labels, LABEL NAME a line")
       ->type_name("FILE")
       ->group("Input");
+  if (!resampled) return;
   command
       .add_option(
           "--box", options.box,
@@ -76,6 +126,24 @@ void add_interface_options(CLI::App& command, InputOptions& options) {
       .add_flag("--tolerant", options.tolerant,
                 "Take given interfaces that intersect or do not match, instead of refusing them")
       ->group("Input");
+}
+
+void protect_inputs(const InputOptions& options, const std::string& base, OutputSet& outputs) {
+  const auto protect = [&](const std::string& file) {
+    if (file.empty()) return;
+    outputs.protect(file);
+    outputs.protect(std::filesystem::path(base).parent_path() / file);
+  };
+  const auto protect_value = [&](const std::string& text, std::size_t equals) {
+    if (equals != std::string::npos) protect(text.substr(equals + 1));
+  };
+  outputs.protect(options.path);
+  outputs.protect(base);
+  for (const std::string& text : options.fractions) protect_value(text, text.find('='));
+  for (const std::string& text : options.fields) protect_value(text, text.find('='));
+  for (const std::string& text : options.interfaces) outputs.protect(text.substr(0, text.rfind('=')));
+  protect(options.labels);
+  outputs.protect(options.region_names);
 }
 
 MaterialDataOptions material_options(const InputOptions& options) {
@@ -100,37 +168,34 @@ MultiMaterialData load_data(const InputOptions& options, Console& console) {
   const MaterialDataOptions how = material_options(options);
   check_input_file(options.path);
   switch (input_kind(options.path)) {
-    case InputKind::kGrid:
-      return read_multi_material_data(options.path, how, console);
     case InputKind::kMesh:
       fail("{}: expected data on a grid, found a tetrahedral mesh", options.path);
     case InputKind::kNetwork:
       fail("{}: expected data on a grid, found interface meshes", options.path);
     case InputKind::kSurface:
+      fail("{}: expected data on a grid, found a surface (give it as --interface FILE=FRONT,BACK)",
+           options.path);
+    case InputKind::kGrid:
       break;
   }
-  fail("{}: expected data on a grid, found a surface (give it as --interface FILE=FRONT,BACK)", options.path);
+  MultiMaterialData data = read_multi_material_data(options.path, how, console);
+  check_extensive(options, data);
+  note_mended_fractions(data, console);
+  return data;
 }
 
-void print_fraction_report(const MultiMaterialData& data, Console& console) {
-  const FractionReport& r = data.report;
-  if (r.negative == 0 && r.traces == 0 && r.renormalised == 0) return;
-  console.print(
-      "Volume fractions were mended: sums from {:.6g} to {:.6g}, {} sites scaled to 1, {} negative and "
-      "{} traces set to 0\n",
-      r.sum_min, r.sum_max, r.renormalised, r.negative, r.traces);
-}
-
-Input load_input(const InputOptions& options, Console& console) {
+Input load_input(const InputOptions& options, Console& console, const InputCheck& check) {
   Input input;
   if (has_given_interfaces(options)) {
-    input.source = load_given_interfaces(options, input.data, console);
+    input.source = load_given_interfaces(options, input.data, console, check);
     return input;
   }
   if (options.path.empty()) wrong_usage("expected an INPUT or --interface, found neither");
   if (!options.box.empty()) wrong_usage("--box: expected given interfaces (for a grid, --region crops)");
   if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
+  if (options.tolerant) wrong_usage("--tolerant: expected given interfaces");
   input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
+  if (check) check(options.path, input.data->grid.domain(), field_infos(*input.data));
   input.source = make_grid_source(*input.data, console);
   return input;
 }

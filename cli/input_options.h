@@ -1,11 +1,13 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/console.h"
+#include "cli/output_set.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "core/io/multi_material_reader.h"
@@ -20,12 +22,15 @@ struct InputOptions {
   std::string fraction_scale, rest, labels, region, box, region_names;
   bool tolerant = false;
 
-  /// Whether something was said that only gridded data can mean.
-  [[nodiscard]] bool any_material_option() const {
-    return !(fractions.empty() && fields.empty() && extensive.empty() && fraction_scale.empty() &&
-             rest.empty() && labels.empty() && region.empty());
-  }
+  /// The first option given that only gridded data can mean, for messages; empty where there is none.
+  [[nodiscard]] std::string material_option() const;
+  /// The same for one that only given interfaces can mean, --interface itself apart.
+  [[nodiscard]] std::string interface_option() const;
 };
+
+/// The grids that help texts name; messages of the readers tell of others.
+inline constexpr const char* kGridFiles =
+    "data on a grid (.vti, .vtr, .vtk, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .tif)";
 
 enum class InputKind { kGrid, kNetwork, kMesh, kSurface };
 /// By the extension: a tetrahedral mesh (.vtu), an interface mesh (.vtp, .arec, .txt), a surface without
@@ -37,17 +42,17 @@ InputKind input_kind(const std::string& path);
 void add_material_options(CLI::App& command, InputOptions& options,
                           const char* field = "One more field, and where its values are; repeatable",
                           const char* field_type = "NAME=FILE-or-ARRAY");
-/// Options for given interface meshes.
-void add_interface_options(CLI::App& command, InputOptions& options);
+/// Options for given interface meshes; `resampled`: those too that say what to make of them.
+void add_interface_options(CLI::App& command, InputOptions& options, bool resampled = true);
+
+/// Keeps outputs off all files that the options name; `base`: the file that others may lie beside.
+void protect_inputs(const InputOptions& options, const std::string& base, OutputSet& outputs);
 
 /// The options as the reader wants them; throws UsageError.
 MaterialDataOptions material_options(const InputOptions& options);
 
-/// Reads a gridded input.
+/// Reads a gridded input; notes what was mended in its volume fractions beyond round-off.
 MultiMaterialData load_data(const InputOptions& options, Console& console);
-
-/// Prints what was mended in volume fractions, if anything was.
-void print_fraction_report(const MultiMaterialData& data, Console& console);
 
 /// An input that is ready to be resampled or cut.
 struct Input {
@@ -55,7 +60,11 @@ struct Input {
   ResamplingSource source;
 };
 
+/// Looks at the input's name, domain and fields before long work, and throws where options do not fit them.
+using InputCheck =
+    std::function<void(const std::string& name, const Box3& box, const std::vector<FieldInfo>& fields)>;
+
 /// Reads the input: interfaces reconstructed from a grid's volume fractions, or given as meshes.
-Input load_input(const InputOptions& options, Console& console);
+Input load_input(const InputOptions& options, Console& console, const InputCheck& check = {});
 
 }  // namespace adamas

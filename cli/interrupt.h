@@ -1,12 +1,17 @@
 #pragma once
 
+#include <string>
+
 namespace adamas {
 
-/// From here on SIGINT and SIGTERM only set a flag, and writing to a closed pipe or beyond the limit
-/// of a file's size is an error instead of the end.
+/// From here on the first SIGINT or SIGTERM only sets a flag, the second ends the program at once, and
+/// writing to a closed pipe or beyond the limit of a file's size is an error instead of the end.
 void catch_signals();
 
 /// Whether one of them has come.
 bool interrupted();
+
+/// A file that a second signal removes, since no destructor will. It may be gone by then.
+void remove_at_abrupt_end(const std::string& path);
 
 }  // namespace adamas

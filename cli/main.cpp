@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
+#include "cli/usage_message.h"
 
 namespace {
 
@@ -28,30 +29,6 @@ int usage_status(const std::string& message, const std::string& command) {
   return kWrongUsage;
 }
 
-/// The innermost command that was named, for the hint at --help.
-std::string named_command(const CLI::App& app) {
-  const auto parsed = app.get_subcommands();
-  if (parsed.empty()) return {};
-  const std::string inner = named_command(*parsed.front());
-  return parsed.front()->get_name() + (inner.empty() ? "" : " " + inner);
-}
-
-/// What CLI11 has to say, or in place of its "a subcommand is required" what was found instead of one.
-std::string usage_message(const CLI::ParseError& error, const CLI::App& app) {
-  const CLI::App* innermost = &app;
-  while (!innermost->get_subcommands().empty()) innermost = innermost->get_subcommands().front();
-  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr ||
-      innermost->get_require_subcommand_min() == 0) {
-    return error.what();
-  }
-  std::string known;
-  for (const CLI::App* command : innermost->get_subcommands([](const CLI::App*) { return true; })) {
-    known += (known.empty() ? "" : ", ") + command->get_name();
-  }
-  const auto rest = innermost->remaining();
-  return "expected one of " + known + ", found " + (rest.empty() ? "none" : "'" + rest.front() + "'");
-}
-
 int run(CLI::App& app, adamas::Session& session, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -65,9 +42,9 @@ int run(CLI::App& app, adamas::Session& session, int argc, char** argv) {
     session.console.flush();
     return status;
   } catch (const CLI::ParseError& e) {
-    return usage_status(usage_message(e, app), named_command(app));
+    return usage_status(adamas::usage_message(e, app, {argv, argv + argc}), adamas::named_command(app));
   } catch (const adamas::UsageError& e) {
-    return usage_status(e.what(), session.command);
+    return usage_status(e.what(), adamas::named_command(app));
   }
 }
 

@@ -29,23 +29,17 @@ std::vector<std::string> split(const std::string& text) {
 
 }  // namespace
 
-double parse_number(const std::string& option, const std::string& text) {
-  const auto value = to_number(text);
-  if (!value) wrong_usage("{}: expected a finite number, found '{}'", option, text);
-  return *value;
-}
-
 double parse_positive(const std::string& option, const std::string& text) {
   const auto value = to_number(text);
   if (!value || !(*value > 0)) wrong_usage("{}: expected a positive number, found '{}'", option, text);
   return *value;
 }
 
-std::size_t parse_count(const std::string& option, const std::string& text) {
+std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least) {
   std::size_t value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc() || end != text.data() + text.size() || value == 0) {
-    wrong_usage("{}: expected a whole number of at least 1, found '{}'", option, text);
+  if (code != std::errc() || end != text.data() + text.size() || value < least) {
+    wrong_usage("{}: expected a whole number of at least {}, found '{}'", option, least, text);
   }
   return value;
 }

@@ -14,11 +14,10 @@ namespace adamas {
 // Values of options as text. Every function throws UsageError that names the option, what was expected and
 // what was found.
 
-/// A finite number.
-double parse_number(const std::string& option, const std::string& text);
+/// A finite number above 0.
 double parse_positive(const std::string& option, const std::string& text);
-/// A whole number of at least 1.
-std::size_t parse_count(const std::string& option, const std::string& text);
+/// A whole number of at least that.
+std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least = 1);
 /// "1,2.5,-3": that many finite numbers.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
 Vec3 parse_vector(const std::string& option, const std::string& text);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "cli/interrupt.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 
@@ -28,6 +29,15 @@ void check_extension(const std::string& option, const std::filesystem::path& pat
   wrong_usage("{}: expected a file name that ends in {}, found '{}'", option, known, path.string());
 }
 
+/// The same file may go by several names.
+void check_apart(const std::string& option, const std::filesystem::path& output,
+                 const std::filesystem::path& input) {
+  std::error_code code;
+  if (std::filesystem::equivalent(output, input, code)) {
+    wrong_usage("{}: expected a file that is no input, found {}", option, output.string());
+  }
+}
+
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
     text.replace(at, from.size(), to);
@@ -37,29 +47,36 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 }  // namespace
 
+void OutputSet::protect(const std::filesystem::path& input) {
+  for (const auto& [option, file] : files_) check_apart(option, file->path(), input);
+  inputs_.push_back(input);
+}
+
 void OutputSet::declare(const std::string& option, const std::string& path,
                         std::initializer_list<const char*> extensions) {
   if (path.empty()) return;
   check_extension(option, path, extensions);
   const std::filesystem::path full = std::filesystem::absolute(path).lexically_normal();
-  for (const auto& file : files_) {
+  for (const auto& [other, file] : files_) {
     if (std::filesystem::absolute(file->path()).lexically_normal() == full) {
       wrong_usage("{}: expected another name for each output, found {} twice", option, path);
     }
   }
+  for (const auto& input : inputs_) check_apart(option, path, input);
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
       !std::filesystem::is_directory(status)) {
     fail("{}: expected the name of a plain file, found something else there", path);
   }
-  files_.push_back(std::make_unique<OutputFile>(path));
+  files_.push_back({option, std::make_unique<OutputFile>(path)});
+  remove_at_abrupt_end(files_.back().file->temporary().string());
 }
 
 const OutputFile* OutputSet::find(const std::string& path) const {
-  const auto at =
-      std::find_if(files_.begin(), files_.end(), [&path](const auto& file) { return file->path() == path; });
-  return at == files_.end() ? nullptr : at->get();
+  const auto at = std::find_if(files_.begin(), files_.end(),
+                               [&path](const Declared& each) { return each.file->path() == path; });
+  return at == files_.end() ? nullptr : at->file.get();
 }
 
 void OutputSet::write(const std::string& path,
@@ -83,7 +100,7 @@ std::size_t OutputSet::bytes(const std::string& path) const {
 }
 
 void OutputSet::commit() {
-  for (const auto& file : files_) file->commit();
+  for (const auto& [option, file] : files_) file->commit();
   files_.clear();
 }
 

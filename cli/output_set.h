@@ -14,9 +14,12 @@ namespace adamas {
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {
  public:
+  /// An input that no output may overwrite, whether declared before or after; one that is no file is
+  /// ignored. Throws UsageError.
+  void protect(const std::filesystem::path& input);
   /// An output that will be written, to be declared before long work; an empty path is none. Throws
-  /// UsageError for an extension that is not among those given or a path declared before, and Error where its
-  /// folder cannot be used.
+  /// UsageError for an extension that is not among those given, for a path declared before and for an input,
+  /// and Error where its folder cannot be used.
   void declare(const std::string& option, const std::string& path,
                std::initializer_list<const char*> extensions = {});
   /// Calls `writer` with the name to write to, if the path was declared. Its Errors name the final path.
@@ -26,9 +29,14 @@ class OutputSet {
   void commit();
 
  private:
+  struct Declared {
+    std::string option;
+    std::unique_ptr<OutputFile> file;
+  };
   [[nodiscard]] const OutputFile* find(const std::string& path) const;
 
-  std::vector<std::unique_ptr<OutputFile>> files_;
+  std::vector<Declared> files_;
+  std::vector<std::filesystem::path> inputs_;
 };
 
 }  // namespace adamas

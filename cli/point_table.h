@@ -8,8 +8,9 @@
 
 namespace adamas {
 
-/// Reads points from lines "x,y,z", commas, semicolons or blanks between them; more columns are left out, as
-/// are empty lines, those that begin with '#' and one of names at the beginning. Throws Error with the line.
+/// Reads points from lines "x,y,z", with semicolons, or commas, or blanks between them; more columns are left
+/// out, as are empty lines, those that begin with '#' and one of names at the beginning. Throws Error with
+/// the line, also where semicolons and commas are mixed: these would be decimal commas.
 std::vector<Vec3> read_points(const std::filesystem::path& path);
 
 /// Samples at points, as a table.

@@ -1,6 +1,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -29,8 +30,9 @@ struct Options {
 std::vector<Vec3> parse_line(const std::string& text) {
   const std::size_t dots = text.find("..");
   const std::size_t comma = text.rfind(',');
-  if (dots == std::string::npos || comma == std::string::npos || comma < dots) {
-    wrong_usage("--line: expected x,y,z..x,y,z,n, found '{}'", text);
+  if (dots == std::string::npos ||
+      std::count(text.begin() + static_cast<std::ptrdiff_t>(dots), text.end(), ',') != 3) {
+    wrong_usage("--line: expected x,y,z..x,y,z,n with the number of points at the end, found '{}'", text);
   }
   const std::size_t count = parse_count("--line", text.substr(comma + 1));
   if (count < 2 || count > 100'000'000) {
@@ -54,14 +56,12 @@ std::vector<Vec3> wanted_points(const Options& options) {
   return points;
 }
 
-Figures known(double value) { return std::isfinite(value) ? Figures(value) : Figures(nullptr); }
-
 /// One number of a field as it is, a list for vectors.
 Figures components(const std::vector<double>& row, const FieldInfo& info) {
-  if (info.components == 1) return known(row[info.offset]);
+  // What is not finite becomes null when it is written.
+  if (info.components == 1) return row[info.offset];
   Figures list = Figures::array();
-  for (int c = 0; c < info.components; ++c)
-    list.push_back(known(row[info.offset + static_cast<std::size_t>(c)]));
+  for (int c = 0; c < info.components; ++c) list.push_back(row[info.offset + static_cast<std::size_t>(c)]);
   return list;
 }
 
@@ -81,7 +81,7 @@ void report_integrals(const IdVector<MaterialId, MaterialIntegral>& integrals,
   std::vector<std::vector<std::string>> rows{{"material", "volume"}};
   for (const FieldInfo& f : fields) {
     rows[0].push_back("integral of " + f.name);
-    rows[0].push_back("mean");
+    rows[0].push_back("mean of " + f.name);
   }
   figures["materials"] = Figures::array();
   for (MaterialId m(0); m.value < materials.size(); ++m.value) {
@@ -98,12 +98,29 @@ void report_integrals(const IdVector<MaterialId, MaterialIntegral>& integrals,
   if (print) console.table(rows);
 }
 
+/// Points beside the domain have no values, which is easily overlooked in a long table.
+void note_points_outside(const PointTable& table, const Box3& domain, Console& console) {
+  const auto outside = std::count_if(table.samples.begin(), table.samples.end(),
+                                     [](const ProbeSample& sample) { return !sample.inside; });
+  if (outside == 0) return;
+  console.note("{} of {} points {} outside of the domain {}", outside, table.samples.size(),
+               outside == 1 ? "lies" : "lie", box_text(domain));
+}
+
+/// Options that say nothing of a mesh.
+void check_mesh_options(const InputOptions& input) {
+  const std::string material = input.material_option(), interface = input.interface_option();
+  if (!material.empty()) wrong_usage("{}: expected data on a grid as INPUT", material);
+  if (!interface.empty()) wrong_usage("{}: expected given interfaces as INPUT", interface);
+  if (!input.interfaces.empty()) wrong_usage("--interface: expected data on a grid as INPUT");
+}
+
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   const bool meshed = input_kind(options.input.path) == InputKind::kMesh;
-  if (meshed && options.input.any_material_option()) {
-    wrong_usage("options of volume fractions, labels and fields: expected data on a grid as INPUT");
-  }
+  if (meshed) check_mesh_options(options.input);
+  protect_inputs(options.input, options.input.path, session.outputs);
+  if (!options.points.empty()) session.outputs.protect(options.points);
   session.outputs.declare("-o", options.output, {".csv", ".txt"});
   const std::vector<Vec3> points = wanted_points(options);
   if (points.empty() && !options.output.empty()) {
@@ -116,6 +133,8 @@ void run(const Options& options, Session& session) {
     const ResampledMesh mesh = load_resampled_mesh(options.input.path, console);
     console.step("probing", -1);
     table = {mesh.materials, mesh.fields, probe(mesh, points)};
+    note_points_outside(table, mesh.box, console);
+    console.check();
     report_integrals(material_integrals(mesh), mesh.materials, mesh.fields, !to_stdout, console, figures);
   } else {
     const Input input = load_input(options.input, console);
@@ -123,6 +142,8 @@ void run(const Options& options, Session& session) {
         input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>();
     console.step("probing", -1);
     table = {input.source.materials, fields, probe(input.source, points)};
+    note_points_outside(table, input.source.box, console);
+    console.check();
     if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
       report_integrals(material_integrals(*input.data), input.data->materials, field_infos(*input.data),
                        !to_stdout, console, figures);
@@ -144,9 +165,12 @@ void add_probe(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       add_command(app, session, "probe", "Values and materials at points, and integrals per material",
-                  "adamas probe mesh.vtu --line 0,0,-8..0,0,4,200 -o line.csv",
+                  "adamas probe mesh.vtu --line=-7,0,0..3.5,0,0,200 -o line.csv",
                   [options, &session] { run(*options, session); });
-  command->add_option("input", options->input.path, "Data on a grid, or a mesh from adamas resample (.vtu)")
+  command
+      ->add_option("input", options->input.path,
+                   std::string("What to probe: ") + kGridFiles +
+                       ", interfaces (.vtp, .arec, .txt), or a mesh from adamas resample (.vtu)")
       ->required()
       ->type_name("FILE");
   command->add_option("--points", options->points, "Points, x,y,z a line")->type_name("FILE");

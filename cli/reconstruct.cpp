@@ -52,11 +52,11 @@ Figures print_interfaces(const InterfaceMesh& mesh, Console& console) {
 }
 
 void run(const Options& options, Session& session) {
+  protect_inputs(options.input, options.input.path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   session.outputs.declare("--picture", options.picture, {".png", ".svg", ".pdf"});
   Console& console = session.console;
   const MultiMaterialData data = load_data(options.input, console);
-  print_fraction_report(data, console);
   const Reconstruction result(data, console);
   Figures figures;
   figures["materials"] = print_materials(data, result, console);
@@ -65,6 +65,7 @@ void run(const Options& options, Session& session) {
   figures["bodies"] = result.body_materials().size();
   console.step("writing", -1);
   session.outputs.write(options.output, [&](const auto& path) { write_interface_mesh(path, result.mesh()); });
+  console.check();
   session.outputs.write(options.picture, [&](const auto& path) {
     write_surface_picture(path, result.mesh(), data.grid.domain());
   });
@@ -81,7 +82,9 @@ void add_reconstruct(CLI::App& app, Session& session) {
   CLI::App* command = add_command(app, session, "reconstruct", "Interface meshes from volume fractions",
                                   "adamas reconstruct cth.vtr -o interfaces.vtp --picture interfaces.png",
                                   [options, &session] { run(*options, session); });
-  command->add_option("input", options->input.path, "Data on a grid")->required()->type_name("FILE");
+  command->add_option("input", options->input.path, std::string("What to reconstruct: ") + kGridFiles)
+      ->required()
+      ->type_name("FILE");
   command->add_option("-o,--output", options->output, "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
       ->required()
       ->type_name("FILE");

@@ -9,6 +9,7 @@
 #include "cli/input_options.h"
 #include "cli/resample_figures.h"
 #include "cli/resampling_setup.h"
+#include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/cut_mesh.h"
@@ -40,7 +41,8 @@ Figures field_figures(const ResampleFigures& measured, const Resampler& resample
         {"mean_error", known(any, mean(e.all))},
         {"interface_max_error", known(at_interfaces, e.at_interfaces.max)},
         {"interface_mean_error", known(at_interfaces, mean(e.at_interfaces))},
-        {"target", known(target.has_value(), target.value_or(0))}};
+        {"target", known(target.has_value(), target.value_or(0))},
+        {"reached", target && any ? Figures(e.all.max <= *target) : Figures(nullptr)}};
   }
   return figures;
 }
@@ -65,6 +67,8 @@ Figures all_figures(const ResampleFigures& measured, const Resampler& resampler)
   figures["interface_error"] = known(distance.has_value(), distance ? distance->upper : 0);
   figures["interface_error_measured"] = known(distance.has_value(), distance ? distance->lower : 0);
   figures["interface_error_target"] = resampler.options().interface_error;
+  figures["interface_error_reached"] =
+      distance ? Figures(distance->upper <= resampler.options().interface_error) : Figures(nullptr);
   figures["lost_interfaces"] = measured.lost_interfaces;
   figures["fields"] = field_figures(measured, resampler);
   figures["materials"] = material_figures(measured, resampler.source());
@@ -90,7 +94,8 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   console.table(rows);
   const auto& distance = resampler.interface_distance();
   if (distance && distance->upper > target) {
-    console.note("the interface error wanted was not reached");
+    console.note("the interface error wanted was not reached: {:.4g} instead of {:.4g}", distance->upper,
+                 target);
   }
 }
 
@@ -111,6 +116,13 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
   }
   console.print("\n");
   console.table(rows);
+  for (std::size_t f = 0; f < m.fields.size(); ++f) {
+    const auto& target = resampler.options().field_errors[f];
+    const FieldError& all = m.fields[f].all;
+    if (!target || all.count == 0 || all.max <= *target) continue;
+    console.note("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}",
+                 resampler.source().fields->fields()[f].name, all.max, *target);
+  }
 }
 
 void print_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
@@ -161,16 +173,20 @@ void write_outputs(const Options& options, Resampler& resampler, Session& sessio
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   const ResamplingWishes wishes(options.text);
+  if (options.output.empty() && options.interfaces.empty() && options.cut.empty() && session.json.empty()) {
+    wrong_usage("nothing to write: expected -o, --interfaces-out, --cut-mesh or --json, found none");
+  }
+  protect_inputs(options.input, options.input.path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtu"});
   session.outputs.declare("--interfaces-out", options.interfaces,
                           {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   session.outputs.declare("--cut-mesh", options.cut, {".vtu"});
-  const Input input = load_input(options.input, console);
-  if (input.data) print_fraction_report(*input.data, console);
+  const Input input =
+      load_input(options.input, console, [&wishes](const auto&... found) { wishes.check(found...); });
   Resampler resampler(input.source, wishes.options(input.source), console);
   resampler.refine();
   console.step("measuring", -1);
-  const ResampleFigures measured = measure(resampler);
+  const ResampleFigures measured = measure(resampler, console);
   print_mesh(measured, resampler, console);
   print_fields(measured, resampler, console);
   print_materials(measured, input.source, console);
@@ -190,11 +206,12 @@ void add_resample(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       add_command(app, session, "resample", "An adaptive tetrahedral mesh with sharp material interfaces",
-                  "adamas resample cth.vtr --interface-error 0.5% --field-error Pressure=5% -o mesh.vtu "
-                  "--json figures.json",
+                  "adamas resample cth.vtr --interface-error 0.5% --field-error Pressure=5% -o mesh.vtu",
                   [options, &session] { run(*options, session); });
   command
-      ->add_option("input", options->input.path, "Data on a grid, or a labelled network (.vtp, .arec, .txt)")
+      ->add_option(
+          "input", options->input.path,
+          std::string("What to resample: ") + kGridFiles + ", or a labelled network (.vtp, .arec, .txt)")
       ->type_name("FILE");
   add_resampling_options(*command, options->text);
   command->add_option("-o,--output", options->output, "The mesh: .vtu")->type_name("FILE");

@@ -7,10 +7,12 @@ namespace adamas {
 namespace {
 
 /// Which cells an approximated interface runs through.
-std::vector<char> find_interface_cells(const InterfaceTable& table, const CellSet& cells) {
+std::vector<char> find_interface_cells(const InterfaceTable& table, const CellSet& cells,
+                                       const Progress& progress) {
   std::vector<char> result(cells.count, 0);
   constexpr std::size_t kGrain = 2048;
   parallel_chunks(cells.count, kGrain, [&](std::size_t begin, std::size_t end) {
+    progress.check();
     CellOwnership ownership;
     std::vector<ContactPolygon> contacts;
     for (std::size_t i = begin; i < end; ++i) {
@@ -27,7 +29,7 @@ std::vector<char> find_interface_cells(const InterfaceTable& table, const CellSe
 
 }  // namespace
 
-ResampleFigures measure(const Resampler& resampler) {
+ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   const ResamplingSource& source = resampler.source();
   const InterfaceTable& table = source.network->table();
   const auto& hierarchy = resampler.hierarchy();
@@ -37,7 +39,7 @@ ResampleFigures measure(const Resampler& resampler) {
   figures.vertices = hierarchy.vertex_count();
   figures.bodies = table.body_count();
   figures.fields.resize(source.fields ? source.fields->fields().size() : 0);
-  const std::vector<char> crossed = find_interface_cells(table, cells);
+  const std::vector<char> crossed = find_interface_cells(table, cells, progress);
   std::size_t i = 0;
   hierarchy.for_each_leaf([&](TetrahedronId t) {
     const CellRecord& cell = hierarchy.payload(t);
@@ -52,6 +54,7 @@ ResampleFigures measure(const Resampler& resampler) {
   hierarchy.for_each_vertex([&](VertexId v) {
     if (hierarchy.payload(v).distances.flagged) ++figures.flagged_vertices;
   });
+  progress.check();
   figures.volumes.resize(source.materials.size());
   const auto bodies = body_volumes(table, cells);
   for (BodyId b(0); b.value < bodies.size(); ++b.value) figures.volumes[table.material(b)] += bodies[b];

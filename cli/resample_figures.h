@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "cli/console.h"
+#include "core/base/progress.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
@@ -13,7 +13,7 @@ struct FieldFigures {
   FieldError all, at_interfaces;
 };
 
-/// What a run of the resampler came to (DESIGN 4).
+/// What a run of the resampler came to (the keys of `--json`).
 struct ResampleFigures {
   std::size_t tetrahedra = 0, vertices = 0;
   std::size_t interface_tetrahedra = 0;  ///< that an approximated interface runs through
@@ -24,6 +24,6 @@ struct ResampleFigures {
   IdVector<MaterialId, double> volumes;  ///< of the mesh
 };
 
-ResampleFigures measure(const Resampler& resampler);
+ResampleFigures measure(const Resampler& resampler, const Progress& progress);
 
 }  // namespace adamas

@@ -2,10 +2,20 @@
 
 #include <algorithm>
 
+#include "cli/option_checks.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 
 namespace adamas {
+
+namespace {
+
+std::vector<FieldInfo>::const_iterator find_by_name(const std::vector<FieldInfo>& fields,
+                                                    const std::string& name) {
+  return std::find_if(fields.begin(), fields.end(), [&name](const FieldInfo& f) { return f.name == name; });
+}
+
+}  // namespace
 
 void add_resampling_options(CLI::App& command, ResamplingText& text) {
   command
@@ -23,12 +33,12 @@ void add_resampling_options(CLI::App& command, ResamplingText& text) {
       ->type_name("N");
   command
       .add_option("--ghost", text.ghost, "How a material's field goes on beyond the material, within a cell")
-      ->check(CLI::IsMember({"constant", "linear"}))
+      ->check(one_of({"constant", "linear"}))
       ->capture_default_str();
   command
       .add_option("--distance", text.distance,
                   "What vertices measure: the distance to an interface, or to the nearest vertex of its mesh")
-      ->check(CLI::IsMember({"exact", "nearest-vertex"}))
+      ->check(one_of({"exact", "nearest-vertex"}))
       ->capture_default_str();
 }
 
@@ -47,22 +57,36 @@ ResamplingWishes::ResamplingWishes(const ResamplingText& text)
   if (text.distance == "nearest-vertex") distance = DistanceMode::kNearestVertex;
 }
 
+void ResamplingWishes::check(const std::string& source, const Box3& box,
+                             const std::vector<FieldInfo>& fields) const {
+  const double whole = box.diagonal();
+  if (!(interface_error.of(whole) < whole)) {
+    const double value = interface_error.value;
+    wrong_usage(
+        "--interface-error: expected less than the domain's diagonal, {:.6g}, found {} (a part of it is "
+        "written 1%)",
+        whole, interface_error.relative ? fmt::format("{:.6g}%", 100 * value) : fmt::format("{:.6g}", value));
+  }
+  for (const auto& [name, target] : field_errors) {
+    if (find_by_name(fields, name) == fields.end()) {
+      fail("{}: --field-error: expected one of its fields ({}), found '{}'", source, field_names(fields),
+           name);
+    }
+  }
+}
+
 ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) const {
+  const std::vector<FieldInfo> none;
+  const auto& fields = source.fields ? source.fields->fields() : none;
+  check(source.name, source.box, fields);
   ResamplingOptions result;
   result.interface_error = interface_error.of(source.box.diagonal());
   result.max_tetrahedra = max_tetrahedra;
   result.ghost = ghost;
   result.distance = distance;
-  if (source.fields) result.field_errors.resize(source.fields->fields().size());
+  result.field_errors.resize(fields.size());
   for (const auto& [name, target] : field_errors) {
-    const std::vector<FieldInfo> none;
-    const auto& fields = source.fields ? source.fields->fields() : none;
-    const auto found =
-        std::find_if(fields.begin(), fields.end(), [&name = name](const auto& f) { return f.name == name; });
-    if (found == fields.end()) {
-      fail("{}: --field-error: expected one of its fields ({}), found '{}'", source.name, field_names(fields),
-           name);
-    }
+    const auto found = find_by_name(fields, name);
     const double wanted = target.of(found->max - found->min);
     // A field of one value everywhere is met by any mesh.
     if (wanted > 0) result.field_errors[static_cast<std::size_t>(found - fields.begin())] = wanted;

@@ -21,7 +21,10 @@ void add_resampling_options(CLI::App& command, ResamplingText& text);
 struct ResamplingWishes {
   /// Throws UsageError.
   explicit ResamplingWishes(const ResamplingText& text);
-  /// For a source: errors in its units. Throws Error for fields that it has not.
+  /// Throws UsageError for an interface error that says nothing in this domain, and Error for fields that the
+  /// input has not.
+  void check(const std::string& source, const Box3& box, const std::vector<FieldInfo>& fields) const;
+  /// For a source that was checked: errors in its units.
   [[nodiscard]] ResamplingOptions options(const ResamplingSource& source) const;
 
   ErrorTarget interface_error;

@@ -1,11 +1,15 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cctype>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/slice_panels.h"
 #include "cli/slice_polygons.h"
@@ -19,7 +23,7 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string plane, origin, normal, original, mode, range, colour_map = "sequential", size, output, title;
+  std::string plane, origin, normal, original, mode, range, colour_map, size, output;
   bool cells = false, no_cells = false, no_interfaces = false;
 };
 
@@ -28,10 +32,12 @@ Plane parse_any_plane(const Options& options) {
     wrong_usage("expected --plane, or --origin and --normal");
   }
   if (!options.plane.empty()) {
+    std::string text = options.plane;
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     try {
-      return parse_plane(options.plane);
-    } catch (const Error& e) {
-      wrong_usage("--plane: {}", e.what());
+      return parse_plane(text);
+    } catch (const Error&) {
+      wrong_usage("--plane: expected x=NUMBER, y=NUMBER or z=NUMBER, found '{}'", options.plane);
     }
   }
   if (options.origin.empty() || options.normal.empty()) {
@@ -106,7 +112,7 @@ SlicePicture make_picture(const Options& options, const SliceInput& input, const
   }
   if (style.field.empty()) picture.materials = material_legend(input, sections);
   picture.range = parse_range(options);
-  picture.map = ColourMap::by_name(options.colour_map);
+  picture.map = ColourMap::by_name(options.colour_map.empty() ? "sequential" : options.colour_map);
   return picture;
 }
 
@@ -126,27 +132,77 @@ void report_areas(const SliceInput& input, const CrossSection& section, Session&
   session.console.table(rows);
 }
 
+/// Options that would say nothing, and files that may not be written. `field`: what is shown.
+void check_options(const Options& options, const std::string& field, OutputSet& outputs) {
+  if (options.cells && options.no_cells) wrong_usage("--cells and --no-cells: expected one of them");
+  if (field.empty()) {
+    if (!options.range.empty()) wrong_usage("--range: expected --field as well");
+    if (!options.colour_map.empty()) wrong_usage("--colour-map: expected --field as well");
+    if (options.mode == "plain") wrong_usage("--mode plain: expected --field as well");
+  }
+  parse_range(options);
+  protect_inputs(options.input, options.original.empty() ? options.input.path : options.original, outputs);
+  outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});
+}
+
+/// Whether the input's cells are wide enough in its panel for lines between them to be seen.
+bool shows_cells(const SliceInput& input, const Plane& plane, const SliceOptions& size, std::size_t panels) {
+  constexpr double kLeastPixels = 6;
+  const PlaneFrame frame = plane_frame(plane);
+  Box2 window;
+  for (const Vec3& p : clip_plane(plane, input.box())) {
+    const auto [x, y] = frame.coordinates(p);
+    window.extend({x, y});
+  }
+  double cell = std::numeric_limits<double>::infinity();
+  const Vec3 extent = input.data->grid.domain().size();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (plane.axis() == axis) continue;
+    cell = std::min(cell, extent[axis] / static_cast<double>(input.data->grid.sites(axis)));
+  }
+  const Vec2 shown = window.size();
+  const double scale =
+      std::min(size.width / static_cast<double>(panels) / shown.x, size.greatest_height / shown.y);
+  return cell * scale >= kLeastPixels;
+}
+
+/// Cells are drawn as asked for, else those of a mesh and, beside it, those of its input where they are seen.
+void choose_cells(const Options& options, const SliceInput& input, const SliceOptions& size,
+                  std::size_t panels, SliceStyle& style) {
+  style.mesh_cells = options.cells || !options.no_cells;
+  style.input_cells = options.cells || (!options.no_cells && input.mesh && input.data &&
+                                        shows_cells(input, style.plane, size, panels));
+}
+
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   SliceStyle style;
   style.plane = parse_any_plane(options);
   const SliceOptions size = picture_size(options);
-  parse_range(options);
   InputOptions from = options.input;
   style.field = split_fields(from);
   style.interfaces = !options.no_interfaces;
-  if (options.cells && options.no_cells) wrong_usage("--cells and --no-cells: expected one of them");
-  session.outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});
+  check_options(options, style.field, session.outputs);
   const bool polygons = file_extension(options.output) == ".vtp";
 
-  const SliceInput input = load_slice_input(from, options.original,
-                                            style.interfaces && !polygons ? &style.plane : nullptr, console);
-  const std::vector<SliceMode> wanted = modes(options, input, !style.field.empty());
-  if (polygons && wanted.size() > 1) wrong_usage("--mode all: expected a picture as output, found a .vtp");
-  style.cells = options.cells || (!options.no_cells && input.mesh.has_value());
-  console.step("cutting", -1);
+  std::vector<SliceMode> wanted;
+  const auto check = [&](const SliceInput& read) {
+    wanted = modes(options, read, !style.field.empty());
+    if (polygons && wanted.size() > 1) wrong_usage("--mode all: expected a picture as output, found a .vtp");
+    if (clip_plane(style.plane, read.box()).empty()) {
+      fail("{}: expected a plane that cuts {}, found {}", read.name, box_text(read.box()),
+           to_string(style.plane));
+    }
+    for (const SliceMode mode : wanted) choose_field(read, mode, style);
+  };
+  const SliceInput input = load_slice_input(
+      from, options.original, style.interfaces && !polygons ? &style.plane : nullptr, check, console);
+  choose_cells(options, input, size, wanted.size(), style);
   std::vector<CrossSection> sections;
-  for (const SliceMode mode : wanted) sections.push_back(cut(input, mode, style));
+  for (const SliceMode mode : wanted) {
+    console.step("cutting", -1);
+    sections.push_back(cut(input, mode, style));
+  }
   Figures figures{{"area", nullptr}, {"materials", nullptr}, {"plane", to_string(style.plane)}};
   report_areas(input, sections.back(), session, figures);
   figures["pieces"] = sections.back().pieces.size();
@@ -166,18 +222,19 @@ void add_drawing_options(CLI::App& command, Options& options) {
           "--mode", options.mode,
           "The input as it is, or of a mesh: plain linear interpolation, the fields of each material, "
           "all side by side (default: input for data, materials for a mesh)")
-      ->check(CLI::IsMember({"input", "plain", "materials", "all"}))
+      ->check(one_of({"input", "plain", "materials", "all"}))
       ->group("Picture");
-  command.add_flag("--cells", options.cells, "Draw the cells (default for a mesh)")->group("Picture");
-  command.add_flag("--no-cells", options.no_cells, "Do not")->group("Picture");
-  command.add_flag("--no-interfaces,!--interfaces", options.no_interfaces, "Do not draw the interfaces")
+  command
+      .add_flag("--cells", options.cells,
+                "Draw the cells (default for a mesh, and for its input unless they are tiny)")
       ->group("Picture");
+  command.add_flag("--no-cells", options.no_cells, "Do not draw the cells")->group("Picture");
+  command.add_flag("--no-interfaces", options.no_interfaces, "Do not draw the interfaces")->group("Picture");
   command.add_option("--range", options.range, "Values at the ends of the colour map")
       ->type_name("a,b")
       ->group("Picture");
-  command.add_option("--colour-map,--color-map", options.colour_map, "The colour map")
-      ->check(CLI::IsMember(ColourMap::names()))
-      ->capture_default_str()
+  command.add_option("--colour-map,--color-map", options.colour_map, "The colour map (default sequential)")
+      ->check(one_of(ColourMap::names()))
       ->group("Picture");
   command.add_option("--size", options.size, "Width and greatest height in pixels")
       ->type_name("W,H")
@@ -190,12 +247,15 @@ void add_slice(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = add_command(
       app, session, "slice", "A cross section of data or of a resampled mesh",
-      "adamas slice mesh.vtu --plane x=6 --field Pressure --mode all --original cth.vtr -o slice.png",
+      "adamas slice mesh.vtu --plane z=0 --field Pressure --mode all --original cth.vtr -o slice.png",
       [options, &session] { run(*options, session); });
-  command->add_option("input", options->input.path, "Data on a grid, or a mesh from adamas resample (.vtu)")
+  command
+      ->add_option("input", options->input.path,
+                   std::string("What to cut: ") + kGridFiles + ", or a mesh from adamas resample (.vtu)")
       ->required()
       ->type_name("FILE");
-  command->add_option("--plane", options->plane, "The plane, at right angles to an axis")->type_name("x=6");
+  command->add_option("--plane", options->plane, "The plane, at right angles to an axis")
+      ->type_name("x=N|y=N|z=N");
   command->add_option("--origin", options->origin, "A point of the plane")->type_name("x,y,z");
   command->add_option("--normal", options->normal, "A vector at right angles to it")->type_name("x,y,z");
   command
@@ -207,10 +267,10 @@ void add_slice(CLI::App& app, Session& session) {
       ->type_name("FILE");
   add_drawing_options(*command, *options);
   add_material_options(*command, options->input,
-                       "The field to show, or NAME:0 for a component of a vector; without, the materials. "
+                       "The field to show, or NAME:x for a component of a vector; without, the materials. "
                        "NAME=FILE adds it first",
                        "NAME[=FILE-or-ARRAY]");
-  add_interface_options(*command, options->input);
+  add_interface_options(*command, options->input, false);
 }
 
 }  // namespace adamas

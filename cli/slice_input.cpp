@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/usage_error.h"
 #include "core/io/field_assembly.h"
@@ -43,14 +44,60 @@ std::optional<MultiMaterialData> near_plane(const MultiMaterialData& data, const
   return near;
 }
 
-void load_original(const InputOptions& options, const Plane* plane, Console& console, SliceInput& input) {
+/// The data's materials in the order of the mesh's, by name; the mesh may have more.
+void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
+  IdVector<MaterialId, MaterialId> there;
+  for (const std::string& name : data.materials) {
+    const auto found = std::find(mesh.materials.begin(), mesh.materials.end(), name);
+    if (found == mesh.materials.end()) {
+      std::string known;
+      for (const std::string& m : mesh.materials) known += (known.empty() ? "" : ", ") + m;
+      fail("{}: expected the materials of the mesh ({}), found '{}'", data.source, known, name);
+    }
+    there.push_back(MaterialId(static_cast<std::size_t>(found - mesh.materials.begin())));
+  }
+  const std::size_t count = mesh.materials.size();
+  const auto reorder = [&](IdVector<MaterialId, std::vector<float>>& values) {
+    IdVector<MaterialId, std::vector<float>> result(count);
+    for (MaterialId m(0); m.value < values.size(); ++m.value) result[there[m]] = std::move(values[m]);
+    values = std::move(result);
+  };
+  data.materials = mesh.materials;
+  for (std::uint16_t& label : data.labels) label = static_cast<std::uint16_t>(there[MaterialId(label)].value);
+  if (!data.fractions.empty()) {
+    reorder(data.fractions);
+    for (auto& values : data.fractions) values.resize(data.grid.site_count());
+  }
+  for (Field& field : data.fields) {
+    if (field.per_material()) reorder(field.material_values);
+  }
+}
+
+void check_box(const ResampledMesh& mesh, const std::string& mesh_name, const MultiMaterialData& data) {
+  constexpr double kTolerance = 1e-6;
+  const Box3 box = data.grid.domain();
+  const double off = std::max(distance(box.min, mesh.box.min), distance(box.max, mesh.box.max));
+  if (off <= kTolerance * mesh.box.diagonal()) return;
+  fail("{}: expected the box of {}, {}, found {} (a --region has to be the same for both)", data.source,
+       mesh_name, box_text(mesh.box), box_text(box));
+}
+
+void load_original(const InputOptions& options, Console& console, SliceInput& input) {
   const bool gridded = !options.path.empty() && input_kind(options.path) == InputKind::kGrid;
-  if (has_given_interfaces(options)) input.interfaces = read_given_interfaces(options);
-  if (!gridded && input.interfaces) return;
+  const bool given = has_given_interfaces(options);
+  if (given) input.interfaces = read_given_interfaces(options);
+  if (!given && !options.region_names.empty()) {
+    wrong_usage("--region-names: expected a labelled network (.arec, .txt)");
+  }
+  if (!gridded && given) {
+    if (options.material_option().empty()) return;
+    wrong_usage("{}: expected data on a grid", options.material_option());
+  }
   input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
-  if (input.interfaces || plane == nullptr) return;
-  const auto near = near_plane(*input.data, *plane);
-  input.interfaces = Reconstruction(near ? *near : *input.data, console).mesh();
+  if (!input.mesh) return;
+  // With given interfaces the mesh may have a box of its own.
+  if (!given) check_box(*input.mesh, input.name, *input.data);
+  adopt_materials(*input.mesh, *input.data);
 }
 
 }  // namespace
@@ -66,7 +113,7 @@ ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
 }
 
 SliceInput load_slice_input(const InputOptions& options, const std::string& original, const Plane* plane,
-                            Console& console) {
+                            const std::function<void(const SliceInput&)>& check, Console& console) {
   SliceInput input;
   input.name = options.path;
   InputOptions from = options;
@@ -75,17 +122,20 @@ SliceInput load_slice_input(const InputOptions& options, const std::string& orig
     input.mesh = load_resampled_mesh(options.path, console);
     from.path = original;
     if (!original.empty()) check_input_file(original);
-    if (original.empty() && options.any_material_option()) {
-      wrong_usage("options of volume fractions, labels and fields: expected --original DATA");
-    }
-    if (original.empty() && options.interfaces.empty()) return input;
+    const std::string unused =
+        options.material_option().empty() ? options.interface_option() : options.material_option();
+    if (original.empty() && !unused.empty()) wrong_usage("{}: expected --original DATA", unused);
   } else if (!original.empty()) {
     wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.path);
   } else if (input_kind(options.path) != InputKind::kGrid) {
     fail("{}: expected data on a grid or a resampled mesh (.vtu), found interfaces: resample them first",
          options.path);
   }
-  load_original(from, plane, console, input);
+  if (!from.path.empty() || !from.interfaces.empty()) load_original(from, console, input);
+  check(input);
+  if (!input.data || input.interfaces || plane == nullptr) return input;
+  const auto near = near_plane(*input.data, *plane);
+  input.interfaces = Reconstruction(near ? *near : *input.data, console).mesh();
   return input;
 }
 

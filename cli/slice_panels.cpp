@@ -34,16 +34,42 @@ std::vector<FieldInfo> fields_of(const SliceInput& input, bool of_data) {
   return of_data ? field_infos(*input.data) : input.mesh->fields;
 }
 
-std::optional<FieldChoice> choose(const SliceInput& input, bool of_data, const SliceStyle& style) {
-  if (style.field.empty()) return {};
-  return find_field(fields_of(input, of_data), style.field, of_data ? input.data->source : input.name);
+/// "NAME:x" as "NAME:0" where that is what it means; throws at components of a scalar.
+std::string with_index(const std::vector<FieldInfo>& fields, const std::string& text,
+                       const std::string& source) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return text;
+  const std::string name = text.substr(0, colon), component = text.substr(colon + 1);
+  for (const FieldInfo& f : fields) {
+    if (f.name == text) return text;
+    if (f.name != name) continue;
+    if (f.components == 1) {
+      fail("{}: --field: expected '{}' alone, which has no components, found '{}'", source, name, text);
+    }
+    const std::size_t axis = std::string("xyz").find(component);
+    if (f.components == 3 && component.size() == 1 && axis != std::string::npos) {
+      return fmt::format("{}:{}", name, axis);
+    }
+  }
+  return text;
 }
+
+/// Below the approximated interfaces and wider, so that both are seen where they agree.
+Stroke original_below() { return {.colour = {0.6, 0.6, 0.6}, .width = 5.0}; }
 
 }  // namespace
 
+std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
+  if (style.field.empty()) return {};
+  const bool of_data = mode == SliceMode::kInput;
+  const std::vector<FieldInfo> fields = fields_of(input, of_data);
+  const std::string& source = of_data ? input.data->source : input.name;
+  return find_field(fields, with_index(fields, style.field, source), source);
+}
+
 CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
   const bool of_data = mode == SliceMode::kInput;
-  const auto field = choose(input, of_data, style);
+  const auto field = choose_field(input, mode, style);
   if (of_data) return cross_section(*input.data, style.plane, field);
   return cross_section(*input.mesh, style.plane, field,
                        mode == SliceMode::kPlain ? SectionMode::kPlain : SectionMode::kPerMaterial);
@@ -51,7 +77,7 @@ CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& styl
 
 std::string shown_field(const SliceInput& input, const SliceStyle& style) {
   const bool of_data = !input.mesh;
-  const auto field = choose(input, of_data, style);
+  const auto field = choose_field(input, of_data ? SliceMode::kInput : SliceMode::kMaterials, style);
   return field ? field_label(fields_of(input, of_data), *field) : std::string();
 }
 
@@ -73,15 +99,17 @@ SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle&
     }
     panel.polygons.push_back(std::move(polygon));
   }
-  if (style.cells) panel.lines.push_back(to_lines(frame, "cells", cell_stroke(), section.cell_edges));
+  if (mode == SliceMode::kInput ? style.input_cells : style.mesh_cells)
+    panel.lines.push_back(to_lines(frame, "cells", cell_stroke(), section.cell_edges));
   if (!style.interfaces) return panel;
+  if (input.interfaces) {
+    panel.lines.push_back(to_lines(frame, "original interfaces",
+                                   input.mesh ? original_below() : original_interface_stroke(),
+                                   section_edges(*input.interfaces, style.plane, input.box())));
+  }
   if (mode != SliceMode::kInput) {
     panel.lines.push_back(
         to_lines(frame, "approximated interfaces", approximated_interface_stroke(), section.interface_edges));
-  }
-  if (input.interfaces) {
-    panel.lines.push_back(to_lines(frame, "original interfaces", original_interface_stroke(),
-                                   section_edges(*input.interfaces, style.plane, input.box())));
   }
   return panel;
 }

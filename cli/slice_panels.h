@@ -21,8 +21,13 @@ enum class SliceMode {
 struct SliceStyle {
   Plane plane;
   std::string field;  ///< "NAME" or "NAME:C"; empty: the materials
-  bool cells = true, interfaces = true;
+  bool interfaces = true;
+  bool input_cells = true, mesh_cells = true;  ///< lines round the cells of the input, of the mesh
 };
+
+/// The field that a style shows: "NAME", "NAME:C" or, of a vector in space, "NAME:x"; none for the materials.
+/// Throws Error where it is not there.
+std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode, const SliceStyle& style);
 
 /// One section of the input in one mode.
 CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style);

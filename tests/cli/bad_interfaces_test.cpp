@@ -106,6 +106,16 @@ TEST_F(BadInterfaces, Boxes) {
   }
 }
 
+TEST_F(BadInterfaces, BesideTheDomain) {
+  write("t.obj", tetrahedron(0));
+  expect_failure({"resample", "--interface", "t.obj=air,metal", "--box", "5,6,5,6,5,6", "-o", "m.vtu"},
+                 {"t.obj", "expected interfaces inside the box [5, 6]", "found them in [0, 1]"});
+  // All round the domain, and nowhere in it.
+  expect_failure(
+      {"resample", "--interface", "t.obj=air,metal", "--box", "0.1,0.2,0.1,0.2,0.1,0.2", "-o", "m.vtu"},
+      {"expected interfaces inside the box"});
+}
+
 TEST_F(BadInterfaces, Networks) {
   write("cut.arec", "4\n0 0 0\n1 0 0\n0 1 0\n");
   expect_failure({"resample", "cut.arec", "-o", "m.vtu"}, {"cut.arec", "expected"});

@@ -151,6 +151,22 @@ TEST_F(Commands, ResampleKeepsABudget) {
   EXPECT_EQ(result.status, 0);
   EXPECT_LE(read_json("j.json").at("tetrahedra"), 400);
   EXPECT_NE(result.err.find("adamas: note: the interface error wanted was not reached"), std::string::npos);
+  EXPECT_EQ(read_json("j.json").at("interface_error_reached"), false);
+}
+
+TEST_F(Commands, MissedFieldErrorsAreNoted) {
+  make_scene("sphere", 8);
+  const RunResult result =
+      run({"resample", "scene.vtr", "--interface-error", "5%", "--field-error", "smooth=1e-9",
+           "--field-error", "constant=0.1", "--max-tetrahedra", "600", "--json", "j.json"});
+  EXPECT_EQ(result.status, 0);
+  ASSERT_EQ(result.err_lines().size(), 1u) << result.err;
+  EXPECT_EQ(result.err.rfind("adamas: note: the error wanted of the field 'smooth' was not reached", 0), 0u);
+  const auto figures = read_json("j.json");
+  EXPECT_EQ(figures.at("interface_error_reached"), true);
+  EXPECT_EQ(figures.at("fields").at("smooth").at("reached"), false);
+  EXPECT_EQ(figures.at("fields").at("constant").at("reached"), true);
+  EXPECT_TRUE(figures.at("fields").at("linear").at("reached").is_null());
 }
 
 TEST_F(Commands, ResampleGivenInterfaces) {
@@ -228,6 +244,34 @@ TEST_F(Commands, SlicesOfAllModes) {
                      {"--original"});
 }
 
+TEST_F(Commands, SlicesMatchMaterialsByName) {
+  write_image("f.nrrd", 6, [](std::size_t i) { return i % 6 < 3 ? 1.0f : 0.0f; });
+  run_well({"resample", "f.nrrd", "--fraction", "a=f.nrrd", "--rest", "b", "--interface-error", "5%", "-o",
+            "m.vtu"});
+  write_image("g.nrrd", 6, [](std::size_t i) { return i % 6 < 3 ? 0.0f : 1.0f; });
+  const auto slice = [this](const std::vector<std::string>& original) {
+    std::vector<std::string> all{"slice", "m.vtu", "--plane", "Z=2.5", "--mode", "all", "-o", "s.svg"};
+    all.insert(all.end(), original.begin(), original.end());
+    run_well(all);
+    return read("s.svg");
+  };
+  // The same data with their materials the other way round.
+  EXPECT_TRUE(slice({"--original", "f.nrrd", "--fraction", "a=f.nrrd", "--rest", "b"}) ==
+              slice({"--original", "g.nrrd", "--fraction", "b=g.nrrd", "--rest", "a"}));
+}
+
+TEST_F(Commands, ComponentsOfVectorsGoByTheirAxes) {
+  write("v.vtk",
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 3 3\nORIGIN 0 0 0\n"
+        "SPACING 1 1 1\nCELL_DATA 8\nSCALARS volume_fraction_a float 1\nLOOKUP_TABLE default\n"
+        "1 0 1 0 1 0 1 0\nVECTORS speed float\n1 2 3 2 3 4 3 4 5 4 5 6 5 6 7 6 7 8 7 8 9 8 9 0\n");
+  for (const std::string component : {"1", "y"}) {
+    run_well({"slice", "v.vtk", "--rest", "b", "--plane", "x=0.5", "--field", "speed:" + component, "-o",
+              component + ".svg"});
+  }
+  EXPECT_TRUE(read("1.svg") == read("y.svg"));
+}
+
 TEST_F(Commands, InterfacesRoundAPlaneAreThoseOfTheWhole) {
   make_scene("reflex", 12);
   run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
@@ -243,7 +287,11 @@ TEST_F(Commands, ProbeKnowsMaterialsAndIntegrals) {
   make_scene("sphere", 12);
   run_well({"resample", "scene.vtr", "--interface-error", "1%", "-o", "m.vtu"});
   for (const std::string input : {"scene.vtr", "m.vtu"}) {
-    run_well({"probe", input, "--line=-0.1,0.5,0.5..1.1,0.5,0.5,13", "-o", "p.csv", "--json", "j.json"});
+    const RunResult probed =
+        run({"probe", input, "--line=-0.1,0.5,0.5..1.1,0.5,0.5,13", "-o", "p.csv", "--json", "j.json"});
+    EXPECT_EQ(probed.err,
+              "adamas: note: 2 of 13 points lie outside of the domain [0, 1] x [0, 1] x [0, 1]\n");
+    EXPECT_NE(probed.out.find("mean of smooth"), std::string::npos);
     const auto rows = parse_csv(read("p.csv"));
     ASSERT_EQ(rows.size(), 14u);
     EXPECT_EQ(rows[0][3], "material");
@@ -322,9 +370,50 @@ TEST_F(Commands, HelpAndCompletion) {
   EXPECT_NE(run_well({"generate", "scene", "--help"}).out.find("Example:"), std::string::npos);
 }
 
+TEST_F(Commands, HelpFitsTheScreen) {
+  for (const std::string command : {"generate", "info", "reconstruct", "resample", "slice", "probe"}) {
+    const std::string help = run_well({command, "--help"}).out;
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+    // A command's own options come first.
+    const std::size_t common = help.find("\nCommon:\n");
+    if (command != "generate") {
+      EXPECT_LT(help.find("\nPositionals:\n"), common);
+      EXPECT_LT(common, help.find("\nExample:\n"));
+    }
+  }
+  const std::string help = run_well({"resample", "--help"}).out;
+  EXPECT_NE(help.find("(default 1%)"), std::string::npos) << help;
+  EXPECT_NE(help.find("--ghost constant|linear"), std::string::npos) << help;
+}
+
+TEST_F(Commands, CompletionLeavesFilesToTheShell) {
+  write("completion.bash", run_well({"completion", "bash"}).out);
+  const auto complete = [this](const std::string& words) {
+    const std::string script = "source completion.bash; COMP_WORDS=(" + words +
+                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _adamas; "
+                               "echo \"${COMPREPLY[@]}\" > reply";
+    const std::string command = "cd '" + folder().string() + "' && bash -c '" + script + "'";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    std::string reply = read("reply");
+    if (!reply.empty()) reply.pop_back();
+    return reply;
+  };
+  EXPECT_EQ(complete("adamas re"), "reconstruct resample");
+  EXPECT_EQ(complete("adamas resample \"\""), "");
+  EXPECT_EQ(complete("adamas resample x.vtr --gh"), "--ghost");
+  EXPECT_EQ(complete("adamas resample x.vtr --ghost \"\""), "constant linear");
+  EXPECT_EQ(complete("adamas resample x.vtr --ghost = li"), "linear");
+  for (const std::string option : {"-o", "--output", "--json", "--interface-error"}) {
+    EXPECT_EQ(complete("adamas resample x.vtr " + option + " \"\""), "") << option;
+  }
+  EXPECT_EQ(complete("adamas generate scene ref"), "reflex");
+}
+
 TEST_F(Commands, QuietAndVerbose) {
   make_scene("sphere", 6);
   EXPECT_EQ(run_well({"resample", "scene.vtr", "--quiet", "-o", "m.vtu"}).out, "");
+  EXPECT_EQ(run({"probe", "scene.vtr", "--quiet", "--point", "5,5,5"}).err, "");
   const RunResult verbose = run({"resample", "scene.vtr", "--verbose", "-o", "m.vtu"});
   EXPECT_EQ(verbose.status, 0);
   EXPECT_NE(verbose.err.find("refining interfaces"), std::string::npos);

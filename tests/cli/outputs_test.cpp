@@ -46,8 +46,40 @@ TEST_F(Outputs, NameOfAFolderOrDevice) {
   std::filesystem::create_directory(folder() / "m.vtu");
   expect_failure({"resample", "scene.vtr", "-o", "m.vtu"},
                  {"m.vtu", "expected an output file", "found a folder"});
-  expect_failure({"info", "scene.vtr", "--json", "/dev/null"}, {"/dev/null", "expected", "found"});
+  std::filesystem::create_symlink("/dev/null", folder() / "null.json");
+  expect_failure({"info", "scene.vtr", "--json", "null.json"}, {"null.json", "expected", "found"});
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_F(Outputs, NoInputIsOverwritten) {
+  make_scene("sphere", 4);
+  run_well({"generate", "scene", "sphere", "--interfaces", "net.vtp"});
+  run_well({"generate", "scene", "sphere", "--interfaces", "net.off"});
+  run_well({"resample", "scene.vtr", "--interface-error", "9%", "-o", "m.vtu"});
+  write("p.csv", "0.5,0.5,0.5\n");
+  write("names.txt", "0 a\n");
+  write("c.json", "threads = 1\n");
+  std::filesystem::create_symlink("p.csv", folder() / "alias.csv");
+  std::filesystem::create_directory(folder() / "sub");
+  std::filesystem::copy(folder() / "scene.vtr", folder() / "sub/scene.vtr");
+  write("sub/labels.vtp", "");
+  const std::vector<std::vector<std::string>> commands{
+      {"resample", "net.vtp", "--interfaces-out", "./net.vtp"},
+      {"resample", "scene.vtr", "--interface", "net.off=outside,inside", "--interfaces-out", "net.off"},
+      {"resample", "net.arec", "--region-names", "names.txt", "--interfaces-out", "names.txt"},
+      {"resample", "sub/scene.vtr", "--fraction", "a=labels.vtp", "--interfaces-out", "sub/labels.vtp"},
+      {"resample", "sub/scene.vtr", "--field", "a=labels.vtp", "--interfaces-out", "sub/labels.vtp"},
+      {"reconstruct", "sub/scene.vtr", "--labels", "sub/labels.vtp", "-o", "sub/labels.vtp"},
+      {"slice", "m.vtu", "--plane", "x=0.5", "--original", "net.vtp", "-o", "net.vtp"},
+      {"probe", "scene.vtr", "--points", "p.csv", "-o", "p.csv"},
+      {"probe", "scene.vtr", "--points", "alias.csv", "-o", "p.csv"},
+      {"info", "scene.vtr", "--config", "c.json", "--json", "c.json"}};
+  for (const auto& command : commands) {
+    const std::string before = read(command.back());
+    expect_wrong_usage(command, {"expected a file that is no input", command.back()});
+    EXPECT_EQ(read(command.back()), before);
+  }
+  expect_wrong_usage({"info", "scene.vtr", "--json", "scene.vtr"}, {"--json", "expected", ".json"});
 }
 
 TEST_F(Outputs, DiskFull) {
@@ -108,6 +140,19 @@ TEST_F(Outputs, InterruptedRuns) {
     EXPECT_EQ(result.err.find("error"), std::string::npos) << result.err;
     EXPECT_EQ(files(), before);
   }
+}
+
+TEST_F(Outputs, TheSecondInterruptEndsAtOnce) {
+  make_scene("voronoi10", 20);
+  const auto before = files();
+  RunOptions stop;
+  stop.interrupt_at = "reconstructing";
+  stop.interrupts = 2;
+  const RunResult result = run(
+      {"resample", "scene.vtr", "--interface-error", "0.02%", "--verbose", "-o", "m.vtu", "--json", "j.json"},
+      stop);
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_EQ(files(), before);
 }
 
 TEST_F(Outputs, ClosedPipe) {

@@ -55,7 +55,11 @@ void collect(pid_t child, int out, int err, const RunOptions& options, RunResult
       (i == 0 ? result.out : result.err).append(buffer.data(), static_cast<std::size_t>(n));
     }
     if (interrupt && result.err.find(options.interrupt_at) != std::string::npos) {
-      kill(child, SIGINT);
+      for (int i = 0; i < options.interrupts; ++i) {
+        // Signals that wait together become one.
+        if (i > 0) usleep(1000);
+        kill(child, SIGINT);
+      }
       interrupt = false;
     }
   }

@@ -25,6 +25,7 @@ struct RunOptions {
   std::optional<std::size_t> file_size_limit;
   /// Send SIGINT as soon as stderr holds this text.
   std::string interrupt_at;
+  int interrupts = 1;         ///< that many times
   bool close_stdout = false;  ///< nobody reads what the program prints
 };
 

@@ -16,6 +16,60 @@ TEST_F(WrongUsage, Commands) {
   expect_wrong_usage({"generate", "soup"}, {"expected one of scene", "found 'soup'"});
   expect_wrong_usage({"reconstruct", "x.vtr"}, {"output"});
   expect_wrong_usage({"resample", "-o", "m.vtu"}, {"expected an INPUT or --interface", "found neither"});
+  expect_wrong_usage({"resample", "x.vtr"}, {"nothing to write", "--interfaces-out", "found none"});
+}
+
+TEST_F(WrongUsage, IsToldAsExpectedAndFound) {
+  expect_wrong_usage({"resample", "x.vtr", "--interface-eror", "1%"},
+                     {"expected an option of 'adamas resample', found '--interface-eror'",
+                      "did you mean --interface-error?"});
+  expect_wrong_usage({"resampel", "x.vtr"}, {"found 'resampel' (did you mean resample?)"});
+  expect_wrong_usage({"info", "a.vtr", "b.vtr"}, {"expected no more arguments, found 'b.vtr'"});
+  expect_wrong_usage({"resample", "x.vtr", "--interface-error", "1%", "--interface-error", "2%"},
+                     {"--interface-error: expected one value, found '1%', '2%'"});
+  expect_wrong_usage({"resample", "x.vtr", "--ghost", "quadratic"},
+                     {"--ghost: expected constant or linear, found 'quadratic'"});
+  expect_wrong_usage({"resample", "x.vtr", "--interface-error"},
+                     {"--interface-error: expected a value E|E%, found none"});
+  expect_wrong_usage({"slice", "x.vtr", "--cells=maybe"}, {"--cells: expected no value", "found 'maybe'"});
+  expect_wrong_usage({"info"}, {"expected INPUT, found none"});
+  expect_wrong_usage({"info", "x.vtr", "--config", "none.toml"}, {"--config: expected a file", "none.toml"});
+}
+
+TEST_F(WrongUsage, EmptyAndSwallowedValues) {
+  for (const std::string option : {"-o", "--json", "--interfaces-out", "--labels"}) {
+    expect_wrong_usage({"resample", "x.vtr", option, ""}, {"expected a value, found an empty one"});
+  }
+  expect_wrong_usage({"slice", "x.vtr", "--plane", "x=1", "--field", "-o", "o.png"},
+                     {"--field: expected a value, found the option '-o'"});
+  expect_wrong_usage({"info", "x.vtr", "--labels", "--json", "o.json"}, {"--labels", "'--json'"});
+}
+
+TEST_F(WrongUsage, OptionsThatWouldSayNothing) {
+  make_scene("sphere", 4);
+  run_well({"resample", "scene.vtr", "--interface-error", "9%", "-o", "m.vtu"});
+  expect_wrong_usage({"resample", "scene.vtr", "--tolerant", "-o", "n.vtu"}, {"--tolerant: expected given"});
+  expect_wrong_usage({"resample", "scene.vtr", "--box", "0,1,0,1,0,1", "-o", "n.vtu"}, {"--box: expected"});
+  expect_wrong_usage({"probe", "scene.vtr", "--tolerant"}, {"--tolerant: expected given interfaces"});
+  expect_wrong_usage({"probe", "m.vtu", "--tolerant"}, {"--tolerant: expected given interfaces"});
+  expect_wrong_usage({"info", "m.vtu", "--labels", "foo"}, {"--labels: expected data on a grid"});
+  expect_wrong_usage({"info", "scene.vtr", "--region-names", "foo"}, {"--region-names: expected"});
+  expect_wrong_usage(
+      {"generate", "scene", "sphere", "--resolution", "0.1", "--dimensions", "4", "-o", "g.vtr"},
+      {"--resolution: expected --interfaces"});
+  const std::vector<std::vector<std::string>> options{{"--box", "0,1,0,1,0,1"},
+                                                      {"--tolerant"},
+                                                      {"--region-names", "names.txt"},
+                                                      {"--range", "0,1"},
+                                                      {"--colour-map", "grey"}};
+  for (const auto& option : options) {
+    std::vector<std::string> slice{"slice", "scene.vtr", "--plane", "x=0.5", "-o", "s.png"};
+    slice.insert(slice.end(), option.begin(), option.end());
+    expect_wrong_usage(slice, {option[0], "expected"});
+  }
+  expect_wrong_usage({"slice", "m.vtu", "--plane", "x=0.5", "-o", "s.png", "--mode", "plain"},
+                     {"--mode plain: expected --field"});
+  expect_wrong_usage({"completion", "bash", "--json", "o.json"}, {"found '--json'"});
 }
 
 TEST_F(WrongUsage, AbsurdErrors) {
@@ -26,6 +80,10 @@ TEST_F(WrongUsage, AbsurdErrors) {
                        {"--interface-error", "expected a positive error", "'" + error + "'"});
     expect_wrong_usage({"resample", "scene.vtr", "-o", "m.vtu", "--field-error", "smooth=" + error},
                        {"--field-error smooth", "expected a positive error", "'" + error + "'"});
+  }
+  for (const std::string error : {"5", "1.7321", "100%", "500%"}) {
+    expect_wrong_usage({"resample", "scene.vtr", "-o", "m.vtu", "--interface-error", error},
+                       {"--interface-error: expected less than the domain's diagonal, 1.73205", "1%"});
   }
   expect_wrong_usage({"resample", "scene.vtr", "-o", "m.vtu", "--field-error", "smooth"}, {"--field-error"});
   expect_wrong_usage({"resample", "scene.vtr", "--field-error", "smooth=1", "--field-error", "smooth=2"},
@@ -57,6 +115,8 @@ TEST_F(WrongUsage, Scenes) {
     expect_wrong_usage({"generate", "scene", "sphere", "--dimensions", "4,4,4", "--box", box, "-o", "s.vtr"},
                        {"--box", "expected", box});
   }
+  expect_wrong_usage({"generate", "scene", "sphere", "--dimensions", "4", "--seed", "-1", "-o", "s.vtr"},
+                     {"--seed", "at least 0", "'-1'"});
   for (const std::string size : {"0", "-1", "nan", "x"}) {
     expect_wrong_usage({"generate", "scene", "sphere", "--resolution", size, "--interfaces", "s.vtp"},
                        {"--resolution", "expected a positive number", size});
@@ -78,12 +138,14 @@ TEST_F(WrongUsage, Slices) {
   };
   expect_wrong_usage(slice, {"expected --plane, or --origin and --normal"});
   expect_wrong_usage(with({"--plane", "x=nan"}), {"--plane"});
-  expect_wrong_usage(with({"--plane", "w=1"}), {"--plane"});
+  expect_wrong_usage(with({"--plane", "w=1"}), {"error: --plane: expected x=NUMBER", "'w=1'"});
   expect_wrong_usage(with({"--origin", "0,0,0"}), {"--normal"});
   expect_wrong_usage(with({"--origin", "0,0,0", "--normal", "0,0,0"}), {"--normal", "expected"});
-  expect_wrong_usage(with({"--plane", "x=0.5", "--range", "2,1"}), {"--range", "expected", "2,1"});
+  expect_wrong_usage(with({"--plane", "x=0.5", "--field", "smooth", "--range", "2,1"}),
+                     {"--range", "expected", "2,1"});
   expect_wrong_usage(with({"--plane", "x=0.5", "--size", "10,10"}), {"--size", "expected", "10,10"});
-  expect_wrong_usage(with({"--plane", "x=0.5", "--mode", "plain"}), {"--mode", "expected a resampled mesh"});
+  expect_wrong_usage(with({"--plane", "x=0.5", "--field", "smooth", "--mode", "plain"}),
+                     {"--mode", "expected a resampled mesh"});
   expect_wrong_usage(with({"--plane", "x=0.5", "--colour-map", "rainbow"}), {"rainbow", "sequential"});
 }
 
@@ -93,6 +155,8 @@ TEST_F(WrongUsage, Probes) {
        {"0,0,0", "0,0,0..1,1,1", "0,0..1,1,1,5", "0,0,0..1,1,1,1", "0,0,0..1,1,nan,4"}) {
     expect_wrong_usage({"probe", "scene.vtr", "--line=" + line}, {"--line", "expected"});
   }
+  expect_wrong_usage({"probe", "scene.vtr", "--line", "0,0,0..1,1,1"},
+                     {"expected x,y,z..x,y,z,n", "found '0,0,0..1,1,1'"});
   expect_wrong_usage({"probe", "scene.vtr", "--point", "1,2"}, {"--point", "expected", "1,2"});
 }
 
