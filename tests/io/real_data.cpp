@@ -22,6 +22,17 @@ std::map<std::size_t, std::size_t> triangles_per_edge(const InterfaceMesh& mesh)
   return counts;
 }
 
+TEST(SharedData, LiesWhereTheVariableSays) {
+  const char* before = std::getenv("ADAMAS_DATA");
+  const std::string kept = before != nullptr ? before : "";
+  ::setenv("ADAMAS_DATA", "/somewhere", 1);
+  EXPECT_EQ(shared_data("a/b.vtr"), "/somewhere/a/b.vtr");
+  ::unsetenv("ADAMAS_DATA");
+  EXPECT_EQ(shared_data("a.vtr").lexically_normal(),
+            (std::filesystem::path(ADAMAS_SOURCE_DIR) / "../shared/data/a.vtr").lexically_normal());
+  if (before != nullptr) ::setenv("ADAMAS_DATA", kept.c_str(), 1);
+}
+
 TEST(RealData, CthImpact) {
   const auto path = shared_data("material/pyvista_misc/cth.vtr");
   ADAMAS_SKIP_WITHOUT(path);
