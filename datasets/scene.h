@@ -54,7 +54,8 @@ enum class SceneField { kConstant, kLinear, kSmooth };
 const std::array<std::pair<SceneField, std::string_view>, 3>& scene_fields();
 
 /// A domain divided among materials by an analytic rule: each candidate is the least of its functions, and
-/// the owner of a point is the owner of the candidate with the greatest value there (SPEC 2.3). Immutable.
+/// the owner of a point is the owner of the candidate with the greatest value there (docs/method.md, "Who
+/// owns a point of a cell"). Immutable.
 class Scene {
  public:
   /// Throws Error where the description has no volume, no candidate or an index out of range.
@@ -106,7 +107,7 @@ struct SceneOptions {
   Box3 box{{0, 0, 0}, {1, 1, 1}};
 };
 
-/// Names make_scene knows (TARGETS, "Interfaces").
+/// Names make_scene knows.
 std::vector<std::string> scene_names();
 
 /// A named scene. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`;

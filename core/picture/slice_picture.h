@@ -43,7 +43,7 @@ struct SlicePanel {
   std::vector<LineSet> lines{};
 };
 
-/// Panels side by side that show the same part of a plane with the same colour map (SPEC 2.7).
+/// Panels side by side that show the same part of a plane with the same colour map.
 struct SlicePicture {
   std::string title{};
   std::string x_label{}, y_label{};  ///< with their units, as "x [cm]"

@@ -36,6 +36,8 @@ ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CHANGELOG.md"
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
 MOST_LINES = 400
+# Documents that are not part of the repository; what they say stands in docs/.
+UNKNOWN_DOCUMENT = re.compile(r"\b(SPEC|TARGETS|DESIGN)\b")
 ABSOLUTE_PATH = re.compile(r"""(?<![\w.$}/-])/(work|home|root|Users|mnt)/[\w.]""")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
@@ -115,6 +117,9 @@ def check_text(path, text):
             yield f"line {number} has a tab"
         if ABSOLUTE_PATH.search(line):
             yield f"line {number} has an absolute path"
+        document = UNKNOWN_DOCUMENT.search(line)
+        if document and os.path.splitext(path)[1] in CODE | {".md"}:
+            yield f"line {number} cites {document.group()}, which is no document of the repository"
 
 
 def breaches(root):

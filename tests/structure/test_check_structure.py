@@ -64,6 +64,8 @@ class StructureTest(unittest.TestCase):
         self.expect({"core/base/a.cpp": "int a;"}, "end with a newline")
         self.expect({"core/base/a.cpp": "int a;\n" * 401}, "more than 400")
         self.expect({"core/base/a.cpp": '// see "/ho' + 'me/someone/x"\n'}, "absolute path")
+        self.expect({"core/base/a.cpp": "// as SPEC 2.1 says\n"}, "line 1 cites SPEC")
+        self.expect({"core/base/a.cpp": "// SPECIAL, DESIGNS\n", "core/base/CMakeLists.txt": "install(TARGETS a)\n"}, None)
         self.expect({"interfaces/README.md": None}, "interfaces: has no README.md")
 
 
