@@ -1,5 +1,11 @@
 #include "core/geometry/convex_polyhedron.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/assert.h"
+
 namespace adamas {
 
 namespace {
@@ -9,12 +15,6 @@ struct Crossing {
   std::uint16_t from, to;  ///< the edge's corner above and the one below
   std::uint16_t above, below;
   std::uint16_t next_above, next_below;  ///< along the cut's border, seen from outside of either side
-};
-
-/// Where a face's border passes the cut, in order.
-struct Passage {
-  std::size_t crossing;
-  bool down;
 };
 
 }  // namespace
@@ -31,11 +31,45 @@ ConvexPolyhedron ConvexPolyhedron::unit() {
   return whole;
 }
 
-void ConvexPolyhedron::cut(const std::vector<double>& d, const std::vector<char>& positive,
-                           ConvexPolyhedron& above, ConvexPolyhedron& below) const {
+void ConvexPolyhedron::cut(std::vector<double>& d, std::vector<char>& positive, ConvexPolyhedron& above,
+                           ConvexPolyhedron& below) const {
+  if (try_cut(d, positive, above, below)) return;
+  connect(1, d, positive);
+  connect(0, d, positive);
+  const bool whole = try_cut(d, positive, above, below);
+  ADAMAS_ASSERT(whole);
+}
+
+/// Both sides of a plane are connected along the edges of a convex polyhedron. Where round-off says
+/// otherwise, all parts of a side but that which reaches farthest from the plane count as zeros of the other
+/// side.
+void ConvexPolyhedron::connect(char side, std::vector<double>& d, std::vector<char>& positive) const {
+  std::vector<std::size_t> part(corners_.size());
+  std::iota(part.begin(), part.end(), std::size_t{0});
+  for (bool changed = true; changed;) {
+    changed = false;
+    for_each_edge([&](std::size_t a, std::size_t b) {
+      if (positive[a] != side || positive[b] != side || part[a] == part[b]) return;
+      part[a] = part[b] = std::min(part[a], part[b]);
+      changed = true;
+    });
+  }
+  std::size_t farthest = corners_.size();
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    if (positive[c] == side && (farthest == corners_.size() || std::abs(d[c]) > std::abs(d[farthest])))
+      farthest = c;
+  }
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    if (positive[c] != side || part[c] == part[farthest]) continue;
+    positive[c] = side == 0 ? 1 : 0;
+    d[c] = 0;
+  }
+}
+
+bool ConvexPolyhedron::try_cut(const std::vector<double>& d, const std::vector<char>& positive,
+                               ConvexPolyhedron& above, ConvexPolyhedron& below) const {
   thread_local std::vector<std::uint16_t> place;
   thread_local std::vector<Crossing> crossings;
-  thread_local std::vector<Passage> passages;
   above.clear();
   below.clear();
   crossings.clear();
@@ -55,46 +89,40 @@ void ConvexPolyhedron::cut(const std::vector<double>& d, const std::vector<char>
   };
 
   for (std::size_t face = 0, begin = 0; face < ends_.size(); begin = ends_[face++]) {
-    passages.clear();
+    std::size_t down = 0, up = 0, passages = 0;
     for (std::size_t k = begin; k < ends_[face]; ++k) {
       const std::uint16_t c = loop_[k], next = loop_[k + 1 < ends_[face] ? k + 1 : begin];
-      const bool up = positive[c] != 0;
-      (up ? above : below).loop_.push_back(place[c]);
-      if (up == (positive[next] != 0)) continue;
-      const std::size_t x = crossing(up ? c : next, up ? next : c);
+      const bool high = positive[c] != 0;
+      (high ? above : below).loop_.push_back(place[c]);
+      if (high == (positive[next] != 0)) continue;
+      const std::size_t x = crossing(high ? c : next, high ? next : c);
       above.loop_.push_back(crossings[x].above);
       below.loop_.push_back(crossings[x].below);
-      passages.push_back({x, up});
+      (high ? down : up) = x;
+      ++passages;
     }
-    for (ConvexPolyhedron* side : {&above, &below}) {
-      const std::size_t end = side->ends_.empty() ? 0 : side->ends_.back();
-      if (side->loop_.size() > end) side->end_face();
-    }
+    if (passages > 2) return false;
+    above.end_face();
+    below.end_face();
+    if (passages == 0) continue;
     // Above, the face's border goes on from where it passes down to where it comes up again, and the border
     // of the cut the other way; below, from where it comes up to where it goes down.
-    for (std::size_t i = 0; i < passages.size(); ++i) {
-      const std::size_t here = passages[i].crossing, there = passages[(i + 1) % passages.size()].crossing;
-      if (passages[i].down) {
-        crossings[there].next_above = static_cast<std::uint16_t>(here);
-      } else {
-        crossings[there].next_below = static_cast<std::uint16_t>(here);
-      }
-    }
+    crossings[up].next_above = static_cast<std::uint16_t>(down);
+    crossings[down].next_below = static_cast<std::uint16_t>(up);
   }
   const auto close = [&](ConvexPolyhedron& side, std::uint16_t Crossing::*number,
                          std::uint16_t Crossing::*next) {
-    place.assign(crossings.size(), 0);
-    for (std::size_t start = 0; start < crossings.size(); ++start) {
-      if (place[start] != 0) continue;
-      for (std::size_t x = start; place[x] == 0; x = crossings[x].*next) {
-        place[x] = 1;
-        side.loop_.push_back(crossings[x].*number);
-      }
-      side.end_face();
-    }
+    std::size_t count = 0, x = 0;
+    do {
+      side.loop_.push_back(crossings[x].*number);
+      x = crossings[x].*next;
+      ++count;
+    } while (x != 0);
+    side.end_face();
+    return count == crossings.size();
   };
-  close(above, &Crossing::above, &Crossing::next_above);
-  close(below, &Crossing::below, &Crossing::next_below);
+  const bool whole_above = close(above, &Crossing::above, &Crossing::next_above);
+  return close(below, &Crossing::below, &Crossing::next_below) && whole_above;
 }
 
 }  // namespace adamas

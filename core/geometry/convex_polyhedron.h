@@ -27,8 +27,9 @@ class ConvexPolyhedron {
   [[nodiscard]] const std::vector<Weights>& corners() const { return corners_; }
 
   /// Cuts where `d`, given at the corners, changes sign; `positive` tells the side of each corner, and both
-  /// sides have some. Points of the cut do not depend on the order of the corners.
-  void cut(const std::vector<double>& d, const std::vector<char>& positive, ConvexPolyhedron& above,
+  /// sides have some. Changes both where they are no plane's but for round-off. Points of the cut do not
+  /// depend on the order of the corners.
+  void cut(std::vector<double>& d, std::vector<char>& positive, ConvexPolyhedron& above,
            ConvexPolyhedron& below) const;
 
   /// Calls back with tetrahedra that fill the polyhedron. The diagonals of a face depend on the face's
@@ -73,7 +74,22 @@ class ConvexPolyhedron {
     corners_.push_back(corner);
     return static_cast<std::uint16_t>(corners_.size() - 1);
   }
-  void end_face() { ends_.push_back(static_cast<std::uint32_t>(loop_.size())); }
+  /// Ends a face, if it has any corners.
+  void end_face() {
+    if (loop_.size() > (ends_.empty() ? 0 : ends_.back()))
+      ends_.push_back(static_cast<std::uint32_t>(loop_.size()));
+  }
+  template <class Visit>
+  void for_each_edge(Visit&& visit) const {
+    for (std::size_t face = 0, begin = 0; face < ends_.size(); begin = ends_[face++]) {
+      for (std::size_t k = begin; k < ends_[face]; ++k)
+        visit(loop_[k], loop_[k + 1 < ends_[face] ? k + 1 : begin]);
+    }
+  }
+  /// False where the sides are not those of a plane.
+  bool try_cut(const std::vector<double>& d, const std::vector<char>& positive, ConvexPolyhedron& above,
+               ConvexPolyhedron& below) const;
+  void connect(char side, std::vector<double>& d, std::vector<char>& positive) const;
 
   std::vector<Weights> corners_;
   std::vector<std::uint16_t>

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -105,7 +107,7 @@ class Divider {
         f = s.function(s.contenders[x], 0), g = s.function(s.contenders[y], 0);
         above = {y}, below = {x};
       }
-      const std::size_t positives = find_sides(s, f, g);
+      const std::size_t positives = find_sides(piece, s, f, g);
       if (positives == s.corners || positives == 0) {
         remove(s, positives == 0 ? below : above);
         continue;
@@ -152,13 +154,23 @@ class Divider {
     }
   }
 
-  std::size_t find_sides(State& s, const Function& f, const Function& g) const {
-    const double *a = s.row(f), *b = s.row(g);
+  /// On which side of f = g each corner lies. The difference is taken at the vertices, where nothing cancels
+  /// that was not equal; what is round-off counts as equal, so that all corners of a face in the plane lie on
+  /// one side.
+  std::size_t find_sides(const Piece& piece, State& s, const Function& f, const Function& g) const {
+    constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
+    std::array<double, 4> difference;
+    double greatest = 0;
+    for (std::size_t v = 0; v < 4; ++v) {
+      difference[v] = problem_->functions[f.id].values[v] - problem_->functions[g.id].values[v];
+      greatest = std::max(greatest, std::abs(difference[v]));
+    }
     s.d.resize(s.corners);
     s.positive.resize(s.corners);
     std::size_t positives = 0;
     for (std::size_t c = 0; c < s.corners; ++c) {
-      s.d[c] = a[c] - b[c];
+      s.d[c] = evaluate(difference, piece.corners()[c]);
+      if (std::abs(s.d[c]) <= kRoundOff * greatest) s.d[c] = 0;
       s.positive[c] = s.d[c] > 0 || (s.d[c] == 0 && key(f) < key(g)) ? 1 : 0;
       positives += s.positive[c] != 0 ? 1 : 0;
     }

@@ -43,7 +43,7 @@ class ConvexPolygon {
   [[nodiscard]] const std::vector<Weights>& corners() const { return corners_; }
 
   /// Cuts where `d`, given at the corners, changes sign.
-  void cut(std::vector<double> d, std::vector<char> positive, ConvexPolygon& above,
+  void cut(std::vector<double>& d, std::vector<char>& positive, ConvexPolygon& above,
            ConvexPolygon& below) const {
     above.corners_.clear();
     below.corners_.clear();
@@ -89,9 +89,9 @@ double volume_fraction(const std::array<Weights, 4>& c) {
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t i = 0; i < 3; ++i) m[r][i] = c[r + 1][i + 1] - c[0][i + 1];
   }
-  return std::abs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                  m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                  m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
 }  // namespace adamas

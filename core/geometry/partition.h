@@ -14,7 +14,8 @@ struct LinearFunction {
 };
 
 /// Who owns a point of a tetrahedron (SPEC 2.3): each candidate is the least of its linear functions, and the
-/// owner of a point is the candidate with the greatest value there.
+/// owner of a point is the candidate with the greatest value there. Questions need candidates that have a
+/// function each.
 struct OwnershipProblem {
   struct Candidate {
     std::uint32_t owner;  ///< a body or material index
@@ -74,14 +75,17 @@ struct ContactPolygon {
   std::vector<Corner> corners;
 };
 
-/// Divides the unit weights tetrahedron into parts of one owner. The parts' volumes add up to the whole.
+/// Divides the unit weights tetrahedron into parts of one owner; appends to `parts`. The parts' volumes add
+/// up to the whole, also those of each owner's parts to its own, to round-off. Where functions are almost
+/// equal a part may be inside out, its volume negative, and others too great by as much.
 void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTetrahedron>& parts);
 
-/// Divides a convex polygon, given by weights, into convex parts of one owner.
+/// Divides a convex polygon, given by weights, into convex parts of one owner; appends to `parts`.
 void partition_polygon(const OwnershipProblem& problem, const std::vector<Weights>& polygon,
                        std::vector<OwnedPolygon>& parts);
 
-/// Leaves out candidates that own no point by far, so that the others can be divided faster.
+/// Leaves out candidates whose greatest value is below what another surely reaches everywhere, so that the
+/// others can be divided faster.
 void drop_hopeless(OwnershipProblem& problem);
 
 /// Leaves out candidates that own and touch no part of the tetrahedron, and functions that are nowhere the
@@ -91,10 +95,11 @@ void keep_owners(OwnershipProblem& problem);
 /// The polygons where two owners touch inside the tetrahedron. Which polygons there are, and between which
 /// functions their corners lie, is decided exactly, for functions that are each greater by an infinitesimal,
 /// the more so the smaller their key: so polygons of one tetrahedron, and of two that share a face, fit
-/// together however close to coincidence functions are. Corners are only as exact as doubles.
+/// together however close to coincidence functions are. Corners are only as exact as doubles. Appends to
+/// `contacts`.
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
 
-/// Volume of a part as a fraction of the tetrahedron's.
+/// Volume of a part as a fraction of the tetrahedron's; positive where it is oriented alike.
 double volume_fraction(const std::array<Weights, 4>& corners);
 
 }  // namespace adamas

@@ -73,6 +73,8 @@ IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet
   for (const auto& sums : partial) {
     for (const auto& [body, volume] : sums) volumes[BodyId(body)] += volume;
   }
+  // Of bodies that own next to nothing round-off decides.
+  for (double& volume : volumes) volume = std::max(volume, 0.0);
   return volumes;
 }
 
