@@ -308,7 +308,9 @@ TEST(BadInput, FullDiskIsAnErrorAndLeavesNothing) {
   for (const char* name : {"b.vtp", "b.ply", "b.off", "b.obj", "b.stl", "b.arec"}) {
     writers.emplace_back(name, [&](const auto& path) { write_interface_mesh(path, cube); });
   }
-  for (const auto& [name, write] : writers) {
+  for (const auto& writer : writers) {
+    const std::string& name = writer.first;
+    const auto& write = writer.second;
     write(scratch / name);
     const auto size = std::filesystem::file_size(scratch / name);
     for (const std::uintmax_t room : {std::uintmax_t{0}, size / 2, size - 1}) {
