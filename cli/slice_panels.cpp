@@ -55,7 +55,7 @@ std::string with_index(const std::vector<FieldInfo>& fields, const std::string& 
 }
 
 /// Below the approximated interfaces and wider, so that both are seen where they agree.
-Stroke original_below() { return {.colour = {0.6, 0.6, 0.6}, .width = 5.0}; }
+Stroke original_below() { return {.colour = {0.6, 0.6, 0.6}, .width = 4.2}; }
 
 }  // namespace
 

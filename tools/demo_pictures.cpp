@@ -11,6 +11,9 @@ namespace adamas::demo {
 
 namespace {
 
+/// Wider than the mesh's interfaces, which are drawn above, so that both are seen where they agree.
+Stroke wide_grey() { return {.colour = {0.6, 0.6, 0.6}, .width = 4.2}; }
+
 Vec2 in_plane(const PlaneFrame& frame, const Vec3& p) {
   const auto [x, y] = frame.coordinates(p);
   return {x, y};
@@ -59,8 +62,8 @@ DemoSlices::DemoSlices(const MultiMaterialData& data, const ResampledMesh& mesh,
   const CrossSection input = cross_section(data, plane, choice);
   const CrossSection plain = cross_section(mesh, plane, choice, SectionMode::kPlain);
   const CrossSection own = cross_section(mesh, plane, choice, SectionMode::kPerMaterial);
-  const LineSet original_lines = lines("interfaces of the input", original_interface_stroke(),
-                                       section_edges(original, plane, mesh.box), frame);
+  const LineSet original_lines =
+      lines("interfaces of the input", wide_grey(), section_edges(original, plane, mesh.box), frame);
   const LineSet approximated =
       lines("interfaces of the mesh", approximated_interface_stroke(), own.interface_edges, frame);
 

@@ -19,7 +19,7 @@ RunFigures figures_of(const Resampler& resampler, const ResampledMesh& mesh) {
     mesh.ownership(c, ownership);
     if (ownership.pure()) continue;
     contacts.clear();
-    drop_hopeless(ownership.problem);
+    keep_owners(ownership.problem);
     contact_polygons(ownership.problem, contacts);
     if (!contacts.empty()) ++figures.interface_tetrahedra;
   }

@@ -231,58 +231,6 @@ TEST_F(Commands, SlicesHaveTheAreasOfTheScene) {
   EXPECT_EQ(read_json("i.json").at("cells"), read_json("a.json").at("pieces"));
 }
 
-TEST_F(Commands, SlicesOfAllModes) {
-  make_scene("sphere", 8);
-  run_well({"resample", "scene.vtr", "--interface-error", "3%", "-o", "m.vtu"});
-  for (const std::string mode : {"input", "plain", "materials", "all"}) {
-    run_well({"slice", "m.vtu", "--original", "scene.vtr", "--plane", "y=0.5", "--field", "smooth", "--mode",
-              mode, "-o", mode + ".svg"});
-  }
-  EXPECT_FALSE(read("all.svg") == read("materials.svg"));
-  EXPECT_FALSE(read("plain.svg") == read("materials.svg"));
-  expect_wrong_usage({"slice", "m.vtu", "--plane", "y=0.5", "--mode", "input", "-o", "x.png"},
-                     {"--original"});
-}
-
-TEST_F(Commands, SlicesMatchMaterialsByName) {
-  write_image("f.nrrd", 6, [](std::size_t i) { return i % 6 < 3 ? 1.0f : 0.0f; });
-  run_well({"resample", "f.nrrd", "--fraction", "a=f.nrrd", "--rest", "b", "--interface-error", "5%", "-o",
-            "m.vtu"});
-  write_image("g.nrrd", 6, [](std::size_t i) { return i % 6 < 3 ? 0.0f : 1.0f; });
-  const auto slice = [this](const std::vector<std::string>& original) {
-    std::vector<std::string> all{"slice", "m.vtu", "--plane", "Z=2.5", "--mode", "all", "-o", "s.svg"};
-    all.insert(all.end(), original.begin(), original.end());
-    run_well(all);
-    return read("s.svg");
-  };
-  // The same data with their materials the other way round.
-  EXPECT_TRUE(slice({"--original", "f.nrrd", "--fraction", "a=f.nrrd", "--rest", "b"}) ==
-              slice({"--original", "g.nrrd", "--fraction", "b=g.nrrd", "--rest", "a"}));
-}
-
-TEST_F(Commands, ComponentsOfVectorsGoByTheirAxes) {
-  write("v.vtk",
-        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 3 3\nORIGIN 0 0 0\n"
-        "SPACING 1 1 1\nCELL_DATA 8\nSCALARS volume_fraction_a float 1\nLOOKUP_TABLE default\n"
-        "1 0 1 0 1 0 1 0\nVECTORS speed float\n1 2 3 2 3 4 3 4 5 4 5 6 5 6 7 6 7 8 7 8 9 8 9 0\n");
-  for (const std::string component : {"1", "y"}) {
-    run_well({"slice", "v.vtk", "--rest", "b", "--plane", "x=0.5", "--field", "speed:" + component, "-o",
-              component + ".svg"});
-  }
-  EXPECT_TRUE(read("1.svg") == read("y.svg"));
-}
-
-TEST_F(Commands, InterfacesRoundAPlaneAreThoseOfTheWhole) {
-  make_scene("reflex", 12);
-  run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
-  run_well({"reconstruct", "scene.vtr", "-o", "r.vtp"});
-  for (const std::string plane : {"x=0.02", "y=0.5", "z=0.71", "z=1"}) {
-    run_well({"slice", "m.vtu", "--original", "scene.vtr", "--plane", plane, "-o", "near.png"});
-    run_well({"slice", "m.vtu", "--original", "r.vtp", "--plane", plane, "-o", "whole.png"});
-    EXPECT_TRUE(read("near.png") == read("whole.png")) << plane;
-  }
-}
-
 TEST_F(Commands, ProbeKnowsMaterialsAndIntegrals) {
   make_scene("sphere", 12);
   run_well({"resample", "scene.vtr", "--interface-error", "1%", "-o", "m.vtu"});
@@ -345,69 +293,6 @@ TEST_F(Commands, AConfigurationSaysTheSame) {
               2 * read_json("b.json").at("interface_error_target").get<double>(), 1e-12);
   write("s.toml", "[slice]\nplane = \"x=0.5\"\nsize = 300,400\n[resample]\nghost = \"linear\"\n");
   run_well({"slice", "a.vtu", "--config", "s.toml", "-o", "s.png"});
-}
-
-TEST_F(Commands, HelpAndCompletion) {
-  const std::string all = run_well({"--help"}).out;
-  EXPECT_EQ(run_well({"--version"}).out.rfind("adamas ", 0), 0u);
-  const std::string script = run_well({"completion", "bash"}).out;
-  write("completion.bash", script);
-  const std::string check = "bash -n '" + (folder() / "completion.bash").string() + "'";
-  EXPECT_EQ(std::system(check.c_str()), 0);
-  for (const std::string command : {"info", "reconstruct", "resample", "slice", "probe"}) {
-    EXPECT_NE(all.find("  " + command), std::string::npos);
-    const std::string help = run_well({command, "--help"}).out;
-    EXPECT_NE(help.find("Example:\n  adamas " + command), std::string::npos);
-    // Every option of the help is completed.
-    std::istringstream lines(help);
-    for (std::string line; std::getline(lines, line);) {
-      const std::size_t at = line.find("--");
-      if (line.rfind("  -", 0) != 0 || at == std::string::npos) continue;
-      const std::string option = line.substr(at, line.find_first_of(" ,=", at) - at);
-      EXPECT_NE(script.find(option + " "), std::string::npos) << option;
-    }
-  }
-  EXPECT_NE(run_well({"generate", "scene", "--help"}).out.find("Example:"), std::string::npos);
-}
-
-TEST_F(Commands, HelpFitsTheScreen) {
-  for (const std::string command : {"generate", "info", "reconstruct", "resample", "slice", "probe"}) {
-    const std::string help = run_well({command, "--help"}).out;
-    std::istringstream lines(help);
-    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
-    // A command's own options come first.
-    const std::size_t common = help.find("\nCommon:\n");
-    if (command != "generate") {
-      EXPECT_LT(help.find("\nPositionals:\n"), common);
-      EXPECT_LT(common, help.find("\nExample:\n"));
-    }
-  }
-  const std::string help = run_well({"resample", "--help"}).out;
-  EXPECT_NE(help.find("(default 1%)"), std::string::npos) << help;
-  EXPECT_NE(help.find("--ghost constant|linear"), std::string::npos) << help;
-}
-
-TEST_F(Commands, CompletionLeavesFilesToTheShell) {
-  write("completion.bash", run_well({"completion", "bash"}).out);
-  const auto complete = [this](const std::string& words) {
-    const std::string script = "source completion.bash; COMP_WORDS=(" + words +
-                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _adamas; "
-                               "echo \"${COMPREPLY[@]}\" > reply";
-    const std::string command = "cd '" + folder().string() + "' && bash -c '" + script + "'";
-    EXPECT_EQ(std::system(command.c_str()), 0);
-    std::string reply = read("reply");
-    if (!reply.empty()) reply.pop_back();
-    return reply;
-  };
-  EXPECT_EQ(complete("adamas re"), "reconstruct resample");
-  EXPECT_EQ(complete("adamas resample \"\""), "");
-  EXPECT_EQ(complete("adamas resample x.vtr --gh"), "--ghost");
-  EXPECT_EQ(complete("adamas resample x.vtr --ghost \"\""), "constant linear");
-  EXPECT_EQ(complete("adamas resample x.vtr --ghost = li"), "linear");
-  for (const std::string option : {"-o", "--output", "--json", "--interface-error"}) {
-    EXPECT_EQ(complete("adamas resample x.vtr " + option + " \"\""), "") << option;
-  }
-  EXPECT_EQ(complete("adamas generate scene ref"), "reflex");
 }
 
 TEST_F(Commands, QuietAndVerbose) {

@@ -1,0 +1,79 @@
+// What helps to write command lines: --help and completion.
+
+#include <cstdlib>
+#include <sstream>
+
+#include "program.h"
+
+namespace adamas::test {
+
+namespace {
+
+class Help : public ProgramTest {};
+
+TEST_F(Help, HelpAndCompletion) {
+  const std::string all = run_well({"--help"}).out;
+  EXPECT_EQ(run_well({"--version"}).out.rfind("adamas ", 0), 0u);
+  const std::string script = run_well({"completion", "bash"}).out;
+  write("completion.bash", script);
+  const std::string check = "bash -n '" + (folder() / "completion.bash").string() + "'";
+  EXPECT_EQ(std::system(check.c_str()), 0);
+  for (const std::string command : {"info", "reconstruct", "resample", "slice", "probe"}) {
+    EXPECT_NE(all.find("  " + command), std::string::npos);
+    const std::string help = run_well({command, "--help"}).out;
+    EXPECT_NE(help.find("Example:\n  adamas " + command), std::string::npos);
+    // Every option of the help is completed.
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t at = line.find("--");
+      if (line.rfind("  -", 0) != 0 || at == std::string::npos) continue;
+      const std::string option = line.substr(at, line.find_first_of(" ,=", at) - at);
+      EXPECT_NE(script.find(option + " "), std::string::npos) << option;
+    }
+  }
+  EXPECT_NE(run_well({"generate", "scene", "--help"}).out.find("Example:"), std::string::npos);
+}
+
+TEST_F(Help, HelpFitsTheScreen) {
+  for (const std::string command : {"generate", "info", "reconstruct", "resample", "slice", "probe"}) {
+    const std::string help = run_well({command, "--help"}).out;
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+    // A command's own options come first.
+    const std::size_t common = help.find("\nCommon:\n");
+    if (command != "generate") {
+      EXPECT_LT(help.find("\nPositionals:\n"), common);
+      EXPECT_LT(common, help.find("\nExample:\n"));
+    }
+  }
+  const std::string help = run_well({"resample", "--help"}).out;
+  EXPECT_NE(help.find("(default 1%)"), std::string::npos) << help;
+  EXPECT_NE(help.find("--ghost constant|linear"), std::string::npos) << help;
+}
+
+TEST_F(Help, CompletionLeavesFilesToTheShell) {
+  write("completion.bash", run_well({"completion", "bash"}).out);
+  const auto complete = [this](const std::string& words) {
+    const std::string script = "source completion.bash; COMP_WORDS=(" + words +
+                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _adamas; "
+                               "echo \"${COMPREPLY[@]}\" > reply";
+    const std::string command = "cd '" + folder().string() + "' && bash -c '" + script + "'";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    std::string reply = read("reply");
+    if (!reply.empty()) reply.pop_back();
+    return reply;
+  };
+  EXPECT_EQ(complete("adamas re"), "reconstruct resample");
+  EXPECT_EQ(complete("adamas resample \"\""), "");
+  EXPECT_EQ(complete("adamas resample x.vtr --gh"), "--ghost");
+  EXPECT_EQ(complete("adamas resample x.vtr --ghost \"\""), "constant linear");
+  EXPECT_EQ(complete("adamas resample x.vtr --ghost = li"), "linear");
+  for (const std::string option : {"-o", "--output", "--json", "--interface-error"}) {
+    EXPECT_EQ(complete("adamas resample x.vtr " + option + " \"\""), "") << option;
+  }
+  EXPECT_EQ(complete("adamas generate scene ref"), "reflex");
+}
+
+}  // namespace
+
+}  // namespace adamas::test

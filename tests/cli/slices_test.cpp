@@ -1,0 +1,85 @@
+// What slices show.
+
+#include "program.h"
+
+namespace adamas::test {
+
+namespace {
+
+class Slices : public ProgramTest {};
+
+TEST_F(Slices, SlicesOfAllModes) {
+  make_scene("sphere", 8);
+  run_well({"resample", "scene.vtr", "--interface-error", "3%", "-o", "m.vtu"});
+  for (const std::string mode : {"input", "plain", "materials", "all"}) {
+    run_well({"slice", "m.vtu", "--original", "scene.vtr", "--plane", "y=0.5", "--field", "smooth", "--mode",
+              mode, "-o", mode + ".svg"});
+  }
+  EXPECT_FALSE(read("all.svg") == read("materials.svg"));
+  EXPECT_FALSE(read("plain.svg") == read("materials.svg"));
+  expect_wrong_usage({"slice", "m.vtu", "--plane", "y=0.5", "--mode", "input", "-o", "x.png"},
+                     {"--original"});
+}
+
+TEST_F(Slices, LinesOfSlicesCanBeTold) {
+  make_scene("sphere", 24);
+  run_well({"resample", "scene.vtr", "--interface-error", "3%", "-o", "m.vtu"});
+  const auto slice = [this](const std::string& size, const std::string& mode, const std::string& more) {
+    std::vector<std::string> all{"slice", "m.vtu",   "--original", "scene.vtr", "--plane", "z=0.5", "--mode",
+                                 mode,    "--field", "smooth",     "--size",    size,      "-o",    "s.svg"};
+    if (!more.empty()) all.push_back(more);
+    run_well(all);
+    return read("s.svg");
+  };
+  // The input's cells are 5 pixels wide, or 17.
+  EXPECT_FALSE(slice("400,400", "all", "") == slice("400,400", "all", "--cells"));
+  EXPECT_TRUE(slice("1200,1200", "all", "") == slice("1200,1200", "all", "--cells"));
+  // Red over grey.
+  const std::string picture = slice("1200,1200", "materials", "");
+  const std::size_t grey = picture.find("rgb(60%,60%,60%)"), red = picture.find("rgb(86%,8%,24%)");
+  ASSERT_NE(red, std::string::npos);
+  EXPECT_LT(grey, red);
+}
+
+TEST_F(Slices, SlicesMatchMaterialsByName) {
+  write_image("f.nrrd", 6, [](std::size_t i) { return i % 6 < 3 ? 1.0f : 0.0f; });
+  run_well({"resample", "f.nrrd", "--fraction", "a=f.nrrd", "--rest", "b", "--interface-error", "5%", "-o",
+            "m.vtu"});
+  write_image("g.nrrd", 6, [](std::size_t i) { return i % 6 < 3 ? 0.0f : 1.0f; });
+  const auto slice = [this](const std::vector<std::string>& original) {
+    std::vector<std::string> all{"slice", "m.vtu", "--plane", "Z=2.5", "--mode", "all", "-o", "s.svg"};
+    all.insert(all.end(), original.begin(), original.end());
+    run_well(all);
+    return read("s.svg");
+  };
+  // The same data with their materials the other way round.
+  EXPECT_TRUE(slice({"--original", "f.nrrd", "--fraction", "a=f.nrrd", "--rest", "b"}) ==
+              slice({"--original", "g.nrrd", "--fraction", "b=g.nrrd", "--rest", "a"}));
+}
+
+TEST_F(Slices, ComponentsOfVectorsGoByTheirAxes) {
+  write("v.vtk",
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 3 3\nORIGIN 0 0 0\n"
+        "SPACING 1 1 1\nCELL_DATA 8\nSCALARS volume_fraction_a float 1\nLOOKUP_TABLE default\n"
+        "1 0 1 0 1 0 1 0\nVECTORS speed float\n1 2 3 2 3 4 3 4 5 4 5 6 5 6 7 6 7 8 7 8 9 8 9 0\n");
+  for (const std::string component : {"1", "y"}) {
+    run_well({"slice", "v.vtk", "--rest", "b", "--plane", "x=0.5", "--field", "speed:" + component, "-o",
+              component + ".svg"});
+  }
+  EXPECT_TRUE(read("1.svg") == read("y.svg"));
+}
+
+TEST_F(Slices, InterfacesRoundAPlaneAreThoseOfTheWhole) {
+  make_scene("reflex", 12);
+  run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
+  run_well({"reconstruct", "scene.vtr", "-o", "r.vtp"});
+  for (const std::string plane : {"x=0.02", "y=0.5", "z=0.71", "z=1"}) {
+    run_well({"slice", "m.vtu", "--original", "scene.vtr", "--plane", plane, "-o", "near.png"});
+    run_well({"slice", "m.vtu", "--original", "r.vtp", "--plane", plane, "-o", "whole.png"});
+    EXPECT_TRUE(read("near.png") == read("whole.png")) << plane;
+  }
+}
+
+}  // namespace
+
+}  // namespace adamas::test
