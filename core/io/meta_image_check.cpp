@@ -87,8 +87,9 @@ void check_meta_image(const std::filesystem::path& path) {
   if (expected == 0 || text || file == "LIST" || file.find('%') != std::string::npos) return;
   std::uint64_t at = 0, size = 0;
   if (file == "LOCAL" || file == "Local" || file == "local") {
-    at = static_cast<std::uint64_t>(stream.tellg());
     size = std::filesystem::file_size(path);
+    // The stream has no position where the file ends with the header's last line.
+    at = stream.good() ? static_cast<std::uint64_t>(stream.tellg()) : size;
   } else {
     const std::filesystem::path beside = path.parent_path() / file;
     name += ": " + beside.string();

@@ -261,6 +261,11 @@ TEST(BadInput, HugeSizesAreErrors) {
             "ObjectType = Image\nNDims = 3\nDimSize = 99999 99999 99999\nElementType = MET_FLOAT\n"
             "ElementDataFile = LOCAL\nxxxx");
   EXPECT_TRUE(says(error_of([&] { read_grid_file(scratch / "a.mha"); }), "a.mha: expected"));
+  put_bytes(
+      scratch / "b.mha",
+      "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL");
+  EXPECT_TRUE(
+      says(error_of([&] { read_grid_file(scratch / "b.mha"); }), "expected 8 bytes of data, found 0"));
 }
 
 TEST(BadInput, OneWholeNumberArraySaysWhatToPass) {
