@@ -13,8 +13,9 @@ namespace adamas {
 ResamplingSource make_grid_source(const MultiMaterialData& data,
                                   Progress& progress = SilentProgress::instance());
 
-/// Given interfaces in a box; the fields, where there are any, from the sites of `data` (its fractions are
-/// not used). `data` may be null; it must outlive the source, and its materials must be named as the mesh's.
+/// Given interfaces in a box. `data`, which may be null and must outlive the source, gives the fields; its
+/// fractions or labels, where it has them, only tell which sites state a material's value. Throws Error where
+/// a material of the mesh is not among the data's, and where no triangle lies between two materials.
 ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box,
                                   const MultiMaterialData* data = nullptr);
 

@@ -13,9 +13,9 @@ struct LinearFunction {
   std::uint64_t key;
 };
 
-/// Who owns a point of a tetrahedron (SPEC 2.3): each candidate is the least of its linear functions, and the
-/// owner of a point is the candidate with the greatest value there. Questions need candidates that have a
-/// function each.
+/// Who owns a point of a tetrahedron (docs/method.md, Who owns a point of a cell): each candidate is the
+/// least of its linear functions, and the owner of a point is the candidate with the greatest value there.
+/// Questions need candidates that have a function each.
 struct OwnershipProblem {
   struct Candidate {
     std::uint32_t owner;  ///< a body or material index

@@ -31,7 +31,7 @@ class SmallList {
 };
 
 /// The tetrahedra round one split edge. A diamond is its split vertex p, and everything else follows from the
-/// bits of p (SPEC 1, D 2): with t trailing zero bits, s = 2^t and q = p >> t, the phase is 3 minus the
+/// bits of p (D 2): with t trailing zero bits, s = 2^t and q = p >> t, the phase is 3 minus the
 /// number of odd coordinates of q. Coordinates may lie outside a domain where the diamond reaches over its
 /// boundary; members that take a Domain leave out what does.
 class Diamond {

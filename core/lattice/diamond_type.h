@@ -9,7 +9,7 @@ namespace adamas {
 
 inline constexpr int kDiamondTypeCount = 26;
 
-/// What all diamonds with one direction of the split edge have in common (SPEC 1): 8 types of phase 0, 12 of
+/// What all diamonds with one direction of the split edge have in common (D 2): 8 types of phase 0, 12 of
 /// phase 1 and 6 of phase 2, in this order. Offsets are from the split vertex, in units of the diamond's
 /// scale s unless said. Numbers are those of a diamond inside the domain.
 struct DiamondType {

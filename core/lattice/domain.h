@@ -9,7 +9,7 @@
 namespace adamas {
 
 /// A box in space divided into a x b x c root cubes, each of side 2^kRootBits lattice units, with its own
-/// spacing per axis (SPEC 1). Neighbouring roots are mirror images of each other.
+/// spacing per axis (D 2). Neighbouring roots are mirror images of each other.
 class Domain {
  public:
   static constexpr int kRootBits = adamas::kRootBits;
@@ -50,8 +50,8 @@ class Domain {
            static_cast<int>(p.k == 0 || p.k == extent_.k);
   }
 
-  /// R of SPEC 2.2: the diameter in space of the whole diamond split at p, or a root cube's for the corner of
-  /// one. No tetrahedron that can ever have the vertex p has a greater one.
+  /// R of docs/method.md: the diameter in space of the whole diamond split at p, or a root cube's for the
+  /// corner of one. No tetrahedron that can ever have the vertex p has a greater one.
   [[nodiscard]] double diameter(LatticePoint p) const;
   /// Splittable: whether the diamond at p has a level below depth().
   [[nodiscard]] bool can_split(LatticePoint p) const { return trailing_zeros(p) >= kRootBits - depth_; }

@@ -9,7 +9,7 @@
 
 namespace adamas {
 
-/// Whether the diamond at `point` is split and none of its children is (SPEC 3.7).
+/// Whether the diamond at `point` is split and none of its children is.
 template <class Hierarchy>
 [[nodiscard]] bool is_mergeable(const Hierarchy& hierarchy, LatticePoint point) {
   if (!hierarchy.is_split(point)) return false;

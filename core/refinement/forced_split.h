@@ -10,7 +10,7 @@
 namespace adamas {
 
 /// Calls `split_one(point)` for the diamond at `point` and all its ancestors that are not split yet, parents
-/// first, so that each is complete when its turn comes (SPEC 1, D 2). A hierarchy offers `domain()` and
+/// first, so that each is complete when its turn comes (D 2). A hierarchy offers `domain()` and
 /// `is_split(point)`, which must be true once `split_one(point)` has returned.
 template <class Hierarchy, class SplitOne>
 void forced_split(const Hierarchy& hierarchy, LatticePoint point, SplitOne&& split_one) {

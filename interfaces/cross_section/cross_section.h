@@ -23,7 +23,7 @@ struct SectionPiece {
   std::size_t cell = 0;  ///< of the mesh, or the site of the grid
 };
 
-/// What a plane cuts out of a domain (SPEC 2.7, D 3.7).
+/// What a plane cuts out of a domain (D 3.7).
 struct CrossSection {
   std::vector<SectionPiece> pieces;
   std::vector<Segment> cell_edges;       ///< each once

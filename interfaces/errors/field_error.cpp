@@ -15,10 +15,11 @@ constexpr double kGrowth = 3;
 
 class Measurer {
  public:
-  Measurer(const ResamplingSource& source, const CellView& cell, double warp, const CellsInBox& cells_in_box)
+  Measurer(const ResamplingSource& source, const CellView& cell, double half_width,
+           const CellsInBox& cells_in_box)
       : source_(source),
         cell_(cell),
-        warp_(warp),
+        half_width_(half_width),
         cells_in_box_(cells_in_box),
         native_(source.fields->row_size()) {}
 
@@ -42,14 +43,15 @@ class Measurer {
     source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
     std::vector<double> least(fields.size());
-    for (double reach = warp_ / kGrowth / kGrowth / kGrowth;; reach = std::min(kGrowth * reach, warp_)) {
+    for (double reach = half_width_ / kGrowth / kGrowth / kGrowth;;
+         reach = std::min(kGrowth * reach, half_width_)) {
       find_parts(element, reach);
       bool good = true;
       for (std::size_t f = 0; f < fields.size(); ++f) {
         least[f] = error_nearby(fields[f]);
         good = good && !(least[f] > limits[f]);
       }
-      if (good || reach >= warp_) break;
+      if (good || reach >= half_width_) break;
     }
     for (std::size_t f = 0; f < fields.size(); ++f) add(least[f], errors[f]);
   }
@@ -133,7 +135,7 @@ class Measurer {
 
   const ResamplingSource& source_;
   const CellView& cell_;
-  double warp_;
+  double half_width_;
   const CellsInBox& cells_in_box_;
   std::vector<double> native_;
   std::vector<Part> parts_;
@@ -155,10 +157,10 @@ std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, 
 }
 
 void measure_displaced_errors(const ResamplingSource& source, const CellView& cell,
-                              std::span<const std::uint32_t> displaced, double warp,
+                              std::span<const std::uint32_t> displaced, double half_width,
                               const CellsInBox& cells_in_box, std::span<const double> limits,
                               std::span<FieldError> errors) {
-  Measurer measurer(source, cell, warp, cells_in_box);
+  Measurer measurer(source, cell, half_width, cells_in_box);
   const auto& all = source.fields->native_elements();
   for (const std::uint32_t e : displaced) measurer.measure_displaced(all[e], limits, errors);
 }

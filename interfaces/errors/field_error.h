@@ -42,17 +42,17 @@ struct CellView {
 using CellsInBox = std::function<void(const Box3&, MaterialId, const std::function<void(const CellView&)>&)>;
 
 /// Difference between the input and the linear approximation of each field at the native elements of a cell,
-/// of the element's own material (SPEC 2.5); vectors by length. Returns the displaced elements, which are
-/// left out: those whose place the mesh gives to another material.
+/// of the element's own material (docs/method.md, Errors); vectors by length. Returns the displaced elements,
+/// which are left out: those whose place the mesh gives to another material.
 std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, const CellView& cell,
                                                 std::span<const std::uint32_t> elements,
                                                 std::span<FieldError> errors);
 
 /// The same for displaced elements (D 3.6): the least over the element's own material's part of the mesh in
-/// the box of half-width `warp` round it. The box is searched from the inside outwards, until the errors of
+/// the box of that half-width round it. The box is searched from the inside outwards, until the errors of
 /// all fields are within `limits`.
 void measure_displaced_errors(const ResamplingSource& source, const CellView& cell,
-                              std::span<const std::uint32_t> displaced, double warp,
+                              std::span<const std::uint32_t> displaced, double half_width,
                               const CellsInBox& cells_in_box, std::span<const double> limits,
                               std::span<FieldError> errors);
 

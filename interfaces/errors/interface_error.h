@@ -11,7 +11,8 @@
 
 namespace adamas {
 
-/// How far the approximation of the interfaces in one cell is from the input's (SPEC 2.5); an estimate.
+/// How far the approximation of the interfaces in one cell is from the input's (docs/method.md, Errors); an
+/// estimate.
 struct InterfaceError {
   double distance = 0;  ///< at most the cell's diameter, but for lost interfaces
   bool lost = false;    ///< the input has an interface here, further than the target from any the cell shows

@@ -7,10 +7,10 @@
 
 namespace adamas {
 
-/// Nested errors of a hierarchy (SPEC 2.5): a tetrahedron's covers those of its children, a diamond's those
-/// of its tetrahedra and of its child diamonds. So no error grows on the way down, neither in the tree of
-/// tetrahedra nor among diamonds: what a selection by threshold wants to split never waits for something it
-/// does not want. The least such errors that are nowhere below the direct ones.
+/// Nested errors of a hierarchy (docs/method.md, Errors): a tetrahedron's covers those of its children, a
+/// diamond's those of its tetrahedra and of its child diamonds. So no error grows on the way down, neither in
+/// the tree of tetrahedra nor among diamonds: what a selection by threshold wants to split never waits for
+/// something it does not want. The least such errors that are nowhere below the direct ones.
 struct NestedErrors {
   std::vector<double> of_tetrahedra;  ///< by TetrahedronId
   std::vector<double> of_diamonds;    ///< by DiamondId

@@ -26,7 +26,7 @@ struct NativeElement {
   std::size_t site;  ///< for the source's own use
 };
 
-/// The fields of the input at any point, per material and from its own side (D 3.3, SPEC 2).
+/// The fields of the input at any point, per material and from its own side (D 3.3).
 class FieldSource {
  public:
   virtual ~FieldSource() = default;

@@ -8,7 +8,8 @@
 
 namespace adamas {
 
-/// How a material's field is continued to vertices outside of the material (SPEC 2.4).
+/// How a material's field is continued to vertices outside of the material (docs/method.md, Fields and ghost
+/// values).
 enum class GhostMode {
   kConstant,  ///< the value at the closest point of the material's interfaces (D 3.5.1)
   kLinear,    ///< that, plus the one-sided gradient there times the offset

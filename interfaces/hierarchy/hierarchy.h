@@ -11,7 +11,7 @@ namespace adamas {
 /// For hierarchies whose vertices or tetrahedra carry nothing; takes no memory.
 struct NoPayload {};
 
-/// The pointer-based and generalized hierarchy (SPEC 1, D 2): tetrahedra that are split and merged by
+/// The pointer-based and generalized hierarchy (D 2): tetrahedra that are split and merged by
 /// diamonds, with a payload on every vertex and on every tetrahedron of the tree, leaves or not. Payloads are
 /// default values at first and again after a merge has removed their element. References to payloads stay
 /// valid until then.

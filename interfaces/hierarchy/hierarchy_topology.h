@@ -21,7 +21,7 @@ struct Split {
   VertexId vertex;  ///< the new vertex, shared by all bisections of the diamond
 };
 
-/// The linked vertices, tetrahedra and diamonds of a pointer-based hierarchy (SPEC 1, D 2): a binary tree of
+/// The linked vertices, tetrahedra and diamonds of a pointer-based hierarchy (D 2): a binary tree of
 /// tetrahedra per root, whose leaves are a conforming mesh of the domain. It reads as a whole; Hierarchy adds
 /// payloads and changes it. Ids are reused after a merge. Diamonds are those that have a tetrahedron in the
 /// tree.
@@ -104,8 +104,8 @@ class HierarchyTopology {
     diamonds_.for_each([&fn](std::uint32_t i) { fn(DiamondId(i)); });
   }
 
-  /// Throws std::logic_error that names the first broken law of SPEC 1: links, orientation, diamonds complete
-  /// where split, no hanging vertex, integer volumes that add up to the domain's.
+  /// Throws std::logic_error that names the first broken law of the mesh (D 2): links, orientation, diamonds
+  /// complete where split, no hanging vertex, integer volumes that add up to the domain's.
   void validate() const;
   /// Of the mesh of leaves alone: the same whatever the order of elements and the history of ids.
   [[nodiscard]] std::uint64_t checksum() const;

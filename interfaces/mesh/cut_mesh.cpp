@@ -24,15 +24,7 @@ class Cutter {
     auto vertices = mesh_.cells[c].vertices;
     std::sort(vertices.begin(), vertices.end());
     mesh_.cell_set().ownership(mesh_.table, vertices, ownership_);
-    parts_.clear();
-    if (ownership_.pure()) {
-      const std::array<Weights, 4> whole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0},
-                                         Weights{0, 0, 0, 1}};
-      parts_.push_back({ownership_.problem.candidates[0].owner, whole});
-    } else {
-      drop_hopeless(ownership_.problem);
-      partition_tetrahedron(ownership_.problem, parts_);
-    }
+    partition_cell(ownership_, parts_);
     for (const OwnedTetrahedron& part : parts_) add(c, vertices, part);
   }
 
@@ -45,7 +37,7 @@ class Cutter {
           {mesh_.fields[f].name, mesh_.fields[f].components, std::move(values_[f])});
     }
     result_.field_arrays.push_back(
-        {"material names", 1, Strings(mesh_.materials.begin(), mesh_.materials.end())});
+        {"material_names", 1, Strings(mesh_.materials.begin(), mesh_.materials.end())});
     return std::move(result_);
   }
 

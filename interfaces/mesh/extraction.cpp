@@ -59,13 +59,7 @@ IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet
       const auto x = cells.positions(vertices);
       const double volume = signed_volume(x[0], x[1], x[2], x[3]);
       cells.ownership(table, vertices, ownership);
-      if (ownership.pure()) {
-        add(ownership.problem.candidates[0].owner, volume);
-        continue;
-      }
-      drop_hopeless(ownership.problem);
-      parts.clear();
-      partition_tetrahedron(ownership.problem, parts);
+      partition_cell(ownership, parts);
       for (const OwnedTetrahedron& part : parts) add(part.owner, volume * volume_fraction(part.corners));
     }
   });

@@ -37,11 +37,12 @@ struct ExtractedInterfaces {
 };
 
 /// The approximated interfaces of a conforming mesh, welded and closed up to the domain's boundary
-/// (SPEC 2.3). `tolerance`: a length far below any cell.
+/// (docs/method.md, Who owns a point of a cell). `tolerance`: a length far below any cell. The mesh's names
+/// of materials and of its source are left to the caller.
 ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, double tolerance,
                                        Progress& progress = SilentProgress::instance());
 
-/// Volume of each body.
+/// Volume of each body, in the cube of the unit of length.
 IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells);
 
 }  // namespace adamas

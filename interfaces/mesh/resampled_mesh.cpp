@@ -1,8 +1,53 @@
 #include "interfaces/mesh/resampled_mesh.h"
 
+#include <cmath>
+
+#include "core/base/error.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
+
+namespace {
+
+bool is_sound(const VertexRecord& vertex, std::size_t row_size) {
+  const VertexDistances& known = vertex.distances;
+  if (!(known.radius > 0) || !std::isfinite(known.radius)) return false;
+  for (std::size_t i = 0; i < known.near.size(); ++i) {
+    if (!std::isfinite(known.near[i].distance)) return false;
+    if (i > 0 && !(known.near[i - 1].interface < known.near[i].interface)) return false;
+  }
+  if (row_size > 0 && vertex.rows.empty()) return false;
+  for (std::size_t i = 0; i < vertex.rows.size(); ++i) {
+    if (vertex.rows[i].row.size() != row_size) return false;
+    if (i > 0 && !(vertex.rows[i - 1].body < vertex.rows[i].body)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void ResampledMesh::validate() const {
+  std::size_t row_size = 0;
+  for (const FieldInfo& field : fields) row_size += static_cast<std::size_t>(field.components);
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const Vec3& p = points[v];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      fail("{}: vertex {}: expected finite coordinates, found ({}, {}, {})", source, v, p.x, p.y, p.z);
+    if (!is_sound(vertices[v], row_size))
+      fail("{}: vertex {}: expected finite distances and rows in the order of their bodies, found others",
+           source, v);
+  }
+  for (InterfaceId i(0); i.value < table.interface_count(); ++i.value) {
+    if (table.sides(i)[0] == table.sides(i)[1])
+      fail("{}: interface {}: expected two bodies, found one", source, i.value);
+  }
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const auto x = corners(c);
+    if (!(signed_volume(x[0], x[1], x[2], x[3]) > 0))
+      fail("{}: cell {}: expected a positive volume, found {}", source, c,
+           signed_volume(x[0], x[1], x[2], x[3]));
+  }
+}
 
 CellSet ResampledMesh::cell_set() const {
   CellSet set;

@@ -35,10 +35,13 @@ struct ResampledMesh {
   std::vector<std::vector<double>>
       field_errors;  ///< per field and cell: greatest at the cell's native elements
 
+  /// Throws Error that names the source and the first broken law: finite numbers, lists in the order of their
+  /// ids, rows where there are fields, positively oriented cells.
+  void validate() const;
   [[nodiscard]] CellSet cell_set() const;
   void ownership(std::size_t cell, CellOwnership& result) const;
   [[nodiscard]] std::array<Vec3, 4> corners(std::size_t cell) const;
-  /// Value of component c of a body's field row at a point of a cell; the body must be one that owns a part
+  /// Value of a component of a body's field row at a point of a cell; the body must be one that owns a part
   /// of it.
   [[nodiscard]] double value(std::size_t cell, BodyId body, std::size_t component,
                              const Weights& weights) const;

@@ -201,6 +201,7 @@ void read_table(const Arrays& arrays, ResampledMesh& mesh) {
   }
   IdVector<InterfaceId, std::array<BodyId, 2>> sides;
   const auto& pairs = arrays.get<Integers>("interface bodies");
+  if (pairs.size() % 2 != 0) arrays.get<Integers>("interface bodies", pairs.size() + 1);
   for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) {
     sides.push_back({BodyId(arrays.index(pairs[i], materials.size(), "interface bodies")),
                      BodyId(arrays.index(pairs[i + 1], materials.size(), "interface bodies"))});
@@ -315,6 +316,7 @@ ResampledMesh from_unstructured_mesh(const UnstructuredMesh& file, const std::st
   }
   for (const FieldInfo& field : mesh.fields)
     mesh.field_errors.push_back(cells.get<Doubles>(field.name + " error", count));
+  mesh.validate();
   return mesh;
 }
 

@@ -10,7 +10,7 @@
 
 namespace adamas {
 
-/// The connected parts of the materials' regions (SPEC 2.3).
+/// The connected parts of the materials' regions (docs/method.md, Who owns a point of a cell).
 struct Bodies {
   /// Body in front of each triangle of the mesh and behind it; invalid where two of its points coincide.
   std::vector<std::array<BodyId, 2>> sides;
@@ -25,9 +25,9 @@ struct Bodies {
 /// Finds the bodies that the triangles of a mesh bound. Sides of triangles that face the same wedge round an
 /// edge belong together. Parts of the boundary of one region that no triangles connect (the inside and the
 /// outside of a shell, two planes that end at the domain) are joined by rays from the extreme points of each
-/// part and by random walks that bounce at the domain; both are the same in every run. Without a domain
-/// (null) regions of one material that reach infinity are one. Points must be finite and indices within
-/// range.
+/// part and in random directions, the same in every run; where rays leave the domain they go on along its
+/// walls to the greatest corner. Without a domain (null) regions of one material that reach infinity are one.
+/// Points must be finite and indices within range.
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain);
 
 }  // namespace adamas

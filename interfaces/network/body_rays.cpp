@@ -8,7 +8,7 @@ namespace adamas {
 
 namespace {
 
-constexpr int kWalks = 24;
+constexpr int kRandomRays = 24;
 constexpr double kCleanWeight = 1e-7;  // hits nearer to an edge, or more grazing than this, prove nothing
 constexpr double kCleanAngle = 1e-6;
 
@@ -60,7 +60,7 @@ BodyRays::Result BodyRays::shoot(const std::vector<std::uint32_t>& part) const {
   Result result;
   shoot_from_extremes(part, result);
   std::uint64_t random = part.front();
-  for (int walk = 0; walk < kWalks; ++walk) {
+  for (int ray = 0; ray < kRandomRays; ++ray) {
     const auto pick = static_cast<std::size_t>(next_random(random) * static_cast<double>(part.size()));
     const std::uint32_t side = part[std::min(pick, part.size() - 1)];
     const double a = 0.05 + 0.9 * next_random(random), b = 0.05 + 0.9 * next_random(random);

@@ -18,8 +18,8 @@
 
 namespace adamas {
 
-/// An interface that is near a point, and the point's signed distance to it (SPEC 2.2): positive towards the
-/// lower of its two bodies.
+/// An interface that is near a point, and the point's signed distance to it (docs/method.md, Signed distances
+/// at vertices): positive towards the lower of its two bodies.
 struct NearInterface {
   InterfaceId interface;
   double signed_distance;
@@ -76,8 +76,9 @@ class InterfaceNetwork {
       BodyId body, const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// The body that p lies in, by the angle-weighted pseudonormals of each body's boundary at the closest
-  /// point (SPEC 2.2; Baerentzen and Aanaes for one body). `flagged` (may be null) is set where the answer
-  /// rests on an open border inside the domain. Body 0 where there are no triangles.
+  /// point (docs/method.md, Signed distances at vertices; Baerentzen and Aanaes for one body). `flagged` (may
+  /// be null) is set where the answer rests on an open border inside the domain. Body 0 where there are no
+  /// triangles.
   [[nodiscard]] BodyId body_at(const Vec3& p, bool* flagged = nullptr) const;
 
   /// The interfaces with a distance of at most `radius` from p, in ascending order, given the body of p.

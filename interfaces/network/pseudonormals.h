@@ -10,7 +10,7 @@
 namespace adamas {
 
 /// For each body at a point of its boundary the sum of the weighted normals towards it. With angles as
-/// weights the body with the greatest product holds the point (SPEC 2.2).
+/// weights the body with the greatest product holds the point (docs/method.md, Signed distances at vertices).
 class Pseudonormals {
  public:
   struct Greatest {

@@ -95,6 +95,18 @@ std::size_t CellOwnership::candidate(BodyId body) const {
                                                            : list.size();
 }
 
+void partition_cell(CellOwnership& ownership, std::vector<OwnedTetrahedron>& parts) {
+  constexpr std::array<Weights, 4> kWhole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0},
+                                          Weights{0, 0, 0, 1}};
+  parts.clear();
+  if (ownership.pure()) {
+    parts.push_back({ownership.problem.candidates[0].owner, kWhole});
+    return;
+  }
+  drop_hopeless(ownership.problem);
+  partition_tetrahedron(ownership.problem, parts);
+}
+
 void find_cell_ownership(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices,
                          CellOwnership& ownership) {
   OwnershipProblem& problem = ownership.problem;

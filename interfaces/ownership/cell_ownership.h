@@ -15,7 +15,7 @@ struct NearDistance {
   double distance = 0;
 };
 
-/// What a vertex knows of the interfaces (SPEC 2.2).
+/// What a vertex knows of the interfaces (docs/method.md, Signed distances at vertices).
 struct VertexDistances {
   BodyId body;                     ///< that the vertex lies in
   bool flagged = false;            ///< the body rests on an open border of the input
@@ -27,8 +27,9 @@ struct VertexDistances {
 /// Works out `bodies` of a vertex from the rest.
 void list_known_bodies(const InterfaceTable& table, VertexDistances& vertex);
 
-/// Who owns what of one tetrahedron (SPEC 2.3). The functions of an interface that is near a vertex
-/// interpolate its signed distance there; at a vertex it is far from, a value that does not bind.
+/// Who owns what of one tetrahedron (docs/method.md, Who owns a point of a cell). The functions of an
+/// interface that is near a vertex interpolate its signed distance there; at a vertex it is far from, a value
+/// that does not bind.
 struct CellOwnership {
   struct Interface {
     InterfaceId id;
@@ -43,6 +44,10 @@ struct CellOwnership {
   /// Position of a body among the candidates, or the number of candidates.
   [[nodiscard]] std::size_t candidate(BodyId body) const;
 };
+
+/// Divides a cell into parts of one owner; replaces `parts`, and leaves candidates without hope out of the
+/// problem.
+void partition_cell(CellOwnership& ownership, std::vector<OwnedTetrahedron>& parts);
 
 /// Works out the ownership of the cell with the given vertices.
 void find_cell_ownership(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices,

@@ -58,13 +58,7 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& m
       const auto x = mesh.corners(cell);
       const double volume = signed_volume(x[0], x[1], x[2], x[3]);
       mesh.ownership(cell, ownership);
-      if (ownership.pure()) {
-        add_part(cell, ownership.problem.candidates[0].owner, {0.25, 0.25, 0.25, 0.25}, volume);
-        continue;
-      }
-      drop_hopeless(ownership.problem);
-      parts.clear();
-      partition_tetrahedron(ownership.problem, parts);
+      partition_cell(ownership, parts);
       for (const OwnedTetrahedron& part : parts)
         add_part(cell, part.owner, centroid(part.corners), volume * volume_fraction(part.corners));
     }

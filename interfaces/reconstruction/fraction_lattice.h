@@ -9,10 +9,11 @@
 
 namespace adamas {
 
-/// Volume fractions as a function of space that is linear in tetrahedra (SPEC 2.1): the points of the lattice
-/// are the sites of the data and, where sites are cell centres, points on the domain's boundary with values
-/// extrapolated linearly and normalised. Each lattice cell is six tetrahedra round its main diagonal. A point
-/// belongs to the material with the greatest fraction, ties to the one whose name comes first.
+/// Volume fractions as a function of space that is linear in tetrahedra (docs/method.md, Interfaces from
+/// volume fractions): the points of the lattice are the sites of the data and, where sites are cell centres,
+/// points on the domain's boundary with values extrapolated linearly and normalised. Each lattice cell is six
+/// tetrahedra round its main diagonal. A point belongs to the material with the greatest fraction, ties to
+/// the one whose name comes first.
 class FractionLattice {
  public:
   explicit FractionLattice(const MultiMaterialData& data);

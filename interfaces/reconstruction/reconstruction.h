@@ -14,7 +14,7 @@
 namespace adamas {
 
 /// Material interfaces reconstructed from volume fractions (Bonnell et al., Material interface
-/// reconstruction, 2003; D 3.4.1; SPEC 2.1): where the greatest of linearly interpolated fractions changes
+/// reconstruction, 2003; D 3.4.1): where the greatest of linearly interpolated fractions changes
 /// from one material to another. No gap, no overlap, triple lines come out by themselves. The connected parts
 /// of each material's region, its bodies, are found on the lattice, exactly.
 class Reconstruction {

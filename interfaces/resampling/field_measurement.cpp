@@ -82,13 +82,14 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
     const auto elements = std::span(element_order_).subspan(cell.first_element, count);
     displaced[i] = measure_field_errors(source_, view(cells[i]), elements, cell.fields);
   });
+  if (std::all_of(displaced.begin(), displaced.end(), [](const auto& d) { return d.empty(); })) return;
   // Of displaced elements no more is asked than the target, or what the others have anyway.
   std::vector<double> limits(fields, 0.0);
   for (std::size_t f = 0; f < fields; ++f) {
     for (const TetrahedronId t : cells) limits[f] = std::max(limits[f], hierarchy_.payload(t).fields[f].max);
     if (options_.field_errors[f]) limits[f] = *options_.field_errors[f];
   }
-  const double warp =
+  const double half_width =
       distance_ ? std::max(options_.interface_error, distance_->upper) : options_.interface_error;
   ViewCache cache(hierarchy_.tetrahedron_slots());
   const CellsInBox nearby = [&](const Box3& box, MaterialId material, const auto& visit) {
@@ -97,7 +98,7 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
   };
   parallel_for(cells.size(), 16, [&](std::size_t i) {
     if (displaced[i].empty()) return;
-    measure_displaced_errors(source_, view(cells[i]), displaced[i], warp, nearby, limits,
+    measure_displaced_errors(source_, view(cells[i]), displaced[i], half_width, nearby, limits,
                              hierarchy_.payload(cells[i]).fields);
   });
 }
@@ -116,13 +117,7 @@ CellView Resampler::view(TetrahedronId t) const {
 
 CellView Resampler::view_with_parts(TetrahedronId t) const {
   CellView result = view(t);
-  if (result.owners.pure()) {
-    const std::array<Weights, 4> whole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0},
-                                       Weights{0, 0, 0, 1}};
-    result.parts.push_back({result.owners.problem.candidates[0].owner, whole});
-  } else {
-    partition_tetrahedron(result.owners.problem, result.parts);
-  }
+  partition_cell(result.owners, result.parts);
   return result;
 }
 

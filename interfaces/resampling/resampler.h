@@ -43,17 +43,20 @@ struct InterfaceDistance {
   std::size_t triangles = 0;  ///< of the approximation
 };
 
-/// Builds a hierarchy that approximates the source within the wanted errors (SPEC 2.6): the interfaces first,
-/// then the fields. Always the diamond with the greatest error in relation to its target is split, until all
-/// are within or the number of tetrahedra would be exceeded. The result does not depend on the number of
-/// threads.
+/// Builds a hierarchy that approximates the source within the wanted errors (docs/method.md, Building): the
+/// interfaces first, then the fields. Always the diamond with the greatest error in relation to its target is
+/// split, until all are within or the number of tetrahedra would be exceeded. The result does not depend on
+/// the number of threads.
 class Resampler {
  public:
   using MeshHierarchy = Hierarchy<VertexRecord, CellRecord>;
 
+  /// The source must outlive the resampler; missing field errors count as not wanted. Throws Error for an
+  /// interface error that is not positive and a limit below the number of tetrahedra of the roots.
   Resampler(const ResamplingSource& source, ResamplingOptions options,
             Progress& progress = SilentProgress::instance());
 
+  /// To be called once. Throws Cancelled where the progress says so.
   void refine();
 
   [[nodiscard]] const MeshHierarchy& hierarchy() const { return hierarchy_; }
@@ -61,7 +64,7 @@ class Resampler {
   [[nodiscard]] const ResamplingOptions& options() const { return options_; }
   /// Measured two-sided distance; none where `certify` is off or there are no interfaces.
   [[nodiscard]] const std::optional<InterfaceDistance>& interface_distance() const { return distance_; }
-  /// The leaves, and what their vertices know.
+  /// The leaves, and what their vertices know; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells() const;
   /// Rows of all bodies that own a part of a leaf, at its vertices; for output.
   void complete_fields();

@@ -82,7 +82,7 @@ double reconstruction_error(bool turn_x, bool turn_y) {
   return 2.0 * wrong / kSamples;
 }
 
-/// SPEC 2.1 states 0.112; it depends on the directions of the diagonals.
+/// It depends on the directions of the diagonals.
 TEST(Reconstruction, OfTheTJunctionFromFractions) {
   double mean = 0, least = 1;
   for (const bool turn_x : {false, true}) {

@@ -48,13 +48,13 @@ void expect_certified(bool meshes, const std::vector<double>& errors, std::size_
       c.options.interface_error = error;
       if (const auto ratio = certified_ratio(c, samples)) {
         ratios.push_back(*ratio);
-        EXPECT_LE(*ratio, 10);
+        EXPECT_LE(*ratio, 1.3);
       }
     }
   }
   std::sort(ratios.begin(), ratios.end());
   ASSERT_FALSE(ratios.empty());
-  EXPECT_LE(ratios[ratios.size() / 2], 3);
+  EXPECT_LE(ratios[ratios.size() / 2], 1.1);
   std::printf("reported / measured interface error: median %.3f, worst %.3f of %zu\n",
               ratios[ratios.size() / 2], ratios.back(), ratios.size());
 }

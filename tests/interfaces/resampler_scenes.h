@@ -89,7 +89,7 @@ struct ResampledScene {
   std::unique_ptr<Resampler> resampler;
 };
 
-/// SPEC 2.3: the hierarchy is sound; the pieces' volumes add up; the extracted interfaces are closed up to
+/// The laws: the hierarchy is sound; the pieces' volumes add up; the extracted interfaces are closed up to
 /// the boundary of the domain, with two triangles at every inner edge or as many as bodies meet there; and
 /// what they enclose is what the pieces add up to.
 inline void expect_laws(const ResampledScene& resampled, double volume_tolerance = 1e-9) {
