@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include <filesystem>
 
 namespace adamas {
 
@@ -11,7 +11,8 @@ void catch_signals();
 /// Whether one of them has come.
 bool interrupted();
 
-/// A file that a second signal removes, since no destructor will. It may be gone by then.
-void remove_at_abrupt_end(const std::string& path);
+/// A temporary file that a second signal removes, since no destructor will; with it what its writers have
+/// beside it, which is called alike up to a number.
+void remove_at_abrupt_end(const std::filesystem::path& temporary);
 
 }  // namespace adamas

@@ -70,7 +70,7 @@ void OutputSet::declare(const std::string& option, const std::string& path,
     fail("{}: expected the name of a plain file, found something else there", path);
   }
   files_.push_back({option, std::make_unique<OutputFile>(path)});
-  remove_at_abrupt_end(files_.back().file->temporary().string());
+  remove_at_abrupt_end(files_.back().file->temporary());
 }
 
 const OutputFile* OutputSet::find(const std::string& path) const {
