@@ -142,6 +142,33 @@ TEST(Partition, TheOrderOfCandidatesChangesNothing) {
   });
 }
 
+/// Whatever is left out of a problem owned nothing.
+TEST(Partition, KeptOwnersOwnTheSame) {
+  std::size_t fewer = 0;
+  on_random_problems(10, 400, [&](const OwnershipProblem& problem, std::mt19937_64& random) {
+    OwnershipProblem kept = problem;
+    keep_owners(kept);
+    fewer += kept.functions.size() < problem.functions.size() ? 1 : 0;
+    auto mine = volumes(problem), its = volumes(kept);
+    for (const auto& candidate : problem.candidates)
+      ASSERT_NEAR(mine[candidate.owner], its[candidate.owner], 1e-13);
+    for (int i = 0; i < 20; ++i) {
+      const Weights w = test::random_weights(random);
+      ASSERT_EQ(kept.owner(w), problem.owner(w));
+    }
+    std::vector<ContactPolygon> all, some;
+    contact_polygons(problem, all);
+    contact_polygons(kept, some);
+    const auto area = [](const std::vector<ContactPolygon>& contacts) {
+      double sum = 0;
+      for (const ContactPolygon& c : contacts) sum += norm(area_vector(places(c)));
+      return sum;
+    };
+    ASSERT_NEAR(area(all), area(some), 1e-12);
+  });
+  EXPECT_GT(fewer, 200u);
+}
+
 TEST(Partition, PolygonsAreDividedLikeTheTetrahedron) {
   on_random_problems(5, 2000, [](const OwnershipProblem& problem, std::mt19937_64& random) {
     const Weights a = test::random_weights(random), b = test::random_weights(random),

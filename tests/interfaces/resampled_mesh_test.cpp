@@ -1,0 +1,163 @@
+#include "interfaces/mesh/resampled_mesh.h"
+
+#include <cmath>
+#include <map>
+
+#include "core/base/error.h"
+#include "interfaces/fields/grid_field_source.h"
+#include "interfaces/mesh/cut_mesh.h"
+#include "interfaces/mesh/resampled_mesh_file.h"
+#include "tests/interfaces/resampler_scenes.h"
+
+namespace adamas {
+namespace {
+
+ResampledMesh resampled(const std::string& scene) {
+  test::SceneCase c;
+  c.name = scene;
+  c.fields = true;
+  c.options.interface_error = 0.06;
+  test::ResampledScene result(c);
+  return take_mesh(*result.resampler);
+}
+
+template <class Values>
+Values& array(UnstructuredMesh& mesh, const std::string& name) {
+  for (NamedArray& a : mesh.field_arrays) {
+    if (a.name == "adamas " + name) return std::get<Values>(a.values);
+  }
+  throw std::logic_error("no array " + name);
+}
+
+TEST(ResampledMesh, ComesBackFromAFile) {
+  const ResampledMesh mesh = resampled("tjunction");
+  ASSERT_NO_THROW(mesh.validate());
+  const ResampledMesh back = from_unstructured_mesh(to_unstructured_mesh(mesh), "file");
+  EXPECT_EQ(back.source, mesh.source);
+  EXPECT_EQ(back.points.size(), mesh.points.size());
+  EXPECT_EQ(back.field_errors, mesh.field_errors);
+  ASSERT_EQ(back.cells.size(), mesh.cells.size());
+  CellOwnership a, b;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    EXPECT_EQ(back.cells[c].interface_error, mesh.cells[c].interface_error);
+    mesh.ownership(c, a);
+    back.ownership(c, b);
+    ASSERT_EQ(a.problem.candidates.size(), b.problem.candidates.size());
+    const Weights w{0.1, 0.2, 0.3, 0.4};
+    if (!a.pure()) {
+      ASSERT_EQ(a.problem.owner(w), b.problem.owner(w));
+    }
+    const BodyId body(a.pure() ? a.problem.candidates[0].owner : a.problem.owner(w));
+    for (const FieldInfo& field : mesh.fields) {
+      const double value = mesh.value(c, body, field.offset, w), other = back.value(c, body, field.offset, w);
+      ASSERT_TRUE(value == other || (std::isnan(value) && std::isnan(other)));
+    }
+  }
+}
+
+TEST(ResampledMesh, DamagedFilesAreRefused) {
+  using Integers = std::vector<std::int32_t>;
+  using Doubles = std::vector<double>;
+  const UnstructuredMesh good = to_unstructured_mesh(resampled("tjunction"));
+  const auto refused = [&](const std::function<void(UnstructuredMesh&)>& damage) {
+    UnstructuredMesh bad = good;
+    damage(bad);
+    try {
+      from_unstructured_mesh(bad, "file");
+    } catch (const Error&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refused([](UnstructuredMesh&) {}));
+  EXPECT_TRUE(refused([](UnstructuredMesh& m) {
+    for (std::int32_t& n : array<Integers>(m, "vertex row counts")) n = 0;
+    array<Integers>(m, "vertex row bodies").clear();
+    array<Doubles>(m, "vertex rows").clear();
+  }));
+  EXPECT_TRUE(refused([](UnstructuredMesh& m) { array<Doubles>(m, "vertex radius")[1] = std::nan(""); }));
+  EXPECT_TRUE(
+      refused([](UnstructuredMesh& m) { array<Doubles>(m, "vertex signed distances")[0] = INFINITY; }));
+  EXPECT_TRUE(refused([](UnstructuredMesh& m) { array<Integers>(m, "vertex interfaces")[0] = 99; }));
+  EXPECT_TRUE(refused([](UnstructuredMesh& m) { array<Integers>(m, "interface bodies").pop_back(); }));
+  EXPECT_TRUE(refused([](UnstructuredMesh& m) {
+    auto& sides = array<Integers>(m, "interface bodies");
+    sides[0] = sides[1];
+  }));
+  EXPECT_TRUE(refused([](UnstructuredMesh& m) { m.points[2].y = std::nan(""); }));
+  EXPECT_TRUE(refused([](UnstructuredMesh& m) { std::swap(m.connectivity[0], m.connectivity[1]); }));
+  EXPECT_TRUE(refused([](UnstructuredMesh& m) { m.connectivity[3] = 1u << 30; }));
+}
+
+/// Volumes per body, and points that have the values of their body's field there.
+TEST(CutMesh, HasTheVolumesOfTheBodies) {
+  for (const std::string scene : {"tjunction", "sphere", "reflex"}) {
+    SCOPED_TRACE(scene);
+    const ResampledMesh mesh = resampled(scene);
+    const UnstructuredMesh cut = cut_mesh(mesh);
+    const auto expected = body_volumes(mesh.table, mesh.cell_set());
+    std::map<std::int32_t, double> volumes;
+    const std::vector<std::int32_t>* bodies = nullptr;
+    for (const NamedArray& a : cut.cell_arrays) {
+      if (a.name == "body") bodies = &std::get<std::vector<std::int32_t>>(a.values);
+    }
+    ASSERT_NE(bodies, nullptr);
+    for (std::size_t c = 0; c < cut.cell_count(); ++c) {
+      std::array<Vec3, 4> x;
+      for (std::size_t i = 0; i < 4; ++i) x[i] = cut.points[cut.connectivity[4 * c + i]];
+      const double volume = signed_volume(x[0], x[1], x[2], x[3]);
+      ASSERT_GT(volume, 0);
+      volumes[(*bodies)[c]] += volume;
+    }
+    for (BodyId b(0); b.value < expected.size(); ++b.value)
+      EXPECT_NEAR(volumes[static_cast<std::int32_t>(b.value)], expected[b], 1e-12);
+  }
+}
+
+/// Trees of vertices are built on first need, from within a parallel loop, while other threads ask.
+TEST(Resampler, NearestVertexOnManyRoots) {
+  Scene scene = make_scene("plate");
+  InterfaceMesh mesh = scene_interfaces(scene, 0.1);
+  const ResamplingSource source = make_mesh_source(mesh, {{-3, -3, 0.4}, {4, 4, 0.6}});
+  ResamplingOptions options;
+  options.interface_error = 0.2;
+  options.distance = DistanceMode::kNearestVertex;
+  options.certify = false;
+  Resampler resampler(source, options);
+  ASSERT_GT(resampler.hierarchy().vertex_count(), 1000u);
+  resampler.refine();
+  EXPECT_NO_THROW(resampler.hierarchy().validate());
+}
+
+/// A layer thinner than the sites still has fields: from sites that hold some of its material.
+TEST(GridFieldSource, ThinLayersHaveMixedFields) {
+  MultiMaterialData data;
+  data.source = "layer";
+  data.grid.centering = Centering::kCells;
+  for (auto& nodes : data.grid.nodes) {
+    for (int i = 0; i <= 8; ++i) nodes.push_back(i);
+  }
+  data.materials = {"around", "layer", "nowhere"};
+  data.fractions.resize(3);
+  const std::size_t count = data.grid.site_count();
+  for (auto& f : data.fractions) f.assign(count, 0);
+  Field field{"f", "", 1, std::vector<float>(count), {}};
+  for (std::size_t site = 0; site < count; ++site) {
+    const bool layer = site % 8 == 4;
+    data.fractions[MaterialId(1)][site] = layer ? 0.4f : 0;
+    data.fractions[MaterialId(0)][site] = layer ? 0.6f : 1;
+    field.values[site] = layer ? 7 : 3;
+  }
+  data.fields.push_back(field);
+  const GridFieldSource source(data, [](const Vec3&) { return MaterialId(0); });
+  double value = 0;
+  source.values(MaterialId(1), {4.5, 2.2, 3.1}, {&value, 1});
+  EXPECT_NEAR(value, 7, 1e-6);
+  source.values(MaterialId(0), {1.5, 2.2, 3.1}, {&value, 1});
+  EXPECT_NEAR(value, 3, 1e-6);
+  source.values(MaterialId(2), {4.5, 2.2, 3.1}, {&value, 1});
+  EXPECT_TRUE(std::isnan(value));
+}
+
+}  // namespace
+}  // namespace adamas
