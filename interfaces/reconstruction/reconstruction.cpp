@@ -93,51 +93,60 @@ void Reconstruction::extract_cell(const FractionLattice::Index& cell, Layer& lay
     layer.volume[owner] += volume;
     return;
   }
-  OwnershipProblem problem;
-  std::vector<OwnedTetrahedron> parts;
-  for (std::size_t path = 0; path < FractionLattice::kPaths.size(); ++path) {
-    const auto corners = lattice_.tetrahedron(cell, path);
-    std::array<std::uint32_t, 4> points{};
-    std::array<std::uint64_t, 4> ids{};
-    std::array<Vec3, 4> positions;
-    for (std::size_t c = 0; c < 4; ++c) {
-      ids[c] = points[c] = lattice_.point_index(corners[c]);
-      positions[c] = lattice_.position(corners[c]);
+  for (std::size_t path = 0; path < FractionLattice::kPaths.size(); ++path)
+    extract_tetrahedron(cell, path, volume / 6, layer);
+}
+
+void Reconstruction::extract_tetrahedron(const FractionLattice::Index& cell, std::size_t path, double volume,
+                                         Layer& layer) const {
+  thread_local OwnershipProblem problem;
+  thread_local std::vector<OwnedTetrahedron> parts;
+  const auto corners = lattice_.tetrahedron(cell, path);
+  std::array<std::uint32_t, 4> points{};
+  std::array<std::uint64_t, 4> ids{};
+  std::array<Vec3, 4> positions;
+  for (std::size_t c = 0; c < 4; ++c) {
+    ids[c] = points[c] = lattice_.point_index(corners[c]);
+    positions[c] = lattice_.position(corners[c]);
+  }
+  lattice_.ownership(points, problem);
+  parts.clear();
+  partition_tetrahedron(problem, parts);
+  for (const OwnedTetrahedron& part : parts) {
+    layer.volume[MaterialId(part.owner)] += volume * volume_fraction(part.corners);
+  }
+  if (problem.candidates.size() < 2) return;
+  std::erase_if(problem.candidates, [&](const auto& candidate) {
+    return std::none_of(parts.begin(), parts.end(),
+                        [&](const auto& p) { return p.owner == candidate.owner; });
+  });
+  for (auto& candidate : problem.candidates) {
+    const MaterialId m(candidate.owner);
+    candidate.owner = part_in(cell, path, points, m);
+    if (candidate.owner >= lattice_.point_count()) layer.pointless.emplace_back(candidate.owner, m);
+  }
+  layer.contacts.add(ids, positions, problem);
+  if (problem.candidates.size() > 2) find_reaches(cell, path, points, parts, layer);
+}
+
+/// Which faces of a tetrahedron does a part reach without holding one of their corners?
+void Reconstruction::find_reaches(const FractionLattice::Index& cell, std::size_t path,
+                                  const std::array<std::uint32_t, 4>& points,
+                                  const std::vector<OwnedTetrahedron>& parts, Layer& layer) const {
+  for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+    std::array<std::uint32_t, 3> face{};
+    for (std::size_t c = 0, n = 0; c < 4; ++c) {
+      if (c != opposite) face[n++] = points[c];
     }
-    lattice_.ownership(points, problem);
-    parts.clear();
-    partition_tetrahedron(problem, parts);
+    std::vector<std::uint32_t> seen;
     for (const OwnedTetrahedron& part : parts) {
-      layer.volume[MaterialId(part.owner)] += volume / 6 * volume_fraction(part.corners);
-    }
-    if (problem.candidates.size() < 2) continue;
-    std::erase_if(problem.candidates, [&](const auto& candidate) {
-      return std::none_of(parts.begin(), parts.end(),
-                          [&](const auto& p) { return p.owner == candidate.owner; });
-    });
-    for (auto& candidate : problem.candidates) {
-      const MaterialId m(candidate.owner);
-      candidate.owner = part_in(cell, path, points, m);
-      if (candidate.owner >= lattice_.point_count()) layer.pointless.emplace_back(candidate.owner, m);
-    }
-    layer.contacts.add(ids, positions, problem);
-    if (problem.candidates.size() == 2) continue;
-    // Which faces does a part reach without holding one of their corners?
-    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-      std::array<std::uint32_t, 3> face{};
-      for (std::size_t c = 0, n = 0; c < 4; ++c) {
-        if (c != opposite) face[n++] = points[c];
-      }
-      std::vector<std::uint32_t> seen;
-      for (const OwnedTetrahedron& part : parts) {
-        const auto touching = std::count_if(part.corners.begin(), part.corners.end(),
-                                            [&](const Weights& w) { return w[opposite] <= 0; });
-        const bool holds = std::any_of(
-            face.begin(), face.end(), [&](std::uint32_t p) { return lattice_.owner(p).value == part.owner; });
-        if (touching < 3 || holds || std::find(seen.begin(), seen.end(), part.owner) != seen.end()) continue;
-        seen.push_back(part.owner);
-        layer.reaches.push_back({face, part.owner, part_in(cell, path, points, MaterialId(part.owner))});
-      }
+      const auto touching = std::count_if(part.corners.begin(), part.corners.end(),
+                                          [&](const Weights& w) { return w[opposite] <= 0; });
+      const bool holds = std::any_of(face.begin(), face.end(),
+                                     [&](std::uint32_t p) { return lattice_.owner(p).value == part.owner; });
+      if (touching < 3 || holds || std::find(seen.begin(), seen.end(), part.owner) != seen.end()) continue;
+      seen.push_back(part.owner);
+      layer.reaches.push_back({face, part.owner, part_in(cell, path, points, MaterialId(part.owner))});
     }
   }
 }

@@ -2,7 +2,6 @@
 #include <atomic>
 
 #include "core/base/parallel.h"
-#include "interfaces/network/hausdorff.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
@@ -40,28 +39,40 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
   const ClosestPointTree approximation(extracted.mesh.points, triangles);
   HausdorffOptions options;
   options.domain = source_.box;
+  DistanceBound from, to;
   const auto measure = [&](double accept, double relative) {
     options.accept = accept;
     options.relative = relative;
-    return std::pair(
-        directed_distance_bound(network.points(), network.triangles(), approximation, options, progress_),
-        directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_));
-  };
-  const auto keep = [&](const std::pair<DistanceBound, DistanceBound>& both) {
-    const auto& [from, to] = both;
+    from = directed_distance_bound(network.points(), network.triangles(), approximation, options, progress_);
+    to = directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_);
     distance_ =
         InterfaceDistance{std::max(from.upper, to.upper), std::max(from.lower, to.lower), triangles.size()};
   };
   report("measuring interfaces");
-  const auto both = measure(target, kSharp);
-  keep(both);
+  measure(target, kSharp);
   if (distance_->upper <= target) {
-    keep(measure(0.01 * target, kTight));
+    measure(0.01 * target, kTight);
     distance_->upper = std::min(distance_->upper, target);
     return {};
   }
-  const DistanceBound &from = both.first, &to = both.second;
+  std::vector<TetrahedronId> result = leaves_far_from(approximation, from);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (!(to.triangle_upper[t] > target)) continue;
+    const auto& p = extracted.mesh.points;
+    const TetrahedronId leaf =
+        leaf_at((1.0 / 3) * (p[triangles[t][0]] + p[triangles[t][1]] + p[triangles[t][2]]));
+    if (frame(leaf).diameter() > kFinestForApproximation * target) result.push_back(leaf);
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
 
+/// Leaves with points of the input's interfaces that are farther from the approximation than wanted.
+std::vector<TetrahedronId> Resampler::leaves_far_from(const ClosestPointTree& approximation,
+                                                      const DistanceBound& from) const {
+  const InterfaceNetwork& network = *source_.network;
+  const double target = options_.interface_error;
   const std::vector<TetrahedronId> all = leaves();
   std::vector<char> bad(all.size(), 0);
   std::vector<std::atomic<bool>> explained(network.triangles().size());
@@ -97,15 +108,6 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (bad[i] != 0 && frame(all[i]).diameter() > kFinestForInput * target) result.push_back(all[i]);
   }
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (!(to.triangle_upper[t] > target)) continue;
-    const auto& p = extracted.mesh.points;
-    const TetrahedronId leaf =
-        leaf_at((1.0 / 3) * (p[triangles[t][0]] + p[triangles[t][1]] + p[triangles[t][2]]));
-    if (frame(leaf).diameter() > kFinestForApproximation * target) result.push_back(leaf);
-  }
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "interfaces/errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "interfaces/mesh/extraction.h"
+#include "interfaces/network/hausdorff.h"
 #include "interfaces/source.h"
 
 namespace adamas {
@@ -98,6 +99,8 @@ class Resampler {
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
   void certify();
   std::vector<TetrahedronId> measure_distance();
+  [[nodiscard]] std::vector<TetrahedronId> leaves_far_from(const ClosestPointTree& approximation,
+                                                           const DistanceBound& from) const;
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
   void ownership(TetrahedronId t, CellOwnership& result) const;
   [[nodiscard]] double estimate_target() const;
