@@ -1,14 +1,16 @@
 #include "cli/interrupt.h"
 
-#include <semaphore.h>
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <mutex>
+#include <cstring>
 #include <string>
-#include <thread>
-#include <vector>
 
 namespace adamas {
 
@@ -16,54 +18,50 @@ namespace {
 
 constexpr int kInterruptedStatus = 130;
 
+/// What the temporary files of one output have in common. Fixed memory, for the signal handler reads it.
+struct Temporary {
+  std::array<char, 4096> folder;
+  std::array<char, 256> beginning;  ///< of the names
+};
+
 volatile std::sig_atomic_t flag = 0;
 pid_t program = 0;
-sem_t end_at_once;
+std::array<Temporary, 32> temporaries;
+std::atomic<std::size_t> temporary_count = 0;
 
-std::mutex mutex;
-std::vector<std::filesystem::path> temporaries;
+/// Removes the files of a folder that begin so, with calls that a signal handler may make: no library looks
+/// into folders without allocating, and a thread of its own would be there when readers fork.
+void remove_alike(const Temporary& temporary) {
+  alignas(dirent64) static std::array<char, 32768> entries;
+  const int folder = open(temporary.folder.data(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  const std::size_t length = std::strlen(temporary.beginning.data());
+  for (long size = 0; (size = syscall(SYS_getdents64, folder, entries.data(), entries.size())) > 0;) {
+    for (long at = 0; at < size;) {
+      const auto* entry = reinterpret_cast<const dirent64*>(entries.data() + at);
+      const char* name = static_cast<const char*>(entry->d_name);
+      if (std::strncmp(name, temporary.beginning.data(), length) == 0) unlinkat(folder, name, 0);
+      at += entry->d_reclen;
+    }
+  }
+  close(folder);
+}
 
 extern "C" void handle_signal(int) {
   const int before = errno;
-  if (flag == 0) {
-    flag = 1;
-  } else if (getpid() != program) {
-    // A child that reads a file has no other threads, and no outputs.
+  if (flag != 0) {
+    // A child that reads a file has no outputs.
+    for (std::size_t i = 0; getpid() == program && i < temporary_count; ++i) remove_alike(temporaries[i]);
     _exit(kInterruptedStatus);
-  } else {
-    sem_post(&end_at_once);
   }
+  flag = 1;
   errno = before;
-}
-
-/// Removes the files beside a temporary one whose names begin as its own does before the number.
-void remove_alike(const std::filesystem::path& temporary) {
-  const std::string stem = temporary.stem().string();
-  const std::string beginning = stem.substr(0, stem.rfind('-') + 1);
-  std::error_code code;
-  for (std::filesystem::directory_iterator at(temporary.parent_path(), code), end; !code && at != end;
-       at.increment(code)) {
-    std::error_code ignored;
-    if (!beginning.empty() && at->path().filename().string().starts_with(beginning)) {
-      std::filesystem::remove(at->path(), ignored);
-    }
-  }
-}
-
-/// Waits for the second signal in a thread of its own, for a handler may not look into folders.
-void wait_for_end() {
-  while (sem_wait(&end_at_once) != 0) continue;
-  const std::lock_guard lock(mutex);
-  for (const std::filesystem::path& temporary : temporaries) remove_alike(temporary);
-  _exit(kInterruptedStatus);
 }
 
 }  // namespace
 
 void catch_signals() {
   program = getpid();
-  sem_init(&end_at_once, 0, 0);
-  std::thread(wait_for_end).detach();
   struct sigaction action {};
   action.sa_handler = handle_signal;
   action.sa_flags = SA_RESTART;
@@ -82,8 +80,16 @@ void catch_signals() {
 bool interrupted() { return flag != 0; }
 
 void remove_at_abrupt_end(const std::filesystem::path& temporary) {
-  const std::lock_guard lock(mutex);
-  temporaries.push_back(temporary);
+  const std::string folder = std::filesystem::absolute(temporary).parent_path().string();
+  const std::string stem = temporary.stem().string();
+  const std::string beginning = stem.substr(0, stem.rfind('-') + 1);
+  const std::size_t next = temporary_count;
+  if (beginning.empty() || next == temporaries.size()) return;
+  Temporary& entry = temporaries[next];
+  if (folder.size() >= entry.folder.size() || beginning.size() >= entry.beginning.size()) return;
+  std::strcpy(entry.folder.data(), folder.c_str());
+  std::strcpy(entry.beginning.data(), beginning.c_str());
+  temporary_count = next + 1;
 }
 
 }  // namespace adamas

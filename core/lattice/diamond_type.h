@@ -60,12 +60,12 @@ constexpr std::array<LatticePoint, kDiamondTypeCount> diamond_directions() {
 /// Types by the two lowest bits of q: index (q.i & 3) << 4 | (q.j & 3) << 2 | (q.k & 3); kDiamondTypeCount
 /// where all coordinates are even.
 constexpr std::array<std::uint8_t, 64> diamond_types_by_bits() {
-  constexpr auto directions = diamond_directions();
+  constexpr auto kDirections = diamond_directions();
   std::array<std::uint8_t, 64> types{};
   for (int bits = 0; bits < 64; ++bits) {
     const LatticePoint d = split_direction({bits >> 4, bits >> 2, bits});
     std::uint8_t type = 0;
-    while (type < kDiamondTypeCount && directions[type] != d) ++type;
+    while (type < kDiamondTypeCount && kDirections[type] != d) ++type;
     types[static_cast<std::size_t>(bits)] = type;
   }
   return types;
