@@ -1,6 +1,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,11 @@
 namespace adamas {
 
 namespace {
+
+/// A distance between interfaces; infinite where the mesh shows none.
+std::string shown_length(double length) {
+  return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
+}
 
 struct Options {
   InputOptions input;
@@ -85,8 +91,8 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
                                              {"interface tetrahedra", std::to_string(m.interface_tetrahedra)},
                                              {"interface error wanted", fmt::format("{:.4g}", target)}};
   if (const auto& d = resampler.interface_distance()) {
-    rows.push_back({"interface error certified", fmt::format("{:.4g}", d->upper)});
-    rows.push_back({"interface error found", fmt::format("{:.4g}", d->lower)});
+    rows.push_back({"interface error certified", shown_length(d->upper)});
+    rows.push_back({"interface error found", shown_length(d->lower)});
   }
   rows.push_back({"lost interfaces", std::to_string(m.lost_interfaces)});
   if (m.flagged_vertices > 0)
@@ -94,8 +100,8 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   console.table(rows);
   const auto& distance = resampler.interface_distance();
   if (distance && distance->upper > target) {
-    console.note("the interface error wanted was not reached: {:.4g} instead of {:.4g}", distance->upper,
-                 target);
+    console.note("the interface error wanted was not reached: {} instead of {:.4g}",
+                 shown_length(distance->upper), target);
   }
 }
 
