@@ -39,19 +39,25 @@ class CellCutter {
     if (!find_polygon(vertices)) return;
     cell_ = cell;
     positions_ = job_.mesh.corners(cell);
-    for (std::size_t i = 0; i < polygon_.size(); ++i)
+    const bool has_area = polygon_.size() > 2;
+    for (std::size_t i = 0; has_area && i < polygon_.size(); ++i)
       part_.cell_edges.push_back({point(polygon_[i]), point(polygon_[(i + 1) % polygon_.size()])});
     job_.mesh.ownership(cell, ownership_);
-    if (ownership_.pure()) return add_piece(ownership_.problem.candidates[0].owner, polygon_);
-    drop_hopeless(ownership_.problem);
-    divide_polygon();
+    if (ownership_.pure()) {
+      if (has_area) add_piece(ownership_.problem.candidates[0].owner, polygon_);
+      return;
+    }
+    keep_owners(ownership_.problem);
+    if (has_area) divide_polygon();
+    // Also of cells that touch the plane with an edge: the interface may lie in the face between two such.
     contacts_.clear();
     contact_polygons(ownership_.problem, contacts_);
     for (const ContactPolygon& contact : contacts_) add_contact(contact);
   }
 
  private:
-  /// The corners of the plane's part of the cell as weights, in a round; whether there is such a part.
+  /// The corners of the plane's part of the cell as weights, in a round; false where the cell lies on one
+  /// side. Fewer than three where it only touches the plane.
   bool find_polygon(const std::array<std::uint32_t, 4>& vertices) {
     std::array<std::size_t, 4> up{}, down{};
     std::size_t ups = 0, downs = 0;
@@ -78,7 +84,7 @@ class CellCutter {
       for (std::size_t i = 0; i < 3; ++i) add(lone, ups == 1 ? down[i] : up[i]);
     }
     if (polygon_.size() > 1 && polygon_.front() == polygon_.back()) polygon_.pop_back();
-    return polygon_.size() > 2;
+    return true;
   }
 
   /// Interfaces may coincide with the plane: who owns the polygon is decided a little beside it.
@@ -136,10 +142,13 @@ class CellCutter {
     return job_.field->scalar(components_);
   }
 
+  /// Where a contact passes the plane, a little beside it as the pieces are.
   void add_contact(const ContactPolygon& contact) {
+    const Vec3 nudge = job_.sides.nudge();
+    const double beside = dot(nudge, job_.sides.normal());
     const auto distance = [&](const Weights& w) {
-      return job_.sides.snapped(w[0] * distances_[0] + w[1] * distances_[1] + w[2] * distances_[2] +
-                                w[3] * distances_[3]);
+      return w[0] * distances_[0] + w[1] * distances_[1] + w[2] * distances_[2] + w[3] * distances_[3] -
+             beside;
     };
     Segment segment;
     std::size_t found = 0;
@@ -147,8 +156,8 @@ class CellCutter {
     for (std::size_t i = 0; i < n && found < 2; ++i) {
       const Weights &p = contact.corners[i].weights, &q = contact.corners[(i + 1) % n].weights;
       const double dp = distance(p), dq = distance(q);
-      if (job_.sides.above(dp) == job_.sides.above(dq)) continue;
-      segment[found++] = PlaneSides::crossing(point(p), dp, point(q), dq);
+      if ((dp > 0) == (dq > 0)) continue;
+      segment[found++] = PlaneSides::crossing(point(p), dp, point(q), dq) - nudge;
     }
     if (found == 2) part_.interface_edges.push_back(segment);
   }
