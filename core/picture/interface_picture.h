@@ -30,7 +30,7 @@ struct InterfacePictureOptions {
   bool outlines = true;       ///< silhouettes and borders between colours
   double crease_angle = 180;  ///< degrees between normals from which edges are lines: 180 for none, since the
                               ///< steps of a reconstructed surface are no creases
-  bool axes = true;  ///< a small cross of the axes in the lower left corner
+  bool axes = true;           ///< a small cross of the axes in the lower left corner
 };
 
 /// The file's bytes. Throws Error for points that are not finite, a box or a direction that cannot be framed,
