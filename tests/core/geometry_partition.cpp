@@ -39,6 +39,15 @@ std::map<std::uint32_t, double> volumes(const OwnershipProblem& problem) {
   return result;
 }
 
+void expect_volumes_add_up(const OwnershipProblem& problem) {
+  double sum = 0;
+  for (const auto& [owner, volume] : volumes(problem)) {
+    ASSERT_GE(volume, -1e-15);
+    sum += volume;
+  }
+  ASSERT_NEAR(sum, 1, 1e-13);
+}
+
 Vec3 area_vector(const std::vector<Vec3>& polygon) {
   Vec3 sum;
   for (std::size_t i = 0; i < polygon.size(); ++i)
@@ -59,14 +68,8 @@ std::vector<Vec3> places(const ContactPolygon& polygon) {
 }
 
 TEST(Partition, VolumesAddUp) {
-  on_random_problems(1, 400, [](const OwnershipProblem& problem, std::mt19937_64&) {
-    double sum = 0;
-    for (const auto& [owner, volume] : volumes(problem)) {
-      ASSERT_GE(volume, -1e-15);
-      sum += volume;
-    }
-    ASSERT_NEAR(sum, 1, 1e-13);
-  });
+  on_random_problems(
+      1, 400, [](const OwnershipProblem& problem, std::mt19937_64&) { expect_volumes_add_up(problem); });
 }
 
 /// The same where functions are equal but for round-off, at vertices or everywhere.
@@ -79,12 +82,7 @@ TEST(Partition, VolumesOfNearTiesAddUp) {
         value = std::round(4 * value) / 4 + kShifts[random() % 4];
       }
     }
-    double sum = 0;
-    for (const auto& [owner, volume] : volumes(near)) {
-      ASSERT_GE(volume, -1e-15);
-      sum += volume;
-    }
-    ASSERT_NEAR(sum, 1, 1e-13);
+    expect_volumes_add_up(near);
   });
 }
 
