@@ -30,7 +30,8 @@ struct InputOptions {
 
 /// The grids that help texts name; messages of the readers tell of others.
 inline constexpr const char* kGridFiles =
-    "data on a grid (.vti, .vtr, .vtk, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .tif)";
+    "data on a grid (.vti, .vtr, .vtk, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .tif, .png and "
+    "other images)";
 
 enum class InputKind { kGrid, kNetwork, kMesh, kSurface };
 /// By the extension: a tetrahedral mesh (.vtu), an interface mesh (.vtp, .arec, .txt), a surface without
