@@ -136,9 +136,7 @@ void print_resampled(const ResampledMesh& mesh, Console& console, Figures& figur
   console.print("  {} bodies, {} interfaces, resampled from {}\n\n", mesh.table.body_count(),
                 mesh.table.interface_count(), mesh.source);
   console.table(rows);
-  IdVector<MaterialId, double> of(mesh.materials.size(), 0.0);
-  const auto bodies = body_volumes(mesh.table, mesh.cell_set());
-  for (BodyId b(0); b.value < bodies.size(); ++b.value) of[mesh.table.material(b)] += bodies[b];
+  const auto of = material_volumes(mesh.table, mesh.cell_set(), mesh.materials.size());
   console.print("\n");
   print_volumes(mesh.materials, of, console, figures);
   rows = {{"field", "unit", "components", "from", "to", "greatest error"}};

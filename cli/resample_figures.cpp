@@ -1,33 +1,6 @@
 #include "cli/resample_figures.h"
 
-#include "core/base/parallel.h"
-
 namespace adamas {
-
-namespace {
-
-/// Which cells an approximated interface runs through.
-std::vector<char> find_interface_cells(const InterfaceTable& table, const CellSet& cells,
-                                       const Progress& progress) {
-  std::vector<char> result(cells.count, 0);
-  constexpr std::size_t kGrain = 2048;
-  parallel_chunks(cells.count, kGrain, [&](std::size_t begin, std::size_t end) {
-    progress.check();
-    CellOwnership ownership;
-    std::vector<ContactPolygon> contacts;
-    for (std::size_t i = begin; i < end; ++i) {
-      cells.ownership(table, cells.corners(i), ownership);
-      if (ownership.pure()) continue;
-      keep_owners(ownership.problem);
-      contacts.clear();
-      contact_polygons(ownership.problem, contacts);
-      result[i] = contacts.empty() ? 0 : 1;
-    }
-  });
-  return result;
-}
-
-}  // namespace
 
 ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   const ResamplingSource& source = resampler.source();
@@ -39,7 +12,7 @@ ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   figures.vertices = hierarchy.vertex_count();
   figures.bodies = table.body_count();
   figures.fields.resize(source.fields ? source.fields->fields().size() : 0);
-  const std::vector<char> crossed = find_interface_cells(table, cells, progress);
+  const std::vector<char> crossed = cells_with_interfaces(table, cells, progress);
   std::size_t i = 0;
   hierarchy.for_each_leaf([&](TetrahedronId t) {
     const CellRecord& cell = hierarchy.payload(t);
@@ -55,9 +28,7 @@ ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
     if (hierarchy.payload(v).distances.flagged) ++figures.flagged_vertices;
   });
   progress.check();
-  figures.volumes.resize(source.materials.size());
-  const auto bodies = body_volumes(table, cells);
-  for (BodyId b(0); b.value < bodies.size(); ++b.value) figures.volumes[table.material(b)] += bodies[b];
+  figures.volumes = material_volumes(table, cells, source.materials.size());
   return figures;
 }
 

@@ -13,24 +13,13 @@ RunFigures figures_of(const Resampler& resampler, const ResampledMesh& mesh) {
   figures.tetrahedra = mesh.cells.size();
   figures.vertices = mesh.points.size();
   figures.fields.resize(mesh.fields.size());
-  CellOwnership ownership;
-  std::vector<ContactPolygon> contacts;
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    mesh.ownership(c, ownership);
-    if (ownership.pure()) continue;
-    contacts.clear();
-    keep_owners(ownership.problem);
-    contact_polygons(ownership.problem, contacts);
-    if (!contacts.empty()) ++figures.interface_tetrahedra;
-  }
+  for (const char crossed : cells_with_interfaces(mesh.table, mesh.cell_set()))
+    figures.interface_tetrahedra += crossed != 0 ? 1 : 0;
   resampler.hierarchy().for_each_leaf([&](TetrahedronId t) {
     const CellRecord& cell = resampler.hierarchy().payload(t);
     for (std::size_t f = 0; f < cell.fields.size(); ++f) figures.fields[f].add(cell.fields[f]);
   });
-  figures.volumes.resize(mesh.materials.size());
-  const auto volumes = body_volumes(mesh.table, mesh.cell_set());
-  for (BodyId b(0); b.value < volumes.size(); ++b.value)
-    figures.volumes[mesh.table.material(b)] += volumes[b];
+  figures.volumes = material_volumes(mesh.table, mesh.cell_set(), mesh.materials.size());
   return figures;
 }
 

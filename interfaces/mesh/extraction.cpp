@@ -72,4 +72,31 @@ IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet
   return volumes;
 }
 
+IdVector<MaterialId, double> material_volumes(const InterfaceTable& table, const CellSet& cells,
+                                              std::size_t materials) {
+  IdVector<MaterialId, double> volumes(materials, 0.0);
+  const auto bodies = body_volumes(table, cells);
+  for (BodyId b(0); b.value < bodies.size(); ++b.value) volumes[table.material(b)] += bodies[b];
+  return volumes;
+}
+
+std::vector<char> cells_with_interfaces(const InterfaceTable& table, const CellSet& cells,
+                                        const Progress& progress) {
+  std::vector<char> result(cells.count, 0);
+  parallel_chunks(cells.count, kChunk, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    CellOwnership ownership;
+    std::vector<ContactPolygon> contacts;
+    for (std::size_t i = begin; i < end; ++i) {
+      cells.ownership(table, cells.corners(i), ownership);
+      if (ownership.pure()) continue;
+      keep_owners(ownership.problem);
+      contacts.clear();
+      contact_polygons(ownership.problem, contacts);
+      result[i] = contacts.empty() ? 0 : 1;
+    }
+  });
+  return result;
+}
+
 }  // namespace adamas

@@ -45,4 +45,13 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
 /// Volume of each body, in the cube of the unit of length.
 IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells);
 
+/// Volume of each of so many materials.
+IdVector<MaterialId, double> material_volumes(const InterfaceTable& table, const CellSet& cells,
+                                              std::size_t materials);
+
+/// Which cells an approximated interface runs through: 1 for those, else 0. Throws Cancelled where `progress`
+/// says so.
+std::vector<char> cells_with_interfaces(const InterfaceTable& table, const CellSet& cells,
+                                        const Progress& progress = SilentProgress::instance());
+
 }  // namespace adamas
