@@ -74,6 +74,15 @@ class Divider {
       ++contenders.back().count;
     }
     [[nodiscard]] Function& function(const Contender& c, std::size_t i) { return functions[c.first + i]; }
+    /// Keeps those of a contender's functions that are wanted.
+    template <class Wanted>
+    void keep_if(Contender& c, const Wanted& wanted) {
+      std::uint32_t kept = 0;
+      for (std::uint32_t i = 0; i < c.count; ++i) {
+        if (wanted(function(c, i))) function(c, kept++) = function(c, i);
+      }
+      c.count = kept;
+    }
     [[nodiscard]] const double* row(const Function& f) const { return values.data() + f.row * corners; }
   };
 
@@ -182,12 +191,7 @@ class Divider {
       s.contenders.erase(s.contenders.begin() + static_cast<std::ptrdiff_t>(removal.contender));
       return;
     }
-    Contender& c = s.contenders[removal.contender];
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < c.count; ++i) {
-      if (s.function(c, i).id != removal.function) s.function(c, kept++) = s.function(c, i);
-    }
-    c.count = kept;
+    s.keep_if(s.contenders[removal.contender], [&](const Function& f) { return f.id != removal.function; });
   }
 
   static void copy_without(State& from, const Removal& removal, State& to) {
@@ -250,19 +254,12 @@ class Divider {
 
   /// Drops functions that are nowhere the least of their contender.
   void drop_redundant(State& s, Contender& c) const {
-    const auto keep_if = [&](const auto& wanted) {
-      std::uint32_t kept = 0;
-      for (std::uint32_t i = 0; i < c.count; ++i) {
-        if (wanted(s.function(c, i))) s.function(c, kept++) = s.function(c, i);
-      }
-      c.count = kept;
-    };
     if (c.count > 2) {
       // First those that are above the greatest value of another: that needs no pairs.
       double ceiling = std::numeric_limits<double>::infinity();
       for (std::uint32_t i = 0; i < c.count; ++i)
         ceiling = std::min(ceiling, s.greatest[s.function(c, i).row]);
-      keep_if([&](const Function& f) { return s.least[f.row] <= ceiling; });
+      s.keep_if(c, [&](const Function& f) { return s.least[f.row] <= ceiling; });
     }
     for (std::uint32_t i = 0; i < c.count && c.count > 1;) {
       const Function f = s.function(c, i);
@@ -270,7 +267,7 @@ class Divider {
       for (std::uint32_t k = 0; k < c.count && !redundant; ++k)
         redundant = k != i && at_most(s, s.function(c, k), f);
       if (redundant) {
-        keep_if([&](const Function& other) { return other.id != f.id; });
+        s.keep_if(c, [&](const Function& other) { return other.id != f.id; });
       } else {
         ++i;
       }
