@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cli/figures.h"
+#include "cli/material_numbers.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/io/array_names.h"
@@ -72,16 +73,7 @@ bool has_materials(const InputOptions& options) {
 
 /// Gives the mesh the materials of the data, in their order; those of the mesh alone come after them.
 void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
-  IdVector<MaterialId, MaterialId> renamed;
-  for (const std::string& name : mesh.materials) {
-    const auto found = std::find(data.materials.begin(), data.materials.end(), name);
-    if (found == data.materials.end()) {
-      std::string known;
-      for (const std::string& m : data.materials) known += (known.empty() ? "" : ", ") + m;
-      fail("{}: expected the materials of {} ({}), found '{}'", mesh.source, data.source, known, name);
-    }
-    renamed.push_back(MaterialId(static_cast<std::size_t>(found - data.materials.begin())));
-  }
+  const auto renamed = material_numbers(mesh.materials, data.materials, mesh.source, data.source);
   for (InterfaceTriangle& t : mesh.triangles) t.front = renamed[t.front], t.back = renamed[t.back];
   mesh.materials = data.materials;
 }

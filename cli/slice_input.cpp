@@ -5,6 +5,7 @@
 
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
+#include "cli/material_numbers.h"
 #include "cli/usage_error.h"
 #include "core/io/field_assembly.h"
 #include "core/io/input_file.h"
@@ -46,16 +47,7 @@ std::optional<MultiMaterialData> near_plane(const MultiMaterialData& data, const
 
 /// The data's materials in the order of the mesh's, by name; the mesh may have more.
 void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
-  IdVector<MaterialId, MaterialId> there;
-  for (const std::string& name : data.materials) {
-    const auto found = std::find(mesh.materials.begin(), mesh.materials.end(), name);
-    if (found == mesh.materials.end()) {
-      std::string known;
-      for (const std::string& m : mesh.materials) known += (known.empty() ? "" : ", ") + m;
-      fail("{}: expected the materials of the mesh ({}), found '{}'", data.source, known, name);
-    }
-    there.push_back(MaterialId(static_cast<std::size_t>(found - mesh.materials.begin())));
-  }
+  const auto there = material_numbers(data.materials, mesh.materials, data.source, "the mesh");
   const std::size_t count = mesh.materials.size();
   const auto reorder = [&](IdVector<MaterialId, std::vector<float>>& values) {
     IdVector<MaterialId, std::vector<float>> result(count);
