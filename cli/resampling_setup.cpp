@@ -33,7 +33,7 @@ void add_resampling_options(CLI::App& command, ResamplingText& text) {
       ->type_name("N");
   command
       .add_option("--ghost", text.ghost, "How a material's field goes on beyond the material, within a cell")
-      ->check(one_of({"constant", "linear"}))
+      ->check(one_of({"constant", "linear", "least-squares"}))
       ->capture_default_str();
   command
       .add_option("--distance", text.distance,
@@ -54,6 +54,7 @@ ResamplingWishes::ResamplingWishes(const ResamplingText& text)
   }
   if (!text.max_tetrahedra.empty()) max_tetrahedra = parse_count("--max-tetrahedra", text.max_tetrahedra);
   if (text.ghost == "linear") ghost = GhostMode::kLinear;
+  if (text.ghost == "least-squares") ghost = GhostMode::kLeastSquares;
   if (text.distance == "nearest-vertex") distance = DistanceMode::kNearestVertex;
 }
 

@@ -38,6 +38,10 @@ class FieldSource {
   /// Values and one-sided derivatives: `gradients[c]` of component c.
   virtual void values_and_gradients(MaterialId material, const Vec3& p, std::span<double> row,
                                     std::span<Vec3> gradients) const = 0;
+  /// Values at p, outside of the material, of the linear functions that fit what is stated for the material
+  /// round `near`, its closest point, in the sense of least squares.
+  virtual void fitted_values(MaterialId material, const Vec3& p, const Vec3& near,
+                             std::span<double> row) const = 0;
   [[nodiscard]] virtual const std::vector<NativeElement>& native_elements() const = 0;
   /// The values the input states at a native element; NaN where it states none for the element's material.
   virtual void native_values(const NativeElement& element, std::span<double> row) const = 0;

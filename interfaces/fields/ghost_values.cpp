@@ -49,6 +49,10 @@ std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode m
     fields.values(material, closest, row);
     return row;
   }
+  if (mode == GhostMode::kLeastSquares) {
+    fields.fitted_values(material, position, closest, row);
+    return row;
+  }
   std::vector<Vec3> gradients(row.size());
   fields.values_and_gradients(material, closest, row, gradients);
   for (std::size_t c = 0; c < row.size(); ++c) row[c] += dot(gradients[c], position - closest);

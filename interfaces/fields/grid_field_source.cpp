@@ -21,6 +21,10 @@ constexpr float kPure = 0.99f;
 constexpr std::int32_t kReach = 6;
 /// A fit takes sites from the smallest window that has this many and spreads along every axis.
 constexpr std::size_t kWanted = 8;
+/// Softening of the weights of a fit, in steps of the grid: at a site, where the site itself may be the only
+/// one, and at any other point, where a site may lie as near as it likes.
+constexpr double kSoftAtSites = 1e-6;
+constexpr double kSoftElsewhere = 0.5;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -101,6 +105,15 @@ bool GridFieldSource::inside(const Site& s) const {
     if (s[a] < 0 || s[a] >= sites(a)) return false;
   }
   return true;
+}
+
+Vec3 GridFieldSource::spacing(const Site& s) const {
+  Vec3 result;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int32_t low = std::min(s[a], sites(a) - 1);
+    result[static_cast<int>(a)] = coordinate(a, low + 1) - coordinate(a, low);
+  }
+  return result;
 }
 
 std::size_t GridFieldSource::index(const Site& s) const {
@@ -190,25 +203,24 @@ void GridFieldSource::site_values(std::size_t field, MaterialId material, const 
   shard.rows.try_emplace(key, out.begin(), out.begin() + fields_[field].components);
 }
 
-/// Sites that state values, seen from one that does not.
+/// Sites that state values, seen from a place where none is stated.
 struct GridFieldSource::Sample {
-  std::vector<Vec3> offsets;
-  std::vector<double> values;
+  Vec3 origin;
+  std::vector<Vec3> offsets{};
+  std::vector<double> values{};
   std::array<Site, 2> extent{Site{1 << 30, 1 << 30, 1 << 30}, Site{-1, -1, -1}};
 };
 
 template <class States>
 void GridFieldSource::add_shell(std::size_t field, MaterialId material, const Site& site, std::int32_t reach,
                                 const States& states, Sample& sample) const {
-  const Vec3 here{coordinate(0, site[0]), coordinate(1, site[1]), coordinate(2, site[2])};
   for (std::int32_t dk = -reach; dk <= reach; ++dk) {
     for (std::int32_t dj = -reach; dj <= reach; ++dj) {
       const bool face = std::abs(dk) == reach || std::abs(dj) == reach;
       for (std::int32_t di = -reach; di <= reach; di += face ? 1 : 2 * reach) {
         const Site other{site[0] + di, site[1] + dj, site[2] + dk};
         if (!inside(other) || !states(index(other))) continue;
-        sample.offsets.push_back(
-            Vec3{coordinate(0, other[0]), coordinate(1, other[1]), coordinate(2, other[2])} - here);
+        sample.offsets.push_back(site_position(other) - sample.origin);
         for (int c = 0; c < fields_[field].components; ++c)
           sample.values.push_back(stated(field, material, index(other), c));
         for (std::size_t a = 0; a < 3; ++a) {
@@ -220,9 +232,8 @@ void GridFieldSource::add_shell(std::size_t field, MaterialId material, const Si
   }
 }
 
-void GridFieldSource::fit(std::size_t field, MaterialId material, const Site& site,
-                          std::span<double> out) const {
-  Sample sample;
+void GridFieldSource::collect(std::size_t field, MaterialId material, const Site& site, std::int32_t least,
+                              Sample& sample) const {
   // A slope along an axis takes sites at two places of it.
   const auto enough = [&] {
     if (sample.offsets.size() < kWanted) return false;
@@ -231,29 +242,48 @@ void GridFieldSource::fit(std::size_t field, MaterialId material, const Site& si
     }
     return true;
   };
+  const auto add_shells = [&](const auto& states) {
+    for (std::int32_t reach = 0; reach <= kReach && (reach <= least || !enough()); ++reach)
+      add_shell(field, material, site, reach, states, sample);
+  };
   const auto own = [&](std::size_t other) { return states(field, material, other); };
-  for (std::int32_t reach = 1; reach <= kReach && !enough(); ++reach)
-    add_shell(field, material, site, reach, own, sample);
+  add_shells(own);
   // In a layer thinner than the sites: what holds some of the material states a mixed field well enough.
   const bool mixed = !data_.fields[field].per_material();
-  if (sample.offsets.empty() && mixed && !data_.fractions.empty()) {
-    const auto some = [&](std::size_t other) { return data_.fractions[material][other] >= kPresent; };
-    if (inside(site) && some(index(site))) {
-      for (int c = 0; c < fields_[field].components; ++c)
-        out[static_cast<std::size_t>(c)] = stated(field, material, index(site), c);
-      return;
-    }
-    for (std::int32_t reach = 1; reach <= kReach && !enough(); ++reach)
-      add_shell(field, material, site, reach, some, sample);
-  }
+  if (sample.offsets.empty() && mixed && !data_.fractions.empty())
+    add_shells([&](std::size_t other) { return data_.fractions[material][other] >= kPresent; });
   // Far from all its sites: the nearest.
-  const std::int32_t farthest = std::max({sites(0), sites(1), sites(2)});
   if (sample.offsets.empty() && stated_somewhere_[field][material] != 0) {
+    const std::int32_t farthest = std::max({sites(0), sites(1), sites(2)});
     for (std::int32_t reach = kReach + 1; reach <= farthest && sample.offsets.empty(); ++reach)
       add_shell(field, material, site, reach, own, sample);
   }
-  fit_linear_at_origin(sample.offsets, sample.values, static_cast<std::size_t>(fields_[field].components),
-                       out.subspan(0, static_cast<std::size_t>(fields_[field].components)));
+}
+
+void GridFieldSource::fit(std::size_t field, MaterialId material, const Site& site,
+                          std::span<double> out) const {
+  Sample sample{site_position(site)};
+  collect(field, material, site, 0, sample);
+  const auto components = static_cast<std::size_t>(fields_[field].components);
+  const Vec3 h = spacing(site);
+  fit_linear_at_origin(sample.offsets, sample.values, components, kSoftAtSites * std::min({h.x, h.y, h.z}),
+                       out.subspan(0, components));
+}
+
+void GridFieldSource::fitted_values(MaterialId material, const Vec3& p, const Vec3& near,
+                                    std::span<double> row) const {
+  const Site site = nearest_site(near);
+  const Vec3 h = spacing(site);
+  const double steps = norm(p - near) / std::max({h.x, h.y, h.z});
+  const auto least = static_cast<std::int32_t>(std::min<double>(steps, kReach));
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    Sample sample{p};
+    collect(f, material, site, least, sample);
+    const auto components = static_cast<std::size_t>(fields_[f].components);
+    fit_linear_at_origin(sample.offsets, sample.values, components,
+                         kSoftElsewhere * std::min({h.x, h.y, h.z}),
+                         row.subspan(fields_[f].offset, components));
+  }
 }
 
 GridFieldSource::Cell GridFieldSource::locate(const Vec3& p) const {
@@ -268,6 +298,16 @@ GridFieldSource::Cell GridFieldSource::locate(const Vec3& p) const {
     cell.local[a] = (q - x[i]) / cell.size[a];
   }
   return cell;
+}
+
+GridFieldSource::Site GridFieldSource::nearest_site(const Vec3& p) const {
+  const Cell cell = locate(p);
+  Site site{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int32_t i = cell.low[a] + (cell.local[a] < 0.5 ? 0 : 1);
+    site[a] = std::clamp(i, 0, sites(a) - 1);
+  }
+  return site;
 }
 
 void GridFieldSource::values_and_gradients(MaterialId material, const Vec3& p, std::span<double> row,

@@ -28,6 +28,10 @@ class GridFieldSource final : public FieldSource {
   void values(MaterialId material, const Vec3& p, std::span<double> row) const override;
   void values_and_gradients(MaterialId material, const Vec3& p, std::span<double> row,
                             std::span<Vec3> gradients) const override;
+  /// The fit takes the sites that state a value within the box round `near` that reaches as far as p, but no
+  /// more than some steps, and goes farther only until it has enough.
+  void fitted_values(MaterialId material, const Vec3& p, const Vec3& near,
+                     std::span<double> row) const override;
   [[nodiscard]] const std::vector<NativeElement>& native_elements() const override { return elements_; }
   void native_values(const NativeElement& element, std::span<double> row) const override;
 
@@ -42,6 +46,11 @@ class GridFieldSource final : public FieldSource {
   [[nodiscard]] double coordinate(std::size_t axis, std::int32_t i) const {
     return coordinates_[axis][static_cast<std::size_t>(i + 1)];
   }
+  [[nodiscard]] Vec3 site_position(const Site& s) const {
+    return {coordinate(0, s[0]), coordinate(1, s[1]), coordinate(2, s[2])};
+  }
+  /// The step along each axis at a site.
+  [[nodiscard]] Vec3 spacing(const Site& s) const;
   [[nodiscard]] bool inside(const Site& s) const;
   [[nodiscard]] std::size_t index(const Site& s) const;
   void find_mixed_sites();
@@ -56,8 +65,12 @@ class GridFieldSource final : public FieldSource {
   template <class States>
   void add_shell(std::size_t field, MaterialId material, const Site& site, std::int32_t reach,
                  const States& states, Sample& sample) const;
+  /// What is stated within `least` steps of the site, or as far as it takes to fit a linear function.
+  void collect(std::size_t field, MaterialId material, const Site& site, std::int32_t least,
+               Sample& sample) const;
   void fit(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
   [[nodiscard]] Cell locate(const Vec3& p) const;
+  [[nodiscard]] Site nearest_site(const Vec3& p) const;
 
   const MultiMaterialData& data_;
   std::vector<FieldInfo> fields_;

@@ -8,7 +8,7 @@
 namespace adamas {
 
 void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<double>& values,
-                          std::size_t components, std::span<double> out) {
+                          std::size_t components, double softening, std::span<double> out) {
   if (offsets.empty()) {
     for (double& value : out) value = std::numeric_limits<double>::quiet_NaN();
     return;
@@ -25,7 +25,7 @@ void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<do
   std::vector<double> mean(components);
   std::vector<double> weights;
   for (std::size_t i = 0; i < offsets.size(); ++i) {
-    const double weight = 1 / squared_norm(offsets[i]);
+    const double weight = 1 / (squared_norm(offsets[i]) + softening * softening);
     weights.push_back(weight);
     total += weight;
     center += weight * scaled(offsets[i]);

@@ -52,6 +52,9 @@ class SceneFields final : public FieldSource {
     gradients[1] = scene_.field_gradient(SceneField::kSmooth, m, p);
     for (std::size_t c = 0; c < 3; ++c) gradients[2 + c] = factor(c) * gradients[0];
   }
+  void fitted_values(MaterialId m, const Vec3& p, const Vec3&, std::span<double> row) const override {
+    values(m, p, row);
+  }
   [[nodiscard]] const std::vector<NativeElement>& native_elements() const override { return elements_; }
   void native_values(const NativeElement& element, std::span<double> row) const override {
     values(element.material, element.position, row);
