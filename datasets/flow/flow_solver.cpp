@@ -1,0 +1,216 @@
+#include "datasets/flow/flow_solver.h"
+
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace adamas {
+
+namespace {
+
+/// The orders in which the directions are swept, one after the other: each pair is symmetric in time, and no
+/// axis has an advantage over the four.
+constexpr std::array<std::array<std::size_t, 3>, 4> kOrders{{{0, 1, 2}, {2, 1, 0}, {1, 0, 2}, {2, 0, 1}}};
+/// Batches of lines that one thread takes at a time.
+constexpr std::size_t kGrain = 4;
+/// An impulsive start makes waves that the first cells know nothing of.
+constexpr std::size_t kCarefulSteps = 5;
+constexpr double kCarefulPart = 0.2;
+constexpr double kGibibyte = 1024.0 * 1024 * 1024;
+
+std::array<double, 3> cell_size(const Box3& box, const std::array<std::size_t, 3>& cells) {
+  const Vec3 size = box.size();
+  return {size.x / static_cast<double>(cells[0]), size.y / static_cast<double>(cells[1]),
+          size.z / static_cast<double>(cells[2])};
+}
+
+}  // namespace
+
+template <std::size_t N>
+FlowSolver<N>::FlowSolver(std::string name, FlowProblem<N> problem,
+                          const std::function<FlowCell<N>(std::size_t, std::size_t, std::size_t)>& cell)
+    : name_(std::move(name)), problem_(std::move(problem)), law_([this] {
+        std::array<StiffenedGas, N> gases;
+        for (std::size_t k = 0; k < N; ++k) gases[k] = problem_.materials[k].gas;
+        return MixtureLaw<N>(gases);
+      }()) {
+  check();
+  size_ = cell_size(problem_.box, problem_.cells);
+  const auto [nx, ny, nz] = problem_.cells;
+  for (auto& values : state_) values.resize(nx * ny * nz);
+  parallel_for(nz, 1, [&](std::size_t k) {
+    for (std::size_t j = 0; j < ny; ++j) {
+      for (std::size_t i = 0; i < nx; ++i) {
+        const FlowCell<N> c = cell(i, j, k);
+        const std::size_t at = index(i, j, k);
+        double density = 0, internal = 0;
+        for (std::size_t m = 0; m < N; ++m) {
+          state_[V::kFraction + m][at] = c.fractions[m];
+          state_[V::kMass + m][at] = c.fractions[m] * c.densities[m];
+          density += state_[V::kMass + m][at];
+          internal += c.fractions[m] * (law_.inverse[m] * c.pressure + law_.offset[m]);
+        }
+        state_[V::kNormal][at] = density * c.velocity.x;
+        state_[V::kNormal + 1][at] = density * c.velocity.y;
+        state_[V::kNormal + 2][at] = density * c.velocity.z;
+        state_[V::kEnergy][at] = internal + 0.5 * density * dot(c.velocity, c.velocity);
+        if (!(density > 0))
+          fail("{}: expected matter in every cell, found none in ({}, {}, {})", name_, i, j, k);
+      }
+    }
+  });
+}
+
+template <std::size_t N>
+void FlowSolver<N>::check() const {
+  double cells = 1;
+  for (const std::size_t n : problem_.cells) cells *= static_cast<double>(n);
+  if (!(cells > 0)) fail("{}: expected at least one cell along each axis, found none", name_);
+  const double needed = cells * V::kCount * sizeof(double);
+  const double memory =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (needed > memory) {
+    fail("{}: expected dimensions that fit in memory ({:.0f} GiB), found {}x{}x{}, which need {:.0f} GiB",
+         name_, memory / kGibibyte, problem_.cells[0], problem_.cells[1], problem_.cells[2],
+         needed / kGibibyte);
+  }
+}
+
+template <std::size_t N>
+FlowCell<N> FlowSolver<N>::cell(std::size_t i, std::size_t j, std::size_t k) const {
+  const std::size_t at = index(i, j, k);
+  FlowCell<N> c;
+  MixtureMeans mean;
+  for (std::size_t m = 0; m < N; ++m) {
+    const double fraction = state_[V::kFraction + m][at], mass = state_[V::kMass + m][at];
+    c.fractions[m] = fraction;
+    c.densities[m] = fraction > 0 ? mass / fraction : 0;
+    mean.density += mass;
+    mean.inverse += fraction * law_.inverse[m];
+    mean.offset += fraction * law_.offset[m];
+  }
+  const Vec3 momentum{state_[V::kNormal][at], state_[V::kNormal + 1][at], state_[V::kNormal + 2][at]};
+  c.velocity = (1 / mean.density) * momentum;
+  c.pressure =
+      (state_[V::kEnergy][at] - 0.5 * dot(momentum, momentum) / mean.density - mean.offset) / mean.inverse;
+  return c;
+}
+
+template <std::size_t N>
+FlowLedger<N> FlowSolver<N>::inside() const {
+  FlowLedger<N> ledger;
+  const double volume = size_[0] * size_[1] * size_[2];
+  const auto sum = [volume](const std::vector<double>& values) {
+    double total = 0;
+    for (const double v : values) total += v;
+    return total * volume;
+  };
+  for (std::size_t m = 0; m < N; ++m) ledger.mass[m] = sum(state_[V::kMass + m]);
+  ledger.energy = sum(state_[V::kEnergy]);
+  return ledger;
+}
+
+/// The most cells that a wave crosses per time, along any axis that is swept.
+template <std::size_t N>
+double FlowSolver<N>::fastest() const {
+  const auto [nx, ny, nz] = problem_.cells;
+  std::vector<double> rows(ny * nz, 0.0);
+  parallel_for(ny * nz, 16, [&](std::size_t row) {
+    double most = 0;
+    for (std::size_t at = row * nx; at < (row + 1) * nx; ++at) {
+      MixtureMeans mean;
+      for_each_material<N>([&](std::size_t m) {
+        mean.density += state_[V::kMass + m][at];
+        mean.inverse += state_[V::kFraction + m][at] * law_.inverse[m];
+        mean.offset += state_[V::kFraction + m][at] * law_.offset[m];
+      });
+      const double volume = 1 / mean.density;
+      const std::array<double, 3> u{state_[V::kNormal][at] * volume, state_[V::kNormal + 1][at] * volume,
+                                    state_[V::kNormal + 2][at] * volume};
+      const double internal =
+          state_[V::kEnergy][at] - 0.5 * mean.density * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+      const double p = (internal - mean.offset) / mean.inverse;
+      const double sound = std::sqrt(std::max(mean.stiffness_at(p), 0.0) * volume);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double crossed = problem_.cells[axis] > 1 ? (std::abs(u[axis]) + sound) / size_[axis] : 0.0;
+        most = std::max(most, crossed);
+      }
+    }
+    rows[row] = most;
+  });
+  return *std::max_element(rows.begin(), rows.end());
+}
+
+template <std::size_t N>
+void FlowSolver<N>::fail_in(std::size_t axis, std::size_t cell, std::size_t line, std::size_t layer) const {
+  std::array<std::size_t, 3> at{};
+  at[axis] = cell;
+  at[axis == 0 ? 1 : 0] = line;
+  at[axis == 2 ? 1 : 2] = layer;
+  fail(
+      "{}: expected a flow that the materials' laws describe, found none in cell ({}, {}, {}) at time {:.6g}",
+      name_, at[0], at[1], at[2], time_);
+}
+
+template <std::size_t N>
+void FlowSolver<N>::sweep(std::size_t axis, double step) {
+  const auto& n = problem_.cells;
+  const std::array<std::size_t, 3> strides{1, n[0], n[0] * n[1]};
+  const std::size_t across = axis == 0 ? 1 : 0, beyond = axis == 2 ? 1 : 2;
+  const std::size_t batches = (n[across] + kLanes - 1) / kLanes, count = batches * n[beyond];
+  std::vector<LineResult<N>> results(count);
+  parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    thread_local std::vector<double> unused;
+    LineSweep<N> line(law_, problem_.opening);
+    for (std::size_t b = begin; b < end; ++b) {
+      const std::size_t first = b % batches * kLanes, layer = b / batches;
+      FlowLines<N> lines;
+      for (std::size_t v = 0; v < V::kCount; ++v) {
+        std::size_t variable = v;
+        if (v == V::kNormal) variable = V::kNormal + axis;
+        if (v == V::kTransverse) variable = V::kNormal + across;
+        if (v == V::kTransverse + 1) variable = V::kNormal + beyond;
+        lines.variables[v] = state_[variable].data() + first * strides[across] + layer * strides[beyond];
+      }
+      lines.cells = n[axis];
+      lines.stride = strides[axis];
+      lines.lanes = std::min(kLanes, n[across] - first);
+      lines.lane_stride = strides[across];
+      results[b] = line.advance(lines, step / size_[axis], problem_.boundaries[axis]);
+    }
+  });
+  const double amount = step * size_[across] * size_[beyond];
+  for (std::size_t b = 0; b < count; ++b) {
+    const LineResult<N>& result = results[b];
+    if (result.bad_cell) fail_in(axis, *result.bad_cell, b % batches * kLanes + result.bad_lane, b / batches);
+    first_order_ += result.first_order;
+    for (const auto& end : result.entered) {
+      for (std::size_t m = 0; m < N; ++m) entered_.mass[m] += amount * end[V::kMass + m];
+      entered_.energy += amount * end[V::kEnergy];
+    }
+  }
+}
+
+template <std::size_t N>
+void FlowSolver<N>::advance_to(double time, Progress& progress) {
+  const double from = time_;
+  while (time_ < time) {
+    progress.step("computing the flow", (time_ - from) / (time - from));
+    double step = problem_.courant / fastest();
+    if (steps_ < kCarefulSteps) step *= kCarefulPart;
+    const bool last = time_ + step >= time;
+    if (last) step = time - time_;
+    for (const std::size_t axis : kOrders[steps_ % kOrders.size()]) {
+      if (problem_.cells[axis] > 1) sweep(axis, step);
+    }
+    time_ = last ? time : time_ + step;
+    ++steps_;
+  }
+}
+
+template class FlowSolver<1>;
+template class FlowSolver<2>;
+template class FlowSolver<3>;
+
+}  // namespace adamas

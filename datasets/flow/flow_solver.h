@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/data/rectilinear_grid.h"
+#include "datasets/flow/line_sweep.h"
+
+namespace adamas {
+
+/// A material of a flow.
+struct FlowMaterial {
+  std::string name;
+  StiffenedGas gas;
+};
+
+/// The state of one cell.
+template <std::size_t N>
+struct FlowCell {
+  std::array<double, N> fractions{};  ///< adding up to 1
+  std::array<double, N> densities{};  ///< of each material by itself
+  Vec3 velocity;
+  double pressure = 0;
+};
+
+/// A flow of N materials in a box of equal cells.
+template <std::size_t N>
+struct FlowProblem {
+  Box3 box;
+  std::array<std::size_t, 3> cells{};
+  std::array<FlowMaterial, N> materials;
+  /// At the low and at the high end of each axis.
+  std::array<std::array<FlowBoundary, 2>, 3> boundaries{};
+  std::optional<VoidOpening> opening;
+  double courant = 0.45;  ///< part of a cell that the fastest wave crosses in a step, below 1
+};
+
+/// Mass of each material, and energy.
+template <std::size_t N>
+struct FlowLedger {
+  std::array<double, N> mass{};
+  double energy = 0;
+};
+
+/// Solves the five-equation model of compressible materials that share velocity and pressure (Allaire, Clerc
+/// and Kokh 2002) with stiffened gases: MUSCL-Hancock with HLLC along lines, the three directions one after
+/// the other in orders that alternate (Strang 1968). An axis with one cell is not swept. See docs/method.md,
+/// "The flow solver". The result does not depend on the number of threads.
+template <std::size_t N>
+class FlowSolver {
+ public:
+  /// `cell` is asked for the state in each cell (i, j, k). Throws Error, naming `name`, for a problem that
+  /// makes no sense, cells with an inadmissible state, and more cells than fit in memory.
+  FlowSolver(std::string name, FlowProblem<N> problem,
+             const std::function<FlowCell<N>(std::size_t, std::size_t, std::size_t)>& cell);
+
+  /// Goes on to that time, in the problem's unit; the last step is shortened. Throws Error, naming the cell
+  /// and the time, where the flow leaves what the materials' laws can describe.
+  void advance_to(double time, Progress& progress = SilentProgress::instance());
+
+  [[nodiscard]] const FlowProblem<N>& problem() const { return problem_; }
+  [[nodiscard]] double time() const { return time_; }
+  [[nodiscard]] std::size_t steps() const { return steps_; }
+  /// Cells that were worked on with first order in place of second.
+  [[nodiscard]] std::size_t first_order_cells() const { return first_order_; }
+  [[nodiscard]] FlowCell<N> cell(std::size_t i, std::size_t j, std::size_t k) const;
+  /// Now in the box.
+  [[nodiscard]] FlowLedger<N> inside() const;
+  /// What has entered through the box's faces, less what left.
+  [[nodiscard]] const FlowLedger<N>& entered() const { return entered_; }
+
+ private:
+  using V = Variables<N>;
+  [[nodiscard]] std::size_t index(std::size_t i, std::size_t j, std::size_t k) const {
+    return i + problem_.cells[0] * (j + problem_.cells[1] * k);
+  }
+  void check() const;
+  [[nodiscard]] double fastest() const;
+  void sweep(std::size_t axis, double step);
+  [[noreturn]] void fail_in(std::size_t axis, std::size_t cell, std::size_t line, std::size_t layer) const;
+
+  std::string name_;
+  FlowProblem<N> problem_;
+  MixtureLaw<N> law_;
+  std::array<double, 3> size_{};  ///< of a cell
+  std::array<std::vector<double>, V::kCount> state_;
+  FlowLedger<N> entered_;
+  double time_ = 0, start_ = 0;
+  std::size_t steps_ = 0, first_order_ = 0;
+};
+
+}  // namespace adamas

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "datasets/flow/hllc.h"
+#include "datasets/flow/mixture.h"
+#include "datasets/flow/void_opening.h"
+
+namespace adamas {
+
+/// What is beyond an end of the domain: the same as in the last cell, a mirror, or the other end.
+enum class FlowBoundary { kOutflow, kMirror, kPeriodic };
+
+/// Up to kLanes lines of cells side by side, in the arrays of the conserved variables; the momentum along the
+/// line comes first.
+template <std::size_t N>
+struct FlowLines {
+  std::array<double*, Variables<N>::kCount> variables;  ///< of the first cell of the first line
+  std::size_t cells = 0;                                ///< of each line
+  std::size_t stride = 1;                               ///< from a cell to the next
+  std::size_t lanes = kLanes;                           ///< number of lines
+  std::size_t lane_stride = 1;                          ///< from a line to the next
+};
+
+/// What a step did to FlowLines.
+template <std::size_t N>
+struct LineResult {
+  /// Sums over the lines of what entered at the low and at the high end, per area and time.
+  std::array<std::array<double, Variables<N>::kCount>, 2> entered{};
+  std::size_t first_order = 0;  ///< cells that were worked on again without slopes
+  /// The first cell without an admissible state, if there is one.
+  std::optional<std::size_t> bad_cell;
+  std::size_t bad_lane = 0;
+};
+
+/// One step of the equations in one direction on lines of cells, second order in space and time; where that
+/// leaves a state without a speed of sound, the step is taken again with first order round that cell.
+template <std::size_t N>
+class LineSweep {
+ public:
+  explicit LineSweep(const MixtureLaw<N>& law, std::optional<VoidOpening> opening = {})
+      : law_(law), opening_(opening) {}
+
+  /// `ratio` is the step over the size of a cell. Lines with a bad cell are left as they were.
+  LineResult<N> advance(const FlowLines<N>& lines, double ratio,
+                        const std::array<FlowBoundary, 2>& boundaries);
+
+ private:
+  using Lane = std::array<double, kLanes>;
+  void load(const FlowLines<N>& lines, const std::array<FlowBoundary, 2>& boundaries);
+  void find_fluxes(double ratio);
+  void update(double ratio);
+  void settle();
+  void find_thin(const Row<N>& q, Lane& thin) const;
+  std::size_t distrust(const std::array<FlowBoundary, 2>& boundaries, LineResult<N>& result);
+  void store(const FlowLines<N>& lines) const;
+
+  MixtureLaw<N> law_;
+  std::optional<VoidOpening> opening_;
+  std::size_t cells_ = 0;
+  // Two ghost cells at either end.
+  std::vector<Row<N>> before_, primitive_;
+  std::vector<Lane> order_;
+  // For each cell, the fractions after half a step; for each face, what crosses it.
+  std::vector<std::array<Lane, N>> middle_;
+  std::vector<FaceFlux<N>> faces_;
+  std::vector<Row<N>> after_;
+  // For each cell, 1 in the lanes without an admissible state.
+  std::vector<Lane> bad_;
+};
+
+}  // namespace adamas
