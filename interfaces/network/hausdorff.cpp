@@ -138,20 +138,25 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
                   double accept, std::size_t most, const Progress& progress, DistanceBound& bound) {
   std::vector<Piece> next;
   std::vector<Measure> measures;
+  std::vector<double> triangle_lower(options.each ? bound.triangle_upper.size() : 0, 0.0);
   for (std::size_t measured = 0; !pieces.empty(); pieces.swap(next)) {
     progress.check();
     measures.assign(pieces.size(), {});
     parallel_for(pieces.size(), 256,
                  [&](std::size_t i) { measures[i] = measure(pieces[i], to, options.domain); });
     measured += pieces.size();
-    for (const Measure& m : measures) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const Measure& m = measures[i];
       if (m.lower > bound.lower) bound.lower = m.lower, bound.worst = m.worst;
+      if (!options.each) continue;
+      double& lower = triangle_lower[pieces[i].triangle];
+      lower = std::max(lower, m.lower);
     }
     next.clear();
     const bool last = measured + 4 * pieces.size() > most;
-    const double enough = std::max(accept, (1 + options.relative) * bound.lower);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const double upper = measures[i].upper;
+      const double lower = options.each ? triangle_lower[pieces[i].triangle] : bound.lower;
+      const double upper = measures[i].upper, enough = std::max(accept, (1 + options.relative) * lower);
       if (upper <= enough || last) {
         double& of_triangle = bound.triangle_upper[pieces[i].triangle];
         of_triangle = std::max(of_triangle, upper);

@@ -15,11 +15,13 @@
 namespace adamas {
 
 struct HausdorffOptions {
-  /// Stop where upper <= (1 + relative) lower.
+  /// Stop where upper <= (1 + relative) lower, the greatest lower bound of all triangles.
   double relative = 0.05;
   /// Triangles within this distance are not looked at more closely; 0 stands for 1e-4 of the size of the
   /// target.
   double accept = 0;
+  /// Bounds each triangle's own distance that well, not the greatest of all alone.
+  bool each = false;
   /// Only what lies inside counts.
   std::optional<Box3> domain;
   /// Bounds the work; what is left by then keeps the looser bound it has.

@@ -40,18 +40,19 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
   HausdorffOptions options;
   options.domain = source_.box;
   DistanceBound from, to;
-  const auto measure = [&](double accept, double relative) {
+  const auto measure = [&](double accept, double relative, bool each) {
     options.accept = accept;
     options.relative = relative;
+    options.each = each;
     from = directed_distance_bound(network.points(), network.triangles(), approximation, options, progress_);
     to = directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_);
     distance_ =
         InterfaceDistance{std::max(from.upper, to.upper), std::max(from.lower, to.lower), triangles.size()};
   };
   report("measuring interfaces");
-  measure(target, kSharp);
+  measure(target, kSharp, true);
   if (distance_->upper <= target) {
-    measure(0.01 * target, kTight);
+    measure(0.01 * target, kTight, false);
     distance_->upper = std::min(distance_->upper, target);
     return {};
   }

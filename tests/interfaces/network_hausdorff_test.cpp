@@ -116,6 +116,36 @@ TEST(Hausdorff, AcceptedTrianglesAreThoseWithinTheTarget) {
   EXPECT_GE(shortest.upper, cut_short.lower);
 }
 
+TEST(Hausdorff, EachTriangleIsBoundedByWhatIsFarOfItsOwn) {
+  HausdorffOptions options;
+  options.each = true;
+  options.relative = 0.01;
+  options.accept = 0.02;
+  const int n = 40;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const Surface from(test::random_soup(seed, 40)), to(test::random_soup(seed + 50, 60));
+    expect_bounds_hold(from, to, options);
+    const DistanceBound bound = directed_distance_bound(from.points, from.triangles, to.tree, options);
+    std::size_t nearer = 0;
+    for (std::size_t t = 0; t < from.triangles.size(); ++t) {
+      double sampled = 0, longest = 0;
+      for (int i = 0; i <= n; ++i) {
+        for (int j = 0; i + j <= n; ++j)
+          sampled = std::max(
+              sampled, std::sqrt(to.tree.closest(from.at(t, 1.0 * i / n, 1.0 * j / n))->squared_distance));
+      }
+      for (std::size_t i = 0; i < 3; ++i)
+        longest = std::max(longest, distance(from.points[from.triangles[t][i]],
+                                             from.points[from.triangles[t][(i + 1) % 3]]));
+      // Between samples the distance grows by no more than the way to the next one.
+      const double greatest = sampled + longest / n;
+      EXPECT_LE(bound.triangle_upper[t], std::max(options.accept, 1.01 * greatest)) << t;
+      nearer += greatest < 0.5 * bound.lower ? 1 : 0;
+    }
+    EXPECT_GT(nearer, 0u);
+  }
+}
+
 TEST(Hausdorff, IsTheSameOnAnyNumberOfThreads) {
   const Surface from(test::random_soup(1, 400)), to(test::random_soup(2, 300));
   set_thread_limit(1);
