@@ -25,6 +25,7 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_resample(app, session);
   add_slice(app, session);
   add_probe(app, session);
+  add_experiment(app, session);
   add_completion(app, session);
   add_common_checks(app);
 }

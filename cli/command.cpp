@@ -29,7 +29,7 @@ void add_common_options(CLI::App& command, Session& session) {
   CLI::Option* config = root_of(command).get_config_ptr();
   command
       .add_option_function<std::string>(
-          "--config",
+          "--config,-c",
           [config, &session](const std::string& file) {
             config->add_result(file);
             session.config = file;

@@ -36,6 +36,7 @@ void add_reconstruct(CLI::App& app, Session& session);
 void add_resample(CLI::App& app, Session& session);
 void add_slice(CLI::App& app, Session& session);
 void add_probe(CLI::App& app, Session& session);
+void add_experiment(CLI::App& app, Session& session);
 void add_completion(CLI::App& app, Session& session);
 
 /// The whole command line.

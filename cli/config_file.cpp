@@ -1,6 +1,7 @@
 #include "cli/config_file.h"
 
 #include <CLI/Config.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -26,13 +27,54 @@ bool names_command(CLI::App& root, const std::vector<std::string>& names) {
   return true;
 }
 
+/// What of an array a line holds: up to a comment, with the brackets that it leaves open added to `depth`.
+std::string array_part(const std::string& line, int& depth) {
+  char quote = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      return line.substr(0, i);
+    } else if (c == '[' || c == ']') {
+      depth += c == '[' ? 1 : -1;
+    }
+  }
+  return line;
+}
+
+/// CLI11 reads line by line: brings arrays that TOML may spread over several lines to one.
+std::string with_arrays_in_lines(std::istream& input) {
+  std::string result, line;
+  int depth = 0;
+  while (std::getline(input, line)) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    const std::size_t first = line.find_first_not_of(" \t");
+    const bool comment = first != std::string::npos && (line[first] == '#' || line[first] == ';');
+    const std::size_t equals = comment ? std::string::npos : line.find('=');
+    const std::size_t value =
+        equals == std::string::npos ? equals : line.find_first_not_of(" \t", equals + 1);
+    const bool starts = value != std::string::npos && line[value] == '[';
+    if (starts || depth > 0) line = array_part(line, depth);
+    result += line;
+    result += depth > 0 ? ' ' : '\n';
+  }
+  if (depth > 0)
+    throw CLI::ConfigError("--config: expected ']' at the end of an array, found the end of the file",
+                           CLI::ExitCodes::ConfigError);
+  return result;
+}
+
 }  // namespace
 
 std::vector<CLI::ConfigItem> ConfigFile::from_config(std::istream& input) const {
+  std::istringstream lines(with_arrays_in_lines(input));
   std::vector<std::string> names;
   CLI::App& command = chosen(root_, names);
   std::vector<CLI::ConfigItem> result;
-  for (CLI::ConfigItem& item : CLI::ConfigBase::from_config(input)) {
+  for (CLI::ConfigItem& item : CLI::ConfigBase::from_config(lines)) {
     if (item.name == "++" || item.name == "--") continue;
     if (item.parents.empty()) item.parents = names;
     if (item.parents != names) {

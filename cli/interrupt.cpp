@@ -22,6 +22,7 @@ constexpr int kInterruptedStatus = 130;
 struct Temporary {
   std::array<char, 4096> folder;
   std::array<char, 256> beginning;  ///< of the names
+  bool whole;                       ///< the folder too
 };
 
 volatile std::sig_atomic_t flag = 0;
@@ -45,6 +46,18 @@ void remove_alike(const Temporary& temporary) {
     }
   }
   close(folder);
+  if (temporary.whole) rmdir(temporary.folder.data());
+}
+
+void remember(const std::string& folder, const std::string& beginning, bool whole) {
+  const std::size_t next = temporary_count;
+  if (next == temporaries.size()) return;
+  Temporary& entry = temporaries[next];
+  if (folder.size() >= entry.folder.size() || beginning.size() >= entry.beginning.size()) return;
+  std::strcpy(entry.folder.data(), folder.c_str());
+  std::strcpy(entry.beginning.data(), beginning.c_str());
+  entry.whole = whole;
+  temporary_count = next + 1;
 }
 
 extern "C" void handle_signal(int) {
@@ -80,16 +93,14 @@ void catch_signals() {
 bool interrupted() { return flag != 0; }
 
 void remove_at_abrupt_end(const std::filesystem::path& temporary) {
-  const std::string folder = std::filesystem::absolute(temporary).parent_path().string();
   const std::string stem = temporary.stem().string();
   const std::string beginning = stem.substr(0, stem.rfind('-') + 1);
-  const std::size_t next = temporary_count;
-  if (beginning.empty() || next == temporaries.size()) return;
-  Temporary& entry = temporaries[next];
-  if (folder.size() >= entry.folder.size() || beginning.size() >= entry.beginning.size()) return;
-  std::strcpy(entry.folder.data(), folder.c_str());
-  std::strcpy(entry.beginning.data(), beginning.c_str());
-  temporary_count = next + 1;
+  if (!beginning.empty())
+    remember(std::filesystem::absolute(temporary).parent_path().string(), beginning, false);
+}
+
+void remove_folder_at_abrupt_end(const std::filesystem::path& temporary) {
+  remember(std::filesystem::absolute(temporary).string(), "", true);
 }
 
 }  // namespace adamas

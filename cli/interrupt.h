@@ -14,5 +14,7 @@ bool interrupted();
 /// A temporary file that a second signal removes, since no destructor will; with it what its writers have
 /// beside it, which is called alike up to a number.
 void remove_at_abrupt_end(const std::filesystem::path& temporary);
+/// The same for a temporary folder and the files in it.
+void remove_folder_at_abrupt_end(const std::filesystem::path& temporary);
 
 }  // namespace adamas

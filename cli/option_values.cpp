@@ -1,10 +1,12 @@
 #include "cli/option_values.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
 #include "cli/usage_error.h"
+#include "core/base/error.h"
 
 namespace adamas {
 
@@ -58,6 +60,16 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
 Vec3 parse_vector(const std::string& option, const std::string& text) {
   const auto v = parse_numbers(option, text, 3);
   return {v[0], v[1], v[2]};
+}
+
+Plane parse_plane_option(const std::string& option, const std::string& text) {
+  std::string lower = text;
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  try {
+    return parse_plane(lower);
+  } catch (const Error&) {
+    wrong_usage("{}: expected x=NUMBER, y=NUMBER or z=NUMBER, found '{}'", option, text);
+  }
 }
 
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {
@@ -21,6 +22,8 @@ std::size_t parse_count(const std::string& option, const std::string& text, std:
 /// "1,2.5,-3": that many finite numbers.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
 Vec3 parse_vector(const std::string& option, const std::string& text);
+/// "x=0.5": a plane at right angles to an axis.
+Plane parse_plane_option(const std::string& option, const std::string& text);
 /// "x0,x1,y0,y1,z0,z1" with x0 < x1 and so on.
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text);
 Box3 to_box(const std::array<double, 6>& bounds);

@@ -1,6 +1,10 @@
 #include "cli/resample_figures.h"
 
+#include <nlohmann/json.hpp>
+
 namespace adamas {
+
+double mean(const FieldError& e) { return e.count > 0 ? e.sum / static_cast<double>(e.count) : 0; }
 
 ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   const ResamplingSource& source = resampler.source();
@@ -29,6 +33,61 @@ ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   });
   progress.check();
   figures.volumes = material_volumes(table, cells, source.materials.size());
+  return figures;
+}
+
+namespace {
+
+/// A figure that is not known is null.
+Figures known(bool is, double value) { return is ? Figures(value) : Figures(nullptr); }
+
+Figures field_figures(const ResampleFigures& measured, const Resampler& resampler) {
+  Figures figures = Figures::object();
+  for (std::size_t f = 0; f < measured.fields.size(); ++f) {
+    const FieldFigures& e = measured.fields[f];
+    const bool any = e.all.count > 0, at_interfaces = e.at_interfaces.count > 0;
+    const auto& target = resampler.options().field_errors[f];
+    figures[resampler.source().fields->fields()[f].name] = {
+        {"max_error", known(any, e.all.max)},
+        {"mean_error", known(any, mean(e.all))},
+        {"interface_max_error", known(at_interfaces, e.at_interfaces.max)},
+        {"interface_mean_error", known(at_interfaces, mean(e.at_interfaces))},
+        {"target", known(target.has_value(), target.value_or(0))},
+        {"reached", target && any ? Figures(e.all.max <= *target) : Figures(nullptr)}};
+  }
+  return figures;
+}
+
+Figures material_figures(const ResampleFigures& measured, const ResamplingSource& source) {
+  Figures figures = Figures::array();
+  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
+    const bool stated = m.value < source.volumes.size();
+    figures.push_back({{"name", source.materials[m]},
+                       {"volume_input", known(stated, stated ? source.volumes[m] : 0)},
+                       {"volume_mesh", measured.volumes[m]}});
+  }
+  return figures;
+}
+
+}  // namespace
+
+Figures resample_json(const ResampleFigures& measured, const Resampler& resampler) {
+  const auto& distance = resampler.interface_distance();
+  Figures figures;
+  figures["tetrahedra"] = measured.tetrahedra;
+  figures["vertices"] = measured.vertices;
+  figures["interface_tetrahedra"] = measured.interface_tetrahedra;
+  figures["interface_error"] = known(distance.has_value(), distance ? distance->upper : 0);
+  figures["interface_error_measured"] = known(distance.has_value(), distance ? distance->lower : 0);
+  figures["interface_error_target"] = resampler.options().interface_error;
+  figures["interface_error_reached"] =
+      distance ? Figures(distance->upper <= resampler.options().interface_error) : Figures(nullptr);
+  figures["lost_interfaces"] = measured.lost_interfaces;
+  figures["fields"] = field_figures(measured, resampler);
+  figures["materials"] = material_figures(measured, resampler.source());
+  figures["bodies"] = measured.bodies;
+  figures["interface_triangles"] = distance ? Figures(distance->triangles) : Figures(nullptr);
+  figures["flagged_vertices"] = measured.flagged_vertices;
   return figures;
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "cli/figures.h"
 #include "core/base/progress.h"
 #include "interfaces/resampling/resampler.h"
 
@@ -24,6 +25,12 @@ struct ResampleFigures {
   IdVector<MaterialId, double> volumes;  ///< of the mesh
 };
 
+/// Mean error; 0 without elements.
+double mean(const FieldError& e);
+
 ResampleFigures measure(const Resampler& resampler, const Progress& progress);
+
+/// The keys of `--json` that tell of the mesh.
+Figures resample_json(const ResampleFigures& measured, const Resampler& resampler);
 
 }  // namespace adamas

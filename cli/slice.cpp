@@ -2,8 +2,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cctype>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -31,15 +29,7 @@ Plane parse_any_plane(const Options& options) {
   if (options.plane.empty() == (options.origin.empty() && options.normal.empty())) {
     wrong_usage("expected --plane, or --origin and --normal");
   }
-  if (!options.plane.empty()) {
-    std::string text = options.plane;
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    try {
-      return parse_plane(text);
-    } catch (const Error&) {
-      wrong_usage("--plane: expected x=NUMBER, y=NUMBER or z=NUMBER, found '{}'", options.plane);
-    }
-  }
+  if (!options.plane.empty()) return parse_plane_option("--plane", options.plane);
   if (options.origin.empty() || options.normal.empty()) {
     wrong_usage("expected --origin and --normal together");
   }
@@ -101,18 +91,9 @@ std::optional<ValueRange> parse_range(const Options& options) {
 
 SlicePicture make_picture(const Options& options, const SliceInput& input, const SliceStyle& style,
                           const std::vector<SliceMode>& wanted, const std::vector<CrossSection>& sections) {
-  const PlaneFrame frame = plane_frame(style.plane);
-  SlicePicture picture;
-  picture.title = std::filesystem::path(input.name).filename().string() + ", " + to_string(style.plane);
-  picture.x_label = frame.right_name;
-  picture.y_label = frame.up_name;
-  picture.field_label = shown_field(input, style);
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    picture.panels.push_back(make_panel(input, wanted[i], style, sections[i]));
-  }
-  if (style.field.empty()) picture.materials = material_legend(input, sections);
+  SlicePicture picture = make_slice_picture(input, wanted, style, sections);
   picture.range = parse_range(options);
-  picture.map = ColourMap::by_name(options.colour_map.empty() ? "sequential" : options.colour_map);
+  if (!options.colour_map.empty()) picture.map = ColourMap::by_name(options.colour_map);
   return picture;
 }
 
@@ -143,27 +124,6 @@ void check_options(const Options& options, const std::string& field, OutputSet& 
   parse_range(options);
   protect_inputs(options.input, options.original.empty() ? options.input.path : options.original, outputs);
   outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});
-}
-
-/// Whether the input's cells are wide enough in its panel for lines between them to be seen.
-bool shows_cells(const SliceInput& input, const Plane& plane, const SliceOptions& size, std::size_t panels) {
-  constexpr double kLeastPixels = 6;
-  const PlaneFrame frame = plane_frame(plane);
-  Box2 window;
-  for (const Vec3& p : clip_plane(plane, input.box())) {
-    const auto [x, y] = frame.coordinates(p);
-    window.extend({x, y});
-  }
-  double cell = std::numeric_limits<double>::infinity();
-  const Vec3 extent = input.data->grid.domain().size();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (plane.axis() == axis) continue;
-    cell = std::min(cell, extent[axis] / static_cast<double>(input.data->grid.sites(axis)));
-  }
-  const Vec2 shown = window.size();
-  const double scale =
-      std::min(size.width / static_cast<double>(panels) / shown.x, size.greatest_height / shown.y);
-  return cell * scale >= kLeastPixels;
 }
 
 /// Cells are drawn as asked for, else those of a mesh and, beside it, those of its input where they are seen.

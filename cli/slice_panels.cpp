@@ -1,6 +1,8 @@
 #include "cli/slice_panels.h"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/picture/palette.h"
@@ -57,30 +59,7 @@ std::string with_index(const std::vector<FieldInfo>& fields, const std::string& 
 /// Below the approximated interfaces and wider, so that both are seen where they agree.
 Stroke original_below() { return {.colour = {0.6, 0.6, 0.6}, .width = 4.2}; }
 
-}  // namespace
-
-std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
-  if (style.field.empty()) return {};
-  const bool of_data = mode == SliceMode::kInput;
-  const std::vector<FieldInfo> fields = fields_of(input, of_data);
-  const std::string& source = of_data ? input.data->source : input.name;
-  return find_field(fields, with_index(fields, style.field, source), source);
-}
-
-CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
-  const bool of_data = mode == SliceMode::kInput;
-  const auto field = choose_field(input, mode, style);
-  if (of_data) return cross_section(*input.data, style.plane, field);
-  return cross_section(*input.mesh, style.plane, field,
-                       mode == SliceMode::kPlain ? SectionMode::kPlain : SectionMode::kPerMaterial);
-}
-
-std::string shown_field(const SliceInput& input, const SliceStyle& style) {
-  const bool of_data = !input.mesh;
-  const auto field = choose_field(input, of_data ? SliceMode::kInput : SliceMode::kMaterials, style);
-  return field ? field_label(fields_of(input, of_data), *field) : std::string();
-}
-
+/// A panel of a section: areas by field or material, cells and interfaces as lines.
 SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle& style,
                       const CrossSection& section) {
   const PlaneFrame frame = plane_frame(style.plane);
@@ -114,6 +93,7 @@ SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle&
   return panel;
 }
 
+/// The materials that some piece shows, as entries of a legend; empty where there are too many.
 std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vector<CrossSection>& sections) {
   std::vector<LegendEntry> entries;
   for (MaterialId m(0); m.value < input.materials().size(); ++m.value) {
@@ -125,6 +105,64 @@ std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vec
   }
   if (entries.size() > kMostNames) entries.clear();
   return entries;
+}
+
+}  // namespace
+
+std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
+  if (style.field.empty()) return {};
+  const bool of_data = mode == SliceMode::kInput;
+  const std::vector<FieldInfo> fields = fields_of(input, of_data);
+  const std::string& source = of_data ? input.data->source : input.name;
+  return find_field(fields, with_index(fields, style.field, source), source);
+}
+
+CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
+  const bool of_data = mode == SliceMode::kInput;
+  const auto field = choose_field(input, mode, style);
+  if (of_data) return cross_section(*input.data, style.plane, field);
+  return cross_section(*input.mesh, style.plane, field,
+                       mode == SliceMode::kPlain ? SectionMode::kPlain : SectionMode::kPerMaterial);
+}
+
+std::string shown_field(const SliceInput& input, const SliceStyle& style) {
+  const bool of_data = !input.mesh;
+  const auto field = choose_field(input, of_data ? SliceMode::kInput : SliceMode::kMaterials, style);
+  return field ? field_label(fields_of(input, of_data), *field) : std::string();
+}
+
+SlicePicture make_slice_picture(const SliceInput& input, const std::vector<SliceMode>& modes,
+                                const SliceStyle& style, const std::vector<CrossSection>& sections) {
+  const PlaneFrame frame = plane_frame(style.plane);
+  SlicePicture picture;
+  picture.title = std::filesystem::path(input.name).filename().string() + ", " + to_string(style.plane);
+  picture.x_label = frame.right_name;
+  picture.y_label = frame.up_name;
+  picture.field_label = shown_field(input, style);
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    picture.panels.push_back(make_panel(input, modes[i], style, sections[i]));
+  if (style.field.empty()) picture.materials = material_legend(input, sections);
+  return picture;
+}
+
+bool shows_cells(const SliceInput& input, const Plane& plane, const SliceOptions& size, std::size_t panels) {
+  constexpr double kLeastPixels = 6;
+  const PlaneFrame frame = plane_frame(plane);
+  Box2 window;
+  for (const Vec3& p : clip_plane(plane, input.box())) {
+    const auto [x, y] = frame.coordinates(p);
+    window.extend({x, y});
+  }
+  double cell = std::numeric_limits<double>::infinity();
+  const Vec3 extent = input.data->grid.domain().size();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (plane.axis() == axis) continue;
+    cell = std::min(cell, extent[axis] / static_cast<double>(input.data->grid.sites(axis)));
+  }
+  const Vec2 shown = window.size();
+  const double scale =
+      std::min(size.width / static_cast<double>(panels) / shown.x, size.greatest_height / shown.y);
+  return cell * scale >= kLeastPixels;
 }
 
 }  // namespace adamas

@@ -35,11 +35,12 @@ CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& styl
 /// Name and unit of the field that is shown; empty for the materials.
 std::string shown_field(const SliceInput& input, const SliceStyle& style);
 
-/// A panel of a section: areas by field or material, cells and interfaces as lines.
-SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle& style,
-                      const CrossSection& section);
+/// Sections beside each other, one per mode: areas by field or material, cells and interfaces as lines.
+SlicePicture make_slice_picture(const SliceInput& input, const std::vector<SliceMode>& modes,
+                                const SliceStyle& style, const std::vector<CrossSection>& sections);
 
-/// The materials that some piece shows, as entries of a legend; empty where there are too many.
-std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vector<CrossSection>& sections);
+/// Whether the cells of the input's grid are wide enough, with that many panels, for lines between them to be
+/// seen.
+bool shows_cells(const SliceInput& input, const Plane& plane, const SliceOptions& size, std::size_t panels);
 
 }  // namespace adamas

@@ -29,7 +29,8 @@ IdVector<MaterialId, double> enclosed_volumes(const InterfaceMesh& mesh, const B
 
 }  // namespace
 
-void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain) {
+void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
+                           bool triangle_edges) {
   const auto volumes = enclosed_volumes(mesh, domain);
   InterfacePicture picture;
   picture.domain = domain;
@@ -48,7 +49,9 @@ void write_surface_picture(const std::filesystem::path& path, const InterfaceMes
       if (shown[m.value] != 0) picture.materials.push_back({mesh.materials[m], material_colour(m.value)});
     }
   }
-  write_interfaces(picture, path);
+  InterfacePictureOptions options;
+  options.triangle_edges = triangle_edges;
+  write_interfaces(picture, path, options);
 }
 
 }  // namespace adamas

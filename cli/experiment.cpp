@@ -1,0 +1,263 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "cli/command.h"
+#include "cli/experiment_options.h"
+#include "cli/experiment_record.h"
+#include "cli/generated_data.h"
+#include "cli/output_folder.h"
+#include "cli/slice_panels.h"
+#include "cli/surface_picture.h"
+#include "core/io/interface_mesh_io.h"
+#include "core/io/multi_material_writer.h"
+#include "core/io/unstructured_mesh_io.h"
+#include "interfaces/mesh/cut_mesh.h"
+#include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/network/network_mesh.h"
+
+namespace adamas {
+
+namespace {
+
+/// Width in pixels of pictures with three panels.
+constexpr double kSliceWidth = 2000;
+
+/// An experiment, step by step; what it finds goes into the record and into the folder.
+class Experiment {
+ public:
+  Experiment(const ExperimentOptions& options, const ExperimentWishes& wishes, OutputFolder& folder,
+             Console& console)
+      : options_(options), wishes_(wishes), folder_(folder), console_(console) {}
+
+  ExperimentRecord run() {
+    load();
+    show_input();
+    refine();
+    show_meshes();
+    cut_slices();
+    follow_curve();
+    balance();
+    compare_with_published();
+    record_.seconds = console_.seconds();
+    return std::move(record_);
+  }
+
+ private:
+  void load();
+  void show_input();
+  void refine();
+  void show_meshes();
+  void cut_slices();
+  void add_slice(const ResampledMesh& mesh, const Plane& plane, const std::string& name,
+                 const std::string& caption);
+  void follow_curve();
+  void balance();
+  void compare_with_published();
+
+  void write_interfaces_of(const InterfaceMesh& mesh, const std::string& name, bool triangle_edges) {
+    console_.step("writing " + name, -1);
+    write_interface_mesh(folder_.file(name + ".vtp"), mesh);
+    write_surface_picture(folder_.file(name + ".png"), mesh, input_.source.box, triangle_edges);
+  }
+
+  const ExperimentOptions& options_;
+  const ExperimentWishes& wishes_;
+  OutputFolder& folder_;
+  Console& console_;
+  Input input_;
+  SliceInput slices_;
+  ResamplingOptions targets_;
+  ResampledMesh interface_mesh_, mesh_;
+  ExperimentRecord record_;
+};
+
+void Experiment::load() {
+  InputOptions from = options_.input;
+  if (!options_.generate.empty()) {
+    from.path = folder_.file("input.vtr");
+    write_multi_material_data(from.path, generate_data(wishes_.data, console_));
+  }
+  input_ = load_input(from, console_, [this](const auto&... found) { wishes_.check(found...); });
+  if (!options_.generate.empty()) input_.data->source = input_.source.name = "input.vtr";
+  const MultiMaterialData& data = *input_.data;
+  targets_ = wishes_.resampling.options(input_.source);
+  record_.title = options_.title.empty() ? "Resampling " + input_.source.name : options_.title;
+  const auto counts = [&](int axis) { return data.grid.sites(axis); };
+  record_.input =
+      fmt::format("{}: {} x {} x {} {}, {} materials, {} fields",
+                  std::filesystem::path(input_.source.name).filename().string(), counts(0), counts(1),
+                  counts(2), data.grid.centering == Centering::kCells ? "cells" : "points",
+                  data.materials.size(), data.fields.size());
+  if (input_.source.fields) record_.fields = input_.source.fields->fields();
+  if (!options_.show.empty()) record_.shown = find_field(record_.fields, options_.show, data.source).field;
+  record_.density = wishes_.density(record_.fields, data.source);
+}
+
+void Experiment::show_input() {
+  InterfaceMesh mesh = network_mesh(*input_.source.network, input_.source.materials, input_.source.name);
+  std::map<std::pair<MaterialId, MaterialId>, std::size_t> counts;
+  for (const InterfaceTriangle& t : mesh.triangles) ++counts[std::minmax(t.front, t.back)];
+  for (const auto& [pair, count] : counts)
+    record_.triangles.emplace_back(mesh.materials[pair.first] + " | " + mesh.materials[pair.second], count);
+  write_interfaces_of(mesh, "input-interfaces", false);
+  record_.input_pictures.push_back({"input-interfaces.png", "Interfaces of the input."});
+  slices_.name = input_.source.name;
+  slices_.interfaces = std::move(mesh);
+}
+
+void Experiment::refine() {
+  ResamplingOptions interfaces_only = targets_;
+  std::fill(interfaces_only.field_errors.begin(), interfaces_only.field_errors.end(), std::nullopt);
+  InterfaceMesh approximated;
+  record_.interfaces =
+      run_resampler(input_.source, interfaces_only, console_, &interface_mesh_, &approximated);
+  write_interfaces_of(approximated, "mesh-interfaces", true);
+  const auto wanted = [](const auto& target) { return target.has_value(); };
+  if (std::any_of(targets_.field_errors.begin(), targets_.field_errors.end(), wanted))
+    record_.with_fields = run_resampler(input_.source, targets_, console_, &mesh_);
+}
+
+void Experiment::show_meshes() {
+  record_.mesh_pictures.push_back({"mesh-interfaces.png", "Interfaces of the mesh, triangle by triangle."});
+  if (record_.with_fields) {
+    write_unstructured_mesh(folder_.file("interface-mesh.vtu"), to_unstructured_mesh(interface_mesh_));
+  } else {
+    mesh_ = interface_mesh_;
+  }
+  write_unstructured_mesh(folder_.file("mesh.vtu"), to_unstructured_mesh(mesh_));
+  write_unstructured_mesh(folder_.file("cut-mesh.vtu"), cut_mesh(mesh_));
+}
+
+void Experiment::add_slice(const ResampledMesh& mesh, const Plane& plane, const std::string& name,
+                           const std::string& caption) {
+  slices_.mesh = mesh;
+  SliceStyle style{.plane = plane, .field = options_.show};
+  const std::vector<SliceMode> modes{SliceMode::kInput, SliceMode::kPlain, SliceMode::kMaterials};
+  SliceOptions size;
+  size.width = kSliceWidth;
+  style.input_cells = shows_cells(slices_, plane, size, modes.size());
+  std::vector<CrossSection> sections;
+  for (const SliceMode mode : modes) sections.push_back(cut(slices_, mode, style));
+  SlicePicture picture = make_slice_picture(slices_, modes, style, sections);
+  const auto write = [&](const std::string& file, const std::string& text) {
+    console_.step("writing " + file, -1);
+    write_slice(picture, folder_.file(file), size);
+    record_.slices.push_back({file, text});
+  };
+  write(name + ".png", caption);
+  if (!wishes_.detail || !(plane.origin == wishes_.planes.front().origin)) return;
+  picture.window = wishes_.detail;
+  write(name + "-detail.png", "A part of it, enlarged.");
+}
+
+void Experiment::cut_slices() {
+  if (options_.show.empty()) return;
+  slices_.data = std::move(input_.data);
+  std::size_t number = 0;
+  for (const Plane& plane : wishes_.planes) {
+    const std::string name = fmt::format("slice-{}", ++number);
+    add_slice(interface_mesh_, plane, name,
+              fmt::format("{}: the input; plain linear interpolation in the cells of the mesh that holds the "
+                          "interfaces; each material's own field.",
+                          to_string(plane)));
+    if (!record_.with_fields) continue;
+    add_slice(mesh_, plane, name + "-fields",
+              fmt::format("{}: the same with the mesh that holds the fields too.", to_string(plane)));
+  }
+  input_.data = std::move(slices_.data);
+}
+
+void Experiment::follow_curve() {
+  ResamplingOptions options = targets_;
+  std::fill(options.field_errors.begin(), options.field_errors.end(), std::nullopt);
+  for (const double error : wishes_.curve(input_.source.box, targets_.interface_error)) {
+    if (error == targets_.interface_error) {
+      record_.curve.push_back(record_.interfaces);
+      continue;
+    }
+    options.interface_error = error;
+    record_.curve.push_back(run_resampler(input_.source, options, console_));
+  }
+}
+
+void Experiment::balance() {
+  const ResampledMesh written =
+      from_unstructured_mesh(read_unstructured_mesh(folder_.file("mesh.vtu")), "mesh.vtu");
+  record_.ledger = make_ledger(*input_.data, written, record_.density);
+}
+
+void Experiment::compare_with_published() {
+  record_.published_by = options_.published_by;
+  for (const auto& [name, published] : wishes_.published) {
+    double here = std::numeric_limits<double>::quiet_NaN();
+    if (name == "interface tetrahedra")
+      here = static_cast<double>(record_.interfaces.figures.interface_tetrahedra);
+    if (name == "tetrahedra") here = static_cast<double>(record_.interfaces.figures.tetrahedra);
+    if (name == "tetrahedra with fields") here = static_cast<double>(record_.last().figures.tetrahedra);
+    if (!record_.fields.empty()) {
+      const FieldError& near = record_.last().figures.fields[record_.shown].at_interfaces;
+      if (name == "greatest field error at interfaces") here = near.max;
+      if (name == "mean field error at interfaces") here = mean(near);
+    }
+    for (const auto& [pair, count] : record_.triangles) {
+      if (name == "triangles " + pair) here = static_cast<double>(count);
+    }
+    record_.published.push_back({name, published, here});
+  }
+}
+
+void print_record(const ExperimentRecord& record, const std::string& folder, Console& console) {
+  std::vector<std::vector<std::string>> rows{
+      {"mesh", "tetrahedra", "with interfaces", "interface error", "seconds"}};
+  const auto add = [&](const std::string& name, const ExperimentRun& run) {
+    rows.push_back({name, std::to_string(run.figures.tetrahedra),
+                    std::to_string(run.figures.interface_tetrahedra),
+                    run.distance ? fmt::format("{:.4g}", run.distance->upper) : "-",
+                    fmt::format("{:.2f}", run.seconds)});
+  };
+  add("interfaces", record.interfaces);
+  if (record.with_fields) add("with fields", *record.with_fields);
+  console.table(rows);
+  if (!record.published.empty()) {
+    rows = {{"", record.published_by, "here"}};
+    for (const PublishedFigure& figure : record.published)
+      rows.push_back(
+          {figure.name, fmt::format("{:.6g}", figure.published), fmt::format("{:.6g}", figure.here)});
+    console.print("\n");
+    console.table(rows);
+  }
+  console.print("\n  {}: report.html, metrics.json and {} pictures\n", folder,
+                record.input_pictures.size() + record.mesh_pictures.size() + record.slices.size() + 2);
+}
+
+void run(const ExperimentOptions& options, Session& session) {
+  const ExperimentWishes wishes(options);
+  protect_inputs(options.input, options.input.path, session.outputs);
+  OutputFolder folder(options.output, options.overwrite, {"metrics.json", "report.html"});
+  const ExperimentRecord record = Experiment(options, wishes, folder, session.console).run();
+  write_experiment_report(record, folder.temporary());
+  const Figures figures = experiment_figures(record);
+  write_figures(folder.file("metrics.json"), figures);
+  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  session.console.check();
+  folder.commit();
+  session.outputs.commit();
+  print_record(record, options.output, session.console);
+}
+
+}  // namespace
+
+void add_experiment(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<ExperimentOptions>();
+  CLI::App* command = add_command(
+      app, session, "experiment", "A resampling experiment from one file, with pictures and a report",
+      "adamas experiment -c datasets/impact.toml -o impact", [options, &session] { run(*options, session); });
+  add_experiment_options(*command, *options);
+}
+
+}  // namespace adamas

@@ -1,0 +1,153 @@
+#include "cli/experiment_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <functional>
+
+#include "cli/figures.h"
+#include "cli/option_checks.h"
+#include "cli/usage_error.h"
+#include "interfaces/cross_section/cross_section.h"
+
+namespace adamas {
+
+namespace {
+
+/// Interface errors of the curve, in relation to the target, where none are given.
+constexpr std::array kCurve{8.0, 4.0, 2.0, 1.0};
+constexpr std::array kPublishable{"interface tetrahedra", "tetrahedra", "tetrahedra with fields",
+                                  "greatest field error at interfaces", "mean field error at interfaces"};
+constexpr std::string_view kTriangles = "triangles ";
+
+std::pair<std::string, double> parse_published(const std::string& text) {
+  const auto [name, value] = parse_assignment("--published", text, true);
+  const bool known = std::find(kPublishable.begin(), kPublishable.end(), name) != kPublishable.end() ||
+                     name.starts_with(kTriangles);
+  if (!known) {
+    std::string names;
+    for (const char* each : kPublishable) names += std::string("'") + each + "', ";
+    wrong_usage("--published: expected one of {}'triangles A | B', found '{}'", names, name);
+  }
+  return {name, parse_positive("--published " + name, value)};
+}
+
+bool same_letters(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+}  // namespace
+
+void add_experiment_options(CLI::App& command, ExperimentOptions& options) {
+  command.add_option("input", options.input.path, std::string("What to resample: ") + kGridFiles)
+      ->type_name("FILE");
+  command.add_option("--generate", options.generate, "Make the input: a scene of adamas generate, or impact")
+      ->type_name("NAME")
+      ->check(one_of(generated_names()));
+  command.add_option("--dimensions", options.dimensions, "Numbers of cells of generated data")
+      ->type_name("X,Y,Z");
+  command.add_option("--seed", options.seed, "Which of the scenes of a kind (voronoi10, random)")
+      ->type_name("N");
+  command.add_option("-o,--output", options.output, "A folder for all outputs")
+      ->required()
+      ->type_name("FOLDER");
+  command.add_flag("--overwrite", options.overwrite, "Replace the folder of an earlier experiment");
+  command.add_option("--title", options.title, "The heading of the report")->type_name("TEXT");
+  command.add_option("--show", options.show, "The field in slices and tables, or NAME:x for a component")
+      ->type_name("NAME");
+  command.add_option("--plane", options.planes, "A plane of a slice; repeatable")
+      ->type_name("x=N|y=N|z=N")
+      ->allow_extra_args(false);
+  command.add_option("--detail", options.detail, "A part of the first plane to show enlarged too")
+      ->type_name("a0,a1,b0,b1");
+  command
+      .add_option("--curve", options.curve,
+                  "An interface error of the curve of error against tetrahedra; repeatable (default: 8, 4, 2 "
+                  "and 1 times --interface-error)")
+      ->type_name("E|E%")
+      ->allow_extra_args(false);
+  command
+      .add_option("--density", options.density,
+                  "The field whose integral is mass in the ledger (default: one named density)")
+      ->type_name("NAME");
+  command.add_option("--published-by", options.published_by, "Where the published figures are from")
+      ->type_name("TEXT");
+  command
+      .add_option("--published", options.published,
+                  "A published figure to set beside: 'tetrahedra=5390', 'triangles A | B=38'; repeatable")
+      ->type_name("NAME=X")
+      ->allow_extra_args(false);
+  add_resampling_options(command, options.resampling);
+  add_material_options(command, options.input);
+}
+
+ExperimentWishes::ExperimentWishes(const ExperimentOptions& options)
+    : resampling(options.resampling), show(options.show), density_name(options.density) {
+  if (options.generate.empty() == options.input.path.empty())
+    wrong_usage("expected an INPUT or --generate, found {}", options.generate.empty() ? "neither" : "both");
+  if (options.generate.empty()) {
+    if (!options.dimensions.empty()) wrong_usage("--dimensions: expected --generate as well");
+    if (!options.seed.empty()) wrong_usage("--seed: expected --generate as well");
+  } else {
+    data = parse_generated_data(options.generate, options.dimensions, options.seed);
+  }
+  if (show.empty() != options.planes.empty())
+    wrong_usage("expected --show and --plane together, found only {}", show.empty() ? "--plane" : "--show");
+  for (const std::string& text : options.planes) planes.push_back(parse_plane_option("--plane", text));
+  if (!options.detail.empty()) {
+    if (planes.empty()) wrong_usage("--detail: expected --plane as well");
+    const auto d = parse_numbers("--detail", options.detail, 4);
+    detail = Box2{{d[0], d[2]}, {d[1], d[3]}};
+    if (detail->empty())
+      wrong_usage("--detail: expected a0 < a1 and b0 < b1 in a0,a1,b0,b1, found '{}'", options.detail);
+  }
+  for (const std::string& text : options.curve) errors.push_back(parse_error_target("--curve", text));
+  if (options.published.empty() != options.published_by.empty())
+    wrong_usage("expected --published and --published-by together");
+  for (const std::string& text : options.published) published.push_back(parse_published(text));
+}
+
+void ExperimentWishes::check(const std::string& source, const Box3& box,
+                             const std::vector<FieldInfo>& fields) const {
+  resampling.check(source, box, fields);
+  for (const ErrorTarget& error : errors) {
+    if (!(error.of(box.diagonal()) < box.diagonal()))
+      wrong_usage("--curve: expected less than the domain's diagonal, {:.6g}, found {:.6g}", box.diagonal(),
+                  error.of(box.diagonal()));
+  }
+  for (const Plane& plane : planes) {
+    if (clip_plane(plane, box).empty())
+      fail("{}: --plane: expected one that cuts {}, found {}", source, box_text(box), to_string(plane));
+  }
+  if (!show.empty()) find_field(fields, show, source);
+  static_cast<void>(density(fields, source));
+}
+
+std::vector<double> ExperimentWishes::curve(const Box3& box, double target) const {
+  std::vector<double> result{target};
+  for (const ErrorTarget& error : errors) result.push_back(error.of(box.diagonal()));
+  if (errors.empty()) {
+    for (const double factor : kCurve) {
+      if (factor * target < box.diagonal()) result.push_back(factor * target);
+    }
+  }
+  std::sort(result.begin(), result.end(), std::greater<>());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+std::string ExperimentWishes::density(const std::vector<FieldInfo>& fields, const std::string& source) const {
+  for (const FieldInfo& info : fields) {
+    if (density_name.empty() ? same_letters(info.name, "density") : info.name == density_name) {
+      if (info.components == 1) return info.name;
+      fail("{}: --density: expected a scalar field, found '{}' with {} components", source, info.name,
+           info.components);
+    }
+  }
+  if (density_name.empty()) return {};
+  fail("{}: --density: expected one of its fields ({}), found '{}'", source, field_names(fields),
+       density_name);
+}
+
+}  // namespace adamas

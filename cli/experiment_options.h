@@ -1,0 +1,49 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/generated_data.h"
+#include "cli/input_options.h"
+#include "cli/resampling_setup.h"
+#include "core/geometry/plane.h"
+#include "core/picture/vec2.h"
+
+namespace adamas {
+
+/// The options of an experiment, as text.
+struct ExperimentOptions {
+  InputOptions input;
+  ResamplingText resampling;
+  std::string generate, dimensions, seed;
+  std::string title, show, detail, density, published_by, output;
+  std::vector<std::string> planes, curve, published;
+  bool overwrite = false;
+};
+
+void add_experiment_options(CLI::App& command, ExperimentOptions& options);
+
+/// The options with their values checked, before the input is known.
+struct ExperimentWishes {
+  /// Throws UsageError.
+  explicit ExperimentWishes(const ExperimentOptions& options);
+  /// Throws where the options do not suit the input.
+  void check(const std::string& source, const Box3& box, const std::vector<FieldInfo>& fields) const;
+  /// Interface errors from coarse to fine, `target` among them.
+  [[nodiscard]] std::vector<double> curve(const Box3& box, double target) const;
+  /// The field whose integral is mass: the one asked for, else one called density; empty for none.
+  [[nodiscard]] std::string density(const std::vector<FieldInfo>& fields, const std::string& source) const;
+
+  ResamplingWishes resampling;
+  GeneratedData data;
+  std::vector<Plane> planes;
+  std::optional<Box2> detail;
+  std::vector<ErrorTarget> errors;
+  std::vector<std::pair<std::string, double>> published;
+  std::string show, density_name;
+};
+
+}  // namespace adamas

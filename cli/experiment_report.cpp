@@ -1,0 +1,213 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "cli/experiment_record.h"
+#include "core/picture/plot.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr const char* kErrorPlot = "interface-error.png";
+constexpr const char* kFieldPlot = "field-error.png";
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
+std::string digits(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
+
+std::string read_bytes(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void add_pictures(HtmlReport& report, const std::vector<ExperimentPicture>& pictures,
+                  const std::filesystem::path& folder) {
+  for (const auto& [file, caption] : pictures)
+    report.picture(read_bytes(folder / file), PictureFormat::kPng, caption);
+}
+
+double upper(const ExperimentRun& run) {
+  return run.distance ? run.distance->upper : std::numeric_limits<double>::quiet_NaN();
+}
+
+Plot interface_plot(const std::vector<ExperimentRun>& runs) {
+  Plot plot;
+  plot.x = {"tetrahedra", AxisKind::kLogarithmic};
+  plot.y = {"interface error", AxisKind::kLogarithmic};
+  plot.series = {{.name = "wanted", .markers = false, .dashed = true},
+                 {.name = "certified"},
+                 {.name = "attained (lower bound)"}};
+  for (const ExperimentRun& run : runs) {
+    for (PlotSeries& series : plot.series) series.x.push_back(static_cast<double>(run.figures.tetrahedra));
+    plot.series[0].y.push_back(run.options.interface_error);
+    plot.series[1].y.push_back(upper(run));
+    plot.series[2].y.push_back(run.distance ? run.distance->lower : 0);
+  }
+  return plot;
+}
+
+/// One series per field: its mean error in cells with an interface, as a part of its range.
+Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldInfo>& fields) {
+  Plot plot;
+  plot.x = {"tetrahedra", AxisKind::kLogarithmic};
+  plot.y = {"mean field error in cells with interfaces / range", AxisKind::kLogarithmic};
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const double range = fields[f].max - fields[f].min;
+    PlotSeries series{.name = fields[f].name};
+    for (const ExperimentRun& run : runs) {
+      series.x.push_back(static_cast<double>(run.figures.tetrahedra));
+      series.y.push_back(range > 0 ? mean(run.figures.fields[f].at_interfaces) / range : 0);
+    }
+    // A field that comes back exactly would stretch the axis down to round-off.
+    if (*std::max_element(series.y.begin(), series.y.end()) > 1e-12) plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+ReportTable runs_table(const ExperimentRecord& record, const std::vector<ExperimentRun>& runs,
+                       const std::string& caption) {
+  ReportTable table{caption,
+                    {"interface error wanted", "certified", "attained", "tetrahedra", "with interfaces",
+                     "vertices", "seconds"},
+                    {}};
+  const bool fields = !record.fields.empty();
+  if (fields) {
+    const std::string& name = record.fields[record.shown].name;
+    for (const char* what : {"greatest error of ", "mean error of "}) table.header.push_back(what + name);
+  }
+  for (const ExperimentRun& run : runs) {
+    table.rows.push_back({number(run.options.interface_error), number(upper(run)),
+                          number(run.distance ? run.distance->lower : 0),
+                          std::to_string(run.figures.tetrahedra),
+                          std::to_string(run.figures.interface_tetrahedra),
+                          std::to_string(run.figures.vertices), fmt::format("{:.2f}", run.seconds)});
+    if (!fields) continue;
+    const FieldFigures& errors = run.figures.fields[record.shown];
+    table.rows.back().push_back(number(errors.all.max));
+    table.rows.back().push_back(number(mean(errors.all)));
+  }
+  return table;
+}
+
+ReportTable triangles_table(const ExperimentRecord& record) {
+  ReportTable table{"Interfaces of the input", {"between", "triangles"}, {}};
+  for (const auto& [pair, count] : record.triangles) table.rows.push_back({pair, std::to_string(count)});
+  return table;
+}
+
+ReportTable fields_table(const ExperimentRecord& record) {
+  ReportTable table{"Field errors at the input's own values",
+                    {"field", "unit", "range", "wanted", "greatest", "mean", "greatest at interfaces",
+                     "mean at interfaces"},
+                    {}};
+  const ExperimentRun& run = record.last();
+  for (std::size_t f = 0; f < record.fields.size(); ++f) {
+    const FieldInfo& info = record.fields[f];
+    const auto& [all, near] = run.figures.fields[f];
+    const auto& wanted = run.options.field_errors[f];
+    table.rows.push_back({info.name, info.unit, number(info.min) + " to " + number(info.max),
+                          wanted ? number(*wanted) : "-", number(all.max), number(mean(all)),
+                          number(near.max), number(mean(near))});
+  }
+  return table;
+}
+
+ReportTable published_table(const ExperimentRecord& record) {
+  ReportTable table{"Figures beside those of " + record.published_by, {"", "published", "here", "ratio"}, {}};
+  for (const PublishedFigure& figure : record.published)
+    table.rows.push_back(
+        {figure.name, digits(figure.published), digits(figure.here), number(figure.here / figure.published)});
+  return table;
+}
+
+std::string difference(double before, double after) {
+  return std::isfinite(after - before) ? difference_text(before, after) : "-";
+}
+
+ReportTable ledger_table(const ExperimentRecord& record) {
+  ReportTable table{"What the files hold, material by material",
+                    {"material", "volume, input", "volume, mesh", "difference"},
+                    {}};
+  const bool masses = !record.density.empty();
+  if (masses) table.header.insert(table.header.end(), {"mass, input", "mass, mesh", "difference"});
+  LedgerRow all{.material = "all"};
+  const auto add_row = [&](const LedgerRow& row) {
+    table.rows.push_back({row.material, digits(row.volume_input), digits(row.volume_mesh),
+                          difference(row.volume_input, row.volume_mesh)});
+    if (masses)
+      table.rows.back().insert(table.rows.back().end(), {digits(row.mass_input), digits(row.mass_mesh),
+                                                         difference(row.mass_input, row.mass_mesh)});
+  };
+  for (const LedgerRow& row : record.ledger) {
+    add_row(row);
+    all.volume_input += row.volume_input, all.volume_mesh += row.volume_mesh;
+    if (!std::isfinite(row.mass_input + row.mass_mesh)) continue;
+    all.mass_input += row.mass_input, all.mass_mesh += row.mass_mesh;
+  }
+  add_row(all);
+  return table;
+}
+
+void add_curves(HtmlReport& report, const ExperimentRecord& record, const std::filesystem::path& folder) {
+  report.heading("Error against tetrahedra");
+  const auto add = [&](const char* file, const Plot& plot, const char* caption) {
+    if (plot.series.empty()) return;
+    const std::string png = draw_plot(plot, PictureFormat::kPng);
+    write_bytes(folder / file, png);
+    report.picture(png, PictureFormat::kPng, caption);
+  };
+  add(kErrorPlot, interface_plot(record.curve),
+      "Two-sided distance between the interfaces of input and mesh: no point is farther than the certified "
+      "error.");
+  add(kFieldPlot, field_plot(record.curve, record.fields),
+      "Mean field errors in the cells with interfaces, as parts of each field's range; those at round-off "
+      "are left out.");
+  report.table(runs_table(record, record.curve, "Refined for interfaces alone, from coarse to fine"));
+}
+
+void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
+  const ExperimentRun& run = record.last();
+  std::vector<KeyFigure> figures{{"tetrahedra", std::to_string(run.figures.tetrahedra), ""},
+                                 {"certified interface error", number(upper(run)), ""}};
+  if (!record.fields.empty()) {
+    const FieldInfo& shown = record.fields[record.shown];
+    figures.push_back(
+        {"greatest error of " + shown.name, number(run.figures.fields[record.shown].all.max), shown.unit});
+  }
+  figures.push_back({"time", fmt::format("{:.2f}", run.seconds), "s"});
+  report.key_figures(figures);
+}
+
+}  // namespace
+
+void write_experiment_report(const ExperimentRecord& record, const std::filesystem::path& folder) {
+  HtmlReport report(record.title, record.input);
+  add_key_figures(report, record);
+  report.heading("The input and its interfaces");
+  add_pictures(report, record.input_pictures, folder);
+  report.table(triangles_table(record));
+  report.heading("The mesh");
+  add_pictures(report, record.mesh_pictures, folder);
+  report.table(runs_table(record, {record.interfaces}, "Refined for interfaces alone"));
+  if (record.with_fields)
+    report.table(runs_table(record, {*record.with_fields}, "Refined for interfaces and fields"));
+  if (!record.fields.empty()) report.table(fields_table(record));
+  if (!record.slices.empty()) {
+    report.heading("Slices");
+    add_pictures(report, record.slices, folder);
+  }
+  add_curves(report, record, folder);
+  if (!record.published.empty()) {
+    report.heading("Beside published figures");
+    report.table(published_table(record));
+  }
+  report.heading("Ledger");
+  report.paragraph(
+      "Recomputed from the files: sums over the cells of the input, and integrals of the linear fields over "
+      "each material's part of the cells of mesh.vtu.");
+  report.table(ledger_table(record));
+  report.write(folder / "report.html");
+}
+
+}  // namespace adamas

@@ -1,0 +1,55 @@
+#include "cli/experiment_runs.h"
+
+#include <chrono>
+#include <limits>
+
+#include "interfaces/cross_section/field_choice.h"
+#include "interfaces/mesh/extraction.h"
+
+namespace adamas {
+
+ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOptions& options,
+                            Console& console, ResampledMesh* mesh, InterfaceMesh* interfaces) {
+  const auto start = std::chrono::steady_clock::now();
+  Resampler resampler(source, options, console);
+  resampler.refine();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  console.step("measuring", -1);
+  ExperimentRun run;
+  run.options = options;
+  run.figures = measure(resampler, console);
+  run.distance = resampler.interface_distance();
+  run.seconds = elapsed.count();
+  run.json = resample_json(run.figures, resampler);
+  run.json["seconds"] = run.seconds;
+  if (interfaces != nullptr) {
+    *interfaces =
+        extract_interfaces(source.network->table(), resampler.cells(), 1e-11 * source.box.diagonal(), console)
+            .mesh;
+    interfaces->materials = source.materials;
+    interfaces->source = source.name;
+  }
+  if (mesh != nullptr) *mesh = take_mesh(resampler);
+  return run;
+}
+
+std::vector<LedgerRow> make_ledger(const MultiMaterialData& data, const ResampledMesh& mesh,
+                                   const std::string& density) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const auto input = material_integrals(data), output = material_integrals(mesh);
+  std::size_t in = 0, out = 0;
+  if (!density.empty()) {
+    const std::vector<FieldInfo> fields = field_infos(data);
+    in = fields[find_field(fields, density, data.source).field].offset;
+    out = mesh.fields[find_field(mesh.fields, density, mesh.source).field].offset;
+  }
+  std::vector<LedgerRow> rows;
+  for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
+    rows.push_back({data.materials[m], input[m].volume, output[m].volume,
+                    density.empty() ? kNone : input[m].integral[in],
+                    density.empty() ? kNone : output[m].integral[out]});
+  }
+  return rows;
+}
+
+}  // namespace adamas

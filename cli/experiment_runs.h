@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/resample_figures.h"
+#include "cli/slice_input.h"
+#include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/probe/material_integrals.h"
+
+namespace adamas {
+
+/// One run of the resampler within an experiment, at its end.
+struct ExperimentRun {
+  ResamplingOptions options;
+  ResampleFigures figures;
+  std::optional<InterfaceDistance> distance;
+  Figures json;
+  double seconds = 0;
+};
+
+/// Resamples; `mesh` and `interfaces`, unless null, receive the result.
+ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOptions& options,
+                            Console& console, ResampledMesh* mesh = nullptr,
+                            InterfaceMesh* interfaces = nullptr);
+
+/// Volume and, where there is a density, mass of a material, in the input and in the mesh.
+struct LedgerRow {
+  std::string material;
+  double volume_input = 0, volume_mesh = 0;
+  double mass_input = 0, mass_mesh = 0;  ///< NaN where the material has no density
+};
+
+/// Integrals over what the files hold. `density`: the name of a scalar field; empty for volumes alone.
+std::vector<LedgerRow> make_ledger(const MultiMaterialData& data, const ResampledMesh& mesh,
+                                   const std::string& density);
+
+}  // namespace adamas

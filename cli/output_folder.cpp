@@ -1,0 +1,68 @@
+#include "cli/output_folder.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "cli/interrupt.h"
+#include "core/base/error.h"
+
+namespace adamas {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_replaceable(const fs::path& path, bool overwrite, std::initializer_list<const char*> signs) {
+  std::error_code code;
+  if (!fs::exists(path, code)) return;
+  if (!fs::is_directory(path, code)) fail("{}: expected an output folder, found a file", path.string());
+  if (fs::is_empty(path, code)) return;
+  if (!overwrite) {
+    fail("{}: expected a new or an empty folder, found one with files (--overwrite replaces an earlier run)",
+         path.string());
+  }
+  for (const char* sign : signs) {
+    if (!fs::exists(path / sign, code))
+      fail("{}: expected the folder of an earlier run to replace, found one without {}", path.string(), sign);
+  }
+}
+
+fs::path without_slash(fs::path path) {
+  path = path.lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(fs::path path, bool overwrite, std::initializer_list<const char*> signs)
+    : path_(without_slash(std::move(path))) {
+  check_replaceable(path_, overwrite, signs);
+  const fs::path above = path_.has_parent_path() ? path_.parent_path() : ".";
+  std::error_code code;
+  if (!fs::is_directory(above, code))
+    fail("{}: expected an existing folder above, found none at {}", path_.string(), above.string());
+  const fs::path temporary = above / fmt::format(".partial-{}", ::getpid());
+  if (::access(above.c_str(), W_OK) != 0 || !fs::create_directory(temporary, code))
+    fail("{}: expected a writable folder above, found {} read-only", path_.string(), above.string());
+  temporary_ = temporary;
+  remove_folder_at_abrupt_end(temporary_);
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code code;
+  if (!temporary_.empty()) fs::remove_all(temporary_, code);
+}
+
+void OutputFolder::commit() {
+  std::error_code code;
+  const fs::path old = temporary_.string() + "-old";
+  const bool replace = fs::exists(path_, code);
+  if (replace) fs::rename(path_, old, code);
+  if (!code) fs::rename(temporary_, path_, code);
+  if (code) fail("{}: could not be given its final name: {}", path_.string(), code.message());
+  temporary_.clear();
+  if (replace) fs::remove_all(old, code);
+}
+
+}  // namespace adamas

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+
+namespace adamas {
+
+/// A folder of outputs that gets its final name only when all of it is whole: write into `temporary()`, then
+/// `commit()`. Without a commit nothing is left.
+class OutputFolder {
+ public:
+  /// `overwrite`: a folder that is there is replaced, if it holds all the files of `signs` and so was made by
+  /// the same command. Throws Error where the folder above is missing or read-only, where a file is in the
+  /// way, and where the folder is there and neither empty nor to be replaced.
+  OutputFolder(std::filesystem::path path, bool overwrite, std::initializer_list<const char*> signs);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+  /// A file in the folder, where it is while it is written.
+  [[nodiscard]] std::string file(const std::string& name) const { return (temporary_ / name).string(); }
+  /// Throws Error when the folder cannot be renamed.
+  void commit();
+
+ private:
+  std::filesystem::path path_, temporary_;
+};
+
+}  // namespace adamas
