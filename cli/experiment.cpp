@@ -239,10 +239,14 @@ void run(const ExperimentOptions& options, Session& session) {
   const ExperimentWishes wishes(options);
   protect_inputs(options.input, options.input.path, session.outputs);
   OutputFolder folder(options.output, options.overwrite, {"metrics.json", "report.html"});
-  const ExperimentRecord record = Experiment(options, wishes, folder, session.console).run();
-  write_experiment_report(record, folder.temporary());
-  const Figures figures = experiment_figures(record);
-  write_figures(folder.file("metrics.json"), figures);
+  ExperimentRecord record;
+  Figures figures;
+  folder.fill([&] {
+    record = Experiment(options, wishes, folder, session.console).run();
+    write_experiment_report(record, folder.temporary());
+    figures = experiment_figures(record);
+    write_figures(folder.file("metrics.json"), figures);
+  });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.console.check();
   folder.commit();

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cli/interrupt.h"
+#include "cli/output_set.h"
 #include "core/base/error.h"
 
 namespace adamas {
@@ -42,7 +43,7 @@ OutputFolder::OutputFolder(fs::path path, bool overwrite, std::initializer_list<
   std::error_code code;
   if (!fs::is_directory(above, code))
     fail("{}: expected an existing folder above, found none at {}", path_.string(), above.string());
-  const fs::path temporary = above / fmt::format(".partial-{}", ::getpid());
+  const fs::path temporary = path_.parent_path() / fmt::format(".partial-{}", ::getpid());
   if (::access(above.c_str(), W_OK) != 0 || !fs::create_directory(temporary, code))
     fail("{}: expected a writable folder above, found {} read-only", path_.string(), above.string());
   temporary_ = temporary;
@@ -52,6 +53,16 @@ OutputFolder::OutputFolder(fs::path path, bool overwrite, std::initializer_list<
 OutputFolder::~OutputFolder() {
   std::error_code code;
   if (!temporary_.empty()) fs::remove_all(temporary_, code);
+}
+
+void OutputFolder::fill(const std::function<void()>& work) const {
+  try {
+    work();
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {
+    fail("{}", replaced(e.what(), temporary_.string(), path_.string()));
+  }
 }
 
 void OutputFolder::commit() {

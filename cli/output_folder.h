@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <string>
 
@@ -22,6 +23,8 @@ class OutputFolder {
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
   /// A file in the folder, where it is while it is written.
   [[nodiscard]] std::string file(const std::string& name) const { return (temporary_ / name).string(); }
+  /// Calls `work`; Errors that it throws name the folder as it will be called.
+  void fill(const std::function<void()>& work) const;
   /// Throws Error when the folder cannot be renamed.
   void commit();
 

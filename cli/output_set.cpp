@@ -38,14 +38,14 @@ void check_apart(const std::string& option, const std::filesystem::path& output,
   }
 }
 
+}  // namespace
+
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
     text.replace(at, from.size(), to);
   }
   return text;
 }
-
-}  // namespace
 
 void OutputSet::protect(const std::filesystem::path& input) {
   for (const auto& [option, file] : files_) check_apart(option, file->path(), input);

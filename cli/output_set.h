@@ -11,6 +11,9 @@
 
 namespace adamas {
 
+/// The text with every `from` made `to`: messages about temporary names tell of the final ones.
+std::string replaced(std::string text, const std::string& from, const std::string& to);
+
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {
  public:

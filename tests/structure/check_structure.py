@@ -13,7 +13,6 @@ MAY_INCLUDE = {
     "interfaces": ["core"],
     "datasets": ["core"],
     "cli": ["core", "core/io", "core/picture", "interfaces", "datasets"],
-    "tools": ["core", "core/io", "core/picture", "interfaces", "datasets"],
     "tests": ["core", "core/io", "core/picture", "interfaces", "datasets", "cli"],
 }
 # Within core: a folder may include those of its own layer and of lower ones.
@@ -28,10 +27,10 @@ OWNED = {
     r"Eigen/.*": ["interfaces", "tests"],
     r"tiffio\.h|zlib\.h": ["core/io", "tests"],
     r"CLI/.*": ["cli"],
-    r"nlohmann/.*": ["cli", "tools", "tests"],
+    r"nlohmann/.*": ["cli", "tests"],
 }
 LIGHT = [r"CLI/.*", r"nlohmann/.*"]
-FOLDERS = ["core", "interfaces", "datasets", "cli", "tools", "tests", "scripts", "cmake", "docs", ".ci"]
+FOLDERS = ["core", "interfaces", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
 ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
