@@ -39,7 +39,7 @@ void print_ledger(const FlowSolver<3>& flow, const FlowLedger<3>& start, Console
   std::vector<std::vector<std::string>> rows{{"", "at the start", "at the end", "went out", "difference"}};
   const auto row = [&rows](const std::string& name, double before, double after, double entered) {
     rows.push_back({name, fmt::format("{:.6g}", before), fmt::format("{:.6g}", after),
-                    fmt::format("{:.3g}", -entered),
+                    fmt::format("{:.3g}", 0 - entered),
                     fmt::format("{:.1e}", (after - entered - before) / before)});
     return Figures{{"name", name}, {"start", before}, {"end", after}, {"entered", entered}};
   };

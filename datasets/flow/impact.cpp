@@ -84,7 +84,10 @@ FlowSolver<3> make_impact(const ImpactOptions& options) {
             cell.fractions[kEmpty] = std::max(0.0, 1 - cell.fractions[kProjectile] - cell.fractions[kBlock]);
             cell.densities = {kCopper, kTungsten, kAir};
             cell.pressure = kAmbient;
-            cell.velocity.z = cell.fractions[kProjectile] > 0 ? -options.speed : 0;
+            // Where materials share a cell they share the projectile's momentum.
+            const double moving = cell.fractions[kProjectile] * kCopper;
+            const double resting = cell.fractions[kBlock] * kTungsten + cell.fractions[kEmpty] * kAir;
+            cell.velocity.z = -options.speed * moving / (moving + resting);
             return cell;
           }};
 }
