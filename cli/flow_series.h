@@ -22,6 +22,7 @@ class FlowSeries {
   void write(FlowSolver<N>& flow, const FlowUnits& units, Session& session) {
     for (std::size_t i = 0; i < files_.size(); ++i) {
       flow.advance_to(times_[i], session.console, times_.back());
+      session.console.step("writing " + files_[i], times_[i] / times_.back());
       const MultiMaterialData data = flow_data(flow, output_, units);
       session.outputs.write(files_[i], [&data](const auto& path) { write_multi_material_data(path, data); });
       bytes_ += session.outputs.bytes(files_[i]);

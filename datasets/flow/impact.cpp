@@ -10,7 +10,7 @@ constexpr std::size_t kProjectile = 0, kBlock = 1, kEmpty = 2;
 // Density in g/cm3, speed of sound in cm/us and slope of the Hugoniot: S. P. Marsh, LASL Shock Hugoniot Data,
 // University of California Press 1980.
 constexpr double kTungsten = 19.22, kTungstenSound = 0.403, kTungstenSlope = 1.237;
-constexpr double kCopper = 8.93, kCopperSound = 0.394, kCopperSlope = 1.489;
+constexpr double kTantalum = 16.654, kTantalumSound = 0.3414, kTantalumSlope = 1.201;
 // Air at one bar.
 constexpr double kAir = 1e-3, kAmbient = 1e-6;
 // Of the projectile and of the block, in cm.
@@ -38,8 +38,8 @@ FlowProblem<3> impact_problem(const ImpactOptions& options) {
   FlowProblem<3> problem;
   problem.box = options.box;
   problem.cells = options.cells;
-  problem.materials[kProjectile] = {"projectile", gas_of_hugoniot(kCopper, kCopperSound, kCopperSlope)};
-  problem.materials[kBlock] = {"block", gas_of_hugoniot(kTungsten, kTungstenSound, kTungstenSlope)};
+  problem.materials[kProjectile] = {"projectile", gas_of_hugoniot(kTungsten, kTungstenSound, kTungstenSlope)};
+  problem.materials[kBlock] = {"block", gas_of_hugoniot(kTantalum, kTantalumSound, kTantalumSlope)};
   problem.materials[kEmpty] = {"empty", {1.4, 0}};
   const auto low = [](double from) { return from == 0 ? FlowBoundary::kMirror : FlowBoundary::kOutflow; };
   problem.boundaries = {{{low(options.box.min.x), FlowBoundary::kOutflow},
@@ -82,11 +82,11 @@ FlowSolver<3> make_impact(const ImpactOptions& options) {
                                      overlap(y, y + size.y, -kHalfWidth, kHalfWidth) *
                                      overlap(z, z + size.z, box.min.z, 0) / volume;
             cell.fractions[kEmpty] = std::max(0.0, 1 - cell.fractions[kProjectile] - cell.fractions[kBlock]);
-            cell.densities = {kCopper, kTungsten, kAir};
+            cell.densities = {kTungsten, kTantalum, kAir};
             cell.pressure = kAmbient;
             // Where materials share a cell they share the projectile's momentum.
-            const double moving = cell.fractions[kProjectile] * kCopper;
-            const double resting = cell.fractions[kBlock] * kTungsten + cell.fractions[kEmpty] * kAir;
+            const double moving = cell.fractions[kProjectile] * kTungsten;
+            const double resting = cell.fractions[kBlock] * kTantalum + cell.fractions[kEmpty] * kAir;
             cell.velocity.z = -options.speed * moving / (moving + resting);
             return cell;
           }};

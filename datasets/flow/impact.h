@@ -26,7 +26,7 @@ inline constexpr double kGreatestImpactSpeed = 10;
 /// Whether a box has (0, 0, 0), where the axis meets the block, inside, or on its low sides in x and y.
 bool holds_impact(const Box3& box);
 
-/// A copper cylinder of radius 1 and height 1.6 that has just come down on a tungsten block, which fills
+/// A tungsten cylinder of radius 1 and height 1.6 that has just come down on a tantalum block, which fills
 /// z < 0 for |x|, |y| < 9, in air so thin that it counts as empty: the materials "projectile", "block" and
 /// "empty". Throws Error for a box that does not hold the impact and for a speed out of range.
 FlowSolver<3> make_impact(const ImpactOptions& options = {});

@@ -21,9 +21,13 @@ inline double central_slope(double a, double b) {
   return a * b > 0 ? std::copysign(least, a) : 0.0;
 }
 
-/// The steepest slope whose face values are between those of the neighbours: keeps interfaces within two or
-/// three cells (Chiapolino, Saurel and Nkonga 2017).
-inline double sharp_slope(double a, double b) { return 2 * minmod(a, b); }
+/// How far the value at a cell's end may be from the cell's own, towards the cell beyond it: `beyond` is that
+/// cell's difference, `behind` the one on the other side. As near as possible to what lies downstream, so
+/// that interfaces keep within two or three cells, but not so far that the cell would overshoot the one
+/// upstream while `courant` of it flows out (Kokh and Lagoutiere 2010).
+inline double sharp_reach(double beyond, double behind, double courant) {
+  return minmod(beyond, behind * ((1 - courant) / courant));
+}
 
 /// Conserved to primitive variables.
 template <std::size_t N>
@@ -62,6 +66,8 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
                                       const Row<N>& after, double half,
                                       const std::array<double, kLanes>& order, Row<N>& low, Row<N>& high) {
   using V = Variables<N>;
+  // Faces may move faster than the cell between them.
+  constexpr double kLeastCourant = 0.2, kMargin = 1.2;
 #pragma GCC ivdep
   for (std::size_t l = 0; l < kLanes; ++l) {
     const auto differences = [&](std::size_t v) __attribute__((always_inline)) {
@@ -72,6 +78,7 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
       return central_slope(a, b);
     };
     const double velocity = w[V::kNormal][l], pressure = w[V::kPressure][l];
+    const double courant = std::min(1.0, std::max(kLeastCourant, kMargin * 2 * half * std::abs(velocity)));
     const double d_velocity = slope(V::kNormal), d_pressure = slope(V::kPressure);
     std::array<double, N> fraction_low, fraction_high, density_low, density_high;
     MixtureMeans mean;
@@ -79,10 +86,9 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
     for_each_material<N>([&](std::size_t k) __attribute__((always_inline)) {
       const double fraction = w[V::kFraction + k][l], density = w[V::kDensity + k][l];
       const auto [a, b] = differences(V::kFraction + k);
-      const double d_fraction = sharp_slope(a, b), d_density = slope(V::kDensity + k);
-      const double moved = fraction - half * velocity * d_fraction;
-      fraction_low[k] = moved - 0.5 * d_fraction;
-      fraction_high[k] = moved + 0.5 * d_fraction;
+      const double d_density = slope(V::kDensity + k);
+      fraction_low[k] = fraction - sharp_reach(a, b, courant);
+      fraction_high[k] = fraction + sharp_reach(b, a, courant);
       sum_low += fraction_low[k];
       sum_high += fraction_high[k];
       const double thinned = density - half * (velocity * d_density + density * d_velocity);

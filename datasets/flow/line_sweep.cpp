@@ -77,7 +77,6 @@ void LineSweep<N>::load(const FlowLines<N>& lines, const std::array<FlowBoundary
   before_.resize(cells_ + 2 * kGhosts);
   primitive_.resize(cells_ + 2 * kGhosts);
   order_.assign(cells_ + 2 * kGhosts, Lane{1, 1, 1, 1, 1, 1, 1, 1});
-  middle_.resize(cells_ + 2 * kGhosts);
   faces_.resize(cells_ + 1);
   after_.resize(cells_);
   bad_.resize(cells_);
@@ -100,17 +99,11 @@ void LineSweep<N>::load(const FlowLines<N>& lines, const std::array<FlowBoundary
 
 template <std::size_t N>
 void LineSweep<N>::find_fluxes(double ratio) {
-  using V = Variables<N>;
   std::array<Row<N>, 2> low, high;
   for (std::size_t s = 1; s <= cells_ + kGhosts; ++s) {
     const std::size_t here = s % 2;
     reconstruct(law_, primitive_[s - 1], primitive_[s], primitive_[s + 1], 0.5 * ratio, order_[s], low[here],
                 high[here]);
-    for (std::size_t k = 0; k < N; ++k) {
-      for (std::size_t l = 0; l < kLanes; ++l) {
-        middle_[s][k][l] = 0.5 * (low[here][V::kFraction + k][l] + high[here][V::kFraction + k][l]);
-      }
-    }
     if (s >= kGhosts) hllc(law_, high[1 - here], low[here], faces_[s - kGhosts]);
   }
 }
@@ -130,7 +123,7 @@ void LineSweep<N>::update(double ratio) {
     for (std::size_t k = 0; k < N; ++k) {
       for (std::size_t l = 0; l < kLanes; ++l) {
         after[V::kFraction + k][l] +=
-            ratio * (middle_[s + kGhosts][k][l] * (high.velocity[l] - low.velocity[l]));
+            ratio * (before[V::kFraction + k][l] * (high.velocity[l] - low.velocity[l]));
       }
     }
   }
