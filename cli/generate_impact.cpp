@@ -5,9 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/figures.h"
+#include "cli/flow_series.h"
 #include "cli/generate_commands.h"
 #include "cli/option_values.h"
-#include "core/io/multi_material_writer.h"
+#include "cli/usage_error.h"
 #include "datasets/flow/impact.h"
 
 namespace adamas {
@@ -18,18 +19,57 @@ struct Options {
   std::string dimensions, box, steps, end_time, speed, output;
 };
 
-void run(const Options& options, Session& session) {
+ImpactOptions impact_options(const Options& options) {
   ImpactOptions impact;
-  double end = 6;
   if (!options.dimensions.empty()) impact.cells = parse_dimensions("--dimensions", options.dimensions);
   if (!options.box.empty()) impact.box = to_box(parse_bounds("--box", options.box));
+  if (!holds_impact(impact.box)) {
+    wrong_usage("--box: expected x0 <= 0 < x1, y0 <= 0 < y1 and z0 < 0 < z1, found '{}'", options.box);
+  }
   if (!options.speed.empty()) impact.speed = parse_positive("--speed", options.speed);
-  if (!options.end_time.empty()) end = parse_positive("--end-time", options.end_time);
-  session.outputs.declare("-o", options.output, {".vtr", ".vti"});
+  if (impact.speed > kGreatestImpactSpeed) {
+    wrong_usage("--speed: expected at most {} cm/us, found '{}'", kGreatestImpactSpeed, options.speed);
+  }
+  return impact;
+}
+
+/// What became of the masses and of the energy, printed and in the figures.
+void print_ledger(const FlowSolver<3>& flow, const FlowLedger<3>& start, Console& console, Figures& figures) {
+  const FlowLedger<3> now = flow.inside();
+  std::vector<std::vector<std::string>> rows{{"", "at the start", "at the end", "went out", "difference"}};
+  const auto row = [&rows](const std::string& name, double before, double after, double entered) {
+    rows.push_back({name, fmt::format("{:.6g}", before), fmt::format("{:.6g}", after),
+                    fmt::format("{:.3g}", 0 - entered),
+                    fmt::format("{:.1e}", (after - entered - before) / before)});
+    return Figures{{"name", name}, {"start", before}, {"end", after}, {"entered", entered}};
+  };
+  figures["masses"] = Figures::array();
+  for (std::size_t m = 0; m < 3; ++m) {
+    Figures mass = row(flow.problem().materials[m].name, start.mass[m], now.mass[m], flow.entered().mass[m]);
+    figures["masses"].push_back(std::move(mass));
+  }
+  figures["energy"] = row("energy", start.energy, now.energy, flow.entered().energy);
+  console.table(rows);
+}
+
+void run(const Options& options, Session& session) {
+  const ImpactOptions impact = impact_options(options);
+  const double end = options.end_time.empty() ? kImpactTime : parse_positive("--end-time", options.end_time);
+  FlowSeries series(options.output, options.steps, end, session.outputs);
   FlowSolver<3> flow = make_impact(impact);
-  flow.advance_to(end, session.console);
-  const MultiMaterialData data = flow_data(flow, "impact", kImpactUnits);
-  session.outputs.write(options.output, [&data](const auto& path) { write_multi_material_data(path, data); });
+  const FlowLedger<3> start = flow.inside();
+  series.write(flow, kImpactUnits, session);
+  const auto& cells = impact.cells;
+  Figures figures{{"dimensions", cells}, {"bytes", series.bytes()}, {"box", box_figures(impact.box)}};
+  figures["speed"] = impact.speed;
+  figures["times"] = series.times();
+  figures["steps"] = flow.steps();
+  figures["first_order_cells"] = flow.first_order_cells();
+  session.console.print("Impact on {} x {} x {} cells, {:.6g} us in {} steps, {}\n", cells[0], cells[1],
+                        cells[2], flow.time(), flow.steps(), bytes_text(static_cast<double>(series.bytes())));
+  print_ledger(flow, start, session.console, figures);
+  figures["seconds"] = session.console.seconds();
+  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
   session.outputs.commit();
 }
 
@@ -38,17 +78,29 @@ void run(const Options& options, Session& session) {
 void add_generate_impact(CLI::App& generate, Session& session) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = add_command(
-      generate, session, "impact", "A projectile that strikes a block: compressible flow of three materials",
-      "adamas generate impact -o impact.pvd --steps 10", [options, &session] { run(*options, session); });
+      generate, session, "impact", "A projectile strikes a block: a flow of three materials",
+      "adamas generate impact --steps 21 -o impact.pvd", [options, &session] { run(*options, session); });
   command->add_option("--dimensions", options->dimensions, "Numbers of cells (default 32,32,52)")
       ->type_name("X,Y,Z");
-  command->add_option("--box", options->box, "The domain in cm (default 0,12,0,12,-16,4.8)")
+  command
+      ->add_option("--box", options->box,
+                   "The domain in cm (default 0,12,0,12,-16,4.8); where x or y begins with 0, the flow is "
+                   "symmetric there")
       ->type_name("x0,x1,y0,y1,z0,z1");
-  command->add_option("--end-time", options->end_time, "Time of the last step in microseconds")
+  command
+      ->add_option("--end-time", options->end_time,
+                   fmt::format("Time of the last data in microseconds (default {})", kImpactTime))
       ->type_name("T");
-  command->add_option("--speed", options->speed, "Speed of the projectile in cm per microsecond")
+  command
+      ->add_option(
+          "--speed", options->speed,
+          fmt::format("Speed of the projectile in cm per microsecond (default {})", ImpactOptions().speed))
       ->type_name("V");
-  command->add_option("-o,--output", options->output, "The data: .vtr or .vti")
+  command
+      ->add_option("--steps", options->steps,
+                   "How many data sets a series has, the first at the start (default 11)")
+      ->type_name("N");
+  command->add_option("-o,--output", options->output, "The last data: .vtr or .vti; or a series: .pvd")
       ->required()
       ->type_name("FILE");
 }

@@ -59,9 +59,10 @@ class FlowSolver {
   FlowSolver(std::string name, FlowProblem<N> problem,
              const std::function<FlowCell<N>(std::size_t, std::size_t, std::size_t)>& cell);
 
-  /// Goes on to that time, in the problem's unit; the last step is shortened. Throws Error, naming the cell
-  /// and the time, where the flow leaves what the materials' laws can describe.
-  void advance_to(double time, Progress& progress = SilentProgress::instance());
+  /// Goes on to that time, in the problem's unit; the last step is shortened. Progress is reported as a part
+  /// of the time `end`, where that is later. Throws Error, naming the cell and the time, where the flow
+  /// leaves what the materials' laws can describe, and Cancelled.
+  void advance_to(double time, Progress& progress = SilentProgress::instance(), double end = 0);
 
   [[nodiscard]] const FlowProblem<N>& problem() const { return problem_; }
   [[nodiscard]] double time() const { return time_; }
@@ -90,7 +91,7 @@ class FlowSolver {
   std::array<double, 3> size_{};  ///< of a cell
   std::array<std::vector<double>, V::kCount> state_;
   FlowLedger<N> entered_;
-  double time_ = 0, start_ = 0;
+  double time_ = 0;
   std::size_t steps_ = 0, first_order_ = 0;
 };
 

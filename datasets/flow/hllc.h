@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "datasets/flow/mixture.h"
+#include "datasets/flow/vector_clones.h"
 
 namespace adamas {
 
@@ -16,35 +17,41 @@ struct FaceFlux {
 };
 
 /// The side of a Riemann problem in one lane.
-template <std::size_t N>
 struct RiemannSide {
-  [[gnu::always_inline]] RiemannSide(const MixtureLaw<N>& law, const Row<N>& w, std::size_t l) {
-    using V = Variables<N>;
-    for_each_material<N>([&](std::size_t k) {
-      const double fraction = w[V::kFraction + k][l];
-      mean.density += fraction * w[V::kDensity + k][l];
-      mean.inverse += fraction * law.inverse[k];
-      mean.offset += fraction * law.offset[k];
-    });
-    velocity = w[V::kNormal][l];
-    pressure = w[V::kPressure][l];
-    const double b = w[V::kTransverse][l], c = w[V::kTransverse + 1][l];
-    energy =
-        mean.inverse * pressure + mean.offset + 0.5 * mean.density * (velocity * velocity + (b * b + c * c));
-    sound = std::sqrt(mean.stiffness_at(pressure) / mean.density);
-  }
   MixtureMeans mean;
-  double velocity, pressure, energy, sound;
+  double velocity = 0, pressure = 0, energy = 0, sound = 0;
 };
+
+template <std::size_t N>
+[[gnu::always_inline]] inline RiemannSide riemann_side(const MixtureLaw<N>& law, const Row<N>& w,
+                                                       std::size_t l) {
+  using V = Variables<N>;
+  RiemannSide side;
+  for_each_material<N>([&](std::size_t k) {
+    const double fraction = w[V::kFraction + k][l];
+    side.mean.density += fraction * w[V::kDensity + k][l];
+    side.mean.inverse += fraction * law.inverse[k];
+    side.mean.offset += fraction * law.offset[k];
+  });
+  side.velocity = w[V::kNormal][l];
+  side.pressure = w[V::kPressure][l];
+  const double b = w[V::kTransverse][l], c = w[V::kTransverse + 1][l];
+  side.energy = side.mean.inverse * side.pressure + side.mean.offset +
+                0.5 * side.mean.density * (side.velocity * side.velocity + (b * b + c * c));
+  side.sound = std::sqrt(side.mean.stiffness_at(side.pressure) / side.mean.density);
+  return side;
+}
 
 /// Solves the Riemann problem approximately with two waves and a contact (Toro, Spruce and Speares 1994), the
 /// speeds by Davis (1988). Everything that is carried along, fractions too, has the velocity of the face that
 /// the mass has, so that a contact in equilibrium stays so (Johnsen and Colonius 2006).
 template <std::size_t N>
-void hllc(const MixtureLaw<N>& law, const Row<N>& left, const Row<N>& right, FaceFlux<N>& face) {
+ADAMAS_VECTOR_CLONES void hllc(const MixtureLaw<N>& law, const Row<N>& left, const Row<N>& right,
+                               FaceFlux<N>& face) {
   using V = Variables<N>;
+#pragma GCC ivdep
   for (std::size_t l = 0; l < kLanes; ++l) {
-    const RiemannSide<N> a(law, left, l), b(law, right, l);
+    const RiemannSide a = riemann_side(law, left, l), b = riemann_side(law, right, l);
     const double slowest = std::min(a.velocity - a.sound, b.velocity - b.sound);
     const double fastest = std::max(a.velocity + a.sound, b.velocity + b.sound);
     const double flow_a = a.mean.density * (slowest - a.velocity);
@@ -53,12 +60,17 @@ void hllc(const MixtureLaw<N>& law, const Row<N>& left, const Row<N>& right, Fac
         (b.pressure - a.pressure + (flow_a * a.velocity - flow_b * b.velocity)) / (flow_a - flow_b);
     // The side that the face lies on, and its state behind its wave where that has not passed the face.
     const bool from_left = contact >= 0;
+    const auto pick = [&](std::size_t v) {
+      const double on_left = left[v][l], on_right = right[v][l];
+      return from_left ? on_left : on_right;
+    };
     const double density = from_left ? a.mean.density : b.mean.density;
     const double velocity = from_left ? a.velocity : b.velocity;
     const double pressure = from_left ? a.pressure : b.pressure;
     const double energy = from_left ? a.energy : b.energy;
     const double wave = from_left ? slowest : fastest;
-    const bool behind = from_left ? slowest < 0 : fastest > 0;
+    // A select of numbers, not of conditions, so that this loop becomes vector instructions.
+    const bool behind = (from_left ? slowest : -fastest) < 0;
     const double lead = wave - velocity;
     const double squeeze = lead / (wave - contact);
     const double star_pressure = pressure + density * lead * (contact - velocity);
@@ -69,14 +81,13 @@ void hllc(const MixtureLaw<N>& law, const Row<N>& left, const Row<N>& right, Fac
     const double carried = behind ? squeeze * contact : velocity;
     face.velocity[l] = carried;
     for_each_material<N>([&](std::size_t k) {
-      const double fraction = from_left ? left[V::kFraction + k][l] : right[V::kFraction + k][l];
-      const double own = from_left ? left[V::kDensity + k][l] : right[V::kDensity + k][l];
+      const double fraction = pick(V::kFraction + k);
       face.flow[V::kFraction + k][l] = fraction * carried;
-      face.flow[V::kMass + k][l] = fraction * own * carried;
+      face.flow[V::kMass + k][l] = fraction * pick(V::kDensity + k) * carried;
     });
     face.flow[V::kNormal][l] = density * carried * at + push;
     for (const std::size_t v : {V::kTransverse, V::kTransverse + 1}) {
-      face.flow[v][l] = density * carried * (from_left ? left[v][l] : right[v][l]);
+      face.flow[v][l] = density * carried * pick(v);
     }
     face.flow[V::kEnergy][l] = ((behind ? star_energy : energy) + push) * at;
   }

@@ -10,11 +10,11 @@ constexpr std::size_t kProjectile = 0, kBlock = 1, kEmpty = 2;
 // Density in g/cm3, speed of sound in cm/us and slope of the Hugoniot: S. P. Marsh, LASL Shock Hugoniot Data,
 // University of California Press 1980.
 constexpr double kTungsten = 19.22, kTungstenSound = 0.403, kTungstenSlope = 1.237;
-constexpr double kCopper = 8.93, kCopperSound = 0.394, kCopperSlope = 1.489;
+constexpr double kTantalum = 16.654, kTantalumSound = 0.3414, kTantalumSlope = 1.201;
 // Air at one bar.
 constexpr double kAir = 1e-3, kAmbient = 1e-6;
 // Of the projectile and of the block, in cm.
-constexpr double kRadius = 1.5, kHeight = 2.4, kHalfWidth = 9, kDepth = 12;
+constexpr double kRadius = 1, kHeight = 1.6, kHalfWidth = 9;
 /// Strips that the projectile's part of a cell is summed over.
 constexpr int kStrips = 64;
 
@@ -39,27 +39,33 @@ FlowProblem<3> impact_problem(const ImpactOptions& options) {
   problem.box = options.box;
   problem.cells = options.cells;
   problem.materials[kProjectile] = {"projectile", gas_of_hugoniot(kTungsten, kTungstenSound, kTungstenSlope)};
-  problem.materials[kBlock] = {"block", gas_of_hugoniot(kCopper, kCopperSound, kCopperSlope)};
+  problem.materials[kBlock] = {"block", gas_of_hugoniot(kTantalum, kTantalumSound, kTantalumSlope)};
   problem.materials[kEmpty] = {"empty", {1.4, 0}};
   const auto low = [](double from) { return from == 0 ? FlowBoundary::kMirror : FlowBoundary::kOutflow; };
   problem.boundaries = {{{low(options.box.min.x), FlowBoundary::kOutflow},
                          {low(options.box.min.y), FlowBoundary::kOutflow},
                          {FlowBoundary::kOutflow, FlowBoundary::kOutflow}}};
-  problem.opening = VoidOpening{kEmpty, 0.1 * kAmbient, 0.01 * kAir};
+  problem.opening = VoidOpening{kEmpty, kAmbient, 100 * kAir};
   return problem;
 }
 
 }  // namespace
 
+bool holds_impact(const Box3& box) {
+  return box.min.x <= 0 && box.max.x > 0 && box.min.y <= 0 && box.max.y > 0 && box.min.z < 0 && box.max.z > 0;
+}
+
 FlowSolver<3> make_impact(const ImpactOptions& options) {
   const Box3& box = options.box;
-  if (!(box.min.x <= 0 && box.max.x > 0 && box.min.y <= 0 && box.max.y > 0 && box.min.z < 0 &&
-        box.max.z > 0)) {
+  if (!holds_impact(box)) {
     fail(
-        "impact: expected a box that holds the place of the impact, (0, 0, 0), below its top and not at its "
-        "high "
-        "sides, found [{}, {}] x [{}, {}] x [{}, {}]",
+        "impact: expected a box that holds the place of the impact, (0, 0, 0), found [{}, {}] x [{}, {}] x "
+        "[{}, {}]",
         box.min.x, box.max.x, box.min.y, box.max.y, box.min.z, box.max.z);
+  }
+  if (!(options.speed > 0 && options.speed <= kGreatestImpactSpeed)) {
+    fail("impact: expected a speed above 0 and up to {} cm/us, found {}", kGreatestImpactSpeed,
+         options.speed);
   }
   const Vec3 size{box.size().x / static_cast<double>(options.cells[0]),
                   box.size().y / static_cast<double>(options.cells[1]),
@@ -74,12 +80,14 @@ FlowSolver<3> make_impact(const ImpactOptions& options) {
                                           overlap(z, z + size.z, 0, kHeight) / volume;
             cell.fractions[kBlock] = overlap(x, x + size.x, -kHalfWidth, kHalfWidth) *
                                      overlap(y, y + size.y, -kHalfWidth, kHalfWidth) *
-                                     overlap(z, z + size.z, -kDepth, 0) / volume;
+                                     overlap(z, z + size.z, box.min.z, 0) / volume;
             cell.fractions[kEmpty] = std::max(0.0, 1 - cell.fractions[kProjectile] - cell.fractions[kBlock]);
-            cell.densities = {kTungsten, kCopper, kAir};
+            cell.densities = {kTungsten, kTantalum, kAir};
             cell.pressure = kAmbient;
-            // The air has the projectile's speed only as far as they share cells.
-            cell.velocity.z = cell.fractions[kProjectile] > 0 ? -options.speed : 0;
+            // Where materials share a cell they share the projectile's momentum.
+            const double moving = cell.fractions[kProjectile] * kTungsten;
+            const double resting = cell.fractions[kBlock] * kTantalum + cell.fractions[kEmpty] * kAir;
+            cell.velocity.z = -options.speed * moving / (moving + resting);
             return cell;
           }};
 }

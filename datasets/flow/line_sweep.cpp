@@ -24,6 +24,7 @@ std::size_t origin_of(std::size_t ghost, std::size_t cells, FlowBoundary boundar
 /// Takes rounding off volume fractions: none is negative, and they add up to one.
 template <std::size_t N>
 void clean_fractions(Row<N>& q) {
+#pragma GCC ivdep
   for (std::size_t l = 0; l < kLanes; ++l) {
     double sum = 0;
     for_each_material<N>([&](std::size_t k) {
@@ -38,9 +39,10 @@ void clean_fractions(Row<N>& q) {
 /// The lanes of a row, as 1, whose pressure is below `least`, and those that lack a positive mass or a speed
 /// of sound.
 template <std::size_t N>
-void judge(const MixtureLaw<N>& law, const Row<N>& q, double least, std::array<double, kLanes>& low,
-           std::array<double, kLanes>& bad) {
+ADAMAS_VECTOR_CLONES void judge(const MixtureLaw<N>& law, const Row<N>& q, double least,
+                                std::array<double, kLanes>& low, std::array<double, kLanes>& bad) {
   using V = Variables<N>;
+#pragma GCC ivdep
   for (std::size_t l = 0; l < kLanes; ++l) {
     MixtureMeans mean;
     double least_mass = 0;
@@ -75,7 +77,6 @@ void LineSweep<N>::load(const FlowLines<N>& lines, const std::array<FlowBoundary
   before_.resize(cells_ + 2 * kGhosts);
   primitive_.resize(cells_ + 2 * kGhosts);
   order_.assign(cells_ + 2 * kGhosts, Lane{1, 1, 1, 1, 1, 1, 1, 1});
-  middle_.resize(cells_ + 2 * kGhosts);
   faces_.resize(cells_ + 1);
   after_.resize(cells_);
   bad_.resize(cells_);
@@ -98,17 +99,11 @@ void LineSweep<N>::load(const FlowLines<N>& lines, const std::array<FlowBoundary
 
 template <std::size_t N>
 void LineSweep<N>::find_fluxes(double ratio) {
-  using V = Variables<N>;
   std::array<Row<N>, 2> low, high;
   for (std::size_t s = 1; s <= cells_ + kGhosts; ++s) {
     const std::size_t here = s % 2;
     reconstruct(law_, primitive_[s - 1], primitive_[s], primitive_[s + 1], 0.5 * ratio, order_[s], low[here],
                 high[here]);
-    for (std::size_t k = 0; k < N; ++k) {
-      for (std::size_t l = 0; l < kLanes; ++l) {
-        middle_[s][k][l] = 0.5 * (low[here][V::kFraction + k][l] + high[here][V::kFraction + k][l]);
-      }
-    }
     if (s >= kGhosts) hllc(law_, high[1 - here], low[here], faces_[s - kGhosts]);
   }
 }
@@ -128,7 +123,7 @@ void LineSweep<N>::update(double ratio) {
     for (std::size_t k = 0; k < N; ++k) {
       for (std::size_t l = 0; l < kLanes; ++l) {
         after[V::kFraction + k][l] +=
-            ratio * (middle_[s + kGhosts][k][l] * (high.velocity[l] - low.velocity[l]));
+            ratio * (before[V::kFraction + k][l] * (high.velocity[l] - low.velocity[l]));
       }
     }
   }
@@ -145,8 +140,9 @@ void LineSweep<N>::settle() {
     find_thin(q, thin);
     if (!any(low) && !any(thin)) continue;
     for (std::size_t l = 0; l < kLanes; ++l) {
-      if (low[l] > 0 || thin[l] > 0) bad_[s][l] = move_void(law_, *opening_, q, l) ? 0.0 : 1.0;
+      if (low[l] > 0 || thin[l] > 0) move_void(law_, *opening_, q, l);
     }
+    judge(law_, q, opening_->pressure, low, bad_[s]);
   }
 }
 
@@ -155,6 +151,7 @@ template <std::size_t N>
 void LineSweep<N>::find_thin(const Row<N>& q, Lane& thin) const {
   const auto& fraction = q[opening_->material];
   const auto& mass = q[N + opening_->material];
+#pragma GCC ivdep
   for (std::size_t l = 0; l < kLanes; ++l) {
     const bool is_thin = (fraction[l] > 0) & (fraction[l] < 1) & (mass[l] < opening_->density * fraction[l]);
     thin[l] = is_thin ? 1.0 : 0.0;

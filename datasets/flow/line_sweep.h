@@ -64,8 +64,7 @@ class LineSweep {
   // Two ghost cells at either end.
   std::vector<Row<N>> before_, primitive_;
   std::vector<Lane> order_;
-  // For each cell, the fractions after half a step; for each face, what crosses it.
-  std::vector<std::array<Lane, N>> middle_;
+  // For each face.
   std::vector<FaceFlux<N>> faces_;
   std::vector<Row<N>> after_;
   // For each cell, 1 in the lanes without an admissible state.

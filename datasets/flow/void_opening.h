@@ -15,9 +15,10 @@ struct VoidOpening {
 };
 
 /// Moves the share of void of one cell, all else kept, so that the pressure is what VoidOpening asks for:
-/// masses, momentum and total energy stay to the last bit. False where the cell has not the energy for that.
+/// masses, momentum and total energy stay to the last bit. Leaves the cell as it is where it holds nothing
+/// but void, or too little energy.
 template <std::size_t N>
-bool move_void(const MixtureLaw<N>& law, const VoidOpening& opening, Row<N>& q, std::size_t l) {
+void move_void(const MixtureLaw<N>& law, const VoidOpening& opening, Row<N>& q, std::size_t l) {
   using V = Variables<N>;
   const std::size_t v = opening.material;
   double density = 0, inverse = 0, offset = 0, filled = 0;
@@ -30,22 +31,16 @@ bool move_void(const MixtureLaw<N>& law, const VoidOpening& opening, Row<N>& q, 
   }
   const double a = q[V::kNormal][l], b = q[V::kTransverse][l], c = q[V::kTransverse + 1][l];
   const double internal = q[V::kEnergy][l] - 0.5 * (a * a + (b * b + c * c)) / density;
-  const double empty = q[V::kFraction + v][l];
-  const double p = (internal - offset - law.offset[v] * empty) / (inverse + empty * law.inverse[v]);
-  const bool thin = filled > 0 && empty > 0 && q[V::kMass + v][l] < opening.density * empty;
-  if (p >= opening.pressure && !(thin && p > opening.pressure)) return true;
   // With all others' shares times x, the pressure is that wanted where x times this is what is left.
   const double each = offset + opening.pressure * (inverse - filled * law.inverse[v]);
   const double left = internal - opening.pressure * law.inverse[v];
-  if (!(filled > 0) || !(each > 0) || !(left > 0)) return false;
+  if (!(filled > 0) || !(each > 0) || !(left > 0)) return;
   double x = left / each;
-  if (p > opening.pressure) {
-    const double most = (1 - q[V::kMass + v][l] / opening.density) / filled;
-    x = std::max(1.0, std::min(x, most));
-  }
+  // Void shrinks until it is dense enough to have a pressure of its own, and no further.
+  const double most = (1 - q[V::kMass + v][l] / opening.density) / filled;
+  if (x > 1) x = std::max(1.0, std::min(x, most));
   for (std::size_t k = 0; k < N; ++k) q[V::kFraction + k][l] *= x;
   q[V::kFraction + v][l] = std::max(0.0, 1 - filled * x);
-  return true;
 }
 
 }  // namespace adamas
