@@ -12,6 +12,16 @@ Figures experiment_figures(const ExperimentRecord& record) {
     figures["interfaces"].push_back({{"between", pair}, {"triangles", count}});
   figures["interface_mesh"] = record.interfaces.json;
   figures["mesh"] = record.last().json;
+  figures["nested_errors"] = Figures::object();
+  for (std::size_t f = 0; f < record.fields.size(); ++f) {
+    const NestedSummary& nested = record.last().nested[f];
+    figures["nested_errors"][record.fields[f].name] = {{"tetrahedra", nested.tetrahedra},
+                                                       {"greatest", nested.greatest},
+                                                       {"mean", nested.mean},
+                                                       {"corrected_greatest", nested.corrected_greatest},
+                                                       {"corrected_mean", nested.corrected_mean},
+                                                       {"undefined", nested.undefined}};
+  }
   figures["curve"] = Figures::array();
   for (const ExperimentRun& run : record.curve) figures["curve"].push_back(run.json);
   figures["published"] = Figures::array();

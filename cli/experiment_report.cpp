@@ -113,6 +113,20 @@ ReportTable fields_table(const ExperimentRecord& record) {
   return table;
 }
 
+ReportTable nested_table(const ExperimentRecord& record) {
+  ReportTable table{
+      "Field errors of tetrahedra that were split, made monotone",
+      {"field", "tetrahedra", "greatest", "mean", "greatest, D 3.1", "mean, D 3.1", "undefined, D 3.1"},
+      {}};
+  for (std::size_t f = 0; f < record.fields.size(); ++f) {
+    const NestedSummary& nested = record.last().nested[f];
+    table.rows.push_back({record.fields[f].name, std::to_string(nested.tetrahedra), number(nested.greatest),
+                          number(nested.mean), number(nested.corrected_greatest),
+                          number(nested.corrected_mean), std::to_string(nested.undefined)});
+  }
+  return table;
+}
+
 ReportTable published_table(const ExperimentRecord& record) {
   ReportTable table{"Figures beside those of " + record.published_by, {"", "published", "here", "ratio"}, {}};
   for (const PublishedFigure& figure : record.published)
@@ -192,7 +206,13 @@ void write_experiment_report(const ExperimentRecord& record, const std::filesyst
   report.table(runs_table(record, {record.interfaces}, "Refined for interfaces alone"));
   if (record.with_fields)
     report.table(runs_table(record, {*record.with_fields}, "Refined for interfaces and fields"));
-  if (!record.fields.empty()) report.table(fields_table(record));
+  if (!record.fields.empty()) {
+    report.table(fields_table(record));
+    report.paragraph(
+        "A tetrahedron's error must not be less than those of its parts. The greatest error below is the "
+        "tightest such bound; vertex corrections (D 3.1) add up what each new vertex changes.");
+    report.table(nested_table(record));
+  }
   if (!record.slices.empty()) {
     report.heading("Slices");
     add_pictures(report, record.slices, folder);

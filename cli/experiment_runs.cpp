@@ -1,12 +1,44 @@
 #include "cli/experiment_runs.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/errors/nested_errors.h"
 #include "interfaces/mesh/extraction.h"
 
 namespace adamas {
+
+namespace {
+
+NestedSummary nested_summary(const Resampler& resampler, std::size_t field) {
+  const NestedErrors nested = nest_field_errors(resampler, field);
+  const CorrectedErrors corrected = correct_field_errors(resampler, field);
+  const auto& hierarchy = resampler.hierarchy();
+  NestedSummary result;
+  result.undefined = corrected.undefined;
+  std::vector<TetrahedronId> open = hierarchy.roots();
+  while (!open.empty()) {
+    const TetrahedronId t = open.back();
+    open.pop_back();
+    if (hierarchy.is_leaf(t)) continue;
+    const auto children = hierarchy.children(t);
+    open.insert(open.end(), children.begin(), children.end());
+    const double direct = nested[t], sum = corrected.of_tetrahedra[t.value];
+    result.greatest = std::max(result.greatest, direct);
+    result.corrected_greatest = std::max(result.corrected_greatest, sum);
+    result.mean += direct;
+    result.corrected_mean += sum;
+    ++result.tetrahedra;
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(result.tetrahedra, 1));
+  result.mean /= count;
+  result.corrected_mean /= count;
+  return result;
+}
+
+}  // namespace
 
 ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOptions& options,
                             Console& console, ResampledMesh* mesh, InterfaceMesh* interfaces) {
@@ -29,7 +61,11 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
     interfaces->materials = source.materials;
     interfaces->source = source.name;
   }
-  if (mesh != nullptr) *mesh = take_mesh(resampler);
+  if (mesh != nullptr) {
+    *mesh = take_mesh(resampler);
+    for (std::size_t f = 0; f < run.figures.fields.size(); ++f)
+      run.nested.push_back(nested_summary(resampler, f));
+  }
   return run;
 }
 

@@ -11,11 +11,20 @@
 
 namespace adamas {
 
+/// Errors of one field over the tetrahedra that were split, made monotone in two ways.
+struct NestedSummary {
+  double greatest = 0, mean = 0;                      ///< the greatest below
+  double corrected_greatest = 0, corrected_mean = 0;  ///< by vertex corrections (D 3.1)
+  std::size_t tetrahedra = 0;
+  std::size_t undefined = 0;  ///< without a correction
+};
+
 /// One run of the resampler within an experiment, at its end.
 struct ExperimentRun {
   ResamplingOptions options;
   ResampleFigures figures;
   std::optional<InterfaceDistance> distance;
+  std::vector<NestedSummary> nested;  ///< per field; empty without a mesh
   Figures json;
   double seconds = 0;
 };

@@ -1,6 +1,8 @@
 #include "interfaces/errors/nested_errors.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace adamas {
 
@@ -56,6 +58,57 @@ NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field) {
     const auto& fields = resampler.hierarchy().payload(t).fields;
     return field < fields.size() ? fields[field].max : 0.0;
   });
+}
+
+namespace {
+
+const std::vector<double>* find_row(const VertexRecord& vertex, BodyId body) {
+  const auto found = std::find_if(vertex.rows.begin(), vertex.rows.end(),
+                                  [body](const auto& row) { return row.body == body; });
+  return found == vertex.rows.end() ? nullptr : &found->row;
+}
+
+/// |z(v_c) - z_T(v_c)| of the body that v_c lies in; vectors by length.
+std::optional<double> vertex_correction(const Resampler& resampler, TetrahedronId t, const FieldInfo& field) {
+  const auto& hierarchy = resampler.hierarchy();
+  const VertexRecord& middle = hierarchy.payload(hierarchy.split_vertex(hierarchy.diamond(t)));
+  const BodyId body = middle.distances.body;
+  const auto [first, second] = hierarchy.split_edge(t);
+  const auto *row = find_row(middle, body), *a = find_row(hierarchy.payload(first), body),
+             *b = find_row(hierarchy.payload(second), body);
+  if (row == nullptr || a == nullptr || b == nullptr) return {};
+  double squared = 0;
+  for (std::size_t c = field.offset; c < field.offset + static_cast<std::size_t>(field.components); ++c) {
+    const double missed = (*row)[c] - 0.5 * ((*a)[c] + (*b)[c]);
+    squared += missed * missed;
+  }
+  return std::isnan(squared) ? std::nullopt : std::optional(std::sqrt(squared));
+}
+
+}  // namespace
+
+CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t field) {
+  const auto& hierarchy = resampler.hierarchy();
+  const FieldInfo& info = resampler.source().fields->fields()[field];
+  CorrectedErrors result;
+  result.of_tetrahedra.assign(hierarchy.tetrahedron_slots(), 0.0);
+  const std::vector<DiamondId> order = in_order(hierarchy);
+  for (auto d = order.rbegin(); d != order.rend(); ++d) {
+    for (const TetrahedronId t : hierarchy.tetrahedra(*d)) {
+      double& error = result.of_tetrahedra[t.value];
+      if (hierarchy.is_leaf(t)) {
+        const auto& measured = hierarchy.payload(t).fields;
+        error = field < measured.size() ? measured[field].max : 0;
+        continue;
+      }
+      for (const TetrahedronId child : hierarchy.children(t))
+        error = std::max(error, result.of_tetrahedra[child.value]);
+      const auto correction = vertex_correction(resampler, t, info);
+      if (correction) error += *correction;
+      if (!correction) ++result.undefined;
+    }
+  }
+  return result;
 }
 
 }  // namespace adamas

@@ -30,4 +30,16 @@ NestedErrors nest_interface_errors(const Resampler& resampler);
 /// Of the greatest errors of one field of the source, where they were measured.
 NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field);
 
+/// Nested errors of one field by vertex corrections (D 3.1), for comparison: the greater of the children's,
+/// and what the parent's linear field misses at their new vertex added to it.
+struct CorrectedErrors {
+  std::vector<double> of_tetrahedra;  ///< by TetrahedronId
+  /// Tetrahedra that were split where the correction is not defined, and left out: the new vertex lies in a
+  /// body of which an end of the split edge knows no value.
+  std::size_t undefined = 0;
+};
+
+/// From the leaves' greatest errors and the fields at vertices, complete_fields() among them.
+CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t field);
+
 }  // namespace adamas

@@ -103,5 +103,40 @@ TEST(NestedErrors, CoverWhatAResamplerMeasured) {
   EXPECT_GE(most, measured);
 }
 
+TEST(NestedErrors, CorrectionsAreNeverTighterAndVanishForLinearFields) {
+  test::SceneCase c;
+  c.name = "tjunction";
+  c.fields = true;
+  c.options.interface_error = 0.03;
+  c.options.certify = false;
+  c.options.ghost = GhostMode::kLinear;
+  test::ResampledScene resampled(c);
+  resampled.resampler->complete_fields();
+  const auto& hierarchy = resampled.resampler->hierarchy();
+  const auto& fields = resampled.source.fields->fields();
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const bool smooth = fields[f].name == "smooth", linear = fields[f].name == "linear";
+    if (!smooth && !linear) continue;
+    const CorrectedErrors corrected = correct_field_errors(*resampled.resampler, f);
+    double sum = 0;
+    for_each_tetrahedron(hierarchy, [&](TetrahedronId t) {
+      double below = hierarchy.is_leaf(t) ? hierarchy.payload(t).fields[f].max : 0;
+      if (!hierarchy.is_leaf(t)) {
+        for (const TetrahedronId child : hierarchy.children(t))
+          below = std::max(below, corrected.of_tetrahedra[child.value]);
+      }
+      ASSERT_GE(corrected.of_tetrahedra[t.value], below);
+      sum += corrected.of_tetrahedra[t.value] - below;
+    });
+    EXPECT_LT(corrected.undefined, hierarchy.leaf_count());
+    // Values are stated as float.
+    if (linear) {
+      EXPECT_LT(sum, 1e-3);
+    } else {
+      EXPECT_GT(sum, 1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace adamas
