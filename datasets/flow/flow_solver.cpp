@@ -37,7 +37,7 @@ FlowSolver<N>::FlowSolver(std::string name, FlowProblem<N> problem,
       }()) {
   check();
   size_ = cell_size(problem_.box, problem_.cells);
-  const auto [nx, ny, nz] = problem_.cells;
+  const std::size_t nx = problem_.cells[0], ny = problem_.cells[1], nz = problem_.cells[2];
   for (auto& values : state_) values.resize(nx * ny * nz);
   parallel_for(nz, 1, [&](std::size_t k) {
     for (std::size_t j = 0; j < ny; ++j) {
@@ -120,7 +120,7 @@ FlowLedger<N> FlowSolver<N>::inside() const {
 /// The most cells that a wave crosses per time, along any axis that is swept.
 template <std::size_t N>
 double FlowSolver<N>::fastest() const {
-  const auto [nx, ny, nz] = problem_.cells;
+  const std::size_t nx = problem_.cells[0], ny = problem_.cells[1], nz = problem_.cells[2];
   std::vector<double> rows(ny * nz, 0.0);
   parallel_for(ny * nz, 16, [&](std::size_t row) {
     double most = 0;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "datasets/flow/mixture.h"
-#include "datasets/flow/vector_clones.h"
+#include "datasets/flow/vectorisation.h"
 
 namespace adamas {
 
@@ -49,7 +49,7 @@ template <std::size_t N>
 ADAMAS_VECTOR_CLONES void hllc(const MixtureLaw<N>& law, const Row<N>& left, const Row<N>& right,
                                FaceFlux<N>& face) {
   using V = Variables<N>;
-#pragma GCC ivdep
+  ADAMAS_INDEPENDENT_LANES
   for (std::size_t l = 0; l < kLanes; ++l) {
     const RiemannSide a = riemann_side(law, left, l), b = riemann_side(law, right, l);
     const double slowest = std::min(a.velocity - a.sound, b.velocity - b.sound);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "datasets/flow/mixture.h"
-#include "datasets/flow/vector_clones.h"
+#include "datasets/flow/vectorisation.h"
 
 namespace adamas {
 
@@ -35,7 +35,7 @@ ADAMAS_VECTOR_CLONES void to_primitive(const MixtureLaw<N>& law, const Row<N>& q
   using V = Variables<N>;
   // The least number whose inverse is finite: a material that is absent has density zero.
   constexpr double kTiny = 1e-300;
-#pragma GCC ivdep
+  ADAMAS_INDEPENDENT_LANES
   for (std::size_t l = 0; l < kLanes; ++l) {
     MixtureMeans mean;
     for_each_material<N>([&](std::size_t k) __attribute__((always_inline)) {
@@ -68,7 +68,7 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
   using V = Variables<N>;
   // Faces may move faster than the cell between them.
   constexpr double kLeastCourant = 0.2, kMargin = 1.2;
-#pragma GCC ivdep
+  ADAMAS_INDEPENDENT_LANES
   for (std::size_t l = 0; l < kLanes; ++l) {
     const auto differences = [&](std::size_t v) __attribute__((always_inline)) {
       return std::pair(w[v][l] - before[v][l], after[v][l] - w[v][l]);
@@ -123,7 +123,7 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
     const double spare =
         std::min(std::min(at_low.stiffness_at(p_low) - room, at_high.stiffness_at(p_high) - room),
                  std::min(at_low.density, at_high.density) - kLeast * mean.density);
-    const bool good = (order[l] > 0) & (least >= 0) & (spare > 0);
+    const bool good = order[l] > 0 && least >= 0 && spare > 0;
     for_each_material<N>([&](std::size_t k) __attribute__((always_inline)) {
       const double fraction = w[V::kFraction + k][l], density = w[V::kDensity + k][l];
       low[V::kFraction + k][l] = good ? fraction_low[k] : fraction;

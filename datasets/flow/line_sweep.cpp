@@ -24,7 +24,7 @@ std::size_t origin_of(std::size_t ghost, std::size_t cells, FlowBoundary boundar
 /// Takes rounding off volume fractions: none is negative, and they add up to one.
 template <std::size_t N>
 void clean_fractions(Row<N>& q) {
-#pragma GCC ivdep
+  ADAMAS_INDEPENDENT_LANES
   for (std::size_t l = 0; l < kLanes; ++l) {
     double sum = 0;
     for_each_material<N>([&](std::size_t k) {
@@ -42,7 +42,7 @@ template <std::size_t N>
 ADAMAS_VECTOR_CLONES void judge(const MixtureLaw<N>& law, const Row<N>& q, double least,
                                 std::array<double, kLanes>& low, std::array<double, kLanes>& bad) {
   using V = Variables<N>;
-#pragma GCC ivdep
+  ADAMAS_INDEPENDENT_LANES
   for (std::size_t l = 0; l < kLanes; ++l) {
     MixtureMeans mean;
     double least_mass = 0;
@@ -56,7 +56,7 @@ ADAMAS_VECTOR_CLONES void judge(const MixtureLaw<N>& law, const Row<N>& q, doubl
     const double a = q[V::kNormal][l], b = q[V::kTransverse][l], c = q[V::kTransverse + 1][l];
     const double internal = q[V::kEnergy][l] - 0.5 * (a * a + (b * b + c * c)) / mean.density;
     const double pressure = (internal - mean.offset) / mean.inverse;
-    const bool sound = (least_mass >= 0) & (mean.density > 0) & (mean.stiffness_at(pressure) > 0);
+    const bool sound = least_mass >= 0 && mean.density > 0 && mean.stiffness_at(pressure) > 0;
     bad[l] = sound ? 0.0 : 1.0;
     low[l] = pressure >= least ? 0.0 : 1.0;
   }
@@ -151,9 +151,10 @@ template <std::size_t N>
 void LineSweep<N>::find_thin(const Row<N>& q, Lane& thin) const {
   const auto& fraction = q[opening_->material];
   const auto& mass = q[N + opening_->material];
-#pragma GCC ivdep
+  ADAMAS_INDEPENDENT_LANES
   for (std::size_t l = 0; l < kLanes; ++l) {
-    const bool is_thin = (fraction[l] > 0) & (fraction[l] < 1) & (mass[l] < opening_->density * fraction[l]);
+    const double part = fraction[l], least = opening_->density * part - mass[l];
+    const bool is_thin = part > 0 && part < 1 && least > 0;
     thin[l] = is_thin ? 1.0 : 0.0;
   }
 }

@@ -23,7 +23,7 @@ void for_each_cell(const FlowSolver<3>& flow, const Check& check) {
 
 TEST(FlowImpact, StatesAreAdmissibleAtAnySpeedAndSize) {
   for (const double speed : {0.05, 1.2, 4.0, kGreatestImpactSpeed}) {
-    for (const std::size_t n : {5u, 8u, 16u}) {
+    for (const std::size_t n : {5u, 12u}) {
       ImpactOptions options;
       options.speed = speed;
       options.cells = {n, n, 2 * n};
@@ -48,7 +48,9 @@ TEST(FlowImpact, StatesAreAdmissibleAtAnySpeedAndSize) {
 }
 
 TEST(FlowImpact, ItsMassesAreThoseOfItsBodies) {
-  FlowSolver<3> flow = make_impact();
+  ImpactOptions options;
+  options.cells = {16, 16, 26};
+  FlowSolver<3> flow = make_impact(options);
   const FlowLedger<3> start = flow.inside();
   EXPECT_NEAR(start.mass[0], 19.22 * std::numbers::pi / 4 * 1.6, 1e-2);
   EXPECT_NEAR(start.mass[1], 16.654 * 9 * 9 * 16, 1e-6);
@@ -89,7 +91,7 @@ double asymmetry(std::size_t n) {
 
 TEST(FlowImpact, XAndYAreAlikeButForTheOrderOfSweeps) {
   EXPECT_LT(asymmetry(12), 0.03);
-  EXPECT_LT(asymmetry(24), 0.03);
+  EXPECT_LT(asymmetry(20), 0.03);
 }
 
 TEST(FlowImpact, AQuarterIsTheWholeBetweenMirrors) {

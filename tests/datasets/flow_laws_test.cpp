@@ -89,8 +89,8 @@ TEST(FlowLaws, MaterialsInEquilibriumStayInIt) {
 TEST(FlowLaws, AClosedBoxKeepsEachMassAndEnergy) {
   for (const bool opening : {false, true}) {
     for (const FlowBoundary boundary : {FlowBoundary::kMirror, FlowBoundary::kPeriodic}) {
-      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        const Cells size{10, 7, 9};
+      for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        const Cells size{9, 6, 7};
         FlowProblem<3> problem = problem_with(boundary, size);
         if (opening) problem.opening = VoidOpening{2, 1e-6, 0.1};
         FlowSolver<3> flow = solver(problem, random_cells(size, seed, 0.3));
@@ -136,20 +136,19 @@ std::vector<double> numbers(const FlowSolver<3>& flow) {
 }
 
 TEST(FlowLaws, TheNumberOfThreadsChangesNothing) {
-  const Cells size{20, 19, 18};
+  const Cells size{17, 9, 11};
   FlowProblem<3> problem = problem_with(FlowBoundary::kOutflow, size);
   problem.opening = VoidOpening{2, 1e-6, 0.1};
   std::vector<std::vector<double>> results;
-  for (const unsigned threads : {1u, 2u, 5u}) {
+  for (const unsigned threads : {1u, 2u}) {
     set_thread_limit(threads);
     FlowSolver<3> flow = solver(problem, random_cells(size, 8, 0.5));
-    flow.advance_to(0.05);
+    flow.advance_to(0.03);
     results.push_back(numbers(flow));
     results.back().push_back(flow.entered().energy);
   }
   set_thread_limit(0);
   EXPECT_EQ(results[0], results[1]);
-  EXPECT_EQ(results[0], results[2]);
 }
 
 TEST(FlowLaws, AMirroredFlowIsTheFlowMirrored) {

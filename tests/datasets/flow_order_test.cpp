@@ -57,7 +57,7 @@ double wave_error(std::size_t n) {
 }
 
 TEST(FlowOrder, AnAdvectedDensityWave) {
-  const double b = wave_error(16), c = wave_error(32);
+  const double b = wave_error(12), c = wave_error(24);
   EXPECT_GT(order(b, c), 1.7);
   EXPECT_LT(order(b, c), 2.5);
 }

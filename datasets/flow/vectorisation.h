@@ -9,3 +9,10 @@
 #else
 #define ADAMAS_VECTOR_CLONES
 #endif
+
+/// Before a loop over lanes, for the compiler that needs to be told: no turn writes what another one reads.
+#ifdef __clang__
+#define ADAMAS_INDEPENDENT_LANES
+#else
+#define ADAMAS_INDEPENDENT_LANES _Pragma("GCC ivdep")
+#endif
