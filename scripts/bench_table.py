@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 
 
 def note(text):
@@ -52,8 +53,8 @@ def hierarchy_table(found):
 
 def hierarchy_rows(build, quick):
     program = os.path.join(build, "tests/benchmarks/bench_hierarchy")
-    time = f"--benchmark_min_time={0.5 if quick else 2}"
-    yield from hierarchy_table(json.loads(output_of(program, "--benchmark_format=json", time)))
+    least = f"--benchmark_min_time={0.5 if quick else 2}"
+    yield from hierarchy_table(json.loads(output_of(program, "--benchmark_format=json", least)))
 
 
 def closest_point_table(text):
@@ -86,12 +87,19 @@ def resample(adamas, folder, data, *options):
         return json.load(file)
 
 
-def resample_row(name, figures, growth, target):
+def growth_text(figures, last, cells):
+    """Exponent of the time against the number of cells, from one size to the next."""
+    if last is None:
+        return ""
+    return f"time ~ cells^{math.log(figures['seconds'] / last['seconds']) / math.log(cells):.2f}"
+
+
+def resample_row(name, figures, growth, target, aim=""):
     ours = f"{figures['seconds']:.2f} s, {figures['peak_memory_bytes'] / 2**20:.0f} MiB"
     reached = figures.get("interface_error")
     at = f"{figures['tetrahedra']:,} tetrahedra, interface error "
     at += f"{reached:.3g} (wanted {target})" if reached is not None else f"wanted {target}"
-    return [f"resample {name}", ours, "", growth, "", at]
+    return [f"resample {name}", ours, "", growth, aim, at]
 
 
 def sphere_rows(build, quick):
@@ -103,12 +111,29 @@ def sphere_rows(build, quick):
             output_of(adamas, "generate", "scene", "sphere", "--dimensions", f"{n},{n},{n}", "--quiet", "-o", data)
             target = f"{0.5 / n:.6g}"
             figures = resample(adamas, folder, data, "--interface-error", target)
-        growth = ""
-        if last is not None:
-            exponent = math.log(figures["seconds"] / last["seconds"]) / math.log(8)
-            growth = f"time ~ cells^{exponent:.2f}"
+        yield resample_row(f"sphere {n}^3", figures, growth_text(figures, last, 8), f"{target}, half a cell")
         last = figures
-        yield resample_row(f"sphere {n}^3", figures, growth, f"{target}, half a cell")
+
+
+def impact_rows(build, quick):
+    """The impact of a projectile: its computation, and its resampling within 0.15 cm and 3 g/cm3 on the least grid, and
+    within the same part of a cell on the finer ones."""
+    adamas = os.path.join(build, "cli/adamas")
+    last = None
+    for factor in (1,) if quick else (1, 2, 4):
+        dimensions = f"{32 * factor},{32 * factor},{52 * factor}"
+        with tempfile.TemporaryDirectory() as folder:
+            data = os.path.join(folder, "impact.vtr")
+            start = time.monotonic()
+            output_of(adamas, "generate", "impact", "--dimensions", dimensions, "--threads", "1", "--quiet", "-o", data)
+            seconds = time.monotonic() - start
+            figures = resample(adamas, folder, data, "--interface-error", f"{0.15 / factor:g}", "--field-error",
+                               "density=3", "--ghost", "linear")
+        size = dimensions.replace(",", "x")
+        yield [f"generate impact {size}", f"{seconds:.1f} s", "", "", "<= 60 s" if factor == 1 else "", "1 thread"]
+        aim = {1: "<= 5 s", 4: "<= 60 s, 8 GB"}.get(factor, "")
+        yield resample_row(f"impact {size}", figures, growth_text(figures, last, 8), f"{0.15 / factor:g}", aim)
+        last = figures
 
 
 def cth_rows(build, quick):
@@ -141,7 +166,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="smaller grids, shorter runs")
     arguments = parser.parse_args()
     rows = []
-    for part in (hierarchy_rows, closest_point_rows, sphere_rows):
+    for part in (hierarchy_rows, closest_point_rows, sphere_rows, impact_rows):
         rows += some(part.__name__, part(arguments.build, arguments.quick))
     rows += cth_rows(arguments.build, arguments.quick)
     print_table(rows)
