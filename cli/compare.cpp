@@ -29,6 +29,7 @@ struct Options {
   ResamplingText text;
   std::vector<std::string> interface_errors;
   std::string references = "tetgen,mesh3", time_limit = "300", memory_limit = "8589934592";
+  std::string tetgen_switches = ComparisonOptions().tetgen_switches;
   std::string picture, csv;
 };
 
@@ -62,6 +63,7 @@ ComparisonOptions comparison_options(const Options& options) {
   choose_references(options.references, result);
   result.mesher.limits.seconds = parse_positive("--time-limit", options.time_limit);
   result.mesher.limits.memory_bytes = parse_count("--memory-limit", options.memory_limit, kLeastMemory);
+  result.tetgen_switches = options.tetgen_switches;
   return result;
 }
 
@@ -120,6 +122,9 @@ void add_compare(CLI::App& app, Session& session) {
                    std::string("Other generators: tetgen, mesh3 or both") +
                        (ADAMAS_WITH_TETGEN ? "" : " (this build is without TetGen)"))
       ->type_name("NAME,NAME")
+      ->capture_default_str();
+  command->add_option("--tetgen-switches", options->tetgen_switches, "How TetGen meshes; z and p are needed")
+      ->type_name("SWITCHES")
       ->capture_default_str();
   command
       ->add_option("--time-limit", options->time_limit, "Seconds that one mesh of another generator may take")

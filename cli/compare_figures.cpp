@@ -116,7 +116,6 @@ Figures row_figures(const ComparedMesh& row, const ResamplingSource& source) {
   figures["tetrahedra"] = when_made(f.tetrahedra);
   figures["vertices"] = when_made(f.vertices);
   figures["seconds"] = when_made(row.seconds);
-  figures["seconds_optimising"] = when_made(row.optimising_seconds);
   figures["seconds_fields"] = when_made(row.field_seconds);
   figures["peak_memory_bytes"] = when_made(row.peak_memory_bytes);
   figures["dihedral_min"] = when_made(f.dihedral.min);
@@ -175,7 +174,6 @@ std::string comparison_csv(const std::vector<ComparedMesh>& rows, const Resampli
                                       "tetrahedra",
                                       "vertices",
                                       "seconds",
-                                      "seconds_optimising",
                                       "seconds_fields",
                                       "peak_memory_bytes",
                                       "dihedral_min",

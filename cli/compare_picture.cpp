@@ -11,7 +11,8 @@ namespace adamas {
 
 namespace {
 
-constexpr std::array kJoined{MeshKind::kOwn, MeshKind::kOwnCut, MeshKind::kTetGen, MeshKind::kMesh3};
+constexpr std::array kJoined{MeshKind::kOwn, MeshKind::kOwnCut, MeshKind::kTetGen, MeshKind::kMesh3,
+                             MeshKind::kMesh3Optimised};
 
 /// One diagram: a line per kind of mesh, and a level where the distance is none.
 Plot make_plot(const std::vector<ComparedMesh>& rows, const std::string& title, const std::string& label,

@@ -182,10 +182,12 @@ ChildResult run_child_program(const std::filesystem::path& program, const std::v
   const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
   while (!guard.wait(WNOHANG)) {
     progress.check();
-    if (Clock::now() > deadline) return {fmt::format("took longer than {:.6g} s", limits.seconds), {}};
+    if (Clock::now() > deadline) return {fmt::format("took longer than {:.6g} s", limits.seconds), false, {}};
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  ChildResult result{failure_of(guard.status(), limits), out.content()};
+  const int status = guard.status();
+  ChildResult result{failure_of(status, limits), WIFSIGNALED(status) && WTERMSIG(status) != SIGXCPU,
+                     out.content()};
   if (!result.failure.empty()) result.failure += last_words(words);
   return result;
 }

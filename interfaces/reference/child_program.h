@@ -18,6 +18,7 @@ struct ChildLimits {
 struct ChildResult {
   /// Why there is no output that can be trusted, in words; empty where the program ended with status 0.
   std::string failure;
+  bool crashed = false;      ///< ended by a signal of its own
   std::vector<char> output;  ///< what it wrote to its standard output
 };
 

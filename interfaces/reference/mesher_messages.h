@@ -19,6 +19,7 @@ struct Mesh3Criteria {
   double facet_distance = 0;
   double edge_size = 0;
   double radius_edge_ratio = 3;
+  std::uint64_t optimise = 0;  ///< 1: perturb and exude, for better angles
 };
 
 /// What the separate program is asked: triangles on shared points, each of a patch, whose sides are regions
@@ -35,9 +36,8 @@ struct MesherRequest {
 
 /// What it answers. Its tetrahedra have regions, or patches of triangles between them.
 struct MesherReply {
-  std::string failure;    ///< empty where there is a mesh
-  double seconds = 0;     ///< in the library
-  double optimising = 0;  ///< of these, for better angles
+  std::string failure;  ///< empty where there is a mesh
+  double seconds = 0;   ///< in the library
   std::uint64_t peak_memory_bytes = 0;
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;
@@ -67,7 +67,6 @@ inline std::vector<char> encode(const MesherReply& reply) {
   writer.put(kReplyMark);
   writer.put(reply.failure);
   writer.put(reply.seconds);
-  writer.put(reply.optimising);
   writer.put(reply.peak_memory_bytes);
   writer.put(reply.points);
   writer.put(reply.tetrahedra);
@@ -100,7 +99,6 @@ inline std::optional<MesherReply> decode_reply(std::vector<char> bytes) {
   MesherReply reply;
   reply.failure = reader.get_text();
   reply.seconds = reader.get<double>();
-  reply.optimising = reader.get<double>();
   reply.peak_memory_bytes = reader.get<std::uint64_t>();
   reply.points = reader.get_list<Vec3>();
   reply.tetrahedra = reader.get_list<std::array<std::uint32_t, 4>>();

@@ -17,10 +17,10 @@ struct MesherOptions {
 
 /// A mesh by another generator, or why there is none.
 struct ReferenceResult {
-  std::string failure;  ///< empty where there is a mesh
+  std::string failure;   ///< empty where there is a mesh
+  bool crashed = false;  ///< ended by a signal
   ConformingMesh mesh;
   double seconds = 0;                 ///< within the library, without start of the process, input and output
-  double optimising = 0;              ///< of these, for better angles
   std::size_t peak_memory_bytes = 0;  ///< of the process; 0 where it did not tell
 };
 

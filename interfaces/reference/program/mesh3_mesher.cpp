@@ -122,10 +122,10 @@ MesherReply run_mesh3(const MesherRequest& request) {
   using namespace CGAL::parameters;
   auto complex =
       CGAL::make_mesh_3<Complex>(domain, make_criteria(request.criteria), no_perturb(), no_exude());
-  const auto refined = Clock::now();
-  CGAL::perturb_mesh_3(complex, domain);
-  CGAL::exude_mesh_3(complex);
-  reply.optimising = seconds_since(refined);
+  if (request.criteria.optimise != 0) {
+    CGAL::perturb_mesh_3(complex, domain);
+    CGAL::exude_mesh_3(complex);
+  }
   reply.seconds = seconds_since(start);
   take(complex, reply);
   if (reply.tetrahedra.empty()) reply.failure = "Mesh_3 made no tetrahedra";
