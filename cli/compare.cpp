@@ -58,11 +58,20 @@ void choose_references(const std::string& text, ComparisonOptions& options) {
     wrong_usage("--reference: expected tetgen, mesh3 or both with a comma between them, found '{}'", text);
 }
 
+/// What can be read of TetGen's answers rests on two of the switches, and others would have it write files.
+void check_switches(const std::string& switches) {
+  constexpr const char* kKnown = "zpYqaMTXOCDSbVQ0123456789./e-";
+  if (switches.find('z') == std::string::npos || switches.find('p') == std::string::npos ||
+      switches.find_first_not_of(kKnown) != std::string::npos || switches.size() > 100)
+    wrong_usage("--tetgen-switches: expected z, p and others of {}, found '{}'", kKnown, switches);
+}
+
 ComparisonOptions comparison_options(const Options& options) {
   ComparisonOptions result;
   choose_references(options.references, result);
   result.mesher.limits.seconds = parse_positive("--time-limit", options.time_limit);
   result.mesher.limits.memory_bytes = parse_count("--memory-limit", options.memory_limit, kLeastMemory);
+  check_switches(options.tetgen_switches);
   result.tetgen_switches = options.tetgen_switches;
   return result;
 }

@@ -141,18 +141,24 @@ void Comparison::measure_fields(const ReferenceResult& result, const OwnMesh& ow
           .figures(own.at_interface);
 }
 
-/// With the switches wanted; where TetGen crashes, once more without its sorting of points, which some inputs
-/// of few points do not survive.
+/// With the switches wanted; where TetGen crashes or loses something, once more with the least tolerance,
+/// since interfaces in cells have triangles that are almost flat, and once more without its sorting of
+/// points, which some inputs of few points do not survive.
 ReferenceResult Comparison::run_tetgen(const PiecewiseLinearComplex& complex, ComparedMesh& row) {
+  ReferenceResult first;
+  for (const char* more : {"", "T1e-14", "b0"}) {
+    const std::string switches = options_.tetgen_switches + more;
+    progress_.step("meshing by TetGen", -1);
+    ReferenceResult result = mesh_by_tetgen(complex, switches, options_.mesher, progress_);
+    if (result.failure.empty() && *more != '\0')
+      row.note += (row.note.empty() ? "failed with " : "; failed with ") + options_.tetgen_switches;
+    row.switches = switches;
+    if (result.failure.empty()) return result;
+    if (*more == '\0') first = std::move(result);
+    if (!first.crashed && !first.failure.starts_with("lost")) break;
+  }
   row.switches = options_.tetgen_switches;
-  progress_.step("meshing by TetGen", -1);
-  ReferenceResult result = mesh_by_tetgen(complex, row.switches, options_.mesher, progress_);
-  if (!result.crashed) return result;
-  ReferenceResult again = mesh_by_tetgen(complex, row.switches + "b0", options_.mesher, progress_);
-  if (!again.failure.empty()) return result;
-  row.note += (row.note.empty() ? "crashed with " : "; crashed with ") + row.switches;
-  row.switches += "b0";
-  return again;
+  return first;
 }
 
 void Comparison::add_tetgen(const PiecewiseLinearComplex& complex, const OwnMesh& own, ComparedMesh& row) {

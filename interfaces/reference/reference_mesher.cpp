@@ -81,9 +81,15 @@ ReferenceResult ask(const MesherRequest& request, const PiecewiseLinearComplex& 
                                   result.mesh.bodies);
     return result;
   }
+  std::vector<std::uint32_t> known;
+  for (const auto& sides : request.patch_regions) known.insert(known.end(), sides.begin(), sides.end());
+  std::sort(known.begin(), known.end());
   for (const std::uint32_t region : reply->regions) {
-    if (region == 0) result.failure = "made tetrahedra outside of all regions";
-    result.mesh.bodies.push_back(region == 0 ? BodyId() : BodyId(region - 1));
+    if (region == 0 || !std::binary_search(known.begin(), known.end(), region)) {
+      result.failure = "made tetrahedra outside of all regions";
+      break;
+    }
+    result.mesh.bodies.emplace_back(region - 1);
   }
   return result;
 }
