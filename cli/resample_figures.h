@@ -9,11 +9,6 @@
 
 namespace adamas {
 
-/// Field errors over all cells and over those with an interface.
-struct FieldFigures {
-  FieldError all, at_interfaces;
-};
-
 /// What a run of the resampler came to (the keys of `--json`).
 struct ResampleFigures {
   std::size_t tetrahedra = 0, vertices = 0;

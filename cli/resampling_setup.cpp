@@ -24,6 +24,10 @@ void add_resampling_options(CLI::App& command, ResamplingText& text) {
                   "the domain's diagonal")
       ->type_name("E|E%")
       ->capture_default_str();
+  add_other_resampling_options(command, text);
+}
+
+void add_other_resampling_options(CLI::App& command, ResamplingText& text) {
   command
       .add_option("--field-error", text.field_errors,
                   "Greatest error of a field, in its unit or in % of its range; repeatable")

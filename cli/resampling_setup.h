@@ -16,6 +16,8 @@ struct ResamplingText {
 };
 
 void add_resampling_options(CLI::App& command, ResamplingText& text);
+/// The same without the interface error.
+void add_other_resampling_options(CLI::App& command, ResamplingText& text);
 
 /// The options with their values checked, before the input is known.
 struct ResamplingWishes {

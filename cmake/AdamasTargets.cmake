@@ -5,8 +5,8 @@ add_library(adamas::flags ALIAS adamas_flags)
 target_compile_features(adamas_flags INTERFACE cxx_std_20)
 # One rounding per operation: the same input gives the same bytes everywhere.
 target_compile_options(adamas_flags INTERFACE -ffp-contract=off)
-target_compile_options(adamas_flags INTERFACE
-  $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Werror>)
+set(ADAMAS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Werror)
+target_compile_options(adamas_flags INTERFACE "$<BUILD_INTERFACE:${ADAMAS_WARNINGS}>")
 # g++ 12 sees overlaps in std::string's operator+ that are not there (its bug 105651).
 target_compile_options(adamas_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(ADAMAS_SANITIZE)
@@ -17,14 +17,19 @@ if(ADAMAS_SANITIZE)
   endif()
 endif()
 
-# adamas_library(name folder...): the library adamas_<name> (alias adamas::<name>) of all sources in the folders.
+# adamas_library(name folder... [EXCEPT folder]): the library adamas_<name> (alias adamas::<name>) of all sources in the
+# folders.
 function(adamas_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 library "" EXCEPT "")
   set(sources)
-  foreach(folder IN LISTS ARGN)
+  foreach(folder IN LISTS library_UNPARSED_ARGUMENTS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp
                                               ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.h)
     list(APPEND sources ${found})
   endforeach()
+  if(library_EXCEPT)
+    list(FILTER sources EXCLUDE REGEX "/${library_EXCEPT}")
+  endif()
   add_library(adamas_${name} STATIC ${sources})
   add_library(adamas::${name} ALIAS adamas_${name})
   set_target_properties(adamas_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)

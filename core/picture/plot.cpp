@@ -62,8 +62,10 @@ Ticks axis_ticks(const AxisScale& scale, double wanted) {
 
 class PlotDrawing {
  public:
-  PlotDrawing(const Plot& plot, const PlotOptions& options)
+  /// `left`: where the plot begins on the canvas.
+  PlotDrawing(const Plot& plot, const PlotOptions& options, double left)
       : plot_(plot),
+        left_(left),
         width_(options.width),
         height_(options.height),
         font_(options.font_size > 0 ? options.font_size : options.width / 62),
@@ -80,7 +82,7 @@ class PlotDrawing {
     place();
   }
 
-  std::string draw(PictureFormat format) const;
+  void draw(Canvas& canvas) const;
 
  private:
   void place();
@@ -89,7 +91,7 @@ class PlotDrawing {
   [[nodiscard]] LegendEntry style(std::size_t index) const;
 
   const Plot& plot_;
-  double width_, height_, font_;
+  double left_, width_, height_, font_;
   Legend legend_;
   AxisScale x_scale_, y_scale_;
   Ticks x_ticks_, y_ticks_;
@@ -120,8 +122,8 @@ void PlotDrawing::place() {
   y_ticks_ = axis_ticks(y_scale_, (height_ - top - bottom) / (2.6 * f));
   label_distance_ = (kTickLength + kTickGap) * f + widest_label(y_ticks_, f) + 0.7 * f;
   const double left = kMargin * f + label_distance_ + (plot_.y.label.empty() ? 0 : f);
-  box_ = {{std::round(left), std::round(top)},
-          {std::round(width_ - 2 * kMargin * f), std::round(height_ - bottom)}};
+  box_ = {{std::round(left_ + left), std::round(top)},
+          {std::round(left_ + width_ - 2 * kMargin * f), std::round(height_ - bottom)}};
   if (box_.size().x < 4 * f || box_.size().y < 4 * f)
     fail("plot: expected room for the diagram, found {} x {}", width_, height_);
   x_scale_.from = box_.min.x, x_scale_.to = box_.max.x;
@@ -173,12 +175,11 @@ void PlotDrawing::draw_series(Canvas& canvas, std::size_t index) const {
   }
 }
 
-std::string PlotDrawing::draw(PictureFormat format) const {
-  Canvas canvas(format, width_, height_);
+void PlotDrawing::draw(Canvas& canvas) const {
   const double f = font_;
   const TextStyle title{.size = kTitleFont * f, .colour = kInk, .bold = true};
   canvas.text(shortened(plot_.title, title, width_ - 2 * kMargin * f),
-              {kMargin * f, (kMargin + kTitleFont) * f}, title);
+              {left_ + kMargin * f, (kMargin + kTitleFont) * f}, title);
   draw_grid(canvas);
   const std::array<Vec2, 4> frame{box_.min, Vec2{box_.max.x, box_.min.y}, box_.max,
                                   Vec2{box_.min.x, box_.max.y}};
@@ -187,13 +188,21 @@ std::string PlotDrawing::draw(PictureFormat format) const {
   draw_x_axis(canvas, box_, x_scale_, x_ticks_, plot_.x.label, f);
   draw_y_axis(canvas, box_, y_scale_, y_ticks_, plot_.y.label, label_distance_, f);
   legend_.draw(canvas, {box_.min.x, height_ - kMargin * f - legend_.height()});
-  return canvas.finish(plot_.title);
 }
 
 }  // namespace
 
 std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions& options) {
-  return PlotDrawing(plot, options).draw(format);
+  return draw_plots({&plot, 1}, format, options);
+}
+
+std::string draw_plots(std::span<const Plot> plots, PictureFormat format, const PlotOptions& options) {
+  std::vector<PlotDrawing> drawings;
+  for (const Plot& plot : plots)
+    drawings.emplace_back(plot, options, options.width * static_cast<double>(drawings.size()));
+  Canvas canvas(format, options.width * static_cast<double>(plots.size()), options.height);
+  for (const PlotDrawing& drawing : drawings) drawing.draw(canvas);
+  return canvas.finish(plots.empty() ? "" : plots.front().title);
 }
 
 }  // namespace adamas

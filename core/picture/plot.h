@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,5 +47,8 @@ struct PlotOptions {
 /// The file's bytes. Throws Error for a series whose x and y differ in number, or a range that is empty or
 /// not positive on a logarithmic axis.
 std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions& options = {});
+/// The same for some plots side by side, each of the size that the options say; the document's title is the
+/// first one's.
+std::string draw_plots(std::span<const Plot> plots, PictureFormat format, const PlotOptions& options = {});
 
 }  // namespace adamas

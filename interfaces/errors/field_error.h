@@ -31,6 +31,11 @@ struct FieldError {
   }
 };
 
+/// Errors of one field at all native elements, and at those in cells with an interface.
+struct FieldFigures {
+  FieldError all, at_interfaces;
+};
+
 /// A cell with what is needed to evaluate fields in it.
 struct CellView {
   Tetrahedron frame;

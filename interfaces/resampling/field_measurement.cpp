@@ -1,39 +1,10 @@
 #include <algorithm>
-#include <atomic>
-#include <memory>
 
 #include "core/base/parallel.h"
+#include "interfaces/errors/view_cache.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
-
-namespace {
-
-/// Views of cells, worked out by whichever thread needs one first and kept.
-class ViewCache {
- public:
-  explicit ViewCache(std::size_t cells) : views_(cells) {}
-  ~ViewCache() {
-    for (const auto& view : views_) delete view.load();
-  }
-  ViewCache(const ViewCache&) = delete;
-  ViewCache& operator=(const ViewCache&) = delete;
-
-  template <class Make>
-  const CellView& get(TetrahedronId t, Make&& make) {
-    std::atomic<const CellView*>& slot = views_[t.value];
-    if (const CellView* found = slot.load(std::memory_order_acquire)) return *found;
-    auto fresh = std::make_unique<const CellView>(make());
-    const CellView* expected = nullptr;
-    if (slot.compare_exchange_strong(expected, fresh.get())) return *fresh.release();
-    return *expected;
-  }
-
- private:
-  std::vector<std::atomic<const CellView*>> views_;
-};
-
-}  // namespace
 
 void Resampler::compute_rows(std::vector<std::pair<VertexId, BodyId>> needs) {
   std::sort(needs.begin(), needs.end());
@@ -94,7 +65,7 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
   ViewCache cache(hierarchy_.tetrahedron_slots());
   const CellsInBox nearby = [&](const Box3& box, MaterialId material, const auto& visit) {
     cells_in_box(box, material,
-                 [&](TetrahedronId t) { visit(cache.get(t, [&] { return view_with_parts(t); })); });
+                 [&](TetrahedronId t) { visit(cache.get(t.value, [&] { return view_with_parts(t); })); });
   };
   parallel_for(cells.size(), 16, [&](std::size_t i) {
     if (displaced[i].empty()) return;

@@ -1,0 +1,156 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/command.h"
+#include "cli/compare_figures.h"
+#include "cli/compare_picture.h"
+#include "cli/input_options.h"
+#include "cli/option_values.h"
+#include "cli/reference_program.h"
+#include "cli/resampling_setup.h"
+#include "cli/usage_error.h"
+#include "core/io/output_stream.h"
+
+namespace adamas {
+
+namespace {
+
+/// Less address space than this is not enough to load the libraries.
+constexpr std::size_t kLeastMemory = std::size_t{64} << 20;
+
+struct Options {
+  InputOptions input;
+  ResamplingText text;
+  std::vector<std::string> interface_errors;
+  std::string references = "tetgen,mesh3", time_limit = "300", memory_limit = "8589934592";
+  std::string tetgen_switches = ComparisonOptions().tetgen_switches;
+  std::string picture, csv;
+};
+
+/// One set of wishes for each interface error; greatest errors first as they are given.
+std::vector<ResamplingWishes> all_wishes(const Options& options) {
+  std::vector<ResamplingWishes> result;
+  for (const std::string& error : options.interface_errors) {
+    ResamplingText text = options.text;
+    text.interface_error = error;
+    result.emplace_back(text);
+  }
+  if (result.empty()) result.emplace_back(options.text);
+  return result;
+}
+
+void choose_references(const std::string& text, ComparisonOptions& options) {
+  options.tetgen = options.mesh3 = false;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) {
+    bool& chosen = word == "tetgen" ? options.tetgen : options.mesh3;
+    if ((word != "tetgen" && word != "mesh3") || chosen)
+      wrong_usage("--reference: expected tetgen, mesh3 or both with a comma between them, found '{}'", text);
+    chosen = true;
+  }
+  if (!(options.tetgen || options.mesh3) || text.ends_with(','))
+    wrong_usage("--reference: expected tetgen, mesh3 or both with a comma between them, found '{}'", text);
+}
+
+/// What can be read of TetGen's answers rests on two of the switches, and others would have it write files.
+void check_switches(const std::string& switches) {
+  constexpr const char* kKnown = "zpYqaMTXOCDSbVQ0123456789./e-";
+  if (switches.find('z') == std::string::npos || switches.find('p') == std::string::npos ||
+      switches.find_first_not_of(kKnown) != std::string::npos || switches.size() > 100)
+    wrong_usage("--tetgen-switches: expected z, p and others of {}, found '{}'", kKnown, switches);
+}
+
+ComparisonOptions comparison_options(const Options& options) {
+  ComparisonOptions result;
+  choose_references(options.references, result);
+  result.mesher.limits.seconds = parse_positive("--time-limit", options.time_limit);
+  result.mesher.limits.memory_bytes = parse_count("--memory-limit", options.memory_limit, kLeastMemory);
+  check_switches(options.tetgen_switches);
+  result.tetgen_switches = options.tetgen_switches;
+  return result;
+}
+
+void run(const Options& options, Session& session) {
+  Console& console = session.console;
+  const std::vector<ResamplingWishes> wishes = all_wishes(options);
+  ComparisonOptions comparison = comparison_options(options);
+  protect_inputs(options.input, options.input.path, session.outputs);
+  session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
+  session.outputs.declare("--csv", options.csv, {".csv"});
+  comparison.mesher.program = find_reference_program();
+  const Input input = load_input(options.input, console, [&wishes](const auto&... found) {
+    for (const ResamplingWishes& wish : wishes) wish.check(found...);
+  });
+  comparison.resampling = wishes.front().options(input.source);
+  for (const ResamplingWishes& wish : wishes)
+    comparison.interface_errors.push_back(wish.options(input.source).interface_error);
+  const std::vector<ComparedMesh> rows = compare_meshes(input.source, comparison, console);
+  print_comparison(rows, input.source, console);
+  Figures figures;
+  figures["meshes"] = comparison_figures(rows, input.source);
+  session.outputs.write(options.picture, [&](const auto& path) {
+    write_comparison_picture(path, rows, std::filesystem::path(input.source.name).stem().string());
+  });
+  session.outputs.write(options.csv, [&](const auto& path) {
+    OutputStream stream(path);
+    stream.write(comparison_csv(rows, input.source));
+    stream.finish();
+  });
+  figures["seconds"] = console.seconds();
+  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  session.outputs.commit();
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(
+      app, session, "compare", "The mesh beside meshes of other generators at equal interface error",
+      "adamas compare cells.vtr --interface-error 2% --interface-error 1% -o comparison.png",
+      [options, &session] { run(*options, session); });
+  command
+      ->add_option("input", options->input.path,
+                   std::string("What to mesh: ") + kGridFiles + ", or a labelled network (.vtp, .arec, .txt)")
+      ->type_name("FILE");
+  command
+      ->add_option("--interface-error", options->interface_errors,
+                   "Greatest distance between the interfaces and their approximation, as a length or in % of "
+                   "the domain's diagonal; repeatable, a group of rows each (default: 1%)")
+      ->type_name("E|E%")
+      ->allow_extra_args(false);
+  add_other_resampling_options(*command, options->text);
+  command
+      ->add_option("--reference", options->references,
+                   std::string("Other generators: tetgen, mesh3 or both") +
+                       (ADAMAS_WITH_TETGEN ? "" : " (this build is without TetGen)"))
+      ->type_name("NAME,NAME")
+      ->capture_default_str();
+  command->add_option("--tetgen-switches", options->tetgen_switches, "How TetGen meshes; z and p are needed")
+      ->type_name("SWITCHES")
+      ->capture_default_str();
+  command
+      ->add_option("--time-limit", options->time_limit, "Seconds that one mesh of another generator may take")
+      ->type_name("S")
+      ->capture_default_str();
+  command
+      ->add_option("--memory-limit", options->memory_limit,
+                   "Address space in bytes that another generator may take")
+      ->type_name("BYTES")
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", options->picture,
+                   "Tetrahedra and seconds against measured distance: .png, .svg or .pdf")
+      ->type_name("FILE");
+  command->add_option("--csv", options->csv, "The table: .csv")->type_name("FILE");
+  add_material_options(*command, options->input);
+  add_interface_options(*command, options->input);
+}
+
+}  // namespace adamas

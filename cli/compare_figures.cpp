@@ -1,0 +1,216 @@
+#include "cli/compare_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace adamas {
+
+namespace {
+
+double mean(const FieldError& e) { return e.count > 0 ? e.sum / static_cast<double>(e.count) : 0; }
+
+/// Greatest over the fields, each in parts of its range.
+struct RelativeErrors {
+  std::optional<double> max, mean, interface_max, interface_mean;
+};
+
+RelativeErrors relative_errors(const ComparedMesh& row, const ResamplingSource& source) {
+  RelativeErrors result;
+  const auto raise = [](std::optional<double>& to, double value) { to = std::max(to.value_or(0), value); };
+  for (std::size_t f = 0; f < row.figures.fields.size(); ++f) {
+    const FieldInfo& info = source.fields->fields()[f];
+    const double range = info.max - info.min;
+    const auto& [all, near] = row.figures.fields[f];
+    if (!(range > 0) || all.count == 0) continue;
+    raise(result.max, all.max / range);
+    raise(result.mean, mean(all) / range);
+    if (near.count == 0) continue;
+    raise(result.interface_max, near.max / range);
+    raise(result.interface_mean, mean(near) / range);
+  }
+  return result;
+}
+
+/// Greatest relative difference of a material's volume from what the input states.
+std::optional<double> volume_error(const ComparedMesh& row, const ResamplingSource& source) {
+  std::optional<double> result;
+  for (MaterialId m(0); m.value < source.volumes.size(); ++m.value) {
+    if (!(source.volumes[m] > 0)) continue;
+    const double error = std::abs(row.figures.volumes[m] / source.volumes[m] - 1);
+    result = std::max(result.value_or(0), error);
+  }
+  return result;
+}
+
+std::string percent(const std::optional<double>& part) {
+  return part ? fmt::format("{:.3g}", 100 * *part) : "-";
+}
+
+std::string short_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "none";
+}
+
+std::vector<std::string> text_row(const ComparedMesh& row, const ResamplingSource& source) {
+  std::vector<std::string> result{mesh_name(row.kind),
+                                  row.interface_error ? short_number(*row.interface_error) : "-"};
+  if (!row.failure.empty()) {
+    result.resize(12, "-");
+    return result;
+  }
+  const MeshFigures& f = row.figures;
+  const RelativeErrors errors = relative_errors(row, source);
+  result.insert(
+      result.end(),
+      {std::to_string(f.tetrahedra), std::to_string(f.vertices), fmt::format("{:.3f}", row.seconds),
+       bytes_text(static_cast<double>(row.peak_memory_bytes)),
+       fmt::format("{:.1f} - {:.1f}", f.dihedral.min, f.dihedral.max), short_number(f.distance.to_input),
+       short_number(f.distance.from_input), percent(errors.max) + " / " + percent(errors.mean),
+       percent(errors.interface_max) + " / " + percent(errors.interface_mean),
+       percent(volume_error(row, source))});
+  return result;
+}
+
+Figures optional_figure(const std::optional<double>& value) {
+  return value ? Figures(*value) : Figures(nullptr);
+}
+
+Figures field_figures(const ComparedMesh& row, const ResamplingSource& source) {
+  Figures figures = Figures::object();
+  for (std::size_t f = 0; f < row.figures.fields.size(); ++f) {
+    const auto& [all, near] = row.figures.fields[f];
+    const auto known = [](const FieldError& e, double value) {
+      return e.count > 0 ? Figures(value) : Figures(nullptr);
+    };
+    figures[source.fields->fields()[f].name] = {{"max_error", known(all, all.max)},
+                                                {"mean_error", known(all, mean(all))},
+                                                {"interface_max_error", known(near, near.max)},
+                                                {"interface_mean_error", known(near, mean(near))}};
+  }
+  return figures;
+}
+
+Figures material_figures(const ComparedMesh& row, const ResamplingSource& source) {
+  Figures figures = Figures::array();
+  for (MaterialId m(0); m.value < row.figures.volumes.size(); ++m.value) {
+    const bool stated = m.value < source.volumes.size();
+    figures.push_back({{"name", source.materials[m]},
+                       {"volume_input", stated ? Figures(source.volumes[m]) : Figures(nullptr)},
+                       {"volume_mesh", row.figures.volumes[m]}});
+  }
+  return figures;
+}
+
+Figures row_figures(const ComparedMesh& row, const ResamplingSource& source) {
+  Figures figures;
+  figures["name"] = mesh_name(row.kind);
+  figures["interface_error_target"] = optional_figure(row.interface_error);
+  figures["failure"] = row.failure.empty() ? Figures(nullptr) : Figures(row.failure);
+  figures["note"] = row.note.empty() ? Figures(nullptr) : Figures(row.note);
+  figures["switches"] = row.switches.empty() ? Figures(nullptr) : Figures(row.switches);
+  figures["trials"] = row.trials;
+  figures["matched"] = row.matched;
+  const bool made = row.failure.empty();
+  const auto when_made = [&](auto value) { return made ? Figures(value) : Figures(nullptr); };
+  const MeshFigures& f = row.figures;
+  figures["tetrahedra"] = when_made(f.tetrahedra);
+  figures["vertices"] = when_made(f.vertices);
+  figures["seconds"] = when_made(row.seconds);
+  figures["seconds_certifying"] = when_made(row.certifying_seconds);
+  figures["seconds_fields"] = when_made(row.field_seconds);
+  figures["peak_memory_bytes"] = when_made(row.peak_memory_bytes);
+  figures["dihedral_min"] = when_made(f.dihedral.min);
+  figures["dihedral_max"] = when_made(f.dihedral.max);
+  figures["hausdorff_to_input"] = when_made(f.distance.to_input);
+  figures["hausdorff_from_input"] = when_made(f.distance.from_input);
+  const RelativeErrors errors = made ? relative_errors(row, source) : RelativeErrors{};
+  figures["field_max_error"] = optional_figure(errors.max);
+  figures["field_mean_error"] = optional_figure(errors.mean);
+  figures["field_interface_max_error"] = optional_figure(errors.interface_max);
+  figures["field_interface_mean_error"] = optional_figure(errors.interface_mean);
+  figures["fields"] = made ? field_figures(row, source) : Figures::object();
+  figures["materials"] = made ? material_figures(row, source) : Figures::array();
+  return figures;
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
+}  // namespace
+
+void print_comparison(const std::vector<ComparedMesh>& rows, const ResamplingSource& source,
+                      Console& console) {
+  std::vector<std::vector<std::string>> table{{"mesh", "error wanted", "tetrahedra", "vertices", "seconds",
+                                               "memory", "dihedral angles", "to input", "from input",
+                                               "field error % max / mean", "at interfaces", "volume %"}};
+  for (const ComparedMesh& row : rows) table.push_back(text_row(row, source));
+  console.table(table);
+  console.print("\n");
+  for (const ComparedMesh& row : rows) {
+    std::string line = mesh_name(row.kind);
+    if (row.interface_error) line += " at " + short_number(*row.interface_error);
+    std::string said;
+    const auto add = [&said](const std::string& text) { said += (said.empty() ? "" : "; ") + text; };
+    if (!row.failure.empty()) add("failed: " + row.failure);
+    if (!row.note.empty()) add(row.note);
+    if (row.kind == MeshKind::kOwn)
+      add(fmt::format("{:.3f} s of it to certify the distance", row.certifying_seconds));
+    if (!row.matched && row.failure.empty()) add("the distance was not matched within 5%");
+    if (!row.switches.empty()) add(row.switches);
+    if (row.trials > 0) add(fmt::format("{} trials", row.trials));
+    if (!said.empty()) console.print("  {}: {}\n", line, said);
+  }
+}
+
+Figures comparison_figures(const std::vector<ComparedMesh>& rows, const ResamplingSource& source) {
+  Figures figures = Figures::array();
+  for (const ComparedMesh& row : rows) figures.push_back(row_figures(row, source));
+  return figures;
+}
+
+std::string comparison_csv(const std::vector<ComparedMesh>& rows, const ResamplingSource& source) {
+  constexpr const char* kColumns[] = {"name",
+                                      "interface_error_target",
+                                      "tetrahedra",
+                                      "vertices",
+                                      "seconds",
+                                      "seconds_certifying",
+                                      "seconds_fields",
+                                      "peak_memory_bytes",
+                                      "dihedral_min",
+                                      "dihedral_max",
+                                      "hausdorff_to_input",
+                                      "hausdorff_from_input",
+                                      "field_max_error",
+                                      "field_mean_error",
+                                      "field_interface_max_error",
+                                      "field_interface_mean_error",
+                                      "trials",
+                                      "matched",
+                                      "switches",
+                                      "failure",
+                                      "note"};
+  std::string csv;
+  for (const char* column : kColumns) csv += (csv.empty() ? "" : ",") + std::string(column);
+  csv += ",volume_error\n";
+  for (const ComparedMesh& row : rows) {
+    const Figures figures = row_figures(row, source);
+    for (const char* column : kColumns) {
+      const Figures& value = figures[column];
+      if (value.is_string()) {
+        csv += quoted(value.get<std::string>());
+      } else if (!value.is_null()) {
+        csv += value.dump();
+      }
+      csv += ",";
+    }
+    const auto volume = row.failure.empty() ? volume_error(row, source) : std::nullopt;
+    csv += (volume ? fmt::format("{}", *volume) : "") + "\n";
+  }
+  return csv;
+}
+
+}  // namespace adamas

@@ -1,0 +1,284 @@
+#include "interfaces/reference/comparison.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "interfaces/reference/own_mesh.h"
+#include "interfaces/reference/sizing_search.h"
+
+namespace adamas {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Points that are nearer to a side of the box than this part of its diagonal are moved onto it.
+constexpr double kOntoBox = 1e-9;
+
+class Comparison {
+ public:
+  Comparison(const ResamplingSource& source, const ComparisonOptions& options, Progress& progress)
+      : source_(source), options_(options), progress_(progress) {}
+
+  std::vector<ComparedMesh> run() {
+    std::vector<OwnMesh> own;
+    for (const double error : options_.interface_errors) {
+      ResamplingOptions wanted = options_.resampling;
+      wanted.interface_error = error;
+      own.push_back(make_own_mesh(source_, wanted, progress_));
+    }
+    stitch_input();
+    if (options_.tetgen) add_untouched(own.front());
+    for (const OwnMesh& each : own) {
+      rows_.push_back(each.row);
+      rows_.push_back(each.cut_row);
+      if (options_.tetgen) add_resampled(each);
+      if (options_.mesh3) add_mesh3(each);
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  void stitch_input();
+  [[nodiscard]] PiecewiseLinearComplex stitch(std::span<const Vec3> points,
+                                              std::span<const BodyTriangle> triangles) const;
+  ReferenceResult run_tetgen(const PiecewiseLinearComplex& complex, ComparedMesh& row);
+  void add_tetgen(const PiecewiseLinearComplex& complex, const OwnMesh& own, ComparedMesh& row);
+  void add_untouched(const OwnMesh& own);
+  void add_resampled(const OwnMesh& own);
+  void add_mesh3(const OwnMesh& own);
+  /// The trial of Mesh_3 that came closest.
+  struct Mesh3Match {
+    ComparedMesh row;
+    Mesh3Criteria criteria;
+    ReferenceResult result;
+    double mismatch = 0;
+    std::size_t trials = 0;
+  };
+  SizingTrial try_mesh3(double wanted, double facet_distance, Mesh3Match& match);
+  void add_optimised(const OwnMesh& own, const Mesh3Match& match, double wanted);
+  void measure(const ReferenceResult& result, double target, ComparedMesh& row);
+  void measure_fields(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row);
+  [[nodiscard]] std::string lost_materials(const MeshFigures& figures) const;
+  [[nodiscard]] Mesh3Criteria criteria(double facet_distance) const;
+
+  const ResamplingSource& source_;
+  const ComparisonOptions& options_;
+  Progress& progress_;
+  std::vector<ComparedMesh> rows_;
+  std::optional<PiecewiseLinearComplex> input_;
+  std::string input_fault_;
+};
+
+PiecewiseLinearComplex Comparison::stitch(std::span<const Vec3> points,
+                                          std::span<const BodyTriangle> triangles) const {
+  return stitch_to_box(source_.name, points, triangles, source_.box, kOntoBox * source_.box.diagonal(),
+                       [this](const Vec3& p) { return source_.body_at(p, nullptr); });
+}
+
+void Comparison::stitch_input() {
+  const InterfaceNetwork& network = *source_.network;
+  std::vector<BodyTriangle> triangles;
+  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+    const auto& interface = network.interface(network.interface_of(t));
+    triangles.push_back({network.triangles()[t], interface.a, interface.b});
+  }
+  try {
+    input_ = stitch(network.points(), triangles);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    input_fault_ = error.what();
+  }
+}
+
+/// A mesh without a part of the input is no mesh of it.
+std::string Comparison::lost_materials(const MeshFigures& figures) const {
+  const InterfaceTable& table = source_.network->table();
+  for (BodyId b(0); b.value < table.body_count(); ++b.value) {
+    const MaterialId m = table.material(b);
+    if (!(figures.volumes[m] > 0)) return "lost the material '" + source_.materials[m] + "'";
+  }
+  return "";
+}
+
+void Comparison::measure(const ReferenceResult& result, double target, ComparedMesh& row) {
+  row.failure = result.failure;
+  row.seconds = result.seconds;
+  row.peak_memory_bytes = result.peak_memory_bytes;
+  if (!row.failure.empty()) return;
+  const InterfaceTable& table = source_.network->table();
+  MeshFigures& figures = row.figures;
+  figures = {};
+  figures.tetrahedra = result.mesh.tetrahedra.size();
+  figures.vertices = result.mesh.points.size();
+  for (std::size_t t = 0; t < figures.tetrahedra; ++t) figures.dihedral.add(result.mesh.corners(t));
+  figures.volumes.assign(source_.materials.size(), 0.0);
+  std::size_t lost = 0;
+  const auto volumes = body_volumes(result.mesh, table.body_count());
+  for (BodyId b(0); b.value < volumes.size(); ++b.value) {
+    figures.volumes[table.material(b)] += volumes[b];
+    if (!(volumes[b] > 0)) ++lost;
+  }
+  row.failure = lost_materials(figures);
+  if (!row.failure.empty()) return;
+  if (lost > 0)
+    row.note += fmt::format("{}{} of {} bodies are lost", row.note.empty() ? "" : "; ", lost, volumes.size());
+  figures.distance =
+      measure_distance(source_, result.mesh.points, interface_faces(result.mesh), target, progress_);
+}
+
+void Comparison::measure_fields(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row) {
+  if (!source_.fields) return;
+  const auto start = Clock::now();
+  const std::vector<VertexRecord> vertices = fields_at_vertices(result.mesh, source_);
+  row.field_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  row.figures.fields =
+      measure_element_errors(source_, measured_cells(result.mesh, vertices), own.half_width, progress_)
+          .figures(own.at_interface);
+}
+
+/// With the switches wanted; where TetGen crashes or loses something, once more with the least tolerance,
+/// since interfaces in cells have triangles that are almost flat, and once more without its sorting of
+/// points, which some inputs of few points do not survive.
+ReferenceResult Comparison::run_tetgen(const PiecewiseLinearComplex& complex, ComparedMesh& row) {
+  ReferenceResult first;
+  for (const char* more : {"", "T1e-14", "b0"}) {
+    const std::string switches = options_.tetgen_switches + more;
+    progress_.step("meshing by TetGen", -1);
+    ReferenceResult result = mesh_by_tetgen(complex, switches, options_.mesher, progress_);
+    if (result.failure.empty() && *more != '\0')
+      row.note += (row.note.empty() ? "failed with " : "; failed with ") + options_.tetgen_switches;
+    row.switches = switches;
+    if (result.failure.empty()) return result;
+    if (*more == '\0') first = std::move(result);
+    if (!first.crashed && !first.failure.starts_with("lost")) break;
+  }
+  row.switches = options_.tetgen_switches;
+  return first;
+}
+
+void Comparison::add_tetgen(const PiecewiseLinearComplex& complex, const OwnMesh& own, ComparedMesh& row) {
+  const ReferenceResult result = run_tetgen(complex, row);
+  measure(result, *own.row.interface_error, row);
+  if (row.failure.empty()) measure_fields(result, own, row);
+}
+
+void Comparison::add_untouched(const OwnMesh& own) {
+  ComparedMesh row;
+  row.kind = MeshKind::kTetGenUntouched;
+  row.failure = input_fault_;
+  row.note = "distance 0 by construction";
+  if (input_) add_tetgen(*input_, own, row);
+  rows_.push_back(row);
+}
+
+void Comparison::add_resampled(const OwnMesh& own) {
+  ComparedMesh row;
+  row.kind = MeshKind::kTetGen;
+  row.interface_error = own.row.interface_error;
+  try {
+    add_tetgen(stitch(own.interface_points, own.interfaces), own, row);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    row.failure = error.what();
+  }
+  rows_.push_back(row);
+}
+
+/// Curves are followed by edges of this size, so that their arrows are about the distance where they are bent
+/// like a circle of a quarter of the box.
+Mesh3Criteria Comparison::criteria(double facet_distance) const {
+  const Vec3 size = source_.box.size();
+  const double bend = 0.25 * std::min({size.x, size.y, size.z});
+  Mesh3Criteria result;
+  result.facet_distance = facet_distance;
+  result.edge_size = std::sqrt(8 * facet_distance * bend);
+  return result;
+}
+
+SizingTrial Comparison::try_mesh3(double wanted, double facet_distance, Mesh3Match& match) {
+  ComparedMesh row = match.row;
+  row.failure.clear(), row.note.clear(), row.figures = {};
+  const Mesh3Criteria sizes = criteria(facet_distance);
+  row.switches =
+      fmt::format("facet_distance {:.4g}, edge_size {:.4g}, facet_angle {:g}, radius_edge_ratio {:g}",
+                  sizes.facet_distance, sizes.edge_size, sizes.facet_angle, sizes.radius_edge_ratio);
+  const std::size_t trial = ++match.trials;
+  progress_.step(fmt::format("meshing by Mesh_3, trial {}", trial), -1);
+  ReferenceResult result = mesh_by_mesh3(*input_, sizes, options_.mesher, progress_);
+  measure(result, wanted, row);
+  using Outcome = SizingTrial::Outcome;
+  const bool made = row.failure.empty();
+  const double distance = row.figures.distance.greatest();
+  const double mismatch = made ? std::abs(std::log(distance / wanted)) : std::numeric_limits<double>::max();
+  if (trial == 1 || mismatch < match.mismatch) match = {row, sizes, std::move(result), mismatch, trial};
+  if (made) return {Outcome::kMeasured, distance};
+  return {row.failure.starts_with("lost") ? Outcome::kTooCoarse : Outcome::kTooFine, 0};
+}
+
+void Comparison::add_mesh3(const OwnMesh& own) {
+  Mesh3Match match;
+  ComparedMesh& row = match.row;
+  row.kind = MeshKind::kMesh3;
+  row.interface_error = own.row.interface_error;
+  row.failure = input_fault_;
+  const double wanted = own.row.figures.distance.greatest();
+  if (input_ && !(wanted > 0 && std::isfinite(wanted))) row.failure = "there is no distance to match";
+  bool matched = false;
+  if (row.failure.empty()) {
+    matched =
+        search_sizing(wanted, 0.5 * wanted, [&](double size) { return try_mesh3(wanted, size, match); });
+  }
+  row.matched = matched;
+  row.trials = match.trials;
+  if (row.failure.empty()) measure_fields(match.result, own, row);
+  rows_.push_back(row);
+  if (row.failure.empty()) add_optimised(own, match, wanted);
+}
+
+void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match, double wanted) {
+  ComparedMesh row = match.row;
+  row.kind = MeshKind::kMesh3Optimised;
+  row.switches += ", perturb, exude";
+  row.note.clear(), row.trials = 0, row.figures = {};
+  Mesh3Criteria sizes = match.criteria;
+  sizes.optimise = 1;
+  progress_.step("meshing by Mesh_3 with optimisers", -1);
+  const ReferenceResult result = mesh_by_mesh3(*input_, sizes, options_.mesher, progress_);
+  measure(result, wanted, row);
+  row.matched = std::abs(row.figures.distance.greatest() / wanted - 1) <= SizingOptions().tolerance;
+  if (row.failure.empty()) measure_fields(result, own, row);
+  rows_.push_back(row);
+}
+
+}  // namespace
+
+std::string mesh_name(MeshKind kind) {
+  switch (kind) {
+    case MeshKind::kOwn:
+      return "adamas";
+    case MeshKind::kOwnCut:
+      return "adamas cut";
+    case MeshKind::kTetGen:
+      return "TetGen (our interfaces)";
+    case MeshKind::kTetGenUntouched:
+      return "TetGen (input's)";
+    case MeshKind::kMesh3:
+      return "Mesh_3";
+    case MeshKind::kMesh3Optimised:
+      return "Mesh_3 optimised";
+  }
+  return "";
+}
+
+std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const ComparisonOptions& options,
+                                         Progress& progress) {
+  return Comparison(source, options, progress).run();
+}
+
+}  // namespace adamas

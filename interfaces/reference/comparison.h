@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "interfaces/reference/mesh_figures.h"
+#include "interfaces/reference/reference_mesher.h"
+#include "interfaces/resampling/resampler.h"
+
+namespace adamas {
+
+/// What is compared, and how.
+struct ComparisonOptions {
+  std::vector<double> interface_errors;  ///< wanted of the resampled meshes, in units of length
+  ResamplingOptions resampling;          ///< all but the interface error
+  bool tetgen = true, mesh3 = true;
+  std::string tetgen_switches = "zpq1.414Q";
+  MesherOptions mesher;
+};
+
+enum class MeshKind {
+  kOwn,              ///< the resampled mesh
+  kOwnCut,           ///< its cells cut along the interfaces
+  kTetGen,           ///< TetGen with the resampled mesh's interfaces
+  kTetGenUntouched,  ///< TetGen with the input's interfaces
+  kMesh3,            ///< Mesh_3, its sizing matched to the resampled mesh's measured distance
+  kMesh3Optimised,   ///< the same, then perturbed and exuded, as Mesh_3 does by default
+};
+
+/// A row of the comparison.
+struct ComparedMesh {
+  MeshKind kind = MeshKind::kOwn;
+  std::optional<double> interface_error;  ///< wanted of the resampled mesh of this group of rows
+  std::string failure;                    ///< why there are no figures; empty where there are
+  std::string switches;                   ///< of the generator
+  std::string note;                       ///< what else has to be known
+  MeshFigures figures;
+  double seconds = 0;             ///< for the mesh
+  double certifying_seconds = 0;  ///< of these, for measuring the interfaces and mending what fails
+  double field_seconds = 0;       ///< for fields at its vertices
+  std::size_t peak_memory_bytes = 0;
+  std::size_t trials = 0;  ///< of sizing
+  bool matched = true;     ///< sizing gave the wanted distance within 5%
+};
+
+/// The rows: those that belong to no error first, then group by group (docs/method.md, Reference meshes). A
+/// generator that fails gives a row with its reason.
+std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const ComparisonOptions& options,
+                                         Progress& progress = SilentProgress::instance());
+
+/// "TetGen (our interfaces)" and the like.
+std::string mesh_name(MeshKind kind);
+
+}  // namespace adamas

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/geometry/vec3.h"
+#include "interfaces/network/closest_point_tree.h"
+
+namespace adamas {
+
+/// A tetrahedral mesh whose interfaces are faces: each tetrahedron lies in one body.
+struct ConformingMesh {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented, or flat
+  std::vector<BodyId> bodies;                            ///< of the tetrahedra
+
+  [[nodiscard]] std::array<Vec3, 4> corners(std::size_t t) const {
+    const auto& v = tetrahedra[t];
+    return {points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
+  }
+};
+
+/// The faces between two bodies, each once.
+std::vector<ClosestPointTree::Triangle> interface_faces(const ConformingMesh& mesh);
+
+/// Volume of each of so many bodies, in the cube of the unit of length.
+IdVector<BodyId, double> body_volumes(const ConformingMesh& mesh, std::size_t bodies);
+
+/// The tetrahedra beyond the faces of each one, opposite to its corners; kNoNeighbour where there is none.
+/// Throws Error, which begins with `name`, where more than two tetrahedra share a face.
+inline constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
+std::vector<std::array<std::uint32_t, 4>> find_neighbours(
+    const std::vector<std::array<std::uint32_t, 4>>& tetrahedra, const std::string& name);
+
+}  // namespace adamas

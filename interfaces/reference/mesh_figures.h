@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/typed_id.h"
+#include "interfaces/errors/field_error.h"
+#include "interfaces/network/closest_point_tree.h"
+#include "interfaces/source.h"
+
+namespace adamas {
+
+/// Smallest and greatest angle between two faces of a tetrahedron, in degrees.
+struct DihedralRange {
+  double min = 180, max = 0;
+  void add(const std::array<Vec3, 4>& corners);
+};
+
+/// Upper bounds of the two directed distances between a mesh's interfaces and the input's, in units of
+/// length.
+struct TwoSidedDistance {
+  double to_input = 0;    ///< greatest distance of a point of the mesh's interfaces from the input's
+  double from_input = 0;  ///< the other way
+  [[nodiscard]] double greatest() const { return std::max(to_input, from_input); }
+};
+
+/// Measures both ways; only what lies in the source's box counts. `target`: a distance that matters; bounds
+/// are within 1% of the distances, or a hundredth of it.
+TwoSidedDistance measure_distance(const ResamplingSource& source, std::span<const Vec3> points,
+                                  std::span<const ClosestPointTree::Triangle> triangles, double target,
+                                  const Progress& progress = SilentProgress::instance());
+
+/// What is told of a mesh.
+struct MeshFigures {
+  std::size_t tetrahedra = 0, vertices = 0;
+  DihedralRange dihedral;
+  TwoSidedDistance distance;
+  std::vector<FieldFigures> fields;      ///< by the source's fields
+  IdVector<MaterialId, double> volumes;  ///< by material
+};
+
+}  // namespace adamas

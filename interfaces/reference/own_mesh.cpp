@@ -1,0 +1,108 @@
+#include "interfaces/reference/own_mesh.h"
+
+#include <chrono>
+
+#include "interfaces/mesh/cut_mesh.h"
+#include "interfaces/reference/peak_memory.h"
+
+namespace adamas {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Resamples, for the time alone.
+double seconds_to_refine(const ResamplingSource& source, const ResamplingOptions& options,
+                         Progress& progress) {
+  const auto start = Clock::now();
+  Resampler resampler(source, options, progress);
+  resampler.refine();
+  return seconds_since(start);
+}
+
+/// The same mesh without fields, for its time and memory alone.
+void time_without_fields(const ResamplingSource& source, const ResamplingOptions& options, ComparedMesh& row,
+                         Progress& progress) {
+  ResamplingSource bare = source;
+  bare.fields = nullptr;
+  ResamplingOptions wanted = options;
+  wanted.field_errors.clear();
+  const PeakMemory memory;
+  row.seconds = seconds_to_refine(bare, wanted, progress);
+  row.peak_memory_bytes = memory.bytes();
+  wanted.certify = false;
+  row.certifying_seconds = std::max(0.0, row.seconds - seconds_to_refine(bare, wanted, progress));
+}
+
+std::vector<char> elements_at_interfaces(const ResampledMesh& mesh, const ElementErrors& errors,
+                                         const Progress& progress) {
+  const std::vector<char> crossed = cells_with_interfaces(mesh.table, mesh.cell_set(), progress);
+  std::vector<char> result(errors.cells.size());
+  for (std::size_t e = 0; e < result.size(); ++e) result[e] = crossed[errors.cells[e]];
+  return result;
+}
+
+void add_cut_figures(const ResampledMesh& mesh, OwnMesh& own) {
+  own.cut_row = own.row;
+  own.cut_row.kind = MeshKind::kOwnCut;
+  const auto start = Clock::now();
+  const UnstructuredMesh cut = cut_mesh(mesh);
+  own.cut_row.seconds += seconds_since(start);
+  MeshFigures& figures = own.cut_row.figures;
+  figures.tetrahedra = cut.cell_count();
+  figures.vertices = cut.points.size();
+  figures.dihedral = {};
+  for (std::size_t c = 0; c < cut.cell_count(); ++c) {
+    std::array<Vec3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = cut.points[cut.connectivity[4 * c + i]];
+    figures.dihedral.add(corners);
+  }
+}
+
+}  // namespace
+
+OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& options, Progress& progress) {
+  OwnMesh own;
+  ComparedMesh& row = own.row;
+  row.interface_error = options.interface_error;
+  time_without_fields(source, options, row, progress);
+  const auto start = Clock::now();
+  Resampler resampler(source, options, progress);
+  resampler.refine();
+  const ResampledMesh mesh = take_mesh(resampler);
+  if (source.fields) row.field_seconds = std::max(0.0, seconds_since(start) - row.seconds);
+
+  const auto extracted =
+      extract_interfaces(mesh.table, mesh.cell_set(), 1e-11 * source.box.diagonal(), progress);
+  own.interface_points = extracted.mesh.points;
+  std::vector<ClosestPointTree::Triangle> triangles;
+  for (std::size_t t = 0; t < extracted.bodies.size(); ++t) {
+    triangles.push_back(extracted.mesh.triangles[t].points);
+    own.interfaces.push_back({triangles.back(), extracted.bodies[t][0], extracted.bodies[t][1]});
+  }
+  MeshFigures& figures = row.figures;
+  figures.tetrahedra = mesh.cells.size();
+  figures.vertices = mesh.points.size();
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) figures.dihedral.add(mesh.corners(c));
+  figures.volumes = material_volumes(mesh.table, mesh.cell_set(), source.materials.size());
+  figures.distance =
+      measure_distance(source, extracted.mesh.points, triangles, options.interface_error, progress);
+  const auto& certified = resampler.interface_distance();
+  own.half_width = std::max(options.interface_error, certified ? certified->upper : 0);
+  if (certified && certified->upper > options.interface_error)
+    row.note = "the interface error wanted was not reached";
+  if (source.fields) {
+    const ElementErrors errors =
+        measure_element_errors(source, measured_cells(mesh), own.half_width, progress);
+    own.at_interface = elements_at_interfaces(mesh, errors, progress);
+    figures.fields = errors.figures(own.at_interface);
+  }
+  add_cut_figures(mesh, own);
+  return own;
+}
+
+}  // namespace adamas

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "interfaces/reference/box_stitching.h"
+#include "interfaces/reference/comparison.h"
+#include "interfaces/reference/element_errors.h"
+
+namespace adamas {
+
+/// The resampled mesh that others are compared with.
+struct OwnMesh {
+  ComparedMesh row, cut_row;
+  std::vector<Vec3> interface_points;
+  std::vector<BodyTriangle> interfaces;
+  double half_width = 0;           ///< within which displaced elements are looked for
+  std::vector<char> at_interface;  ///< whether the cell of a native element has an interface
+};
+
+/// Resamples and measures. The source is resampled without its fields first: that time and memory are what
+/// generators are compared by, which make no fields.
+OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& options, Progress& progress);
+
+}  // namespace adamas

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+
+namespace adamas {
+
+/// Watches how far the resident memory of this process rises above what it is at the start of the watch. One
+/// watch at a time: it resets the peak that the system keeps.
+class PeakMemory {
+ public:
+  PeakMemory();
+  /// Bytes at most so far.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  std::size_t before_ = 0;
+};
+
+}  // namespace adamas

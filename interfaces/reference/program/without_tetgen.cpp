@@ -1,0 +1,11 @@
+#include "interfaces/reference/program/meshers.h"
+
+namespace adamas::reference {
+
+MesherReply run_tetgen(const MesherRequest&) {
+  MesherReply reply;
+  reply.failure = "this build is without TetGen (ADAMAS_WITH_TETGEN=OFF)";
+  return reply;
+}
+
+}  // namespace adamas::reference

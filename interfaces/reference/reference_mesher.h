@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+
+#include "interfaces/reference/child_program.h"
+#include "interfaces/reference/conforming_mesh.h"
+#include "interfaces/reference/mesher_messages.h"
+#include "interfaces/reference/piecewise_linear_complex.h"
+
+namespace adamas {
+
+/// How meshes of other generators are made: by the separate program `adamas-reference`.
+struct MesherOptions {
+  std::filesystem::path program;
+  ChildLimits limits;
+};
+
+/// A mesh by another generator, or why there is none.
+struct ReferenceResult {
+  std::string failure;   ///< empty where there is a mesh
+  bool crashed = false;  ///< ended by a signal
+  ConformingMesh mesh;
+  double seconds = 0;                 ///< within the library, without start of the process, input and output
+  std::size_t peak_memory_bytes = 0;  ///< of the process; 0 where it did not tell
+};
+
+/// TetGen with these switches. Where it crashes, it is asked for triangles that intersect.
+ReferenceResult mesh_by_tetgen(const PiecewiseLinearComplex& complex, const std::string& switches,
+                               const MesherOptions& options,
+                               const Progress& progress = SilentProgress::instance());
+
+/// CGAL's Mesh_3, with the patches' borders protected.
+ReferenceResult mesh_by_mesh3(const PiecewiseLinearComplex& complex, const Mesh3Criteria& criteria,
+                              const MesherOptions& options,
+                              const Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+namespace adamas {
+
+/// What a size of elements came to.
+struct SizingTrial {
+  enum class Outcome {
+    kMeasured,
+    kTooCoarse,  ///< there is no mesh, or not a whole one, but a smaller size may give one
+    kTooFine,    ///< there is no mesh, since it would have taken too much
+  };
+  Outcome outcome = Outcome::kMeasured;
+  double distance = 0;  ///< where it was measured
+};
+
+struct SizingOptions {
+  double tolerance = 0.05;  ///< relative, of the distance
+  int most_trials = 12;
+};
+
+/// Looks for the size with which a measured distance is as wanted, given that it grows with the size, more or
+/// less: between a size that is too small and one that is too great by interpolation in logarithms, or by
+/// halving. Returns whether one was found; trials are the caller's to remember.
+bool search_sizing(double wanted, double first, const std::function<SizingTrial(double)>& attempt,
+                   const SizingOptions& options = {});
+
+}  // namespace adamas

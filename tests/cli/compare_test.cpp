@@ -1,0 +1,135 @@
+#include <sys/stat.h>
+
+#include <cstdlib>
+
+#include "program.h"
+
+namespace adamas::test {
+namespace {
+
+class Compare : public ProgramTest {
+ protected:
+  Compare() { make_scene("sphere", 8); }
+  ~Compare() override { unsetenv("ADAMAS_REFERENCE_PROGRAM"); }
+
+  /// A shell script in the place of the program that runs other generators.
+  void replace_mesher(const std::string& body) const {
+    write("mesher", "#!/bin/sh\n" + body + "\n");
+    chmod((folder() / "mesher").c_str(), 0755);
+    setenv("ADAMAS_REFERENCE_PROGRAM", (folder() / "mesher").c_str(), 1);
+  }
+  /// The rows of other generators; that of the project itself has to be well.
+  [[nodiscard]] std::vector<nlohmann::json> references(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"compare", "scene.vtr", "--interface-error", "6%", "--json", "f.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run_well(arguments);
+    std::vector<nlohmann::json> rows;
+    for (const auto& row : read_json("f.json")["meshes"]) {
+      if (std::string(row["name"]).rfind("adamas", 0) != 0) {
+        rows.push_back(row);
+      } else {
+        EXPECT_GT(row["tetrahedra"], 0);
+        EXPECT_TRUE(row["failure"].is_null());
+      }
+    }
+    return rows;
+  }
+};
+
+TEST_F(Compare, WritesTableFiguresAndPicture) {
+  const RunResult result = run_well({"compare", "scene.vtr", "--interface-error", "6%", "--interface-error",
+                                     "4%", "-o", "c.svg", "--csv", "c.csv", "--json", "c.json"});
+  EXPECT_NE(result.out.find("Mesh_3"), std::string::npos);
+  const auto rows = read_json("c.json")["meshes"];
+  ASSERT_EQ(rows.size(), 11u);
+  double own = 0;
+  for (const auto& row : rows) {
+    ASSERT_TRUE(row["failure"].is_null()) << row.dump();
+    EXPECT_GT(row["tetrahedra"], 0);
+    EXPECT_GT(row["vertices"], 0);
+    EXPECT_GT(row["seconds"], 0);
+    EXPECT_LT(row["dihedral_min"], row["dihedral_max"]);
+    EXPECT_LT(row["field_mean_error"], row["field_max_error"]);
+    EXPECT_EQ(row["materials"].size(), 2u);
+    double volume = 0;
+    for (const auto& m : row["materials"]) volume += double(m["volume_mesh"]);
+    EXPECT_NEAR(volume, 1, 1e-6);
+    const double distance = std::max(double(row["hausdorff_to_input"]), double(row["hausdorff_from_input"]));
+    const std::string name = row["name"];
+    if (name == "adamas") own = distance;
+    if (name == "TetGen (input's)") continue;
+    if (row["matched"]) {
+      EXPECT_LE(distance, 1.1 * double(row["interface_error_target"])) << name;
+    }
+    if (name == "TetGen (our interfaces)") {
+      EXPECT_NEAR(distance, own, 0.02 * own);
+    }
+    if (name == "Mesh_3" && row["matched"]) {
+      EXPECT_NEAR(distance, own, 0.05 * own);
+    }
+  }
+  EXPECT_NE(read("c.svg").find("</svg>"), std::string::npos);
+  const std::string csv = read("c.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 12);
+}
+
+TEST_F(Compare, ChoosesReferences) {
+  const auto rows = references({"--reference", "mesh3"});
+  ASSERT_FALSE(rows.empty());
+  for (const auto& row : rows) EXPECT_EQ(std::string(row["name"]).rfind("Mesh_3", 0), 0u);
+}
+
+TEST_F(Compare, FailuresAreRowsWithReasons) {
+  const auto before = files();
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"echo oh >&2; kill -SEGV $$", "signal 11"},
+      {"echo nonsense", "no answer that can be read"},
+      {"exit 3", "ended with status 3"},
+      {"sleep 100", "took longer than 0.2 s"}};
+  for (const auto& [script, reason] : cases) {
+    replace_mesher(script);
+    const auto rows = references({"--time-limit", "0.2"});
+    ASSERT_GE(rows.size(), 3u);
+    for (const auto& row : rows) {
+      EXPECT_NE(std::string(row["failure"]).find(reason), std::string::npos) << row["failure"];
+      EXPECT_TRUE(row["tetrahedra"].is_null());
+    }
+  }
+  auto after = files();
+  after.erase("mesher"), after.erase("f.json");
+  EXPECT_EQ(after, before);
+}
+
+TEST_F(Compare, HandsTheLimitsOn) {
+  replace_mesher("[ \"$(ulimit -v) $(ulimit -t)\" = '131072 8' ] && exit 9");
+  for (const auto& row : references({"--memory-limit", "134217728", "--time-limit", "7"}))
+    EXPECT_EQ(row["failure"].get<std::string>(), "ended with status 9");
+}
+
+TEST_F(Compare, MissingProgramIsToldBeforeTheWork) {
+  setenv("ADAMAS_REFERENCE_PROGRAM", "/nowhere/adamas-reference", 1);
+  expect_failure({"compare", "scene.vtr"}, {"ADAMAS_REFERENCE_PROGRAM", "/nowhere/adamas-reference"});
+  setenv("ADAMAS_REFERENCE_PROGRAM", folder().c_str(), 1);
+  expect_failure({"compare", "scene.vtr"}, {"expected a program"});
+}
+
+TEST_F(Compare, OptionsAreChecked) {
+  expect_wrong_usage({"compare", "scene.vtr", "--reference", "gmsh"}, {"--reference", "'gmsh'"});
+  expect_wrong_usage({"compare", "scene.vtr", "--reference", "tetgen,tetgen"}, {"--reference"});
+  expect_wrong_usage({"compare", "scene.vtr", "--reference", "mesh3,"}, {"--reference"});
+  expect_wrong_usage({"compare", "scene.vtr", "--time-limit", "0"}, {"--time-limit", "positive"});
+  expect_wrong_usage({"compare", "scene.vtr", "--time-limit", "soon"}, {"--time-limit", "'soon'"});
+  expect_wrong_usage({"compare", "scene.vtr", "--memory-limit", "1000"}, {"--memory-limit", "67108864"});
+  expect_wrong_usage({"compare", "scene.vtr", "--memory-limit", "-1"}, {"--memory-limit"});
+  expect_wrong_usage({"compare", "scene.vtr", "--interface-error", "0"}, {"--interface-error"});
+  expect_wrong_usage({"compare", "scene.vtr", "--interface-error", "1%", "--interface-error", "200%"},
+                     {"--interface-error", "diagonal"});
+  expect_wrong_usage({"compare", "scene.vtr", "--tetgen-switches", "pq"}, {"--tetgen-switches", "'pq'"});
+  expect_wrong_usage({"compare", "scene.vtr", "--csv", "table.txt"}, {"--csv", ".csv"});
+  expect_wrong_usage({"compare", "scene.vtr", "-o", "picture.gif"}, {"-o", ".png"});
+  expect_wrong_usage({"compare"}, {"INPUT"});
+  expect_failure({"compare", "none.vtr"}, {"none.vtr"});
+}
+
+}  // namespace
+}  // namespace adamas::test
