@@ -171,7 +171,7 @@ void Comparison::add_untouched(const OwnMesh& own) {
   ComparedMesh row;
   row.kind = MeshKind::kTetGenUntouched;
   row.failure = input_fault_;
-  row.note = "distance 0 by construction";
+  row.note = "distance 0 by construction, but for facets joined that are coplanar within 0.1 degrees";
   if (input_) add_tetgen(*input_, own, row);
   rows_.push_back(row);
 }

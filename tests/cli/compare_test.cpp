@@ -24,7 +24,8 @@ class Compare : public ProgramTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     run_well(arguments);
     std::vector<nlohmann::json> rows;
-    for (const auto& row : read_json("f.json")["meshes"]) {
+    const nlohmann::json figures = read_json("f.json");
+    for (const auto& row : figures["meshes"]) {
       if (std::string(row["name"]).rfind("adamas", 0) != 0) {
         rows.push_back(row);
       } else {

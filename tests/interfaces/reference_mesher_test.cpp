@@ -72,17 +72,18 @@ void expect_conforming(const ConformingMesh& mesh, const Box3& box) {
 class TetGenScenes : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(TetGenScenes, FillTheComplex) {
-  const Given given(GetParam(), 1.0 / 12);
-  const ReferenceResult result = mesh_by_tetgen(given.complex, "zpq1.414Q", mesher());
+  const Given given(GetParam(), 1.0 / 8);
+  const ReferenceResult result = mesh_by_tetgen(given.complex, "zpMq1.414Q", mesher());
   if (result.failure.find("without TetGen") != std::string::npos) GTEST_SKIP() << result.failure;
   ASSERT_EQ(result.failure, "");
   expect_conforming(result.mesh, given.source.box);
   const std::size_t bodies = given.source.network->table().body_count();
   const auto found = body_volumes(result.mesh, bodies), known = given.complex.enclosed_volumes(bodies);
+  // Without M, TetGen joins facets that are coplanar but for a tenth of a degree.
   for (BodyId b(0); b.value < bodies; ++b.value) EXPECT_NEAR(found[b], known[b], 1e-9) << "body " << b.value;
   EXPECT_GT(result.seconds, 0);
   EXPECT_GT(result.peak_memory_bytes, std::size_t{1} << 20);
-  // A field that is linear in each material is met everywhere but for the floats of the data.
+  // A field that is constant in each material is met everywhere but for the floats of the data.
   const auto vertices = fields_at_vertices(result.mesh, given.source);
   const ElementErrors errors =
       measure_element_errors(given.source, measured_cells(result.mesh, vertices), 0.01);
@@ -183,7 +184,8 @@ TEST(ElementErrors, AreThoseOfTheResampler) {
   test::SceneCase c;
   c.name = "voronoi10";
   c.fields = true;
-  c.options.interface_error = 0.05;
+  c.cells = 5;
+  c.options.interface_error = 0.08;
   const test::ResampledScene resampled(c);
   std::vector<FieldError> known(resampled.source.fields->fields().size());
   const auto& hierarchy = resampled.resampler->hierarchy();

@@ -62,7 +62,7 @@ TEST_P(StitchedScenes, AreClosedAndEncloseTheBodies) {
   test::SceneCase c;
   c.name = name;
   c.meshes = true;
-  c.options.interface_error = 0.06;
+  c.options.interface_error = 0.12;
   const test::ResampledScene resampled(c);
   const PiecewiseLinearComplex complex = Stitched(resampled, extracted).complex;
   ASSERT_NO_THROW(complex.check_closed());
@@ -128,10 +128,7 @@ TEST(Stitching, KnowsAWedgeThatTouchesASideAlongAnEdge) {
   // A trough whose lowest edge lies in the bottom: body 1 inside.
   sheets.add({0, 0.5, 0}, {1, 0.5, 0}, {1, 0.2, 1}, {0, 0.2, 1}, 0, 1);
   sheets.add({1, 0.5, 0}, {0, 0.5, 0}, {0, 0.8, 1}, {1, 0.8, 1}, 0, 1);
-  auto volumes = sheets.stitch().enclosed_volumes(2);
-  if (volumes[BodyId(1)] < 0 || volumes[BodyId(1)] > 0.5) {
-    ADD_FAILURE() << "the trough holds " << volumes[BodyId(1)];
-  }
+  const auto volumes = sheets.stitch().enclosed_volumes(2);
   EXPECT_NEAR(volumes[BodyId(1)], 0.3, 1e-15);
   EXPECT_NEAR(volumes[BodyId(0)], 0.7, 1e-15);
 }
