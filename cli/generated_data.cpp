@@ -39,7 +39,7 @@ MultiMaterialData generate_data(const GeneratedData& what, Progress& progress) {
   ImpactOptions options;
   options.cells = what.cells;
   FlowSolver<3> flow = make_impact(options);
-  flow.advance_to(6, progress);
+  flow.advance_to(kImpactTime, progress);
   return flow_data(flow, kImpact, kImpactUnits);
 }
 
