@@ -15,8 +15,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Distances below this part of the error wanted are measured no further, and all the same.
+constexpr double kResolution = 0.01;
 /// Points that are nearer to a side of the box than this part of its diagonal are moved onto it.
 constexpr double kOntoBox = 1e-9;
+
+/// What sizes are matched by.
+double matched_distance(const ComparedMesh& row) {
+  return std::max(row.figures.distance.greatest(), kResolution * *row.interface_error);
+}
 
 class Comparison {
  public:
@@ -211,10 +218,10 @@ SizingTrial Comparison::try_mesh3(double wanted, double facet_distance, Mesh3Mat
   const std::size_t trial = ++match.trials;
   progress_.step(fmt::format("meshing by Mesh_3, trial {}", trial), -1);
   ReferenceResult result = mesh_by_mesh3(*input_, sizes, options_.mesher, progress_);
-  measure(result, wanted, row);
+  measure(result, *row.interface_error, row);
   using Outcome = SizingTrial::Outcome;
   const bool made = row.failure.empty();
-  const double distance = row.figures.distance.greatest();
+  const double distance = matched_distance(row);
   const double mismatch = made ? std::abs(std::log(distance / wanted)) : std::numeric_limits<double>::max();
   if (trial == 1 || mismatch < match.mismatch) match = {row, sizes, std::move(result), mismatch, trial};
   if (made) return {Outcome::kMeasured, distance};
@@ -227,12 +234,15 @@ void Comparison::add_mesh3(const OwnMesh& own) {
   row.kind = MeshKind::kMesh3;
   row.interface_error = own.row.interface_error;
   row.failure = input_fault_;
-  const double wanted = own.row.figures.distance.greatest();
-  if (input_ && !(wanted > 0 && std::isfinite(wanted))) row.failure = "there is no distance to match";
+  const double wanted = matched_distance(own.row);
+  if (input_ && (own.interfaces.empty() || !std::isfinite(wanted)))
+    row.failure = "there is no distance to match";
   bool matched = false;
   if (row.failure.empty()) {
-    matched =
-        search_sizing(wanted, 0.5 * wanted, [&](double size) { return try_mesh3(wanted, size, match); });
+    // Where there is next to no distance, sizes that are as coarse as may be come first.
+    const bool exact = wanted <= kResolution * *row.interface_error;
+    const double first = 0.5 * (exact ? *row.interface_error : wanted);
+    matched = search_sizing(wanted, first, [&](double size) { return try_mesh3(wanted, size, match); });
   }
   row.matched = matched;
   row.trials = match.trials;
@@ -250,8 +260,8 @@ void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match, doub
   sizes.optimise = 1;
   progress_.step("meshing by Mesh_3 with optimisers", -1);
   const ReferenceResult result = mesh_by_mesh3(*input_, sizes, options_.mesher, progress_);
-  measure(result, wanted, row);
-  row.matched = std::abs(row.figures.distance.greatest() / wanted - 1) <= SizingOptions().tolerance;
+  measure(result, *row.interface_error, row);
+  row.matched = std::abs(matched_distance(row) / wanted - 1) <= SizingOptions().tolerance;
   if (row.failure.empty()) measure_fields(result, own, row);
   rows_.push_back(row);
 }

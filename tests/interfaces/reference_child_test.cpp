@@ -18,7 +18,7 @@ namespace {
 class ChildProgram : public ::testing::Test {
  protected:
   [[nodiscard]] std::filesystem::path script(const std::string& body) const {
-    const auto path = scratch_ / "program";
+    const auto path = scratch / "program";
     test::put_bytes(path, "#!/bin/sh\n" + body + "\n");
     ::chmod(path.c_str(), 0755);
     return path;
@@ -33,7 +33,7 @@ class ChildProgram : public ::testing::Test {
     options.limits.seconds = seconds;
     return mesh_by_mesh3(complex, {}, options);
   }
-  test::Scratch scratch_;
+  test::Scratch scratch;
 };
 
 /// Whether a process is there and runs; one that ended but was not waited for counts as gone.
@@ -57,11 +57,11 @@ TEST_F(ChildProgram, TellsHowItEnded) {
   const ChildResult refused = run_child_program(script("exit 7"), {}, {});
   EXPECT_EQ(refused.failure, "ended with status 7");
   EXPECT_FALSE(refused.crashed);
-  EXPECT_EQ(run_child_program(scratch_ / "none", {}, {}).failure, "could not be started");
+  EXPECT_EQ(run_child_program(scratch / "none", {}, {}).failure, "could not be started");
 }
 
 TEST_F(ChildProgram, IsEndedAtItsTimeWithAllItStarted) {
-  const auto pid = scratch_ / "pid";
+  const auto pid = scratch / "pid";
   const auto start = std::chrono::steady_clock::now();
   const ReferenceResult result = mesh(script("sleep 100 &\necho $! > " + pid.string() + "\nsleep 100"), 0.5);
   EXPECT_EQ(result.failure, "took longer than 0.5 s");
@@ -72,7 +72,7 @@ TEST_F(ChildProgram, IsEndedAtItsTimeWithAllItStarted) {
 }
 
 TEST_F(ChildProgram, LeavesNothingRunningBehindIt) {
-  const auto pid = scratch_ / "pid";
+  const auto pid = scratch / "pid";
   EXPECT_EQ(run_child_program(script("sleep 100 &\necho $! > " + pid.string()), {}, {}).failure, "");
   const int child = std::stoi(test::bytes_of(pid));
   for (int i = 0; i < 200 && runs(child); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -106,8 +106,8 @@ TEST_F(ChildProgram, IsNotBelieved) {
     MesherReply reply = good;
     damage(reply);
     const auto bytes = encode(reply);
-    test::put_bytes(scratch_ / "reply", {bytes.begin(), bytes.end()});
-    return mesh(script("cat " + (scratch_ / "reply").string())).failure;
+    test::put_bytes(scratch / "reply", {bytes.begin(), bytes.end()});
+    return mesh(script("cat " + (scratch / "reply").string())).failure;
   };
   EXPECT_EQ(failure([](MesherReply&) {}), "");
   EXPECT_NE(failure([](MesherReply& r) { r.tetrahedra[0][2] = 4; }), "");
