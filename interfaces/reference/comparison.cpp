@@ -178,8 +178,10 @@ void Comparison::add_untouched(const OwnMesh& own) {
   ComparedMesh row;
   row.kind = MeshKind::kTetGenUntouched;
   row.failure = input_fault_;
-  row.note = "distance 0 by construction, but for facets joined that are coplanar within 0.1 degrees";
   if (input_) add_tetgen(*input_, own, row);
+  if (row.failure.empty())
+    row.note += std::string(row.note.empty() ? "" : "; ") +
+                "distance 0 by construction, but for facets joined that are coplanar within 0.1 degrees";
   rows_.push_back(row);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -52,6 +53,27 @@ Box2 box_of(const Raster& raster, const Colour& colour) {
     }
   }
   return box;
+}
+
+TEST(Plot, SideBySideEachIsAsItIsAlone) {
+  Plot other = error_plot();
+  other.title = "Seconds";
+  other.y.label = "seconds";
+  other.series[0].y = {5, 60, 800};
+  const std::array plots{error_plot(), other};
+  const PlotOptions options{.width = 500, .height = 400};
+  const Raster both = test::decode_png(draw_plots(plots, PictureFormat::kPng, options));
+  ASSERT_EQ(both.width(), 1000);
+  ASSERT_EQ(both.height(), 400);
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    const Raster alone = test::decode_png(draw_plot(plots[i], PictureFormat::kPng, options));
+    int different = 0;
+    for (int y = 0; y < 400; ++y) {
+      for (int x = 0; x < 500; ++x)
+        different += both.at(x + 500 * static_cast<int>(i), y) == alone.at(x, y) ? 0 : 1;
+    }
+    EXPECT_EQ(different, 0) << "plot " << i;
+  }
 }
 
 TEST(Plot, MarkersLieWhereTheValuesSay) {
