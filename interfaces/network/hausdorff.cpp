@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
@@ -11,6 +12,8 @@ namespace adamas {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Marks points whose closest point is to be found; no triangle has this number.
+constexpr std::uint32_t kWanted = ClosestPointTree::kNoTriangle - 1;
 
 /// The closest point of the target, as far as needed.
 struct Closest {
@@ -134,11 +137,12 @@ void divide(const Piece& piece, std::vector<Piece>& out) {
 }
 
 /// Divides pieces until their bounds are good enough, or `most` of them have been looked at.
+/// `triangle_lower`: what has been seen of each triangle; empty where that does not matter.
 void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const HausdorffOptions& options,
-                  double accept, std::size_t most, const Progress& progress, DistanceBound& bound) {
+                  double accept, std::size_t most, const Progress& progress,
+                  std::vector<double>& triangle_lower, DistanceBound& bound) {
   std::vector<Piece> next;
   std::vector<Measure> measures;
-  std::vector<double> triangle_lower(options.each ? bound.triangle_upper.size() : 0, 0.0);
   for (std::size_t measured = 0; !pieces.empty(); pieces.swap(next)) {
     progress.check();
     measures.assign(pieces.size(), {});
@@ -167,6 +171,45 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
   }
 }
 
+/// The triangles of the list, a block at a time.
+void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointTree::Triangle> triangles,
+                     const std::vector<std::uint32_t>& list, const ClosestPointTree& to,
+                     const HausdorffOptions& options, const Progress& progress, DistanceBound& bound) {
+  const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
+  constexpr std::size_t kBlock = std::size_t{1} << 17;
+  const double share = static_cast<double>(options.most_pieces) / static_cast<double>(list.size());
+  std::vector<double> triangle_lower(options.each ? triangles.size() : 0, 0.0);
+  std::vector<Closest> of_points(points.size());
+  std::vector<std::uint32_t> unknown;
+  for (const std::uint32_t t : list) {
+    for (const std::uint32_t p : triangles[t]) {
+      if (of_points[p].triangle == kWanted) continue;
+      of_points[p].triangle = kWanted;
+      unknown.push_back(p);
+    }
+  }
+  for (std::size_t first = 0; first < unknown.size(); first += kBlock) {
+    progress.check();
+    parallel_for(std::min(kBlock, unknown.size() - first), 256, [&](std::size_t i) {
+      of_points[unknown[first + i]] = find_closest(to, points[unknown[first + i]]);
+    });
+  }
+  for (std::size_t first = 0; first < list.size(); first += kBlock) {
+    std::vector<Piece> pieces;
+    const std::size_t last = std::min(list.size(), first + kBlock);
+    for (std::size_t i = first; i < last; ++i) {
+      const auto& v = triangles[list[i]];
+      pieces.push_back({{points[v[0]], points[v[1]], points[v[2]]},
+                        {of_points[v[0]], of_points[v[1]], of_points[v[2]]},
+                        list[i]});
+    }
+    const auto most = static_cast<std::size_t>(share * static_cast<double>(last - first));
+    bound_pieces(std::move(pieces), to, options, accept, most, progress, triangle_lower, bound);
+  }
+  bound.upper = 0;
+  for (const double upper : bound.triangle_upper) bound.upper = std::max(bound.upper, upper);
+}
+
 }  // namespace
 
 DistanceBound directed_distance_bound(std::span<const Vec3> points,
@@ -180,29 +223,23 @@ DistanceBound directed_distance_bound(std::span<const Vec3> points,
     bound.upper = bound.lower = triangles.empty() ? 0 : kInfinity;
     return bound;
   }
-  const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
-  constexpr std::size_t kBlock = std::size_t{1} << 17;
-  std::vector<Closest> of_points(points.size());
-  for (std::size_t first = 0; first < points.size(); first += kBlock) {
-    progress.check();
-    parallel_for(std::min(kBlock, points.size() - first), 256,
-                 [&](std::size_t i) { of_points[first + i] = find_closest(to, points[first + i]); });
-  }
-  const double share = static_cast<double>(options.most_pieces) / static_cast<double>(triangles.size());
-  for (std::size_t first = 0; first < triangles.size(); first += kBlock) {
-    std::vector<Piece> pieces;
-    const std::size_t last = std::min(triangles.size(), first + kBlock);
-    for (std::size_t t = first; t < last; ++t) {
-      const auto& v = triangles[t];
-      pieces.push_back({{points[v[0]], points[v[1]], points[v[2]]},
-                        {of_points[v[0]], of_points[v[1]], of_points[v[2]]},
-                        static_cast<std::uint32_t>(t)});
-    }
-    const auto most = static_cast<std::size_t>(share * static_cast<double>(last - first));
-    bound_pieces(std::move(pieces), to, options, accept, most, progress, bound);
-  }
-  for (const double upper : bound.triangle_upper) bound.upper = std::max(bound.upper, upper);
+  std::vector<std::uint32_t> all(triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  bound_triangles(points, triangles, all, to, options, progress, bound);
   return bound;
+}
+
+void tighten_distance_bound(std::span<const Vec3> points,
+                            std::span<const ClosestPointTree::Triangle> triangles, const ClosestPointTree& to,
+                            const HausdorffOptions& options, DistanceBound& bound, const Progress& progress) {
+  const double enough = std::max(options.accept, (1 + options.relative) * bound.lower);
+  std::vector<std::uint32_t> loose;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (bound.triangle_upper[t] <= enough || to.empty()) continue;
+    loose.push_back(t);
+    bound.triangle_upper[t] = 0;
+  }
+  if (!loose.empty()) bound_triangles(points, triangles, loose, to, options, progress, bound);
 }
 
 }  // namespace adamas

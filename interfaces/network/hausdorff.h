@@ -46,4 +46,11 @@ DistanceBound directed_distance_bound(std::span<const Vec3> points,
                                       const ClosestPointTree& to, const HausdorffOptions& options = {},
                                       const Progress& progress = SilentProgress::instance());
 
+/// Makes bounds of the same triangles, surface and domain as tight as the options ask for; looks only at
+/// triangles whose bounds are not yet.
+void tighten_distance_bound(std::span<const Vec3> points,
+                            std::span<const ClosestPointTree::Triangle> triangles, const ClosestPointTree& to,
+                            const HausdorffOptions& options, DistanceBound& bound,
+                            const Progress& progress = SilentProgress::instance());
+
 }  // namespace adamas

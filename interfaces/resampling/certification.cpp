@@ -39,20 +39,29 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
   const ClosestPointTree approximation(extracted.mesh.points, triangles);
   HausdorffOptions options;
   options.domain = source_.box;
-  DistanceBound from, to;
-  const auto measure = [&](double accept, double relative, bool each) {
-    options.accept = accept;
-    options.relative = relative;
-    options.each = each;
-    from = directed_distance_bound(network.points(), network.triangles(), approximation, options, progress_);
-    to = directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_);
+  options.accept = target;
+  options.relative = kSharp;
+  options.each = true;
+  report("measuring interfaces");
+  DistanceBound from =
+      directed_distance_bound(network.points(), network.triangles(), approximation, options, progress_);
+  DistanceBound to =
+      directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_);
+  const auto set_distance = [&] {
     distance_ =
         InterfaceDistance{std::max(from.upper, to.upper), std::max(from.lower, to.lower), triangles.size()};
   };
-  report("measuring interfaces");
-  measure(target, kSharp, true);
+  set_distance();
   if (distance_->upper <= target) {
-    measure(0.01 * target, kTight, false);
+    options.accept = 0.01 * target;
+    options.relative = kTight;
+    options.each = false;
+    // One direction need not be known better than the other.
+    from.lower = to.lower = distance_->lower;
+    tighten_distance_bound(network.points(), network.triangles(), approximation, options, from, progress_);
+    to.lower = std::max(to.lower, from.lower);
+    tighten_distance_bound(extracted.mesh.points, triangles, network.tree(), options, to, progress_);
+    set_distance();
     distance_->upper = std::min(distance_->upper, target);
     return {};
   }

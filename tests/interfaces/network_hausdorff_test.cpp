@@ -146,6 +146,29 @@ TEST(Hausdorff, EachTriangleIsBoundedByWhatIsFarOfItsOwn) {
   }
 }
 
+TEST(Hausdorff, BoundsAreTightenedFromLooseOnes) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const Surface from(test::random_soup(seed, 60)), to(test::random_soup(seed + 50, 40));
+    HausdorffOptions options;
+    options.relative = 0.01;
+    const DistanceBound tight = directed_distance_bound(from.points, from.triangles, to.tree, options);
+    options.each = true;
+    options.accept = 1.2 * tight.lower;
+    DistanceBound bound = directed_distance_bound(from.points, from.triangles, to.tree, options);
+    EXPECT_GE(bound.upper, tight.lower);
+    options.each = false;
+    options.accept = 0.01 * tight.lower;
+    tighten_distance_bound(from.points, from.triangles, to.tree, options, bound);
+    EXPECT_LE(bound.upper, 1.01 * bound.lower + 1e-13);
+    EXPECT_LE(std::max(tight.lower, bound.lower), std::min(tight.upper, bound.upper) + 1e-13);
+    // Once more changes nothing.
+    const DistanceBound before = bound;
+    tighten_distance_bound(from.points, from.triangles, to.tree, options, bound);
+    EXPECT_EQ(bound.triangle_upper, before.triangle_upper);
+    EXPECT_EQ(bound.upper, before.upper);
+  }
+}
+
 TEST(Hausdorff, IsTheSameOnAnyNumberOfThreads) {
   const Surface from(test::random_soup(1, 400)), to(test::random_soup(2, 300));
   set_thread_limit(1);
