@@ -1,10 +1,13 @@
 #include "interfaces/reconstruction/reconstruction.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
+#include <unordered_map>
 
 #include "core/base/parallel.h"
 #include "core/geometry/contact_mesh.h"
+#include "interfaces/network/edge_fans.h"
 
 namespace adamas {
 
@@ -52,12 +55,13 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress
       join(reaches[i].part, reaches[i - 1].part);
     }
   }
+  InterfaceMesh extracted = builder.finish();
+  join_round_edges(extracted, data.grid.domain());
   number_bodies();
 
   const auto body_of = [&](std::uint32_t part) {
     return part < body_of_point_.size() ? body_of_point_[part] : body_of_pointless_.at(part);
   };
-  InterfaceMesh extracted = builder.finish();
   mesh_.points = std::move(extracted.points);
   mesh_.triangles = std::move(extracted.triangles);
   mesh_.materials = data.materials;
@@ -191,6 +195,66 @@ void Reconstruction::join_points() {
           if (lattice_.owner(p) == lattice_.owner(q)) join(p, q);
         }
       }
+    }
+  }
+}
+
+/// Parts without a corner are joined to what lies beside them round their edges too: where several fractions
+/// are equal, round-off may have left nothing of the face that they share.
+void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& domain) {
+  const auto is_pointless = [&](MaterialId part) { return part.value >= lattice_.point_count(); };
+  const auto key = [](std::uint32_t a, std::uint32_t b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+  };
+  std::vector<std::uint64_t> edges;
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    if (!is_pointless(t.front) && !is_pointless(t.back)) continue;
+    for (std::size_t i = 0; i < 3; ++i) edges.push_back(key(t.points[i], t.points[(i + 1) % 3]));
+  }
+  if (edges.empty()) return;
+  std::sort(edges.begin(), edges.end());
+  std::map<Part, MaterialId> materials(pointless_.begin(), pointless_.end());
+  const auto material = [&](MaterialId part) {
+    return is_pointless(part) ? materials.at(part.value) : lattice_.owner(part.value);
+  };
+  // The triangles at those edges, with points of their own.
+  InterfaceMesh near;
+  std::vector<std::array<Part, 2>> parts;
+  std::vector<std::uint32_t> original;
+  std::unordered_map<std::uint32_t, std::uint32_t> renumbered;
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    bool touches = false;
+    for (std::size_t i = 0; i < 3 && !touches; ++i)
+      touches = std::binary_search(edges.begin(), edges.end(), key(t.points[i], t.points[(i + 1) % 3]));
+    if (!touches) continue;
+    std::array<std::uint32_t, 3> points{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [at, fresh] =
+          renumbered.try_emplace(t.points[i], static_cast<std::uint32_t>(original.size()));
+      if (fresh) {
+        original.push_back(t.points[i]);
+        near.points.push_back(mesh.points[t.points[i]]);
+      }
+      points[i] = at->second;
+    }
+    near.triangles.push_back({points, material(t.front), material(t.back)});
+    parts.push_back({t.front.value, t.back.value});
+  }
+  const EdgeFans fans(near, &domain);
+  EdgeFans::Fan fan;
+  for (std::size_t edge = 0; edge < fans.size(); ++edge) {
+    const auto [low, high] = fans.ends(edge);
+    if (!std::binary_search(edges.begin(), edges.end(), key(original[low], original[high]))) continue;
+    fans.fan(edge, fan);
+    const std::size_t count = fan.blades.size();
+    for (std::size_t i = 0; i < count && count > 1; ++i) {
+      if (i == fan.outside_wedge) continue;
+      const Blade &a = fan.blades[i], &b = fan.blades[(i + 1) % count];
+      const auto ahead = static_cast<std::size_t>(EdgeFans::side_ahead(a)),
+                 behind = static_cast<std::size_t>(EdgeFans::side_behind(b));
+      if (fans.material(a.triangle, EdgeFans::side_ahead(a)) ==
+          fans.material(b.triangle, EdgeFans::side_behind(b)))
+        join(parts[a.triangle][ahead], parts[b.triangle][behind]);
     }
   }
 }

@@ -52,6 +52,7 @@ class Reconstruction {
   [[nodiscard]] Part part_in(const FractionLattice::Index& cell, std::size_t path,
                              const std::array<std::uint32_t, 4>& corners, MaterialId m) const;
   void join_points();
+  void join_round_edges(const InterfaceMesh& mesh, const Box3& domain);
   Part find(Part part);
   void join(Part a, Part b);
   void number_bodies();

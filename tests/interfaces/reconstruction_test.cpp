@@ -98,6 +98,22 @@ TEST(Reconstruction, OfTheTJunctionFromFractions) {
 }
 
 /// The network's answer by pseudonormals and the reconstruction's own, which is exact.
+/// Three regions are three bodies on any grid, though slivers of them hold no site.
+TEST(Reconstruction, SliversRoundATripleLineAreNoBodies) {
+  for (const std::size_t cells : {9, 10, 12, 13, 16}) {
+    SCOPED_TRACE(cells);
+    test::SceneCase c;
+    c.name = "tjunction";
+    c.cells = cells;
+    c.options.interface_error = 0.05;
+    const test::ResampledScene resampled(c);
+    EXPECT_EQ(resampled.table().body_count(), 3u);
+    EXPECT_LE(resampled.resampler->interface_distance()->upper, 0.05);
+    EXPECT_LT(resampled.resampler->hierarchy().leaf_count(), 2000u);
+    test::expect_laws(resampled);
+  }
+}
+
 TEST(Reconstruction, AgreesWithItsNetworkAboutBodies) {
   for (const std::string& name : scene_names()) {
     SCOPED_TRACE(name);
