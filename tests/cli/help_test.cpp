@@ -66,7 +66,7 @@ TEST_F(Help, CompletionLeavesFilesToTheShell) {
   EXPECT_EQ(complete("adamas re"), "reconstruct resample");
   EXPECT_EQ(complete("adamas resample \"\""), "");
   EXPECT_EQ(complete("adamas resample x.vtr --gh"), "--ghost");
-  EXPECT_EQ(complete("adamas resample x.vtr --ghost \"\""), "constant linear");
+  EXPECT_EQ(complete("adamas resample x.vtr --ghost \"\""), "constant linear least-squares");
   EXPECT_EQ(complete("adamas resample x.vtr --ghost = li"), "linear");
   for (const std::string option : {"-o", "--output", "--json", "--interface-error"}) {
     EXPECT_EQ(complete("adamas resample x.vtr " + option + " \"\""), "") << option;

@@ -28,7 +28,7 @@ TEST_F(WrongUsage, IsToldAsExpectedAndFound) {
   expect_wrong_usage({"resample", "x.vtr", "--interface-error", "1%", "--interface-error", "2%"},
                      {"--interface-error: expected one value, found '1%', '2%'"});
   expect_wrong_usage({"resample", "x.vtr", "--ghost", "quadratic"},
-                     {"--ghost: expected constant or linear, found 'quadratic'"});
+                     {"--ghost: expected constant, linear or least-squares, found 'quadratic'"});
   expect_wrong_usage({"resample", "x.vtr", "--interface-error"},
                      {"--interface-error: expected a value E|E%, found none"});
   expect_wrong_usage({"slice", "x.vtr", "--cells=maybe"}, {"--cells: expected no value", "found 'maybe'"});
