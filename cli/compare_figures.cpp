@@ -4,11 +4,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/resample_figures.h"
+
 namespace adamas {
 
 namespace {
-
-double mean(const FieldError& e) { return e.count > 0 ? e.sum / static_cast<double>(e.count) : 0; }
 
 /// Greatest over the fields, each in parts of its range.
 struct RelativeErrors {
@@ -24,10 +24,10 @@ RelativeErrors relative_errors(const ComparedMesh& row, const ResamplingSource& 
     const auto& [all, near] = row.figures.fields[f];
     if (!(range > 0) || all.count == 0) continue;
     raise(result.max, all.max / range);
-    raise(result.mean, mean(all) / range);
+    raise(result.mean, all.mean() / range);
     if (near.count == 0) continue;
     raise(result.interface_max, near.max / range);
-    raise(result.interface_mean, mean(near) / range);
+    raise(result.interface_mean, near.mean() / range);
   }
   return result;
 }
@@ -77,27 +77,8 @@ Figures optional_figure(const std::optional<double>& value) {
 
 Figures field_figures(const ComparedMesh& row, const ResamplingSource& source) {
   Figures figures = Figures::object();
-  for (std::size_t f = 0; f < row.figures.fields.size(); ++f) {
-    const auto& [all, near] = row.figures.fields[f];
-    const auto known = [](const FieldError& e, double value) {
-      return e.count > 0 ? Figures(value) : Figures(nullptr);
-    };
-    figures[source.fields->fields()[f].name] = {{"max_error", known(all, all.max)},
-                                                {"mean_error", known(all, mean(all))},
-                                                {"interface_max_error", known(near, near.max)},
-                                                {"interface_mean_error", known(near, mean(near))}};
-  }
-  return figures;
-}
-
-Figures material_figures(const ComparedMesh& row, const ResamplingSource& source) {
-  Figures figures = Figures::array();
-  for (MaterialId m(0); m.value < row.figures.volumes.size(); ++m.value) {
-    const bool stated = m.value < source.volumes.size();
-    figures.push_back({{"name", source.materials[m]},
-                       {"volume_input", stated ? Figures(source.volumes[m]) : Figures(nullptr)},
-                       {"volume_mesh", row.figures.volumes[m]}});
-  }
+  for (std::size_t f = 0; f < row.figures.fields.size(); ++f)
+    figures[source.fields->fields()[f].name] = field_error_figures(row.figures.fields[f]);
   return figures;
 }
 
@@ -129,7 +110,7 @@ Figures row_figures(const ComparedMesh& row, const ResamplingSource& source) {
   figures["field_interface_max_error"] = optional_figure(errors.interface_max);
   figures["field_interface_mean_error"] = optional_figure(errors.interface_mean);
   figures["fields"] = made ? field_figures(row, source) : Figures::object();
-  figures["materials"] = made ? material_figures(row, source) : Figures::array();
+  figures["materials"] = made ? volume_figures(source, row.figures.volumes) : Figures::array();
   return figures;
 }
 

@@ -27,6 +27,11 @@ namespace {
 /// Width in pixels of pictures with three panels.
 constexpr double kSliceWidth = 2000;
 
+ResamplingOptions without_fields(ResamplingOptions options) {
+  std::fill(options.field_errors.begin(), options.field_errors.end(), std::nullopt);
+  return options;
+}
+
 /// An experiment, step by step; what it finds goes into the record and into the folder.
 class Experiment {
  public:
@@ -53,7 +58,7 @@ class Experiment {
   void refine();
   void show_meshes();
   void cut_slices();
-  void add_slice(const ResampledMesh& mesh, const Plane& plane, const std::string& name,
+  void add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name,
                  const std::string& caption);
   void follow_curve();
   void balance();
@@ -72,7 +77,8 @@ class Experiment {
   Input input_;
   SliceInput slices_;
   ResamplingOptions targets_;
-  ResampledMesh interface_mesh_, mesh_;
+  ResampledMesh interface_mesh_;  ///< within the interface error
+  ResampledMesh mesh_;            ///< within the field errors too, where they were asked for
   ExperimentRecord record_;
 };
 
@@ -111,11 +117,9 @@ void Experiment::show_input() {
 }
 
 void Experiment::refine() {
-  ResamplingOptions interfaces_only = targets_;
-  std::fill(interfaces_only.field_errors.begin(), interfaces_only.field_errors.end(), std::nullopt);
   InterfaceMesh approximated;
   record_.interfaces =
-      run_resampler(input_.source, interfaces_only, console_, &interface_mesh_, &approximated);
+      run_resampler(input_.source, without_fields(targets_), console_, &interface_mesh_, &approximated);
   write_interfaces_of(approximated, "mesh-interfaces", true);
   const auto wanted = [](const auto& target) { return target.has_value(); };
   if (std::any_of(targets_.field_errors.begin(), targets_.field_errors.end(), wanted))
@@ -126,16 +130,15 @@ void Experiment::show_meshes() {
   record_.mesh_pictures.push_back({"mesh-interfaces.png", "Interfaces of the mesh, triangle by triangle."});
   if (record_.with_fields) {
     write_unstructured_mesh(folder_.file("interface-mesh.vtu"), to_unstructured_mesh(interface_mesh_));
-  } else {
-    mesh_ = interface_mesh_;
   }
-  write_unstructured_mesh(folder_.file("mesh.vtu"), to_unstructured_mesh(mesh_));
-  write_unstructured_mesh(folder_.file("cut-mesh.vtu"), cut_mesh(mesh_));
+  const ResampledMesh& mesh = record_.with_fields ? mesh_ : interface_mesh_;
+  write_unstructured_mesh(folder_.file("mesh.vtu"), to_unstructured_mesh(mesh));
+  write_unstructured_mesh(folder_.file("cut-mesh.vtu"), cut_mesh(mesh));
 }
 
-void Experiment::add_slice(const ResampledMesh& mesh, const Plane& plane, const std::string& name,
+void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name,
                            const std::string& caption) {
-  slices_.mesh = mesh;
+  slices_.mesh = std::move(mesh);
   SliceStyle style{.plane = plane, .field = options_.show};
   const std::vector<SliceMode> modes{SliceMode::kInput, SliceMode::kPlain, SliceMode::kMaterials};
   SliceOptions size;
@@ -144,6 +147,7 @@ void Experiment::add_slice(const ResampledMesh& mesh, const Plane& plane, const 
   std::vector<CrossSection> sections;
   for (const SliceMode mode : modes) sections.push_back(cut(slices_, mode, style));
   SlicePicture picture = make_slice_picture(slices_, modes, style, sections);
+  mesh = *std::move(slices_.mesh);
   const auto write = [&](const std::string& file, const std::string& text) {
     console_.step("writing " + file, -1);
     write_slice(picture, folder_.file(file), size);
@@ -173,8 +177,7 @@ void Experiment::cut_slices() {
 }
 
 void Experiment::follow_curve() {
-  ResamplingOptions options = targets_;
-  std::fill(options.field_errors.begin(), options.field_errors.end(), std::nullopt);
+  ResamplingOptions options = without_fields(targets_);
   for (const double error : wishes_.curve(input_.source.box, targets_.interface_error)) {
     if (error == targets_.interface_error) {
       record_.curve.push_back(record_.interfaces);
@@ -202,7 +205,7 @@ void Experiment::compare_with_published() {
     if (!record_.fields.empty()) {
       const FieldError& near = record_.last().figures.fields[record_.shown].at_interfaces;
       if (name == "greatest field error at interfaces") here = near.max;
-      if (name == "mean field error at interfaces") here = mean(near);
+      if (name == "mean field error at interfaces") here = near.mean();
     }
     for (const auto& [pair, count] : record_.triangles) {
       if (name == "triangles " + pair) here = static_cast<double>(count);

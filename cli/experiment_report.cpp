@@ -57,7 +57,7 @@ Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldI
     PlotSeries series{.name = fields[f].name};
     for (const ExperimentRun& run : runs) {
       series.x.push_back(static_cast<double>(run.figures.tetrahedra));
-      series.y.push_back(range > 0 ? mean(run.figures.fields[f].at_interfaces) / range : 0);
+      series.y.push_back(range > 0 ? run.figures.fields[f].at_interfaces.mean() / range : 0);
     }
     // A field that comes back exactly would stretch the axis down to round-off.
     if (*std::max_element(series.y.begin(), series.y.end()) > 1e-12) plot.series.push_back(std::move(series));
@@ -85,7 +85,7 @@ ReportTable runs_table(const ExperimentRecord& record, const std::vector<Experim
     if (!fields) continue;
     const FieldFigures& errors = run.figures.fields[record.shown];
     table.rows.back().push_back(number(errors.all.max));
-    table.rows.back().push_back(number(mean(errors.all)));
+    table.rows.back().push_back(number(errors.all.mean()));
   }
   return table;
 }
@@ -107,8 +107,8 @@ ReportTable fields_table(const ExperimentRecord& record) {
     const auto& [all, near] = run.figures.fields[f];
     const auto& wanted = run.options.field_errors[f];
     table.rows.push_back({info.name, info.unit, number(info.min) + " to " + number(info.max),
-                          wanted ? number(*wanted) : "-", number(all.max), number(mean(all)),
-                          number(near.max), number(mean(near))});
+                          wanted ? number(*wanted) : "-", number(all.max), number(all.mean()),
+                          number(near.max), number(near.mean())});
   }
   return table;
 }

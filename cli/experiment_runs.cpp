@@ -6,7 +6,6 @@
 
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/errors/nested_errors.h"
-#include "interfaces/mesh/extraction.h"
 
 namespace adamas {
 
@@ -54,13 +53,7 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
   run.seconds = elapsed.count();
   run.json = resample_json(run.figures, resampler);
   run.json["seconds"] = run.seconds;
-  if (interfaces != nullptr) {
-    *interfaces =
-        extract_interfaces(source.network->table(), resampler.cells(), 1e-11 * source.box.diagonal(), console)
-            .mesh;
-    interfaces->materials = source.materials;
-    interfaces->source = source.name;
-  }
+  if (interfaces != nullptr) *interfaces = approximated_interfaces(resampler, console);
   if (mesh != nullptr) {
     *mesh = take_mesh(resampler);
     for (std::size_t f = 0; f < run.figures.fields.size(); ++f)

@@ -64,8 +64,8 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
     const auto& target = resampler.options().field_errors[f];
     const auto& [all, near] = m.fields[f];
     rows.push_back({info.unit.empty() ? info.name : info.name + " [" + info.unit + "]",
-                    target ? fmt::format("{:.4g}", *target) : "-", text(all, all.max), text(all, mean(all)),
-                    text(near, near.max), text(near, mean(near))});
+                    target ? fmt::format("{:.4g}", *target) : "-", text(all, all.max), text(all, all.mean()),
+                    text(near, near.max), text(near, near.mean())});
   }
   console.print("\n");
   console.table(rows);
@@ -101,14 +101,10 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
 void write_outputs(const Options& options, Resampler& resampler, Session& session) {
   Console& console = session.console;
   if (!options.interfaces.empty()) {
-    const ResamplingSource& source = resampler.source();
-    auto extracted = extract_interfaces(source.network->table(), resampler.cells(),
-                                        1e-11 * source.box.diagonal(), console);
-    extracted.mesh.materials = source.materials;
-    extracted.mesh.source = source.name;
+    const InterfaceMesh interfaces = approximated_interfaces(resampler, console);
     console.step("writing " + options.interfaces, -1);
     session.outputs.write(options.interfaces,
-                          [&](const auto& path) { write_interface_mesh(path, extracted.mesh); });
+                          [&](const auto& path) { write_interface_mesh(path, interfaces); });
   }
   if (options.output.empty() && options.cut.empty()) return;
   console.step("completing fields", -1);

@@ -4,8 +4,6 @@
 
 namespace adamas {
 
-double mean(const FieldError& e) { return e.count > 0 ? e.sum / static_cast<double>(e.count) : 0; }
-
 ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   const ResamplingSource& source = resampler.source();
   const InterfaceTable& table = source.network->table();
@@ -44,32 +42,36 @@ Figures known(bool is, double value) { return is ? Figures(value) : Figures(null
 Figures field_figures(const ResampleFigures& measured, const Resampler& resampler) {
   Figures figures = Figures::object();
   for (std::size_t f = 0; f < measured.fields.size(); ++f) {
-    const FieldFigures& e = measured.fields[f];
-    const bool any = e.all.count > 0, at_interfaces = e.at_interfaces.count > 0;
+    const FieldError& all = measured.fields[f].all;
     const auto& target = resampler.options().field_errors[f];
-    figures[resampler.source().fields->fields()[f].name] = {
-        {"max_error", known(any, e.all.max)},
-        {"mean_error", known(any, mean(e.all))},
-        {"interface_max_error", known(at_interfaces, e.at_interfaces.max)},
-        {"interface_mean_error", known(at_interfaces, mean(e.at_interfaces))},
-        {"target", known(target.has_value(), target.value_or(0))},
-        {"reached", target && any ? Figures(e.all.max <= *target) : Figures(nullptr)}};
-  }
-  return figures;
-}
-
-Figures material_figures(const ResampleFigures& measured, const ResamplingSource& source) {
-  Figures figures = Figures::array();
-  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
-    const bool stated = m.value < source.volumes.size();
-    figures.push_back({{"name", source.materials[m]},
-                       {"volume_input", known(stated, stated ? source.volumes[m] : 0)},
-                       {"volume_mesh", measured.volumes[m]}});
+    Figures figure = field_error_figures(measured.fields[f]);
+    figure["target"] = known(target.has_value(), target.value_or(0));
+    figure["reached"] = target && all.count > 0 ? Figures(all.max <= *target) : Figures(nullptr);
+    figures[resampler.source().fields->fields()[f].name] = std::move(figure);
   }
   return figures;
 }
 
 }  // namespace
+
+Figures field_error_figures(const FieldFigures& errors) {
+  const auto& [all, near] = errors;
+  return {{"max_error", known(all.count > 0, all.max)},
+          {"mean_error", known(all.count > 0, all.mean())},
+          {"interface_max_error", known(near.count > 0, near.max)},
+          {"interface_mean_error", known(near.count > 0, near.mean())}};
+}
+
+Figures volume_figures(const ResamplingSource& source, const IdVector<MaterialId, double>& volumes) {
+  Figures figures = Figures::array();
+  for (MaterialId m(0); m.value < volumes.size(); ++m.value) {
+    const bool stated = m.value < source.volumes.size();
+    figures.push_back({{"name", source.materials[m]},
+                       {"volume_input", known(stated, stated ? source.volumes[m] : 0)},
+                       {"volume_mesh", volumes[m]}});
+  }
+  return figures;
+}
 
 Figures resample_json(const ResampleFigures& measured, const Resampler& resampler) {
   const auto& distance = resampler.interface_distance();
@@ -84,7 +86,7 @@ Figures resample_json(const ResampleFigures& measured, const Resampler& resample
       distance ? Figures(distance->upper <= resampler.options().interface_error) : Figures(nullptr);
   figures["lost_interfaces"] = measured.lost_interfaces;
   figures["fields"] = field_figures(measured, resampler);
-  figures["materials"] = material_figures(measured, resampler.source());
+  figures["materials"] = volume_figures(resampler.source(), measured.volumes);
   figures["bodies"] = measured.bodies;
   figures["interface_triangles"] = distance ? Figures(distance->triangles) : Figures(nullptr);
   figures["flagged_vertices"] = measured.flagged_vertices;

@@ -20,12 +20,15 @@ struct ResampleFigures {
   IdVector<MaterialId, double> volumes;  ///< of the mesh
 };
 
-/// Mean error; 0 without elements.
-double mean(const FieldError& e);
-
 ResampleFigures measure(const Resampler& resampler, const Progress& progress);
 
-/// The keys of `--json` that tell of the mesh.
+// Parts of `--json`; a figure that is not known is null.
+
+/// Greatest and mean errors of one field.
+Figures field_error_figures(const FieldFigures& errors);
+/// The materials' names and their volumes in the input and in a mesh.
+Figures volume_figures(const ResamplingSource& source, const IdVector<MaterialId, double>& volumes);
+/// All keys that tell of the mesh.
 Figures resample_json(const ResampleFigures& measured, const Resampler& resampler);
 
 }  // namespace adamas

@@ -29,6 +29,8 @@ struct FieldError {
     sum += other.sum;
     count += other.count;
   }
+  /// 0 without elements.
+  [[nodiscard]] double mean() const { return count > 0 ? sum / static_cast<double>(count) : 0; }
 };
 
 /// Errors of one field at all native elements, and at those in cells with an interface.

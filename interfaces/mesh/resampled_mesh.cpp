@@ -88,6 +88,16 @@ double ResampledMesh::plain_value(std::size_t cell, std::size_t component, const
   return sum;
 }
 
+InterfaceMesh approximated_interfaces(const Resampler& resampler, Progress& progress) {
+  const ResamplingSource& source = resampler.source();
+  InterfaceMesh mesh =
+      extract_interfaces(source.network->table(), resampler.cells(), 1e-11 * source.box.diagonal(), progress)
+          .mesh;
+  mesh.materials = source.materials;
+  mesh.source = source.name;
+  return mesh;
+}
+
 ResampledMesh take_mesh(Resampler& resampler) {
   resampler.complete_fields();
   const auto& hierarchy = resampler.hierarchy();

@@ -52,4 +52,8 @@ struct ResampledMesh {
 /// The leaves of a resampler that has refined; completes the fields that output needs.
 ResampledMesh take_mesh(Resampler& resampler);
 
+/// The interfaces that the leaves of a resampler show, between materials.
+InterfaceMesh approximated_interfaces(const Resampler& resampler,
+                                      Progress& progress = SilentProgress::instance());
+
 }  // namespace adamas
