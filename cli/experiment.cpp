@@ -58,8 +58,8 @@ class Experiment {
   void refine();
   void show_meshes();
   void cut_slices();
-  void add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name,
-                 const std::string& caption);
+  void add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name, const std::string& caption,
+                 const std::optional<Box2>& detail);
   void follow_curve();
   void balance();
   void compare_with_published();
@@ -137,7 +137,7 @@ void Experiment::show_meshes() {
 }
 
 void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name,
-                           const std::string& caption) {
+                           const std::string& caption, const std::optional<Box2>& detail) {
   slices_.mesh = std::move(mesh);
   SliceStyle style{.plane = plane, .field = options_.show};
   const std::vector<SliceMode> modes{SliceMode::kInput, SliceMode::kPlain, SliceMode::kMaterials};
@@ -154,8 +154,8 @@ void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::s
     record_.slices.push_back({file, text});
   };
   write(name + ".png", caption);
-  if (!wishes_.detail || !(plane.origin == wishes_.planes.front().origin)) return;
-  picture.window = wishes_.detail;
+  if (!detail) return;
+  picture.window = detail;
   write(name + "-detail.png", "A part of it, enlarged.");
 }
 
@@ -165,13 +165,15 @@ void Experiment::cut_slices() {
   std::size_t number = 0;
   for (const Plane& plane : wishes_.planes) {
     const std::string name = fmt::format("slice-{}", ++number);
+    const auto detail = number == 1 ? wishes_.detail : std::nullopt;
     add_slice(interface_mesh_, plane, name,
               fmt::format("{}: the input; plain linear interpolation in the cells of the mesh that holds the "
                           "interfaces; each material's own field.",
-                          to_string(plane)));
+                          to_string(plane)),
+              detail);
     if (!record_.with_fields) continue;
     add_slice(mesh_, plane, name + "-fields",
-              fmt::format("{}: the same with the mesh that holds the fields too.", to_string(plane)));
+              fmt::format("{}: the same with the mesh that holds the fields too.", to_string(plane)), detail);
   }
   input_.data = std::move(slices_.data);
 }

@@ -49,6 +49,9 @@ class ContactBuffer {
   std::vector<Polygon> polygons_;
 };
 
+/// A tolerance that serves ContactMeshBuilder, in relation to the diagonal of the domain.
+inline constexpr double kWeldTolerance = 1e-11;
+
 /// Welds the contact polygons of a conforming tetrahedral mesh into a network of triangles. It is closed, by
 /// combinatorics alone: the polygons fit together but for points of one polygon that lie on the edge of
 /// another. Such edges run on one line, which is known by the functions that are equal there, and are divided

@@ -79,36 +79,98 @@ Expansion exact_determinant(const SmallMatrix& matrix, std::size_t n) {
 
 /// A sum and the sum of the sizes of its terms.
 struct Bounded {
-  double value, size;
+  double value = 0, size = 0;
+
+  friend Bounded operator*(const Bounded& a, const Bounded& b) {
+    return {a.value * b.value, a.size * b.size};
+  }
+  friend Bounded operator+(const Bounded& a, const Bounded& b) {
+    return {a.value + b.value, a.size + b.size};
+  }
+  friend Bounded operator-(const Bounded& a, const Bounded& b) {
+    return {a.value - b.value, a.size + b.size};
+  }
 };
 
 /// The determinant in floating point and a bound of its error.
 Bounded rounded_determinant(const SmallMatrix& matrix, std::size_t n) {
-  Bounded found = determinant<Bounded>(
-      n, {0, 0}, {1, 1},
-      [&](Bounded& sum, const Bounded& minor, std::size_t row, std::size_t column, bool negative) {
-        const double entry = matrix[row][column];
-        sum.value += (negative ? -entry : entry) * minor.value;
-        sum.size += std::abs(entry) * minor.size;
-      });
-  // Each of the n levels rounds a product and at most n sums.
-  found.size *= 2 * static_cast<double>(n * (n + 1)) * std::numeric_limits<double>::epsilon();
+  const auto at = [&](std::size_t row, std::size_t column) {
+    const double entry = matrix[row][column];
+    return Bounded{entry, std::abs(entry)};
+  };
+  // Of rows r and r + 1, columns i and j.
+  const auto minor = [&](std::size_t r, std::size_t i, std::size_t j) {
+    return at(r, i) * at(r + 1, j) - at(r, j) * at(r + 1, i);
+  };
+  Bounded found;
+  if (n == 1) {
+    found = at(0, 0);
+  } else if (n == 2) {
+    found = minor(0, 0, 1);
+  } else if (n == 3) {
+    found = at(2, 0) * minor(0, 1, 2) - at(2, 1) * minor(0, 0, 2) + at(2, 2) * minor(0, 0, 1);
+  } else if (n == 4) {
+    found = minor(0, 0, 1) * minor(2, 2, 3) - minor(0, 0, 2) * minor(2, 1, 3) +
+            minor(0, 0, 3) * minor(2, 1, 2) + minor(0, 1, 2) * minor(2, 0, 3) -
+            minor(0, 1, 3) * minor(2, 0, 2) + minor(0, 2, 3) * minor(2, 0, 1);
+  } else {
+    found = determinant<Bounded>(
+        n, {0, 0}, {1, 1},
+        [&](Bounded& sum, const Bounded& rest, std::size_t row, std::size_t column, bool negative) {
+          const Bounded term = at(row, column) * rest;
+          sum = negative ? sum - term : sum + term;
+        });
+  }
+  // Roundings on the way from an entry to the result, and one for those of the size.
+  constexpr std::array<double, 6> kRoundings{0, 1, 3, 6, 11, 60};
+  found.size *= kRoundings[n] * std::numeric_limits<double>::epsilon() / 2;
   return found;
+}
+
+/// Makes a matrix whose last column consists of ones and zeros smaller by one, with the same determinant: a
+/// row that ends in one is taken from the others, where that is exact. Otherwise leaves it as it is.
+void reduce(SmallMatrix& matrix, std::size_t& n) {
+  std::size_t base = n;
+  for (std::size_t row = n; row-- > 0;) {
+    const double last = matrix[row][n - 1];
+    if (last == 1) base = row;
+    if (last != 0 && last != 1) return;
+  }
+  if (base == n || n == 1) return;
+  SmallMatrix smaller{};
+  std::size_t to = 0;
+  for (std::size_t row = 0; row < n; ++row) {
+    if (row == base) continue;
+    for (std::size_t column = 0; column + 1 < n; ++column) {
+      const double entry = matrix[row][column];
+      const double subtracted = matrix[row][n - 1] == 1 ? matrix[base][column] : 0;
+      const double difference = entry - subtracted, back = difference - entry;
+      if ((entry - (difference - back)) - (subtracted + back) != 0) return;
+      // Expanding along the last column gives the sign.
+      smaller[to][column] = to == 0 && (base + n) % 2 == 0 ? -difference : difference;
+    }
+    ++to;
+  }
+  matrix = smaller;
+  --n;
 }
 
 }  // namespace
 
-int determinant_sign(const SmallMatrix& matrix, std::size_t n) {
+int determinant_sign(SmallMatrix matrix, std::size_t n) {
+  reduce(matrix, n);
   const auto [value, error] = rounded_determinant(matrix, n);
   if (value > error) return 1;
   if (value < -error) return -1;
+  if (error == 0) return 0;
   const Expansion exact = exact_determinant(matrix, n);
   return exact.empty() ? 0 : exact.back() > 0 ? 1 : -1;
 }
 
-double determinant_value(const SmallMatrix& matrix, std::size_t n) {
+double determinant_value(SmallMatrix matrix, std::size_t n) {
+  reduce(matrix, n);
   const auto [value, error] = rounded_determinant(matrix, n);
-  if (error <= 1e-13 * std::abs(value)) return value;
+  if (error <= 5e-13 * std::abs(value)) return value;
   double sum = 0;
   for (const double part : exact_determinant(matrix, n)) sum += part;
   return sum;

@@ -80,24 +80,7 @@ GridFieldSource::GridFieldSource(const MultiMaterialData& data,
   });
   find_mixed_sites();
   find_stated_fields();
-  std::vector<double> row(row_size_);
-  std::vector<bool> seen(fields_.size());
-  for (const NativeElement& element : elements_) {
-    native_values(element, row);
-    for (std::size_t f = 0; f < fields_.size(); ++f) {
-      FieldInfo& info = fields_[f];
-      double value = row[info.offset];
-      if (info.components > 1) {
-        value = 0;
-        for (std::size_t c = 0; c < static_cast<std::size_t>(info.components); ++c)
-          value = std::hypot(value, row[info.offset + c]);
-      }
-      if (std::isnan(value)) continue;
-      info.min = seen[f] ? std::min(info.min, value) : value;
-      info.max = seen[f] ? std::max(info.max, value) : value;
-      seen[f] = true;
-    }
-  }
+  find_ranges();
 }
 
 bool GridFieldSource::inside(const Site& s) const {
@@ -160,6 +143,43 @@ void GridFieldSource::find_stated_fields() {
         stated_somewhere_[f][m] = states(f, m, site) ? 1 : 0;
     }
   });
+}
+
+void GridFieldSource::find_ranges() {
+  struct Range {
+    double min = std::numeric_limits<double>::infinity();
+    double max = -std::numeric_limits<double>::infinity();
+  };
+  const auto layers = static_cast<std::size_t>(sites(2));
+  const std::size_t layer_size = elements_.size() / layers;
+  std::vector<Range> ranges(layers * fields_.size());
+  parallel_for(layers, 1, [&](std::size_t layer) {
+    std::vector<double> row(row_size_);
+    for (std::size_t site = layer * layer_size; site < (layer + 1) * layer_size; ++site) {
+      native_values(elements_[site], row);
+      for (std::size_t f = 0; f < fields_.size(); ++f) {
+        const FieldInfo& info = fields_[f];
+        double value = row[info.offset];
+        if (info.components > 1) {
+          value = 0;
+          for (std::size_t c = 0; c < static_cast<std::size_t>(info.components); ++c)
+            value = std::hypot(value, row[info.offset + c]);
+        }
+        if (std::isnan(value)) continue;
+        Range& range = ranges[layer * fields_.size() + f];
+        range.min = std::min(range.min, value);
+        range.max = std::max(range.max, value);
+      }
+    }
+  });
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    Range all;
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+      all.min = std::min(all.min, ranges[layer * fields_.size() + f].min);
+      all.max = std::max(all.max, ranges[layer * fields_.size() + f].max);
+    }
+    if (all.min <= all.max) fields_[f].min = all.min, fields_[f].max = all.max;
+  }
 }
 
 double GridFieldSource::stated(std::size_t field, MaterialId material, std::size_t site,

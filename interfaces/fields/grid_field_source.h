@@ -55,6 +55,7 @@ class GridFieldSource final : public FieldSource {
   [[nodiscard]] std::size_t index(const Site& s) const;
   void find_mixed_sites();
   void find_stated_fields();
+  void find_ranges();
   /// Whether the site states a value of the field for the material.
   [[nodiscard]] bool states(std::size_t field, MaterialId material, std::size_t site) const;
   [[nodiscard]] double stated(std::size_t field, MaterialId material, std::size_t site, int component) const;

@@ -9,9 +9,9 @@ namespace {
 constexpr std::size_t kChunk = 2048;
 }
 
-ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, double tolerance,
+ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, const Box3& domain,
                                        Progress& progress) {
-  ContactMeshBuilder builder(tolerance);
+  ContactMeshBuilder builder(kWeldTolerance * domain.diagonal());
   constexpr std::size_t kBatch = 64;
   for (std::size_t begin = 0; begin < cells.count; begin += kBatch * kChunk) {
     progress.step("extracting interfaces", static_cast<double>(begin) / static_cast<double>(cells.count));

@@ -37,9 +37,9 @@ struct ExtractedInterfaces {
 };
 
 /// The approximated interfaces of a conforming mesh, welded and closed up to the domain's boundary
-/// (docs/method.md, Who owns a point of a cell). `tolerance`: a length far below any cell. The mesh's names
-/// of materials and of its source are left to the caller.
-ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, double tolerance,
+/// (docs/method.md, Who owns a point of a cell). The mesh's names of materials and of its source are left to
+/// the caller.
+ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, const Box3& domain,
                                        Progress& progress = SilentProgress::instance());
 
 /// Volume of each body, in the cube of the unit of length.

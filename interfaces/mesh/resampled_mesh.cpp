@@ -91,8 +91,7 @@ double ResampledMesh::plain_value(std::size_t cell, std::size_t component, const
 InterfaceMesh approximated_interfaces(const Resampler& resampler, Progress& progress) {
   const ResamplingSource& source = resampler.source();
   InterfaceMesh mesh =
-      extract_interfaces(source.network->table(), resampler.cells(), 1e-11 * source.box.diagonal(), progress)
-          .mesh;
+      extract_interfaces(source.network->table(), resampler.cells(), source.box, progress).mesh;
   mesh.materials = source.materials;
   mesh.source = source.name;
   return mesh;

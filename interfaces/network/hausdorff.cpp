@@ -41,10 +41,12 @@ struct Measure {
 /// A triangle clipped to a box has at most nine corners.
 struct Polygon {
   std::array<Vec3, 10> corners;
+  std::array<Closest, 10> closest;  ///< to the corners
   std::size_t count = 0;
-  void add(const Vec3& p) {
+  void add(const Vec3& p, const Closest& of_p) {
     ADAMAS_ASSERT(count < corners.size());
-    corners[count++] = p;
+    corners[count] = p;
+    closest[count++] = of_p;
   }
 };
 
@@ -54,11 +56,11 @@ Polygon clip(const Polygon& polygon, int axis, double wall, double sign) {
   for (std::size_t i = 0; i < polygon.count; ++i) {
     const Vec3 &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
     const double x = sign * (a[axis] - wall), y = sign * (b[axis] - wall);
-    if (x <= 0) kept.add(a);
+    if (x <= 0) kept.add(a, polygon.closest[i]);
     if ((x < 0 && y > 0) || (x > 0 && y < 0)) {
       Vec3 p = a + (x / (x - y)) * (b - a);
       p[axis] = wall;
-      kept.add(p);
+      kept.add(p, {});
     }
   }
   return kept;
@@ -69,71 +71,120 @@ bool is_inside(const Piece& piece, const std::optional<Box3>& domain) {
                                 [&](const Vec3& p) { return domain->contains(p); });
 }
 
-Polygon clipped(const Piece& piece, const std::optional<Box3>& domain) {
+Polygon clipped(const Piece& piece, const ClosestPointTree& to, const std::optional<Box3>& domain) {
   Polygon polygon;
-  for (const Vec3& p : piece.corners) polygon.add(p);
+  for (std::size_t i = 0; i < 3; ++i) polygon.add(piece.corners[i], piece.closest[i]);
   if (is_inside(piece, domain)) return polygon;
   for (int axis = 0; axis < 3; ++axis) {
     polygon = clip(polygon, axis, domain->max[axis], 1);
     polygon = clip(polygon, axis, domain->min[axis], -1);
   }
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    if (polygon.closest[i].distance < 0) polygon.closest[i] = find_closest(to, polygon.corners[i]);
+  }
   return polygon;
 }
 
-/// Bounds of the distance over one piece. Its greatest distance to a triangle S is at a corner; to all of the
-/// target it is at most that for any S.
-Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optional<Box3>& domain) {
-  const Polygon polygon = clipped(piece, domain);
-  Measure result;
-  if (polygon.count == 0) return result;
-  Vec3 center;
-  for (std::size_t i = 0; i < polygon.count; ++i) {
-    center += (1 / static_cast<double>(polygon.count)) * polygon.corners[i];
-  }
-  std::array<std::uint32_t, 11> candidates;
-  std::size_t count = 0;
-  double at_center = 0, spread = 0, farthest = 0;
-  const bool whole = is_inside(piece, domain);
-  for (std::size_t i = 0; i <= polygon.count; ++i) {
-    const Vec3& p = i < polygon.count ? polygon.corners[i] : center;
-    const bool known = whole && i < 3 && piece.closest[i].distance >= 0;
-    const Closest closest = known ? piece.closest[i] : find_closest(to, p);
-    const double d = closest.distance;
-    if (i == 0 || d > result.lower) {
-      result.lower = d;
-      result.worst = p;
-    }
-    if (i == polygon.count) at_center = d;
-    farthest = std::max(farthest, d);
-    spread = std::max(spread, distance(p, center));
-    const auto last = candidates.begin() + count;
-    if (closest.triangle != ClosestPointTree::kNoTriangle &&
-        std::find(candidates.begin(), last, closest.triangle) == last) {
-      candidates[count++] = closest.triangle;
-    }
-  }
-  result.upper = at_center + spread;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::array<Vec3, 3>& s = to.triangle(candidates[k]);
-    double greatest = 0;
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-      greatest = std::max(greatest, closest_on_triangle(polygon.corners[i], s).squared_distance);
-    }
-    result.upper = std::min(result.upper, std::sqrt(greatest));
-  }
-  // Against round-off: the bound is at least what was seen.
-  result.upper = std::max(result.upper, result.lower);
-  return result;
+/// No point of a triangle is farther than this from the nearest of its corners: the radius of its
+/// circumscribed circle, or, where an angle is obtuse, no more than half the longest edge.
+double covering_radius(const Vec3& a, const Vec3& b, const Vec3& c) {
+  std::array<double, 3> squared{squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)};
+  std::sort(squared.begin(), squared.end());
+  const double half_longest = 0.5 * std::sqrt(squared[2]);
+  if (squared[0] + squared[1] <= squared[2]) return half_longest;
+  const double circumscribed =
+      std::sqrt(squared[0] * squared[1] * squared[2]) / (2 * norm(cross(b - a, c - a)));
+  // Of a triangle with an acute greatest angle at most that of an equilateral one, but for round-off.
+  return std::min(circumscribed, 2 / std::sqrt(3.0) * half_longest);
 }
 
-void divide(const Piece& piece, std::vector<Piece>& out) {
-  const auto& c = piece.corners;
-  const auto& known = piece.closest;
-  const Vec3 ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), ca = 0.5 * (c[2] + c[0]);
-  out.push_back({{c[0], ab, ca}, {known[0], {}, {}}, piece.triangle});
-  out.push_back({{ab, c[1], bc}, {Closest{}, known[1], {}}, piece.triangle});
-  out.push_back({{ca, bc, c[2]}, {Closest{}, {}, known[2]}, piece.triangle});
-  out.push_back({{ab, bc, ca}, {}, piece.triangle});
+/// A piece, and the bound of it in the making.
+class PieceMeasure {
+ public:
+  PieceMeasure(const Polygon& polygon, const ClosestPointTree& to) : polygon_(polygon), to_(to) {
+    double radius = 0;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      consider(polygon.corners[i], polygon.closest[i]);
+      if (i < 2) continue;
+      const auto& p = polygon.corners;
+      radius = std::max(radius, covering_radius(p[0], p[i - 1], p[i]));
+    }
+    result_.upper = std::min(result_.upper, result_.lower + radius);
+  }
+
+  /// The closest point to the middle is looked for as well.
+  void look_closer() {
+    Vec3 center;
+    for (std::size_t i = 0; i < polygon_.count; ++i) center += polygon_.corners[i];
+    center = 1 / static_cast<double>(polygon_.count) * center;
+    double spread = 0;
+    for (std::size_t i = 0; i < polygon_.count; ++i)
+      spread = std::max(spread, distance(polygon_.corners[i], center));
+    const Closest closest = find_closest(to_, center);
+    result_.upper = std::min(result_.upper, closest.distance + spread);
+    consider(center, closest);
+  }
+
+  /// Against round-off, the upper bound is at least what was seen.
+  [[nodiscard]] Measure result() const {
+    return {std::max(result_.upper, result_.lower), result_.lower, result_.worst};
+  }
+
+ private:
+  /// The greatest distance to one triangle S is at a corner; to all of the target it is at most that for any
+  /// S.
+  void consider(const Vec3& p, const Closest& of_p) {
+    if (of_p.distance > result_.lower) {
+      result_.lower = of_p.distance;
+      result_.worst = p;
+    }
+    const std::uint32_t candidate = of_p.triangle;
+    const auto last = candidates_.begin() + static_cast<std::ptrdiff_t>(count_);
+    if (candidate == ClosestPointTree::kNoTriangle || std::find(candidates_.begin(), last, candidate) != last)
+      return;
+    candidates_[count_++] = candidate;
+    double greatest = 0;
+    for (std::size_t i = 0; i < polygon_.count; ++i) {
+      const double known = polygon_.closest[i].distance;
+      const bool is_known = polygon_.closest[i].triangle == candidate;
+      greatest = std::max(
+          greatest,
+          is_known ? known
+                   : std::sqrt(
+                         closest_on_triangle(polygon_.corners[i], to_.triangle(candidate)).squared_distance));
+    }
+    result_.upper = std::min(result_.upper, greatest);
+  }
+
+  const Polygon& polygon_;
+  const ClosestPointTree& to_;
+  std::array<std::uint32_t, 11> candidates_{};
+  std::size_t count_ = 0;
+  Measure result_{kInfinity, -1, {}};
+};
+
+/// Bounds of the distance over one piece, that does not matter where it is at most `accept`, or `factor`
+/// times what has been seen.
+Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optional<Box3>& domain,
+                double accept, double factor, double seen) {
+  const Polygon polygon = clipped(piece, to, domain);
+  if (polygon.count == 0) return {};
+  PieceMeasure result(polygon, to);
+  const Measure first = result.result();
+  if (first.upper > std::max(accept, factor * std::max(seen, first.lower))) result.look_closer();
+  return result.result();
+}
+
+/// The four parts of a piece.
+void divide(const Piece& piece, const ClosestPointTree& to, std::span<Piece, 4> parts) {
+  const auto& [a, b, c] = piece.corners;
+  const auto& [at_a, at_b, at_c] = piece.closest;
+  const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+  const Closest at_ab = find_closest(to, ab), at_bc = find_closest(to, bc), at_ca = find_closest(to, ca);
+  parts[0] = {{a, ab, ca}, {at_a, at_ab, at_ca}, piece.triangle};
+  parts[1] = {{ab, b, bc}, {at_ab, at_b, at_bc}, piece.triangle};
+  parts[2] = {{ca, bc, c}, {at_ca, at_bc, at_c}, piece.triangle};
+  parts[3] = {{ab, bc, ca}, {at_ab, at_bc, at_ca}, piece.triangle};
 }
 
 /// Divides pieces until their bounds are good enough, or `most` of them have been looked at.
@@ -143,11 +194,17 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
                   std::vector<double>& triangle_lower, DistanceBound& bound) {
   std::vector<Piece> next;
   std::vector<Measure> measures;
+  std::vector<std::size_t> loose;
   for (std::size_t measured = 0; !pieces.empty(); pieces.swap(next)) {
     progress.check();
     measures.assign(pieces.size(), {});
-    parallel_for(pieces.size(), 256,
-                 [&](std::size_t i) { measures[i] = measure(pieces[i], to, options.domain); });
+    const auto seen_of = [&](const Piece& piece) {
+      return options.each ? triangle_lower[piece.triangle] : bound.lower;
+    };
+    parallel_for(pieces.size(), 256, [&](std::size_t i) {
+      const double seen = seen_of(pieces[i]);
+      measures[i] = measure(pieces[i], to, options.domain, accept, 1 + options.relative, seen);
+    });
     measured += pieces.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const Measure& m = measures[i];
@@ -156,18 +213,22 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
       double& lower = triangle_lower[pieces[i].triangle];
       lower = std::max(lower, m.lower);
     }
-    next.clear();
+    loose.clear();
     const bool last = measured + 4 * pieces.size() > most;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const double lower = options.each ? triangle_lower[pieces[i].triangle] : bound.lower;
-      const double upper = measures[i].upper, enough = std::max(accept, (1 + options.relative) * lower);
+      const double upper = measures[i].upper;
+      const double enough = std::max(accept, (1 + options.relative) * seen_of(pieces[i]));
       if (upper <= enough || last) {
         double& of_triangle = bound.triangle_upper[pieces[i].triangle];
         of_triangle = std::max(of_triangle, upper);
       } else {
-        divide(pieces[i], next);
+        loose.push_back(i);
       }
     }
+    next.resize(4 * loose.size());
+    parallel_for(loose.size(), 64, [&](std::size_t i) {
+      divide(pieces[loose[i]], to, std::span<Piece, 4>(next.data() + 4 * i, 4));
+    });
   }
 }
 

@@ -15,23 +15,14 @@ namespace adamas {
 struct Reconstruction::Layer {
   ContactBuffer contacts;
   IdVector<MaterialId, double> volume;
-  /// Parts that reach a face of a tetrahedron without holding one of its corners: face, material, part.
-  struct Reach {
-    std::array<std::uint32_t, 3> face;
-    std::uint32_t material;
-    Part part;
-    auto operator<=>(const Reach&) const = default;
-  };
-  std::vector<Reach> reaches;
   std::vector<std::pair<Part, MaterialId>> pointless;
 };
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress) : lattice_(data) {
   const std::uint32_t layers = lattice_.points(2) - 1;
   mesh_.source = data.source;
-  ContactMeshBuilder builder(1e-11 * data.grid.domain().diagonal());
+  ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);
-  std::vector<Layer::Reach> reaches;
   join_points();
   constexpr std::uint32_t kBatch = 8;
   for (std::uint32_t begin = 0; begin < layers; begin += kBatch) {
@@ -44,17 +35,10 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress
       builder.append(layer.contacts);
       for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
         volume_reconstructed_[m] += layer.volume[m];
-      reaches.insert(reaches.end(), layer.reaches.begin(), layer.reaches.end());
       pointless_.insert(pointless_.end(), layer.pointless.begin(), layer.pointless.end());
     }
   }
   for (const auto& [part, material] : pointless_) pointless_parent_.emplace(part, part);
-  std::sort(reaches.begin(), reaches.end());
-  for (std::size_t i = 1; i < reaches.size(); ++i) {
-    if (reaches[i].face == reaches[i - 1].face && reaches[i].material == reaches[i - 1].material) {
-      join(reaches[i].part, reaches[i - 1].part);
-    }
-  }
   InterfaceMesh extracted = builder.finish();
   join_round_edges(extracted, data.grid.domain());
   number_bodies();
@@ -130,29 +114,6 @@ void Reconstruction::extract_tetrahedron(const FractionLattice::Index& cell, std
     if (candidate.owner >= lattice_.point_count()) layer.pointless.emplace_back(candidate.owner, m);
   }
   layer.contacts.add(ids, positions, problem);
-  if (problem.candidates.size() > 2) find_reaches(cell, path, points, parts, layer);
-}
-
-/// Which faces of a tetrahedron does a part reach without holding one of their corners?
-void Reconstruction::find_reaches(const FractionLattice::Index& cell, std::size_t path,
-                                  const std::array<std::uint32_t, 4>& points,
-                                  const std::vector<OwnedTetrahedron>& parts, Layer& layer) const {
-  for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-    std::array<std::uint32_t, 3> face{};
-    for (std::size_t c = 0, n = 0; c < 4; ++c) {
-      if (c != opposite) face[n++] = points[c];
-    }
-    std::vector<std::uint32_t> seen;
-    for (const OwnedTetrahedron& part : parts) {
-      const auto touching = std::count_if(part.corners.begin(), part.corners.end(),
-                                          [&](const Weights& w) { return w[opposite] <= 0; });
-      const bool holds = std::any_of(face.begin(), face.end(),
-                                     [&](std::uint32_t p) { return lattice_.owner(p).value == part.owner; });
-      if (touching < 3 || holds || std::find(seen.begin(), seen.end(), part.owner) != seen.end()) continue;
-      seen.push_back(part.owner);
-      layer.reaches.push_back({face, part.owner, part_in(cell, path, points, MaterialId(part.owner))});
-    }
-  }
 }
 
 Reconstruction::Part Reconstruction::part_in(const FractionLattice::Index& cell, std::size_t path,

@@ -46,9 +46,6 @@ class Reconstruction {
   void extract_cell(const FractionLattice::Index& cell, Layer& layer) const;
   void extract_tetrahedron(const FractionLattice::Index& cell, std::size_t path, double volume,
                            Layer& layer) const;
-  void find_reaches(const FractionLattice::Index& cell, std::size_t path,
-                    const std::array<std::uint32_t, 4>& points, const std::vector<OwnedTetrahedron>& parts,
-                    Layer& layer) const;
   [[nodiscard]] Part part_in(const FractionLattice::Index& cell, std::size_t path,
                              const std::array<std::uint32_t, 4>& corners, MaterialId m) const;
   void join_points();

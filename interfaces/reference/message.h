@@ -10,23 +10,25 @@
 
 namespace adamas {
 
-/// Collects plain values, texts and lists of plain values as bytes, for a process on the same machine.
+/// Turns plain values, texts and lists of plain values into bytes, for a process on the same machine.
 class MessageWriter {
  public:
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  void put(const T& value) { append(&value, sizeof(T)); }
+  void operator()(const T& value) { append(&value, sizeof(T)); }
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  void put(const std::vector<T>& values) {
-    put(static_cast<std::uint64_t>(values.size()));
-    append(values.data(), values.size() * sizeof(T));
-  }
-  void put(const std::string& text) { put(std::vector<char>(text.begin(), text.end())); }
+  void operator()(const std::vector<T>& values) { put_list(values); }
+  void operator()(const std::string& text) { put_list(text); }
 
   [[nodiscard]] const std::vector<char>& bytes() const { return bytes_; }
 
  private:
+  template <class List>
+  void put_list(const List& values) {
+    (*this)(static_cast<std::uint64_t>(values.size()));
+    append(values.data(), values.size() * sizeof(values[0]));
+  }
   void append(const void* data, std::size_t size) {
     const auto* begin = static_cast<const char*>(data);
     bytes_.insert(bytes_.end(), begin, begin + size);
@@ -36,40 +38,34 @@ class MessageWriter {
 };
 
 /// Takes them apart again. What is read is not trusted: after the first value that is not there all are
-/// empty, and `good` is false.
+/// empty, and `complete` is false.
 class MessageReader {
  public:
   explicit MessageReader(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
 
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  [[nodiscard]] T get() {
-    T value{};
-    take(&value, sizeof(T));
-    return value;
-  }
+  void operator()(T& value) { take(&value, sizeof(T)); }
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  [[nodiscard]] std::vector<T> get_list() {
-    const auto count = get<std::uint64_t>();
-    if (!good_ || count > (bytes_.size() - position_) / sizeof(T)) {
-      good_ = false;
-      return {};
-    }
-    std::vector<T> values(static_cast<std::size_t>(count));
-    take(values.data(), values.size() * sizeof(T));
-    return values;
-  }
-  [[nodiscard]] std::string get_text() {
-    const std::vector<char> text = get_list<char>();
-    return {text.begin(), text.end()};
-  }
+  void operator()(std::vector<T>& values) { get_list(values); }
+  void operator()(std::string& text) { get_list(text); }
 
-  [[nodiscard]] bool good() const { return good_; }
   /// Everything was there, and nothing is left.
   [[nodiscard]] bool complete() const { return good_ && position_ == bytes_.size(); }
 
  private:
+  template <class List>
+  void get_list(List& values) {
+    std::uint64_t count = 0;
+    (*this)(count);
+    if (!good_ || count > (bytes_.size() - position_) / sizeof(values[0])) {
+      good_ = false;
+      return;
+    }
+    values.resize(static_cast<std::size_t>(count));
+    take(values.data(), values.size() * sizeof(values[0]));
+  }
   void take(void* data, std::size_t size) {
     if (!good_ || size > bytes_.size() - position_) {
       good_ = false;
@@ -83,5 +79,27 @@ class MessageReader {
   std::size_t position_ = 0;
   bool good_ = true;
 };
+
+/// A message begins with its kind's mark; `Message::members(message, visit)` hands each member to `visit`.
+template <class Message>
+std::vector<char> encode(const Message& message) {
+  MessageWriter writer;
+  writer(Message::kMark);
+  Message::members(message, writer);
+  return writer.bytes();
+}
+
+/// None for bytes that are no whole message of this kind.
+template <class Message>
+std::optional<Message> decode(std::vector<char> bytes) {
+  MessageReader reader(std::move(bytes));
+  auto mark = Message::kMark;
+  mark.fill(0);
+  reader(mark);
+  if (mark != Message::kMark) return std::nullopt;
+  Message message;
+  Message::members(message, reader);
+  return reader.complete() ? std::optional(std::move(message)) : std::nullopt;
+}
 
 }  // namespace adamas

@@ -76,8 +76,7 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
   const ResampledMesh mesh = take_mesh(resampler);
   if (source.fields) row.field_seconds = std::max(0.0, seconds_since(start) - row.seconds);
 
-  const auto extracted =
-      extract_interfaces(mesh.table, mesh.cell_set(), 1e-11 * source.box.diagonal(), progress);
+  const auto extracted = extract_interfaces(mesh.table, mesh.cell_set(), source.box, progress);
   own.interface_points = extracted.mesh.points;
   std::vector<ClosestPointTree::Triangle> triangles;
   for (std::size_t t = 0; t < extracted.bodies.size(); ++t) {

@@ -64,7 +64,7 @@ ReferenceResult ask(const MesherRequest& request, const PiecewiseLinearComplex& 
     result.crashed = child.crashed;
     return result;
   }
-  auto reply = decode_reply(std::move(child.output));
+  auto reply = decode<MesherReply>(std::move(child.output));
   if (!reply) {
     result.failure = "gave no answer that can be read";
     return result;

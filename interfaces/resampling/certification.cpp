@@ -33,8 +33,7 @@ std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
 std::vector<TetrahedronId> Resampler::measure_distance() {
   const InterfaceNetwork& network = *source_.network;
   const double target = options_.interface_error;
-  const auto extracted =
-      extract_interfaces(network.table(), cells(), 1e-11 * source_.box.diagonal(), progress_);
+  const auto extracted = extract_interfaces(network.table(), cells(), source_.box, progress_);
   const auto triangles = indices(extracted.mesh);
   const ClosestPointTree approximation(extracted.mesh.points, triangles);
   HausdorffOptions options;

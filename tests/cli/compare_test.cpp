@@ -54,9 +54,10 @@ TEST_F(Compare, WritesTableFiguresAndPicture) {
     EXPECT_EQ(row["materials"].size(), 2u);
     double volume = 0;
     for (const auto& m : row["materials"]) volume += double(m["volume_mesh"]);
-    EXPECT_NEAR(volume, 1, 1e-6);
     const double distance = std::max(double(row["hausdorff_to_input"]), double(row["hausdorff_from_input"]));
     const std::string name = row["name"];
+    // Mesh_3 approximates the box as well as the interfaces.
+    EXPECT_NEAR(volume, 1, name.rfind("Mesh_3", 0) == 0 ? 6 * distance : 1e-6) << name;
     if (name == "adamas") own = distance;
     if (name == "TetGen (input's)") continue;
     if (row["matched"]) {

@@ -45,6 +45,9 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
         matrix[n - 1][c] = n == 2 ? matrix[0][c] : matrix[0][c] - (n > 2 ? matrix[n - 2][c] : 0);
       if (i % 4 == 0) matrix[n - 1][random() % n] += 1;
     }
+    if (i % 3 == 0) {
+      for (std::size_t r = 0; r < n; ++r) matrix[r][n - 1] = random() % 4 == 0 ? 0 : 1;
+    }
     // Columns scaled by powers of two, which changes no sign.
     SmallMatrix scaled = matrix;
     for (std::size_t c = 0; c < n; ++c) {
@@ -55,6 +58,12 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
     zeros += expected == 0 ? 1 : 0;
     ASSERT_EQ(determinant_sign(matrix, n), expected) << i;
     ASSERT_EQ(determinant_sign(scaled, n), expected) << i;
+    // Entries that differ by more than a double holds cannot be subtracted exactly.
+    SmallMatrix wide = matrix;
+    for (std::size_t c = 0; c < n; ++c) wide[0][c] = std::ldexp(wide[0][c], c + 1 == n ? 0 : 40);
+    if (wide[0][n - 1] == 0) {
+      ASSERT_EQ(determinant_sign(wide, n), expected) << i;
+    }
     const double value = determinant_value(matrix, n);
     ASSERT_EQ(value > 0 ? 1 : value < 0 ? -1 : 0, expected) << i;
     // Integers up to 2^53 have no relative error to speak of.

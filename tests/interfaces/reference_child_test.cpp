@@ -120,7 +120,7 @@ TEST_F(ChildProgram, IsNotBelieved) {
   // Every end that is too early.
   const auto bytes = encode(good);
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    ASSERT_FALSE(decode_reply({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}));
+    ASSERT_FALSE(decode<MesherReply>({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}));
 }
 
 TEST_F(ChildProgram, RunsOutOfMemory) {

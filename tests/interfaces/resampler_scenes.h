@@ -70,7 +70,7 @@ struct ResampledScene {
   [[nodiscard]] const InterfaceTable& table() const { return source.network->table(); }
   [[nodiscard]] double tolerance() const { return 1e-11 * source.box.diagonal(); }
   [[nodiscard]] ExtractedInterfaces extracted() const {
-    return extract_interfaces(table(), resampler->cells(), tolerance());
+    return extract_interfaces(table(), resampler->cells(), source.box);
   }
   /// By name, so that orders of materials can be compared.
   [[nodiscard]] double material_volume(const std::string& material) const {

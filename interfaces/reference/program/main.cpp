@@ -81,7 +81,7 @@ int main() {
   // The libraries print where they like.
   const int reply_descriptor = ::dup(STDOUT_FILENO);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
-  const auto request = adamas::decode_request(read_all(STDIN_FILENO));
+  const auto request = adamas::decode<adamas::MesherRequest>(read_all(STDIN_FILENO));
   if (!request || !is_sound(*request)) {
     std::fputs("adamas-reference: expected a request of adamas compare, found something else\n", stderr);
     return 2;
