@@ -19,6 +19,8 @@ constexpr double kFinestForApproximation = 0.25;
 /// reported.
 constexpr double kSharp = 0.005;
 constexpr double kTight = 0.03;
+/// Of a distance, in relation to the domain's diagonal.
+constexpr double kRoundOff = 1e-15;
 
 std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
   std::vector<ClosestPointTree::Triangle> triangles;
@@ -61,7 +63,8 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
     to.lower = std::max(to.lower, from.lower);
     tighten_distance_bound(extracted.mesh.points, triangles, network.tree(), options, to, progress_);
     set_distance();
-    distance_->upper = std::min(distance_->upper, target);
+    // What was seen at any point may differ by round-off from what is seen at the same point otherwise.
+    distance_->upper = std::min(distance_->upper + kRoundOff * source_.box.diagonal(), target);
     return {};
   }
   std::vector<TetrahedronId> result = leaves_far_from(approximation, from);
