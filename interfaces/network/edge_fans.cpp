@@ -27,8 +27,8 @@ bool may_swap(const Blade& a, const Blade& b) {
 
 }  // namespace
 
-EdgeFans::EdgeFans(const InterfaceMesh& mesh, const Box3* domain)
-    : mesh_(mesh), domain_(domain), welded_(weld_points(mesh.points)) {
+EdgeFans::EdgeFans(const InterfaceMesh& mesh, const Box3* domain, double boundary)
+    : mesh_(mesh), domain_(domain), boundary_(boundary), welded_(weld_points(mesh.points)) {
   half_edges_.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& p = mesh.triangles[t].points;
@@ -60,7 +60,7 @@ Vec3 EdgeFans::outward(std::size_t edge) const {
   if (domain_ == nullptr) return normal;
   const auto [low, high] = ends(edge);
   const Vec3 &a = mesh_.points[low], &b = mesh_.points[high];
-  const double tolerance = 1e-9 * domain_->diagonal();
+  const double tolerance = boundary_ * domain_->diagonal();
   for (int axis = 0; axis < 3; ++axis) {
     const auto on = [&](double x) {
       return std::abs(a[axis] - x) <= tolerance && std::abs(b[axis] - x) <= tolerance;

@@ -23,8 +23,9 @@ struct Blade {
 /// two points coincide are left out.
 class EdgeFans {
  public:
-  /// `mesh` and `domain` (may be null) must outlive this object. Indices must be within range.
-  EdgeFans(const InterfaceMesh& mesh, const Box3* domain);
+  /// `mesh` and `domain` (may be null) must outlive this object. Indices must be within range. Edges lie in a
+  /// face of the domain that are as near to it as `boundary`, in relation to the domain's diagonal.
+  EdgeFans(const InterfaceMesh& mesh, const Box3* domain, double boundary = 1e-9);
 
   [[nodiscard]] std::size_t size() const { return starts_.size() - 1; }
   /// Ends of an edge: the lower and the higher of two welded points.
@@ -69,6 +70,7 @@ class EdgeFans {
 
   const InterfaceMesh& mesh_;
   const Box3* domain_;
+  double boundary_;
   std::vector<std::uint32_t> welded_;
   std::vector<HalfEdge> half_edges_;
   std::vector<std::uint32_t> starts_;  ///< edge i has the half edges starts_[i] to starts_[i + 1]

@@ -1,7 +1,6 @@
 #include "interfaces/reconstruction/reconstruction.h"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <unordered_map>
 
@@ -10,6 +9,14 @@
 #include "interfaces/network/edge_fans.h"
 
 namespace adamas {
+
+namespace {
+
+std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+}
+
+}  // namespace
 
 /// What one layer of lattice cells gives; layers are worked on in parallel and joined in order.
 struct Reconstruction::Layer {
@@ -38,8 +45,8 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress
       pointless_.insert(pointless_.end(), layer.pointless.begin(), layer.pointless.end());
     }
   }
-  for (const auto& [part, material] : pointless_) pointless_parent_.emplace(part, part);
   InterfaceMesh extracted = builder.finish();
+  settle_parts(extracted);
   join_round_edges(extracted, data.grid.domain());
   number_bodies();
 
@@ -104,14 +111,12 @@ void Reconstruction::extract_tetrahedron(const FractionLattice::Index& cell, std
     layer.volume[MaterialId(part.owner)] += volume * volume_fraction(part.corners);
   }
   if (problem.candidates.size() < 2) return;
-  std::erase_if(problem.candidates, [&](const auto& candidate) {
-    return std::none_of(parts.begin(), parts.end(),
-                        [&](const auto& p) { return p.owner == candidate.owner; });
-  });
+  // Also what round-off has taken: the tetrahedra on either side of a face agree on what lies on it.
+  keep_owners(problem);
   for (auto& candidate : problem.candidates) {
     const MaterialId m(candidate.owner);
     candidate.owner = part_in(cell, path, points, m);
-    if (candidate.owner >= lattice_.point_count()) layer.pointless.emplace_back(candidate.owner, m);
+    if (is_pointless(candidate.owner)) layer.pointless.emplace_back(candidate.owner, m);
   }
   layer.contacts.add(ids, positions, problem);
 }
@@ -160,24 +165,79 @@ void Reconstruction::join_points() {
   }
 }
 
-/// Parts without a corner are joined to what lies beside them round their edges too: where several fractions
-/// are equal, round-off may have left nothing of the face that they share.
-void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& domain) {
-  const auto is_pointless = [&](MaterialId part) { return part.value >= lattice_.point_count(); };
-  const auto key = [](std::uint32_t a, std::uint32_t b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-  };
-  std::vector<std::uint64_t> edges;
+/// Parts without a corner that no triangle touches own nothing, and triangles with one material on both sides
+/// are left by the welding of what lay between.
+void Reconstruction::settle_parts(InterfaceMesh& mesh) {
+  std::vector<Part> seen;
   for (const InterfaceTriangle& t : mesh.triangles) {
-    if (!is_pointless(t.front) && !is_pointless(t.back)) continue;
-    for (std::size_t i = 0; i < 3; ++i) edges.push_back(key(t.points[i], t.points[(i + 1) % 3]));
+    for (const Part part : {t.front.value, t.back.value}) {
+      if (is_pointless(part)) seen.push_back(part);
+    }
   }
-  if (edges.empty()) return;
-  std::sort(edges.begin(), edges.end());
-  std::map<Part, MaterialId> materials(pointless_.begin(), pointless_.end());
-  const auto material = [&](MaterialId part) {
-    return is_pointless(part) ? materials.at(part.value) : lattice_.owner(part.value);
+  std::sort(seen.begin(), seen.end());
+  std::sort(pointless_.begin(), pointless_.end());
+  pointless_.erase(std::unique(pointless_.begin(), pointless_.end()), pointless_.end());
+  std::erase_if(pointless_, [&](const auto& entry) {
+    return !std::binary_search(seen.begin(), seen.end(), entry.first);
+  });
+  for (const auto& [part, material] : pointless_) pointless_parent_.emplace(part, part);
+  std::erase_if(mesh.triangles, [&](const InterfaceTriangle& t) {
+    if (material_of(t.front.value) != material_of(t.back.value)) return false;
+    join(t.front.value, t.back.value);
+    return true;
+  });
+}
+
+MaterialId Reconstruction::material_of(Part part) const {
+  if (!is_pointless(part)) return lattice_.owner(part);
+  return std::lower_bound(pointless_.begin(), pointless_.end(), std::pair{part, MaterialId(0)})->second;
+}
+
+/// Edges, by their points, round which parts of one material may meet that are not yet one: where a part has
+/// no corner, or the boundary of one is open.
+std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>>
+      all;  // edges with the triangle, and the side they are of
+  all.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& p = mesh.triangles[t].points;
+    for (std::uint32_t i = 0; i < 3; ++i) all.emplace_back(edge_key(p[i], p[(i + 1) % 3]), 3 * t + i);
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<std::uint64_t> loose;
+  std::vector<std::pair<Part, int>> balance;
+  const auto count = [&](Part part, int times) {
+    const Part root = find(part);
+    const auto found =
+        std::find_if(balance.begin(), balance.end(), [&](const auto& entry) { return entry.first == root; });
+    if (found == balance.end()) {
+      balance.emplace_back(root, times);
+    } else {
+      found->second += times;
+    }
   };
+  for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+    balance.clear();
+    bool pointless = false;
+    for (; last < all.size() && all[last].first == all[first].first; ++last) {
+      const InterfaceTriangle& t = mesh.triangles[all[last].second / 3];
+      const std::uint32_t i = all[last].second % 3;
+      const int way = t.points[i] < t.points[(i + 1) % 3] ? 1 : -1;
+      count(t.front.value, way);
+      count(t.back.value, -way);
+      pointless = pointless || is_pointless(t.front.value) || is_pointless(t.back.value);
+    }
+    const bool open =
+        std::any_of(balance.begin(), balance.end(), [](const auto& entry) { return entry.second != 0; });
+    if (pointless || open) loose.push_back(all[first].first);
+  }
+  return loose;
+}
+
+/// Joins parts of one material that meet round an edge, with nothing between them.
+void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& domain) {
+  const std::vector<std::uint64_t> edges = loose_edges(mesh);
+  if (edges.empty()) return;
   // The triangles at those edges, with points of their own.
   InterfaceMesh near;
   std::vector<std::array<Part, 2>> parts;
@@ -186,7 +246,7 @@ void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& dom
   for (const InterfaceTriangle& t : mesh.triangles) {
     bool touches = false;
     for (std::size_t i = 0; i < 3 && !touches; ++i)
-      touches = std::binary_search(edges.begin(), edges.end(), key(t.points[i], t.points[(i + 1) % 3]));
+      touches = std::binary_search(edges.begin(), edges.end(), edge_key(t.points[i], t.points[(i + 1) % 3]));
     if (!touches) continue;
     std::array<std::uint32_t, 3> points{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -198,14 +258,14 @@ void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& dom
       }
       points[i] = at->second;
     }
-    near.triangles.push_back({points, material(t.front), material(t.back)});
+    near.triangles.push_back({points, material_of(t.front.value), material_of(t.back.value)});
     parts.push_back({t.front.value, t.back.value});
   }
-  const EdgeFans fans(near, &domain);
+  const EdgeFans fans(near, &domain, kWeldTolerance);
   EdgeFans::Fan fan;
   for (std::size_t edge = 0; edge < fans.size(); ++edge) {
     const auto [low, high] = fans.ends(edge);
-    if (!std::binary_search(edges.begin(), edges.end(), key(original[low], original[high]))) continue;
+    if (!std::binary_search(edges.begin(), edges.end(), edge_key(original[low], original[high]))) continue;
     fans.fan(edge, fan);
     const std::size_t count = fan.blades.size();
     for (std::size_t i = 0; i < count && count > 1; ++i) {
@@ -249,7 +309,6 @@ void Reconstruction::number_bodies() {
       body_of_point_[p] = body_of_point_[root];
     }
   }
-  std::sort(pointless_.begin(), pointless_.end());
   for (const auto& [part, material] : pointless_) {
     const Part root = find(part);
     if (root < body_of_point_.size()) {

@@ -48,7 +48,11 @@ class Reconstruction {
                            Layer& layer) const;
   [[nodiscard]] Part part_in(const FractionLattice::Index& cell, std::size_t path,
                              const std::array<std::uint32_t, 4>& corners, MaterialId m) const;
+  [[nodiscard]] bool is_pointless(Part part) const { return part >= lattice_.point_count(); }
+  [[nodiscard]] MaterialId material_of(Part part) const;
   void join_points();
+  void settle_parts(InterfaceMesh& mesh);
+  std::vector<std::uint64_t> loose_edges(const InterfaceMesh& mesh);
   void join_round_edges(const InterfaceMesh& mesh, const Box3& domain);
   Part find(Part part);
   void join(Part a, Part b);

@@ -97,7 +97,6 @@ TEST(Reconstruction, OfTheTJunctionFromFractions) {
   EXPECT_LT(mean, 0.13);
 }
 
-/// The network's answer by pseudonormals and the reconstruction's own, which is exact.
 /// Three regions are three bodies on any grid, though slivers of them hold no site.
 TEST(Reconstruction, SliversRoundATripleLineAreNoBodies) {
   for (const std::size_t cells : {9, 10, 12, 13, 16}) {
@@ -114,6 +113,83 @@ TEST(Reconstruction, SliversRoundATripleLineAreNoBodies) {
   }
 }
 
+/// Every region's boundary closes, its volume is that of its parts, and no triangle has one body on both
+/// sides.
+void expect_closed(const Reconstruction& reconstruction, const Box3& box) {
+  const InterfaceMesh& mesh = reconstruction.mesh();
+  if (mesh.triangles.empty()) return;
+  const double tolerance = 1e-11 * box.diagonal();
+  const auto by_material = test::sided_by_material(mesh);
+  std::vector<test::SidedTriangle> by_body;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [front, back] = reconstruction.bodies()[t];
+    by_body.push_back({mesh.triangles[t].points, front.value, back.value});
+    EXPECT_EQ(reconstruction.body_materials()[front], mesh.triangles[t].front);
+    EXPECT_EQ(reconstruction.body_materials()[back], mesh.triangles[t].back);
+  }
+  for (const auto* triangles : std::array{&by_material, &std::as_const(by_body)}) {
+    const auto edges = test::check_edges(mesh.points, *triangles, box, tolerance);
+    EXPECT_EQ(edges.open, 0u) << edges.first;
+    EXPECT_EQ(edges.lonely, 0u) << edges.first;
+    EXPECT_EQ(edges.degenerate, 0u);
+  }
+  // Where an interface runs through the corner, whose the corner is tells no more than which region the box
+  // is added to.
+  const BodyId corner = reconstruction.body_at(box.max);
+  const auto& volumes = reconstruction.volume_reconstructed();
+  const auto enclosed = test::enclosed_volumes(mesh.points, by_material, volumes.size(), box,
+                                               reconstruction.body_materials()[corner].value, tolerance);
+  for (MaterialId m(0); m.value < volumes.size(); ++m.value) {
+    EXPECT_NEAR(std::remainder(enclosed[m.value] - volumes[m], box.volume()), 0, 1e-9 * box.volume())
+        << "material " << m.value;
+  }
+}
+
+TEST(Reconstruction, IsClosed) {
+  for (const std::string& name : scene_names()) {
+    for (const std::size_t n : {3, 8, 11, 16}) {
+      SCOPED_TRACE(name + " " + std::to_string(n));
+      const Scene scene = make_scene(name, 2);
+      const MultiMaterialData data = sample_scene(scene, {n, n, n}, {2, false});
+      expect_closed(Reconstruction(data), scene.box());
+    }
+  }
+}
+
+TEST(LongReconstruction, IsClosed) {
+  for (std::size_t n = 17; n <= 40; ++n) {
+    SCOPED_TRACE("tjunction " + std::to_string(n));
+    const Scene scene = make_scene("tjunction");
+    expect_closed(Reconstruction(sample_scene(scene, {n, n, n}, {2, false})), scene.box());
+  }
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE("random " + std::to_string(seed));
+    const Scene scene = make_scene("random", seed);
+    const std::size_t n = 4 + seed % 7;
+    expect_closed(Reconstruction(sample_scene(scene, {n, n + 1, n}, {2, false})), scene.box());
+  }
+}
+
+/// Fractions in steps of a quarter are equal at many sites, so that interfaces run along faces, edges and
+/// corners.
+TEST(LongReconstruction, OfEqualFractionsIsClosed) {
+  RandomNumbers random(11);
+  for (int round = 0; round < 200; ++round) {
+    SCOPED_TRACE(round);
+    MultiMaterialData data = sample_scene(make_scene("voronoi10"), {4, 4, 4}, {1, false});
+    data.fields.clear();
+    const std::size_t materials = 2 + random.below(4);
+    data.materials.resize(materials);
+    data.fractions.assign(materials, std::vector<float>(data.grid.site_count(), 0.0f));
+    for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+      for (int quarter = 0; quarter < 4; ++quarter)
+        data.fractions[MaterialId(random.below(materials))][site] += 0.25f;
+    }
+    expect_closed(Reconstruction(data), data.grid.domain());
+  }
+}
+
+/// The network's answer by pseudonormals and the reconstruction's own, which is exact.
 TEST(Reconstruction, AgreesWithItsNetworkAboutBodies) {
   for (const std::string& name : scene_names()) {
     SCOPED_TRACE(name);
