@@ -42,15 +42,17 @@ class Measurer {
                          std::span<FieldError> errors) {
     source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
-    std::vector<double> least(fields.size());
+    std::vector<double> least;
+    for (const FieldInfo& field : fields) {
+      // Where none of the material is left nothing approximates the value; without a value nothing is wrong.
+      const bool known = !std::isnan(native_[field.offset]);
+      least.push_back(known ? std::max(native_size(field), field.max - field.min) : native_[field.offset]);
+    }
     for (double reach = half_width_ / kGrowth / kGrowth / kGrowth;;
          reach = std::min(kGrowth * reach, half_width_)) {
-      find_parts(element, reach);
+      lower_errors(element, reach, least);
       bool good = true;
-      for (std::size_t f = 0; f < fields.size(); ++f) {
-        least[f] = error_nearby(fields[f]);
-        good = good && !(least[f] > limits[f]);
-      }
+      for (std::size_t f = 0; f < fields.size(); ++f) good = good && !(least[f] > limits[f]);
       if (good || reach >= half_width_) break;
     }
     for (std::size_t f = 0; f < fields.size(); ++f) add(least[f], errors[f]);
@@ -82,30 +84,43 @@ class Measurer {
     return std::sqrt(squared);
   }
 
-  void find_parts(const NativeElement& element, double half_width) {
-    parts_.clear();
+  /// Lowers the least errors seen to those that the element's own material has within the box.
+  void lower_errors(const NativeElement& element, double half_width, std::vector<double>& least) {
+    const auto& fields = source_.fields->fields();
     const Vec3 reach{half_width, half_width, half_width};
     const Box3 box{element.position - reach, element.position + reach};
     cells_in_box_(box, element.material, [&](const CellView& cell) {
       for (const OwnedTetrahedron& piece : cell.parts) {
-        if (material(BodyId(piece.owner)) != element.material) continue;
+        const BodyId body(piece.owner);
+        if (material(body) != element.material || !may_lower(cell, body, least)) continue;
         std::array<Vec3, 4> corners;
         Box3 bounds;
         for (std::size_t c = 0; c < 4; ++c) bounds.extend(corners[c] = cell.frame.point(piece.corners[c]));
         if (!bounds.touches(box)) continue;
-        std::vector<Vec3> inside = clip_to_box(corners, box);
-        if (!inside.empty()) parts_.push_back({&cell, BodyId(piece.owner), std::move(inside)});
+        const Part part{&cell, body, clip_to_box(corners, box)};
+        if (part.corners.empty()) continue;
+        for (std::size_t f = 0; f < fields.size(); ++f)
+          least[f] = std::min(least[f], least_error(fields[f], part));
       }
     });
   }
 
-  /// The place went to another material: the best that the element's own does within the box.
-  [[nodiscard]] double error_nearby(const FieldInfo& field) const {
-    if (std::isnan(native_[field.offset])) return native_[field.offset];
-    // Where none of the material is left nothing approximates the value.
-    double least = std::max(native_size(field), field.max - field.min);
-    for (const Part& part : parts_) least = std::min(least, least_error(field, part));
-    return least;
+  /// Whether the values at a cell's vertices, between which all others lie, leave room for lower errors.
+  [[nodiscard]] bool may_lower(const CellView& cell, BodyId body, const std::vector<double>& least) const {
+    std::array<std::span<const double>, 4> rows;
+    for (std::size_t v = 0; v < 4; ++v) rows[v] = cell.vertices[v]->row(body);
+    const auto& fields = source_.fields->fields();
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      double squared = 0;
+      for (std::size_t c = fields[f].offset;
+           c < fields[f].offset + static_cast<std::size_t>(fields[f].components); ++c) {
+        const auto [low, high] = std::minmax({rows[0][c], rows[1][c], rows[2][c], rows[3][c]});
+        const double outside = std::max({0.0, low - native_[c], native_[c] - high});
+        squared += outside * outside;
+      }
+      if (squared < least[f] * least[f]) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] double native_size(const FieldInfo& field) const {
@@ -138,7 +153,6 @@ class Measurer {
   double half_width_;
   const CellsInBox& cells_in_box_;
   std::vector<double> native_;
-  std::vector<Part> parts_;
 };
 
 }  // namespace

@@ -144,16 +144,15 @@ class PieceMeasure {
       return;
     candidates_[count_++] = candidate;
     double greatest = 0;
-    for (std::size_t i = 0; i < polygon_.count; ++i) {
-      const double known = polygon_.closest[i].distance;
-      const bool is_known = polygon_.closest[i].triangle == candidate;
-      greatest = std::max(
-          greatest,
-          is_known ? known
-                   : std::sqrt(
-                         closest_on_triangle(polygon_.corners[i], to_.triangle(candidate)).squared_distance));
-    }
+    for (std::size_t i = 0; i < polygon_.count; ++i)
+      greatest = std::max(greatest, corner_distance(i, candidate));
     result_.upper = std::min(result_.upper, greatest);
+  }
+
+  [[nodiscard]] double corner_distance(std::size_t i, std::uint32_t candidate) const {
+    const Closest& closest = polygon_.closest[i];
+    if (closest.triangle == candidate) return closest.distance;
+    return std::sqrt(closest_on_triangle(polygon_.corners[i], to_.triangle(candidate)).squared_distance);
   }
 
   const Polygon& polygon_;

@@ -13,6 +13,7 @@
 #include "core/io/meta_image_check.h"
 #include "core/io/network_text.h"
 #include "core/io/nrrd_header.h"
+#include "interfaces/reference/mesher_messages.h"
 
 /// What is done with any bytes, by the fuzz targets and by the tests that replay the corpus. Each lets Error
 /// through at bad input; anything else that it throws is a fault.
@@ -44,6 +45,14 @@ inline void inflate(std::string_view bytes) {
   const std::size_t size =
       inflate_stream(bytes, "fuzz", [&received](std::string_view piece) { received += piece.size(); });
   require(size == received, "another size than the pieces'");
+}
+
+/// A whole message is written as it was read.
+inline void mesher_reply(std::string_view bytes) {
+  const std::vector<char> given(bytes.begin(), bytes.end());
+  const auto reply = decode<MesherReply>(given);
+  if (!reply) fail("expected a message, found other bytes");
+  require(encode(*reply) == given, "another message");
 }
 
 /// The bytes as a file, for what reads files.
