@@ -157,12 +157,12 @@ TEST(Reconstruction, IsClosed) {
 }
 
 TEST(LongReconstruction, IsClosed) {
-  for (std::size_t n = 17; n <= 40; ++n) {
+  for (const std::size_t n : {20, 24, 30, 31, 33}) {
     SCOPED_TRACE("tjunction " + std::to_string(n));
     const Scene scene = make_scene("tjunction");
     expect_closed(Reconstruction(sample_scene(scene, {n, n, n}, {2, false})), scene.box());
   }
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+  for (std::uint64_t seed = 0; seed < 150; ++seed) {
     SCOPED_TRACE("random " + std::to_string(seed));
     const Scene scene = make_scene("random", seed);
     const std::size_t n = 4 + seed % 7;
@@ -174,7 +174,7 @@ TEST(LongReconstruction, IsClosed) {
 /// corners.
 TEST(LongReconstruction, OfEqualFractionsIsClosed) {
   RandomNumbers random(11);
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 100; ++round) {
     SCOPED_TRACE(round);
     MultiMaterialData data = sample_scene(make_scene("voronoi10"), {4, 4, 4}, {1, false});
     data.fields.clear();
