@@ -25,8 +25,9 @@ inline void config_file(std::string_view bytes) {
   std::istringstream input{std::string(bytes)};
   try {
     for (const CLI::ConfigItem& item : ConfigFile(app).from_config(input)) {
-      require(command->get_option_no_throw("--" + item.name) != nullptr,
-              "an option that the command has not");
+      const bool known = command->get_option_no_throw("--" + item.name) != nullptr ||
+                         command->get_option_no_throw(item.name) != nullptr;
+      require(known, "an option that the command has not");
     }
   } catch (const CLI::Error& error) {
     fail("{}", error.what());

@@ -26,7 +26,7 @@ OWNED = {
     r"CGAL/.*": ["core/io", "interfaces", "tests"],
     r"Eigen/.*": ["interfaces", "tests"],
     r"tiffio\.h|zlib\.h": ["core/io", "tests"],
-    r"CLI/.*": ["cli"],
+    r"CLI/.*": ["cli", "tests"],
     r"nlohmann/.*": ["cli", "tests"],
 }
 LIGHT = [r"CLI/.*", r"nlohmann/.*"]
