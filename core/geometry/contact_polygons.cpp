@@ -147,13 +147,12 @@ class ContactFinder {
   /// Whether h is greater than e, 1, or not, -1, at all vertices with weights, and so between them; else 0.
   [[nodiscard]] int order_on_face(std::uint32_t h, std::uint32_t e, unsigned zeros) const {
     const auto &hs = function(h).values, &es = function(e).values;
-    const bool first = comes_first(h, e);
-    unsigned greater = 0;
+    unsigned above = 0;
     for (std::size_t v = 0; v < 4; ++v) {
-      if (hs[v] > es[v] || (hs[v] == es[v] && first)) greater |= 1u << v;
+      if (greater(h, e, hs[v] - es[v])) above |= 1u << v;
     }
-    greater &= ~zeros;
-    return greater == 0 ? -1 : greater == (0xfu & ~zeros) ? 1 : 0;
+    above &= ~zeros;
+    return above == 0 ? -1 : above == (0xfu & ~zeros) ? 1 : 0;
   }
 
   /// Whether h is greater than f where f = g, 1, or nowhere there, -1, as far as the vertices tell; else 0.
@@ -262,23 +261,23 @@ class ContactFinder {
     if (order > 0) return {std::move(polygon), {}};
     if (order < 0) return {{}, std::move(polygon)};
     const std::size_t size = polygon.size();
-    std::vector<char> positive(size);
+    std::vector<bool> positive(size);
     std::size_t count = 0;
     for (std::size_t c = 0; c < size; ++c) {
-      positive[c] = above(polygon[c], h) ? 1 : 0;
-      count += static_cast<std::size_t>(positive[c]);
+      positive[c] = above(polygon[c], h);
+      count += positive[c] ? 1 : 0;
     }
     if (count == size) return {std::move(polygon), {}};
     if (count == 0) return {{}, std::move(polygon)};
     Divided divided;
     for (std::size_t c = 0; c < size; ++c) {
       const std::size_t next = (c + 1) % size;
-      (positive[c] != 0 ? divided.above : divided.below).push_back(polygon[c]);
+      (positive[c] ? divided.above : divided.below).push_back(polygon[c]);
       if (positive[c] == positive[next]) continue;
       Corner cut = crossing(polygon[c].line, h);
-      (positive[c] != 0 ? divided.below : divided.above).push_back(cut);
+      (positive[c] ? divided.below : divided.above).push_back(cut);
       cut.line = h;  // the part that is left goes on along the cut
-      (positive[c] != 0 ? divided.above : divided.below).push_back(cut);
+      (positive[c] ? divided.above : divided.below).push_back(cut);
     }
     return divided;
   }

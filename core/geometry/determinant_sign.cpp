@@ -11,10 +11,15 @@ namespace {
 /// A number as a sum of doubles, by ascending size, without zeros and without overlaps.
 using Expansion = std::vector<double>;
 
+/// a + b less its rounded sum, exactly.
+double rounding_error(double a, double b, double sum) {
+  const double from_b = sum - a, from_a = sum - from_b;
+  return (a - from_a) + (b - from_b);
+}
+
 /// Appends the rounding error of a + b, if any, and returns the rounded sum.
 double add(double a, double b, Expansion& errors) {
-  const double sum = a + b, from_b = sum - a, from_a = sum - from_b;
-  const double error = (a - from_a) + (b - from_b);
+  const double sum = a + b, error = rounding_error(a, b, sum);
   if (error != 0) errors.push_back(error);
   return sum;
 }
@@ -144,8 +149,8 @@ void reduce(SmallMatrix& matrix, std::size_t& n) {
     for (std::size_t column = 0; column + 1 < n; ++column) {
       const double entry = matrix[row][column];
       const double subtracted = matrix[row][n - 1] == 1 ? matrix[base][column] : 0;
-      const double difference = entry - subtracted, back = difference - entry;
-      if ((entry - (difference - back)) - (subtracted + back) != 0) return;
+      const double difference = entry - subtracted;
+      if (rounding_error(entry, -subtracted, difference) != 0) return;
       // Expanding along the last column gives the sign.
       smaller[to][column] = to == 0 && (base + n) % 2 == 0 ? -difference : difference;
     }
