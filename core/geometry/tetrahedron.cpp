@@ -4,14 +4,35 @@
 
 namespace adamas {
 
-ClippedTriangle::ClippedTriangle(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double slack = cell.slack;
-  corners_[0] = cell.weights(a);
-  corners_[1] = cell.weights(b);
-  corners_[2] = cell.weights(c);
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (corners_[0][i] < -slack && corners_[1][i] < -slack && corners_[2][i] < -slack) return;
+namespace {
+
+std::array<Weights, 3> weights(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return {cell.weights(a), cell.weights(b), cell.weights(c)};
+}
+
+bool separated(double slack, const std::array<Weights, 3>& corners) {
+  for (std::size_t face = 0; face < 4; ++face) {
+    if (corners[0][face] < -slack && corners[1][face] < -slack && corners[2][face] < -slack) return true;
   }
+  return false;
+}
+
+}  // namespace
+
+bool meets(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto corners = weights(cell, a, b, c);
+  for (const Weights& w : corners) {
+    if (std::min({w[0], w[1], w[2], w[3]}) >= -cell.slack) return true;
+  }
+  return !ClippedTriangle(cell.slack, corners).empty();
+}
+
+ClippedTriangle::ClippedTriangle(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c)
+    : ClippedTriangle(cell.slack, weights(cell, a, b, c)) {}
+
+ClippedTriangle::ClippedTriangle(double slack, const std::array<Weights, 3>& corners) {
+  if (separated(slack, corners)) return;
+  std::copy(corners.begin(), corners.end(), corners_.begin());
   size_ = 3;
   for (std::size_t face = 0; face < 4; ++face) {
     std::array<Weights, 8> kept;

@@ -67,8 +67,16 @@ class ClippedTriangle {
   [[nodiscard]] const Weights* end() const { return corners_.data() + size_; }
 
  private:
+  friend bool meets(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c);
+  /// Of a triangle with corners of these weights.
+  ClippedTriangle(double slack, const std::array<Weights, 3>& corners);
+
   std::array<Weights, 8> corners_;
   std::size_t size_ = 0;
 };
+
+/// Whether the triangle has a part inside the tetrahedron, as `!ClippedTriangle(...).empty()`, but quicker
+/// where a corner is inside or a face separates them.
+bool meets(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace adamas

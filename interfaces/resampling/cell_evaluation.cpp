@@ -12,6 +12,8 @@ namespace {
 /// Signed distances are rounded to this many binary places below the radius, so that those that differ only
 /// by the order of a sum are equal, and ties are told from the rest.
 constexpr int kPlaces = 40;
+/// They come one cube after the other, round its diagonal, so that each has the cube's bounding box.
+constexpr std::size_t kRootsOfCube = 6;
 
 double rounded(double distance, double radius) {
   const double grain = std::ldexp(1.0, std::ilogb(radius) - kPlaces);
@@ -24,54 +26,61 @@ void Resampler::place_roots() {
   std::vector<VertexId> vertices;
   hierarchy_.for_each_vertex([&](VertexId v) { vertices.push_back(v); });
   evaluate_vertices(vertices);
+  if (source_.fields) place_elements();
   const auto& roots = hierarchy_.roots();
-  if (source_.fields) {
-    const auto& elements = source_.fields->native_elements();
-    std::vector<std::uint32_t> root_of(elements.size());
-    std::vector<Tetrahedron> frames;
-    for (const TetrahedronId t : roots) frames.push_back(frame(t));
-    const Domain& domain = hierarchy_.domain();
-    const auto counts = domain.roots();
-    parallel_for(elements.size(), 4096, [&](std::size_t e) {
-      std::array<std::size_t, 3> cube{};
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        const double part = (elements[e].position[axis] - domain.box().min[axis]) / domain.box().size()[axis];
-        cube[a] = static_cast<std::size_t>(std::clamp(part * counts[a], 0.0, counts[a] - 1.0));
-      }
-      const std::size_t first = 6 * (cube[0] + static_cast<std::size_t>(counts[0]) *
-                                                   (cube[1] + static_cast<std::size_t>(counts[1]) * cube[2]));
-      double best = -1e300;
-      for (std::size_t r = first; r < first + 6; ++r) {
-        const Weights w = frames[r].weights(elements[e].position);
-        const double least = std::min({w[0], w[1], w[2], w[3]});
-        if (least > best) best = least, root_of[e] = static_cast<std::uint32_t>(r);
-      }
-    });
-    element_order_.resize(elements.size());
-    std::iota(element_order_.begin(), element_order_.end(), 0u);
-    std::stable_sort(element_order_.begin(), element_order_.end(),
-                     [&](auto a, auto b) { return root_of[a] < root_of[b]; });
-    for (std::uint32_t r = 0, e = 0; r < roots.size(); ++r) {
-      CellRecord& cell = hierarchy_.payload(roots[r]);
-      cell.first_element = e;
-      while (e < element_order_.size() && root_of[element_order_[e]] == r) ++e;
-      cell.last_element = e;
-    }
-  }
+  std::vector<std::vector<std::uint32_t>> near(roots.size() / kRootsOfCube);
+  parallel_for(near.size(), 1, [&](std::size_t cube) {
+    Box3 box;
+    for (const Vec3& corner : frame(roots[kRootsOfCube * cube]).corners) box.extend(corner);
+    source_.network->tree().overlapping(box, near[cube]);
+  });
   parallel_for(roots.size(), 1, [&](std::size_t r) {
     const Tetrahedron cell = frame(roots[r]);
-    Box3 box;
-    for (const Vec3& corner : cell.corners) box.extend(corner);
-    std::vector<std::uint32_t> near;
-    source_.network->tree().overlapping(box, near);
-    for (const std::uint32_t t : near) {
+    for (const std::uint32_t t : near[r / kRootsOfCube]) {
       const auto& corners = source_.network->triangle_corners(t);
-      if (!ClippedTriangle(cell, corners[0], corners[1], corners[2]).empty())
+      if (meets(cell, corners[0], corners[1], corners[2]))
         hierarchy_.payload(roots[r]).triangles.push_back(t);
     }
     evaluate_interface(roots[r]);
   });
+}
+
+/// Sorts the native elements by the root they are in.
+void Resampler::place_elements() {
+  const auto& roots = hierarchy_.roots();
+  const auto& elements = source_.fields->native_elements();
+  std::vector<std::uint32_t> root_of(elements.size());
+  std::vector<Tetrahedron> frames;
+  for (const TetrahedronId t : roots) frames.push_back(frame(t));
+  const Domain& domain = hierarchy_.domain();
+  const auto counts = domain.roots();
+  parallel_for(elements.size(), 4096, [&](std::size_t e) {
+    std::array<std::size_t, 3> cube{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double part = (elements[e].position[axis] - domain.box().min[axis]) / domain.box().size()[axis];
+      cube[a] = static_cast<std::size_t>(std::clamp(part * counts[a], 0.0, counts[a] - 1.0));
+    }
+    const std::size_t first =
+        kRootsOfCube * (cube[0] + static_cast<std::size_t>(counts[0]) *
+                                      (cube[1] + static_cast<std::size_t>(counts[1]) * cube[2]));
+    double best = -1e300;
+    for (std::size_t r = first; r < first + kRootsOfCube; ++r) {
+      const Weights w = frames[r].weights(elements[e].position);
+      const double least = std::min({w[0], w[1], w[2], w[3]});
+      if (least > best) best = least, root_of[e] = static_cast<std::uint32_t>(r);
+    }
+  });
+  element_order_.resize(elements.size());
+  std::iota(element_order_.begin(), element_order_.end(), 0u);
+  std::stable_sort(element_order_.begin(), element_order_.end(),
+                   [&](auto a, auto b) { return root_of[a] < root_of[b]; });
+  for (std::uint32_t r = 0, e = 0; r < roots.size(); ++r) {
+    CellRecord& cell = hierarchy_.payload(roots[r]);
+    cell.first_element = e;
+    while (e < element_order_.size() && root_of[element_order_[e]] == r) ++e;
+    cell.last_element = e;
+  }
 }
 
 void Resampler::evaluate_vertices(const std::vector<VertexId>& vertices) {
@@ -125,7 +134,7 @@ void Resampler::distribute(TetrahedronId parent) {
     const Tetrahedron part = frame(children[side]);
     for (const std::uint32_t t : from.triangles) {
       const auto& corners = source_.network->triangle_corners(t);
-      if (!ClippedTriangle(part, corners[0], corners[1], corners[2]).empty()) to.triangles.push_back(t);
+      if (meets(part, corners[0], corners[1], corners[2])) to.triangles.push_back(t);
     }
     if (hierarchy_.is_leaf(children[side])) {
       evaluate_interface(children[side]);

@@ -78,6 +78,7 @@ class Resampler {
   };
 
   void place_roots();
+  void place_elements();
   void evaluate_vertices(const std::vector<VertexId>& vertices);
   void evaluate_interface(TetrahedronId t);
   void distribute(TetrahedronId parent);

@@ -52,6 +52,29 @@ TEST(ClippedTriangle, PartsInATilingAddUp) {
   }
 }
 
+TEST(ClippedTriangle, HasAPartWhereTheTriangleMeetsTheCell) {
+  Numbers number;
+  const auto cells = divided_box({0.25, 0.25, 0.25}, 0.5);
+  std::array<int, 2> seen{};
+  for (int trial = 0; trial < 20000; ++trial) {
+    // Of all sizes, and with coordinates that lie in the cells' faces.
+    const double size = number();
+    const auto corner = [&, middle = number.point()] {
+      Vec3 p = middle + size * (number.point() - Vec3{0.5, 0.5, 0.5});
+      if (number() < 0.3) p.x = 0.25;
+      if (number() < 0.3) p.y = p.x;
+      return p;
+    };
+    const std::array<Vec3, 3> t{corner(), corner(), corner()};
+    for (const Tetrahedron& cell : cells) {
+      const bool met = meets(cell, t[0], t[1], t[2]);
+      ASSERT_EQ(met, !ClippedTriangle(cell, t[0], t[1], t[2]).empty());
+      ++seen[met ? 1 : 0];
+    }
+  }
+  EXPECT_GT(std::min(seen[0], seen[1]), 5000);
+}
+
 /// Also where coordinates are so great for the cell that a face is only known to some digits.
 TEST(ClippedTriangle, OneInAFaceLiesInBothCells) {
   Numbers number;
