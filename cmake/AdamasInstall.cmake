@@ -8,7 +8,7 @@ set_target_properties(adamas_flags PROPERTIES EXPORT_NAME flags)
 install(TARGETS adamas_flags ${libraries} EXPORT adamas-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS adamas RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS adamas_reference RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR})
-foreach(module core interfaces datasets)
+foreach(module core interfaces isosurface datasets)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${module}/*.h)
   foreach(header IN LISTS headers)
     # Those with headers of other libraries are for sources beside them: who links to us need not have VTK's.

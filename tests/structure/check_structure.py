@@ -11,9 +11,10 @@ MAY_INCLUDE = {
     "core/io": ["core"],
     "core/picture": ["core"],
     "interfaces": ["core"],
+    "isosurface": ["core"],
     "datasets": ["core"],
-    "cli": ["core", "core/io", "core/picture", "interfaces", "datasets"],
-    "tests": ["core", "core/io", "core/picture", "interfaces", "datasets", "cli"],
+    "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets"],
+    "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "cli"],
 }
 # Within core: a folder may include those of its own layer and of lower ones.
 CORE_LAYERS = {"base": 0, "geometry": 1, "data": 1, "lattice": 1, "refinement": 2}
@@ -30,7 +31,7 @@ OWNED = {
     r"nlohmann/.*": ["cli", "tests"],
 }
 LIGHT = [r"CLI/.*", r"nlohmann/.*"]
-FOLDERS = ["core", "interfaces", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
+FOLDERS = ["core", "interfaces", "isosurface", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
 ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
