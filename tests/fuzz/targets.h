@@ -14,14 +14,11 @@
 #include "core/io/network_text.h"
 #include "core/io/nrrd_header.h"
 #include "interfaces/reference/mesher_messages.h"
+#include "tests/fuzz/require.h"
 
 /// What is done with any bytes, by the fuzz targets and by the tests that replay the corpus. Each lets Error
 /// through at bad input; anything else that it throws is a fault.
 namespace adamas::fuzz {
-
-inline void require(bool law, const char* what) {
-  if (!law) throw std::logic_error(what);
-}
 
 inline void network_text(std::string_view bytes) {
   const InterfaceMesh mesh = to_interface_mesh(parse_labelled_network(bytes, "fuzz"), {}, "fuzz");
