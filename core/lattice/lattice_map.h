@@ -11,10 +11,16 @@
 
 namespace adamas {
 
-/// A hash table from lattice points to small values: open addressing, linear probing, and deletion that moves
-/// later entries back, so that it never fills with tombstones. Pointers into it are valid until the next
-/// change.
-template <class Value>
+/// A key that is no point of a lattice, by which tables mark free entries.
+template <class Key>
+inline constexpr Key kNoKey = {};
+template <>
+inline constexpr LatticePoint kNoKey<LatticePoint>{std::numeric_limits<std::int32_t>::min(), 0, 0};
+
+/// A hash table from lattice points, in one form or another, to small values: open addressing, linear
+/// probing, and deletion that moves later entries back, so that it never fills with tombstones. Pointers into
+/// it are valid until the next change. A key has a `hash_value` whose high bits are good, and a kNoKey.
+template <class Value, class Key = LatticePoint>
 class LatticeMap {
  public:
   LatticeMap() : entries_(kMinCapacity, kEmpty) {}
@@ -23,7 +29,8 @@ class LatticeMap {
   [[nodiscard]] std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 
   /// The value at p, or null.
-  [[nodiscard]] const Value* find(LatticePoint p) const {
+  [[nodiscard]] Value* find(Key p) { return const_cast<Value*>(std::as_const(*this).find(p)); }
+  [[nodiscard]] const Value* find(Key p) const {
     for (std::size_t slot = home(p);; slot = next(slot)) {
       const Entry& entry = entries_[slot];
       if (entry.key == p) return &entry.value;
@@ -32,10 +39,10 @@ class LatticeMap {
   }
 
   /// Fetches the memory that a later find(p) or insert(p) will look at.
-  void prefetch(LatticePoint p) const { __builtin_prefetch(&entries_[home(p)]); }
+  void prefetch(Key p) const { __builtin_prefetch(&entries_[home(p)]); }
 
   /// The value at p, and whether it was put there by this call, being a default value then.
-  std::pair<Value*, bool> insert(LatticePoint p) {
+  std::pair<Value*, bool> insert(Key p) {
     ADAMAS_ASSERT(p != kEmpty.key);
     std::size_t slot = home(p);
     for (;; slot = next(slot)) {
@@ -43,7 +50,7 @@ class LatticeMap {
       if (entry.key == p) return {&entry.value, false};
       if (entry.key == kEmpty.key) break;
     }
-    if (5 * (size_ + 1) > 3 * entries_.size()) {
+    if (10 * (size_ + 1) > 7 * entries_.size()) {
       grow();
       slot = free_slot(p);
     }
@@ -53,15 +60,14 @@ class LatticeMap {
   }
 
   /// Removes the entry at p; returns whether there was one.
-  bool erase(LatticePoint p) {
+  bool erase(Key p) {
     std::size_t hole = home(p);
     for (; entries_[hole].key != p; hole = next(hole)) {
       if (entries_[hole].key == kEmpty.key) return false;
     }
     for (std::size_t slot = next(hole); entries_[slot].key != kEmpty.key; slot = next(slot)) {
       // An entry may move back into the hole unless its home lies after the hole.
-      const std::size_t from_home = (slot - home(entries_[slot].key)) & mask();
-      if (from_home >= ((slot - hole) & mask())) {
+      if (way(home(entries_[slot].key), slot) >= way(hole, slot)) {
         entries_[hole] = entries_[slot];
         hole = slot;
       }
@@ -81,26 +87,33 @@ class LatticeMap {
 
  private:
   struct Entry {
-    LatticePoint key;
+    Key key;
     Value value;
   };
   static constexpr std::size_t kMinCapacity = 64;
-  static constexpr Entry kEmpty{{std::numeric_limits<std::int32_t>::min(), 0, 0}, Value{}};
+  static constexpr Entry kEmpty{kNoKey<Key>, Value{}};
 
-  [[nodiscard]] std::size_t mask() const { return entries_.size() - 1; }
-  [[nodiscard]] std::size_t next(std::size_t slot) const { return (slot + 1) & mask(); }
-  [[nodiscard]] std::size_t home(LatticePoint p) const {
-    return static_cast<std::size_t>(hash_value(p) >> shift_);
+  [[nodiscard]] std::size_t next(std::size_t slot) const {
+    return slot + 1 == entries_.size() ? 0 : slot + 1;
   }
-  [[nodiscard]] std::size_t free_slot(LatticePoint p) const {
+  /// Number of steps by next().
+  [[nodiscard]] std::size_t way(std::size_t from, std::size_t to) const {
+    return to >= from ? to - from : to + entries_.size() - from;
+  }
+  /// The hash as a fraction of 2^64, times the number of entries.
+  [[nodiscard]] std::size_t home(Key p) const {
+    __extension__ using Wide = unsigned __int128;
+    return static_cast<std::size_t>(Wide{hash_value(p)} * entries_.size() >> 64);
+  }
+  [[nodiscard]] std::size_t free_slot(Key p) const {
     std::size_t slot = home(p);
     while (entries_[slot].key != kEmpty.key) slot = next(slot);
     return slot;
   }
   void grow() {
-    std::vector<Entry> old(2 * entries_.size(), kEmpty);
+    // By half as much again: at least 7/15 of the entries are used once it has grown.
+    std::vector<Entry> old(entries_.size() + entries_.size() / 2, kEmpty);
     old.swap(entries_);
-    --shift_;
     for (const Entry& entry : old) {
       if (entry.key != kEmpty.key) entries_[free_slot(entry.key)] = entry;
     }
@@ -108,7 +121,6 @@ class LatticeMap {
 
   std::vector<Entry> entries_;
   std::size_t size_ = 0;
-  int shift_ = 64 - 6;  ///< capacity is 2^(64 - shift_)
 };
 
 }  // namespace adamas

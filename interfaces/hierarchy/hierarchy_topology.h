@@ -36,6 +36,10 @@ class HierarchyTopology {
   [[nodiscard]] const std::vector<TetrahedronId>& roots() const { return roots_; }
   /// Positively oriented; the split edge comes first.
   [[nodiscard]] std::array<VertexId, 4> vertices(TetrahedronId t) const { return node(t).vertices; }
+  [[nodiscard]] std::array<LatticePoint, 4> corners(TetrahedronId t) const {
+    const auto v = vertices(t);
+    return {lattice(v[0]), lattice(v[1]), lattice(v[2]), lattice(v[3])};
+  }
   [[nodiscard]] std::array<VertexId, 2> split_edge(TetrahedronId t) const {
     return {node(t).vertices[0], node(t).vertices[1]};
   }

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
+#include "core/lattice/mesh_laws.h"
 #include "interfaces/hierarchy/hierarchy_topology.h"
 
 namespace adamas {
@@ -12,21 +12,6 @@ namespace {
 [[noreturn]] void broken(const std::string& law) { throw std::logic_error("hierarchy: " + law); }
 
 std::string text(LatticePoint p) { return fmt::format("({}, {}, {})", p.i, p.j, p.k); }
-
-/// Six times the volume of a tetrahedron in units of its diamond's scale cubed.
-std::int64_t scaled_volume(const std::array<LatticePoint, 4>& points, int bits) {
-  const auto edge = [&](std::size_t v, int axis) {
-    return std::int64_t{(points[v][axis] - points[0][axis]) >> bits};
-  };
-  const auto minor = [&](int x, int y) { return edge(2, x) * edge(3, y) - edge(2, y) * edge(3, x); };
-  return edge(1, 0) * minor(1, 2) + edge(1, 1) * minor(2, 0) + edge(1, 2) * minor(0, 1);
-}
-
-std::uint64_t mix(std::uint64_t h) {
-  h = (h ^ (h >> 31)) * 0x7fb5d329728ea185ull;
-  h = (h ^ (h >> 27)) * 0x81dadef4bc2dd44dull;
-  return h ^ (h >> 33);
-}
 
 }  // namespace
 
@@ -99,10 +84,8 @@ void HierarchyTopology::validate_tetrahedron(TetrahedronId t) const {
     }
   }
   const auto [a, b, p, q] = node(t).vertices;
-  if (scaled_volume(expected, record(d).bits) <= 0 ||
-      signed_volume(position(a), position(b), position(p), position(q)) <= 0) {
+  if (signed_volume(position(a), position(b), position(p), position(q)) <= 0)
     broken(name + " is not positively oriented");
-  }
 }
 
 void HierarchyTopology::validate_diamond(DiamondId d) const {
@@ -138,39 +121,14 @@ void HierarchyTopology::validate_diamond(DiamondId d) const {
 }
 
 void HierarchyTopology::validate_mesh() const {
-  std::array<std::int64_t, kRootBits> volumes{};  // per level, in units of that level's scale cubed
-  for_each_leaf([&](TetrahedronId t) {
-    std::array<LatticePoint, 4> points;
-    for (std::size_t v = 0; v < 4; ++v) points[v] = lattice(vertices(t)[v]);
-    for (std::size_t a = 0; a < 4; ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        const LatticePoint way = points[b] - points[a];
-        if (trailing_zeros(way) == 0) continue;
-        const LatticePoint middle = points[a] + LatticePoint{way.i / 2, way.j / 2, way.k / 2};
-        if (is_split(middle)) broken("vertex " + text(middle) + " hangs");
-      }
-    }
-    volumes[static_cast<std::size_t>(level(t))] += scaled_volume(points, record(diamond(t)).bits);
-  });
-  for (std::size_t finer = volumes.size() - 1; finer > 0; --finer) {
-    if (volumes[finer] % 8 != 0) broken("volumes do not add up");
-    volumes[finer - 1] += volumes[finer] / 8;
-  }
-  // A root cube's side is twice the scale of level 0.
-  const auto [a, b, c] = domain_.roots();
-  if (volumes[0] != std::int64_t{6 * 8} * a * b * c) broken("volumes do not add up to the domain's");
+  MeshLaws laws(domain_, [this](LatticePoint p) { return is_split(p); });
+  for_each_leaf([&](TetrahedronId t) { laws.add(Diamond(lattice(diamond(t))), corners(t)); });
+  laws.check_volume();
 }
 
 std::uint64_t HierarchyTopology::checksum() const {
   std::uint64_t sum = leaf_count_;
-  for_each_leaf([&](TetrahedronId t) {
-    std::array<LatticePoint, 4> points;
-    for (std::size_t v = 0; v < 4; ++v) points[v] = lattice(vertices(t)[v]);
-    std::sort(points.begin(), points.end());
-    std::uint64_t h = 0;
-    for (const LatticePoint p : points) h = mix(h + hash_value(p));
-    sum += h;
-  });
+  for_each_leaf([&](TetrahedronId t) { sum += tetrahedron_checksum(corners(t)); });
   return sum;
 }
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+
+#include "core/lattice/diamond.h"
+#include "core/lattice/domain.h"
+
+namespace adamas {
+
+/// Laws of a mesh of tetrahedra that diamonds are split into (D 2): positive orientation, no vertex of a
+/// neighbour inside an edge, and integer volumes that add up to the domain's. Tetrahedra are added one by
+/// one.
+class MeshLaws {
+ public:
+  using Corners = std::array<LatticePoint, 4>;
+
+  /// `is_split` tells whether the diamond at a lattice point is split.
+  MeshLaws(const Domain& domain, std::function<bool(LatticePoint)> is_split)
+      : domain_(domain), is_split_(std::move(is_split)) {}
+
+  /// One of the tetrahedra of the diamond; throws std::logic_error that names the law it breaks.
+  void add(const Diamond& diamond, const Corners& corners);
+  /// To be called after the last; throws std::logic_error.
+  void check_volume() const;
+
+ private:
+  const Domain& domain_;
+  std::function<bool(LatticePoint)> is_split_;
+  std::array<std::int64_t, kRootBits> volumes_{};  ///< per level, in units of that level's scale cubed
+};
+
+/// Of the corners in any order. Sums of it over meshes tell them apart, whatever the order of the tetrahedra.
+std::uint64_t tetrahedron_checksum(std::array<LatticePoint, 4> corners);
+
+}  // namespace adamas

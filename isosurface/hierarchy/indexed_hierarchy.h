@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/lattice/diamond.h"
+#include "core/lattice/domain.h"
+#include "core/lattice/lattice_map.h"
+#include "isosurface/hierarchy/packed_point.h"
+
+namespace adamas {
+
+/// The indexed hierarchy (D 2): a conforming mesh of tetrahedra that is kept as a table of diamonds alone,
+/// without a link. A diamond is there while a tetrahedron of it is in the mesh or it is split; everything
+/// else follows from the bits of its point. For the same requests it holds the same mesh as the pointer-based
+/// hierarchy.
+class IndexedHierarchy {
+ public:
+  static constexpr int kMaxLevels = PackedPoint::kBits - 2;
+
+  /// Throws Error where the numbers of roots and levels need more than kMaxLevels bits a coordinate.
+  IndexedHierarchy(const Domain& domain, int levels);
+
+  [[nodiscard]] const Domain& domain() const { return domain_; }
+  /// Diamonds of levels below this can be split.
+  [[nodiscard]] int levels() const { return levels_; }
+  [[nodiscard]] bool can_split(LatticePoint p) const { return trailing_zeros(p) >= kRootBits - levels_; }
+
+  [[nodiscard]] bool is_split(LatticePoint p) const {
+    const State* state = diamonds_.find(key(p));
+    return state != nullptr && state->split;
+  }
+  /// Whether the diamond is split and none of its children is.
+  [[nodiscard]] bool can_merge(LatticePoint p) const {
+    const State* state = diamonds_.find(key(p));
+    return state != nullptr && state->split && state->split_children == 0;
+  }
+  /// Slots of the diamond's tetrahedra that are in the mesh, as bits.
+  [[nodiscard]] std::uint8_t tetrahedra(LatticePoint p) const {
+    const State* state = diamonds_.find(key(p));
+    return state != nullptr ? state->tetrahedra : std::uint8_t{0};
+  }
+
+  /// Splits the diamond, its ancestors that are not split first, and appends the points of all that were
+  /// split, parents first. Does nothing for a diamond that is split or that can_split() refuses.
+  void split(LatticePoint p, std::vector<LatticePoint>& done);
+  /// Does nothing for a diamond that can_merge() refuses. Returns whether it was merged.
+  bool merge(LatticePoint p);
+
+  /// Number of tetrahedra in the mesh.
+  [[nodiscard]] std::size_t tetrahedron_count() const { return tetrahedron_count_; }
+  /// Number of diamonds that are split or have a tetrahedron in the mesh.
+  [[nodiscard]] std::size_t diamond_count() const { return diamonds_.size(); }
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const { return diamonds_.bytes(); }
+
+  /// Calls fn(diamond, slot) for the tetrahedra of the mesh, in an order that depends on history.
+  template <class Fn>
+  void for_each_tetrahedron(Fn&& fn) const;
+
+  /// Throws std::logic_error that names the first broken law.
+  void validate() const;
+  /// Of the mesh alone; equal to that of a pointer-based hierarchy with the same mesh.
+  [[nodiscard]] std::uint64_t checksum() const;
+
+ private:
+  struct State {
+    std::uint8_t tetrahedra = 0;  ///< bits, by slot
+    std::uint8_t split_children = 0;
+    bool split = false;
+  };
+
+  [[nodiscard]] PackedPoint key(LatticePoint p) const { return pack(p, shift_); }
+  void split_complete(LatticePoint p);
+  void validate_diamond(LatticePoint p, const State& state) const;
+
+  Domain domain_;
+  int levels_, shift_;
+  LatticeMap<State, PackedPoint> diamonds_;
+  std::size_t tetrahedron_count_ = 0;
+};
+
+template <class Fn>
+void IndexedHierarchy::for_each_tetrahedron(Fn&& fn) const {
+  diamonds_.for_each([&](PackedPoint packed, const State& state) {
+    if (state.tetrahedra == 0) return;
+    const Diamond diamond(unpack(packed, shift_));
+    for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
+      if ((state.tetrahedra >> slot & 1) != 0) fn(diamond, slot);
+    }
+  });
+}
+
+}  // namespace adamas
