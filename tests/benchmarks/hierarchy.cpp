@@ -64,7 +64,7 @@ using MakeRequests = std::vector<TetrahedronId> (*)(std::size_t);
 void splits(benchmark::State& state, MakeRequests make_requests) {
   const std::vector<TetrahedronId> requests = make_requests(static_cast<std::size_t>(state.range(0)));
   std::size_t diamonds = 0;
-  double bytes_per_leaf = 0, diamonds_per_leaf = 0;
+  double bytes_per_tetrahedron = 0, diamonds_per_tetrahedron = 0;
   std::vector<Split> done;
   for (auto _ : state) {
     Hierarchy<> h(unit_cube());
@@ -73,12 +73,12 @@ void splits(benchmark::State& state, MakeRequests make_requests) {
       h.split(t, done);
     }
     diamonds += h.vertex_count() - 8;
-    bytes_per_leaf = static_cast<double>(h.bytes()) / static_cast<double>(h.leaf_count());
-    diamonds_per_leaf = static_cast<double>(h.diamond_count()) / static_cast<double>(h.leaf_count());
+    bytes_per_tetrahedron = static_cast<double>(h.bytes()) / static_cast<double>(h.leaf_count());
+    diamonds_per_tetrahedron = static_cast<double>(h.diamond_count()) / static_cast<double>(h.leaf_count());
   }
   state.counters["splits"] = benchmark::Counter(static_cast<double>(diamonds), benchmark::Counter::kIsRate);
-  state.counters["bytes_per_leaf"] = bytes_per_leaf;
-  state.counters["diamonds_per_leaf"] = diamonds_per_leaf;
+  state.counters["bytes_per_tetrahedron"] = bytes_per_tetrahedron;
+  state.counters["diamonds_per_tetrahedron"] = diamonds_per_tetrahedron;
 }
 
 /// Merges everything, in the reverse order of the splits; the building is not measured.

@@ -74,7 +74,7 @@ void splits(benchmark::State& state, MakeSplits make_splits) {
   const double count = static_cast<double>(points.size() * state.iterations());
   state.counters["splits"] = benchmark::Counter(count, benchmark::Counter::kIsRate);
   state.counters["bytes_per_diamond"] = bytes_per_diamond;
-  state.counters["diamonds_per_leaf"] = diamonds_per_tetrahedron;
+  state.counters["diamonds_per_tetrahedron"] = diamonds_per_tetrahedron;
 }
 
 /// Merges everything, in the reverse order of the splits; the building is not measured.

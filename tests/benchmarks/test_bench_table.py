@@ -21,8 +21,8 @@ class BenchTableTest(unittest.TestCase):
         rows = list(closest_point_table(CLOSEST.format(0)))
         self.assertEqual([r[0] for r in rows], ["closest points, near the surface", "closest points, anywhere in the box"])
         self.assertEqual(rows[0][1:4], ["4.00 M/s", "CGAL AABB 1.00 M/s", "4.00"])
-        runs = {"benchmarks": [{"name": "splits/random/1000", "splits": 2e6, "bytes_per_leaf": 100}]}
-        self.assertEqual([r[3] for r in hierarchy_table(runs)], ["2.00", "0.50"])
+        runs = {"benchmarks": [{"name": "splits/random/1000", "splits": 2e6, "bytes_per_tetrahedron": 100}]}
+        self.assertEqual([r[3] for r in hierarchy_table("bench_hierarchy", runs)], ["2.00", "0.50"])
 
     def test_differences_fail(self):
         with self.assertRaisesRegex(SystemExit, "found 3 that differ"):
@@ -32,7 +32,7 @@ class BenchTableTest(unittest.TestCase):
         with self.assertRaisesRegex(SystemExit, "expected rows, found none"):
             some("closest points", closest_point_table("nothing\n"))
         with self.assertRaisesRegex(SystemExit, "found other"):
-            list(hierarchy_table({"benchmarks": [{"name": "other"}]}))
+            list(hierarchy_table("bench_hierarchy", {"benchmarks": [{"name": "other"}]}))
 
 
 if __name__ == "__main__":
