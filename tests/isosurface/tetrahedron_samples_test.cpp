@@ -7,6 +7,7 @@
 
 #include "core/geometry/tetrahedron.h"
 #include "core/lattice/diamond.h"
+#include "isosurface/preprocessing/tetrahedron_stencils.h"
 
 namespace adamas {
 namespace {
@@ -30,15 +31,16 @@ struct Cube {
 
 using Corners = TetrahedronRows::Corners;
 
+bool inside(const Corners& corners) {
+  return std::all_of(corners.begin(), corners.end(), [](LatticePoint p) {
+    return std::min({p.i, p.j, p.k}) >= 0 && std::max({p.i, p.j, p.k}) < kSide;
+  });
+}
+
 /// All tetrahedra that bisection makes in the cube, down to those of one cell.
 std::vector<Corners> all_tetrahedra() {
   std::vector<Corners> result;
   constexpr int kShift = kRootBits - 4;
-  const auto inside = [](const Corners& corners) {
-    return std::all_of(corners.begin(), corners.end(), [](LatticePoint p) {
-      return std::min({p.i, p.j, p.k}) >= 0 && std::max({p.i, p.j, p.k}) < kSide;
-    });
-  };
   // At twice the resolution, since those of one cell would be split between the samples.
   for (int k = 0; k < 2 * kSide; ++k) {
     for (int j = 0; j < 2 * kSide; ++j) {
@@ -138,6 +140,48 @@ TEST(TetrahedronRows, PartsOfAVolumeAddUp) {
     ASSERT_EQ(parts.min, whole.min);
     ASSERT_EQ(parts.max, whole.max);
   }
+}
+
+TEST(TetrahedronStencils, AgreeWithRows) {
+  std::mt19937 random(3);
+  const Cube<std::uint16_t> shorts(random);
+  Cube<float> floats(random);
+  floats.samples[4000] = std::numeric_limits<float>::quiet_NaN();
+  const TetrahedronStencils stencils({kSide, kSide, kSide});
+  constexpr int kShift = kRootBits - 4;
+  std::array<int, TetrahedronStencils::kScales> seen{};
+  const auto compare = [&](const auto& cube, const Diamond& diamond, LatticePoint p, int slot,
+                           const Corners& corners) {
+    const int bits = diamond.scale_bits() - kShift;
+    const auto* split_vertex = cube.samples.data() + p.i + kSide * (p.j + kSide * p.k);
+    const auto values = values_at(cube, corners);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double value = split_vertex[stencils.corners(bits, diamond.type_index(), slot)[c]];
+      if (!std::isnan(value)) {
+        ASSERT_EQ(value, values[c]);
+      }
+    }
+    if (std::isnan(values[0] + values[1] + values[2] + values[3])) return;
+    SampleDeviation wanted;
+    TetrahedronRows(corners).measure(cube.block(), values, wanted);
+    const double found = stencils.error(split_vertex, bits, diamond.type_index(), slot, values);
+    ASSERT_NEAR(found, wanted.error, 1e-12 * (1 + wanted.error));
+    ++seen[static_cast<std::size_t>(bits)];
+  };
+  for (int index = 0; index < kSide * kSide * kSide; ++index) {
+    const LatticePoint p{index % kSide, index / kSide % kSide, index / kSide / kSide};
+    if (trailing_zeros(p) >= TetrahedronStencils::kScales) continue;
+    const Diamond diamond({p.i << kShift, p.j << kShift, p.k << kShift});
+    for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
+      Corners corners = diamond.tetrahedron(slot);
+      for (LatticePoint& c : corners) c = {c.i >> kShift, c.j >> kShift, c.k >> kShift};
+      if (!inside(corners)) continue;
+      compare(shorts, diamond, p, slot, corners);
+      compare(floats, diamond, p, slot, corners);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(*std::min_element(seen.begin(), seen.end()), 500);
 }
 
 TEST(TetrahedronRows, LinearDataHaveNoErrorAndHolesDoNotCount) {
