@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace adamas {
+
+/// Errors in six bits on a logarithmic scale (D 4.3), one scale for each level: code 0 is no error, the
+/// greatest code the greatest error, and each code is 2^(1/4) times the one before. Codes are never smaller
+/// than the error.
+class ErrorScale {
+ public:
+  static constexpr int kCodes = 64;
+
+  /// `greatest`: of the level's errors; finite, not negative.
+  explicit ErrorScale(double greatest);
+
+  /// The least code whose error is not less; the greatest one for errors beyond the scale and for NaN.
+  [[nodiscard]] std::uint8_t encode(double error) const;
+  [[nodiscard]] double decode(std::uint8_t code) const { return errors_[code]; }
+  [[nodiscard]] double greatest() const { return errors_.back(); }
+
+ private:
+  std::array<double, kCodes> errors_{};  ///< in ascending order
+};
+
+}  // namespace adamas
