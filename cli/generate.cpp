@@ -13,6 +13,7 @@ void add_generate(CLI::App& app, Session& session) {
   generate->footer("Example:\n  adamas generate scene voronoi10 --dimensions 32,32,32 --seed 7 -o cells.vtr");
   add_generate_scene(*generate, session);
   add_generate_impact(*generate, session);
+  add_generate_buckyball(*generate, session);
 }
 
 }  // namespace adamas

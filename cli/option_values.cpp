@@ -94,7 +94,7 @@ std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std
     const auto [at, code] = std::from_chars(parts[i].data(), end, counts[i]);
     good = code == std::errc() && at == end && counts[i] > 0;
   }
-  if (!good) wrong_usage("{}: expected numbers of cells X,Y,Z of at least 1, found '{}'", option, text);
+  if (!good) wrong_usage("{}: expected whole numbers X,Y,Z of at least 1, found '{}'", option, text);
   return counts;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "core/geometry/vec3.h"
 
@@ -24,6 +25,9 @@ constexpr std::size_t sample_bytes(SampleType type) {
   return 0;
 }
 
+/// "uint8", "uint16", "int16", "float32".
+const char* sample_name(SampleType type);
+
 /// What a volume is, its samples apart: a regular grid of samples, i running fastest.
 struct VolumeGrid {
   std::array<std::uint64_t, 3> dimensions{};  ///< samples per axis
@@ -35,6 +39,10 @@ struct VolumeGrid {
   [[nodiscard]] std::uint64_t samples() const { return plane_samples() * dimensions[2]; }
   /// Of one plane of equal k.
   [[nodiscard]] std::uint64_t plane_bytes() const { return plane_samples() * sample_bytes(type); }
+
+  /// Throws Error with `name` where there is no sample, the samples take more bytes than can be counted (at
+  /// eight bytes each), a spacing is not positive, or a place is not finite.
+  void check(const std::string& name) const;
 };
 
 }  // namespace adamas

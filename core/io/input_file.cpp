@@ -48,13 +48,22 @@ std::string file_stem(const std::filesystem::path& path) {
   return name;
 }
 
-std::string read_file(const std::filesystem::path& path) {
-  const std::size_t size = check_input_file(path);
+namespace {
+
+std::string read_bytes(const std::filesystem::path& path, std::size_t size) {
   std::ifstream stream(path, std::ios::binary);
   std::string content(size, '\0');
   stream.read(content.data(), static_cast<std::streamsize>(size));
   if (!stream) fail("{}: expected {} bytes, found {}", path.string(), size, stream.gcount());
   return content;
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& path) { return read_bytes(path, check_input_file(path)); }
+
+std::string read_beginning(const std::filesystem::path& path) {
+  return read_bytes(path, std::min(check_input_file(path), kLongestHeader));
 }
 
 }  // namespace adamas

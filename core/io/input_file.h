@@ -19,4 +19,10 @@ std::string file_stem(const std::filesystem::path& path);
 /// The whole content of a checked input file.
 std::string read_file(const std::filesystem::path& path);
 
+/// Room for any header of those that precede data.
+inline constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+
+/// The first kLongestHeader bytes of a checked input file, or all of them.
+std::string read_beginning(const std::filesystem::path& path);
+
 }  // namespace adamas

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -11,33 +10,18 @@
 #include "core/base/error.h"
 #include "core/io/inflate_stream.h"
 #include "core/io/input_file.h"
+#include "core/io/meta_image_fields.h"
 
 namespace adamas {
 
 namespace {
 
-using Header = std::map<std::string, std::string>;
-
 bool is_matrix(const std::string& key) {
   return key == "TransformMatrix" || key == "Rotation" || key == "Orientation";
 }
 
-/// "Key = value" lines up to ElementDataFile, which is always the last; leaves the stream behind that line.
-Header read_header(std::ifstream& stream, const std::string& name) {
-  constexpr std::size_t kLines = 1000;
-  Header header;
-  std::string line;
-  for (std::size_t i = 0; i < kLines && std::getline(stream, line); ++i) {
-    const std::size_t equal = line.find('=');
-    if (equal == std::string::npos) continue;
-    std::string key, value;
-    std::istringstream(line.substr(0, equal)) >> key;
-    std::istringstream(line.substr(equal + 1)) >> std::ws >> value;
-    if (key == "DimSize" || is_matrix(key)) value = line.substr(equal + 1);
-    header[key] = value;
-    if (key == "ElementDataFile") return header;
-  }
-  fail("{}: expected a MetaImage header with ElementDataFile, found none", name);
+MetaImageFields read_fields(const std::filesystem::path& path) {
+  return parse_meta_image_fields(read_beginning(path), path.string());
 }
 
 std::uint64_t element_bytes(const std::string& type) {
@@ -48,27 +32,21 @@ std::uint64_t element_bytes(const std::string& type) {
   return 0;
 }
 
-bool is_true(const Header& header, const std::string& key) {
-  const auto found = header.find(key);
-  return found != header.end() && !found->second.empty() &&
-         (found->second[0] == 'T' || found->second[0] == 't');
-}
-
 /// Bytes that the header promises; 0 where it does not say.
-std::uint64_t promised_bytes(const Header& header, const std::string& name) {
-  if (!header.contains("DimSize") || !header.contains("ElementType")) return 0;
-  std::uint64_t bytes = element_bytes(header.at("ElementType"));
-  if (header.contains("ElementNumberOfChannels")) {
+std::uint64_t promised_bytes(const MetaImageFields& header, const std::string& name) {
+  if (!header.has("DimSize") || !header.has("ElementType")) return 0;
+  std::uint64_t bytes = element_bytes(header.value("ElementType"));
+  if (header.has("ElementNumberOfChannels")) {
     std::uint64_t channels = 0;
-    std::istringstream(header.at("ElementNumberOfChannels")) >> channels;
+    std::istringstream(header.value("ElementNumberOfChannels")) >> channels;
     bytes *= std::min<std::uint64_t>(channels, 1'000'000);
   }
-  std::istringstream sizes(header.at("DimSize"));
+  std::istringstream sizes(header.value("DimSize"));
   std::int64_t size = 0;
   while (sizes >> size) {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 46;
     if (size < 1 || static_cast<std::uint64_t>(size) > kMost / std::max<std::uint64_t>(bytes, 1)) {
-      fail("{}: expected sizes that can be, found DimSize {}", name, header.at("DimSize"));
+      fail("{}: expected sizes that can be, found DimSize {}", name, header.value("DimSize"));
     }
     bytes *= static_cast<std::uint64_t>(size);
   }
@@ -79,26 +57,24 @@ std::uint64_t promised_bytes(const Header& header, const std::string& name) {
 
 void check_meta_image(const std::filesystem::path& path) {
   std::string name = path.string();
-  std::ifstream stream(path, std::ios::binary);
-  const Header header = read_header(stream, name);
+  const MetaImageFields header = read_fields(path);
   const std::uint64_t expected = promised_bytes(header, name);
-  const std::string& file = header.at("ElementDataFile");
-  const bool text = header.contains("BinaryData") && !is_true(header, "BinaryData");
+  const std::string file = header.value("ElementDataFile");
+  const bool text = header.has("BinaryData") && !header.is_true("BinaryData");
   if (expected == 0 || text || file == "LIST" || file.find('%') != std::string::npos) return;
-  std::uint64_t at = 0, size = 0;
-  if (file == "LOCAL" || file == "Local" || file == "local") {
-    size = std::filesystem::file_size(path);
-    // The stream has no position where the file ends with the header's last line.
-    at = stream.good() ? static_cast<std::uint64_t>(stream.tellg()) : size;
-  } else {
-    const std::filesystem::path beside = path.parent_path() / file;
-    name += ": " + beside.string();
-    size = check_input_file(beside);
-    stream = std::ifstream(beside, std::ios::binary);
+  std::filesystem::path data = path;
+  std::uint64_t at = header.header_bytes;
+  if (!header.is_local()) {
+    data = path.parent_path() / file;
+    name += ": " + data.string();
+    at = 0;
   }
+  const std::uint64_t size = check_input_file(data);
   std::uint64_t found = size - at;
-  if (is_true(header, "CompressedData")) {
+  if (header.is_true("CompressedData")) {
     std::string bytes(found, '\0');
+    std::ifstream stream(data, std::ios::binary);
+    stream.seekg(static_cast<std::streamoff>(at));
     stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     found = inflate_stream(bytes, name, [](std::string_view) {});
   }
@@ -106,8 +82,7 @@ void check_meta_image(const std::filesystem::path& path) {
 }
 
 std::optional<std::array<Vec3, 3>> meta_image_directions(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  const Header header = read_header(stream, path.string());
+  const auto header = read_fields(path).values;
   const auto found =
       std::find_if(header.begin(), header.end(), [](const auto& entry) { return is_matrix(entry.first); });
   if (found == header.end()) return {};

@@ -28,7 +28,7 @@ void OutputStream::write(const void* data, std::size_t size) {
   written_ += size;
 }
 
-void OutputStream::finish() {
+void OutputStream::close() {
   errno = 0;
   stream_.close();
   check();
@@ -38,7 +38,6 @@ void OutputStream::finish() {
     fail("{}: could not be written: expected {} bytes, found {}", file_.path().string(), written_,
          code ? 0 : size);
   }
-  file_.commit();
 }
 
 }  // namespace adamas

@@ -16,14 +16,21 @@ class OutputStream {
   /// Throws Error when the file cannot be made.
   explicit OutputStream(const std::filesystem::path& path);
 
-  /// Throw Error when the bytes cannot be written (a full disk).
+  /// These throw Error when the bytes cannot be written (a full disk).
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
   template <class T>
   void put(const T& value) {
     write(&value, sizeof(T));
   }
-  void finish();
+  /// Writes what is buffered and checks the size, without the name yet: for files that get theirs together.
+  void close();
+  /// After close().
+  void commit() { file_.commit(); }
+  void finish() {
+    close();
+    commit();
+  }
 
  private:
   void check();

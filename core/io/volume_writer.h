@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "core/data/volume.h"
+#include "core/io/output_stream.h"
+
+namespace adamas {
+
+/// Where the samples go whose header is to be `path`: for .nhdr and .mhd, the .raw of the same name beside
+/// it; else empty, since they follow the header.
+std::filesystem::path volume_data_file(const std::filesystem::path& path);
+
+struct VolumeWriterOptions {
+  std::string array = "values";     ///< what .vti calls the samples
+  std::filesystem::path data_file;  ///< to write samples to, where not volume_data_file(path)
+  std::string data_name;            ///< what the header calls that file, where not by its own name
+};
+
+/// Writes a volume plane by plane, uncompressed: .vti (appended raw), .nrrd, .nhdr, .mha, .mhd, or .raw,
+/// which is samples alone. Equal samples give equal bytes, least byte first. Files get their names at
+/// finish().
+class VolumeWriter {
+ public:
+  /// Throws Error where the grid is none (VolumeGrid::check), the extension is another, a header cannot hold
+  /// the data file's name, or the disk has not the room.
+  VolumeWriter(const std::filesystem::path& path, const VolumeGrid& grid,
+               const VolumeWriterOptions& options = {});
+
+  /// Takes the next plane, grid.plane_bytes() in the machine's byte order. Throws Error where it cannot be
+  /// written.
+  void write_plane(std::span<const std::byte> samples);
+  /// After the last plane. Throws Error where the files are not whole.
+  void finish();
+
+ private:
+  VolumeGrid grid_;
+  std::uint64_t planes_ = 0;
+  std::unique_ptr<OutputStream> header_;  ///< with the samples, where there is no other file
+  std::unique_ptr<OutputStream> data_;
+  std::string end_;  ///< of the header's file, behind the samples
+};
+
+}  // namespace adamas
