@@ -9,10 +9,6 @@ namespace adamas {
 
 namespace {
 
-/// How far off, relative to its length, a parallel direction may be: headers state rotations in single
-/// precision.
-constexpr double kParallel = 1e-4;
-
 /// By axis of space: the axis of the array that is parallel to it, and whether the array runs the other way.
 struct Layout {
   std::array<std::size_t, 3> source{};
@@ -31,7 +27,7 @@ std::array<std::size_t, 3> find_sources(const std::string& name, const GridAxes&
     }
     const double across = std::abs(d[(along + 1) % 3]) + std::abs(d[(along + 2) % 3]);
     const auto s = static_cast<std::size_t>(along);
-    if (!(std::abs(d[along]) > 0) || !(across <= kParallel * std::abs(d[along])) || taken[s]) {
+    if (!(std::abs(d[along]) > 0) || !(across <= kParallelAxes * std::abs(d[along])) || taken[s]) {
       fail(
           "{}: expected axes parallel to x, y and z, one to each, found the {} axis along ({:.6g}, {:.6g}, "
           "{:.6g})",

@@ -8,6 +8,10 @@
 
 namespace adamas {
 
+/// How far off, relative to its length, a parallel direction may be: headers state rotations in single
+/// precision.
+inline constexpr double kParallelAxes = 1e-4;
+
 /// Where the axes of a file's array lie in space: `t` along axis a leads to origin + t * directions[a].
 struct GridAxes {
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

@@ -82,15 +82,20 @@ void check_meta_image(const std::filesystem::path& path) {
 }
 
 std::optional<std::array<Vec3, 3>> meta_image_directions(const std::filesystem::path& path) {
-  const auto header = read_fields(path).values;
+  return meta_image_directions(read_fields(path), path.string());
+}
+
+std::optional<std::array<Vec3, 3>> meta_image_directions(const MetaImageFields& fields,
+                                                         const std::string& name) {
+  const auto& values = fields.values;
   const auto found =
-      std::find_if(header.begin(), header.end(), [](const auto& entry) { return is_matrix(entry.first); });
-  if (found == header.end()) return {};
+      std::find_if(values.begin(), values.end(), [](const auto& entry) { return is_matrix(entry.first); });
+  if (found == values.end()) return {};
   std::istringstream text(found->second);
   std::vector<double> numbers;
   for (double number = 0; numbers.size() <= 9 && text >> number;) numbers.push_back(number);
   if (numbers.size() != 4 && numbers.size() != 9) {
-    fail("{}: {}: expected four or nine numbers, found {}", path.string(), found->first, numbers.size());
+    fail("{}: {}: expected four or nine numbers, found {}", name, found->first, numbers.size());
   }
   const std::size_t dimension = numbers.size() == 4 ? 2 : 3;
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

@@ -3,8 +3,10 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "core/geometry/vec3.h"
+#include "core/io/meta_image_fields.h"
 
 namespace adamas {
 
@@ -16,5 +18,7 @@ void check_meta_image(const std::filesystem::path& path);
 /// The directions of the array's axes that the header states (TransformMatrix), of which VTK's reader knows
 /// nothing; nothing where it states none. Throws Error where they are not four or nine numbers.
 std::optional<std::array<Vec3, 3>> meta_image_directions(const std::filesystem::path& path);
+std::optional<std::array<Vec3, 3>> meta_image_directions(const MetaImageFields& fields,
+                                                         const std::string& name);
 
 }  // namespace adamas

@@ -13,6 +13,7 @@
 #include "core/io/meta_image_check.h"
 #include "core/io/network_text.h"
 #include "core/io/nrrd_header.h"
+#include "core/io/volume_source.h"
 #include "interfaces/reference/mesher_messages.h"
 #include "tests/fuzz/require.h"
 
@@ -84,6 +85,21 @@ inline void meta_image(std::string_view bytes) {
   const TemporaryFile file(bytes, ".mha");
   check_meta_image(file.path());
   meta_image_directions(file.path());
+}
+
+inline void volume_source(const VolumeSource& source) {
+  source.grid.check("fuzz");
+  require(source.sample_file_bytes() >= source.grid.samples(), "more samples than bytes");
+}
+
+inline void nrrd_volume(std::string_view bytes) { volume_source(nrrd_source(bytes, "fuzz.nrrd")); }
+
+inline void meta_image_volume(std::string_view bytes) { volume_source(meta_image_source(bytes, "fuzz.mha")); }
+
+inline void vti_volume(std::string_view bytes) {
+  const VolumeSource source = vti_source(bytes, "fuzz.vti", "");
+  volume_source(source);
+  require(source.header_bytes <= bytes.size(), "header longer than the text");
 }
 
 }  // namespace adamas::fuzz

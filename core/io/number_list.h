@@ -1,0 +1,28 @@
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace adamas {
+
+/// "1 2.5 -3": numbers with blanks between them; nothing where anything else is among them.
+template <class T>
+std::optional<std::vector<T>> parse_number_list(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  std::vector<T> numbers;
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+    if (text.empty()) return numbers;
+    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+    T value{};
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (code != std::errc() || end != word.data() + word.size()) return {};
+    numbers.push_back(value);
+    text.remove_prefix(word.size());
+  }
+}
+
+}  // namespace adamas

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/data/volume.h"
+#include "core/io/volume_source.h"
+
+namespace adamas {
+
+/// What a file of samples without a header holds.
+struct RawVolume {
+  std::array<std::uint64_t, 3> dimensions{};
+  StoredType type = StoredType::kUint8;
+  bool big_endian = false;
+  std::uint64_t header_bytes = 0;  ///< to pass over
+  Vec3 spacing{1, 1, 1};
+  Vec3 origin;
+};
+
+/// Reads the planes of a volume in any order, a plane at a time, whatever the size of the file. Samples come
+/// in the machine's byte order, along ascending x, y and z; int8 becomes int16, and the types that VolumeGrid
+/// does not know become float32.
+class VolumeReader {
+ public:
+  /// Throws Error where the file is missing or has not the size that the source states.
+  explicit VolumeReader(VolumeSource source);
+
+  [[nodiscard]] const VolumeGrid& grid() const { return source_.grid; }
+  [[nodiscard]] const VolumeSource& source() const { return source_; }
+
+  /// Reads the samples of plane k, grid().plane_bytes() of them. Throws Error where they cannot be read.
+  void read_plane(std::uint64_t k, std::span<std::byte> samples);
+
+  /// How many samples of the planes that were read are other numbers than in the file, and by how much at
+  /// most.
+  [[nodiscard]] std::uint64_t changed() const { return changed_; }
+  [[nodiscard]] double greatest_change() const { return greatest_change_; }
+  /// One line on the conversion, of the planes read so far; empty where the samples are as in the file.
+  [[nodiscard]] std::string note() const;
+
+ private:
+  void find_samples();
+  void read_at(std::uint64_t at, std::byte* bytes, std::size_t size);
+  void read_as_stored(std::uint64_t at, std::span<std::byte> samples);
+  template <class Stored, class Sample>
+  void read_converted(std::uint64_t at, std::span<std::byte> samples);
+
+  VolumeSource source_;
+  std::uint64_t begin_ = 0;  ///< of the samples in the file
+  std::ifstream stream_;
+  std::vector<std::byte> buffer_;
+  std::uint64_t changed_ = 0;
+  double greatest_change_ = 0;
+};
+
+/// Opens .nrrd, .nhdr, .mha, .mhd or .vti, uncompressed, with one value per sample; `array` is the name of
+/// one in a .vti that has several. Throws Error that names the file at anything else.
+VolumeReader open_volume(const std::filesystem::path& path, const std::string& array = {});
+
+/// Throws Error where the file has not exactly the size that follows.
+VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume);
+
+}  // namespace adamas
