@@ -43,8 +43,16 @@ IndexedHierarchy::IndexedHierarchy(const Domain& domain, int levels)
   }
 }
 
+/// The diamonds that splitting or merging this one looks at lie all over memory.
+void IndexedHierarchy::prefetch(LatticePoint p) const {
+  const Diamond diamond(p);
+  for (int c = 0; c < diamond.parent_count(); ++c) diamonds_.prefetch(key(diamond.parent(c)));
+  for (int c = 0; c < diamond.child_count(); ++c) diamonds_.prefetch(key(diamond.child(c)));
+}
+
 void IndexedHierarchy::split(LatticePoint p, std::vector<LatticePoint>& done) {
   if (!can_split(p)) return;
+  prefetch(p);
   forced_split(*this, p, [&](LatticePoint q) {
     split_complete(q);
     done.push_back(q);
@@ -54,8 +62,6 @@ void IndexedHierarchy::split(LatticePoint p, std::vector<LatticePoint>& done) {
 void IndexedHierarchy::split_complete(LatticePoint p) {
   const Diamond diamond(p);
   const DiamondType& type = diamond.type();
-  // They lie all over memory.
-  for (int c = 0; c < type.child_count; ++c) diamonds_.prefetch(key(diamond.child(c)));
   State& state = *diamonds_.find(key(p));
   const std::uint8_t tetrahedra = state.tetrahedra;
   ADAMAS_ASSERT(std::popcount(tetrahedra) == diamond.tetrahedron_count(domain_));
@@ -71,9 +77,9 @@ void IndexedHierarchy::split_complete(LatticePoint p) {
 
 bool IndexedHierarchy::merge(LatticePoint p) {
   if (!can_merge(p)) return false;
+  prefetch(p);
   const Diamond diamond(p);
   const DiamondType& type = diamond.type();
-  for (int c = 0; c < type.child_count; ++c) diamonds_.prefetch(key(diamond.child(c)));
   unsigned tetrahedra = 0;
   for (const int slot : diamond.tetrahedra(domain_)) tetrahedra |= 1u << slot;
   for (int c = 0; c < type.child_count; ++c) {

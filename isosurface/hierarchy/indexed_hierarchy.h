@@ -72,6 +72,7 @@ class IndexedHierarchy {
   };
 
   [[nodiscard]] PackedPoint key(LatticePoint p) const { return pack(p, shift_); }
+  void prefetch(LatticePoint p) const;
   void split_complete(LatticePoint p);
   void validate_diamond(LatticePoint p, const State& state) const;
 
