@@ -55,6 +55,10 @@ class IndexedHierarchy {
   /// Memory held.
   [[nodiscard]] std::size_t bytes() const { return diamonds_.bytes(); }
 
+  /// Calls fn(diamond, slots) for the diamonds with tetrahedra in the mesh, their slots as bits, in an order
+  /// that depends on history.
+  template <class Fn>
+  void for_each_diamond(Fn&& fn) const;
   /// Calls fn(diamond, slot) for the tetrahedra of the mesh, in an order that depends on history.
   template <class Fn>
   void for_each_tetrahedron(Fn&& fn) const;
@@ -78,17 +82,22 @@ class IndexedHierarchy {
 
   Domain domain_;
   int levels_, shift_;
-  LatticeMap<State, PackedPoint> diamonds_;
+  LatticeMap<State, PackedPoint, true> diamonds_;
   std::size_t tetrahedron_count_ = 0;
 };
 
 template <class Fn>
-void IndexedHierarchy::for_each_tetrahedron(Fn&& fn) const {
+void IndexedHierarchy::for_each_diamond(Fn&& fn) const {
   diamonds_.for_each([&](PackedPoint packed, const State& state) {
-    if (state.tetrahedra == 0) return;
-    const Diamond diamond(unpack(packed, shift_));
+    if (state.tetrahedra != 0) fn(Diamond(unpack(packed, shift_)), state.tetrahedra);
+  });
+}
+
+template <class Fn>
+void IndexedHierarchy::for_each_tetrahedron(Fn&& fn) const {
+  for_each_diamond([&](const Diamond& diamond, std::uint8_t slots) {
     for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
-      if ((state.tetrahedra >> slot & 1) != 0) fn(diamond, slot);
+      if ((slots >> slot & 1) != 0) fn(diamond, slot);
     }
   });
 }

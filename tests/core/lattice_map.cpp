@@ -8,9 +8,10 @@
 namespace adamas {
 namespace {
 
-TEST(LatticeMap, AgreesWithAnOrderedMapUnderRandomInsertionsAndRemovals) {
+template <class Table>
+void expect_agreement_with_an_ordered_map() {
   std::mt19937 random(7);
-  LatticeMap<int> table;
+  Table table;
   std::map<LatticePoint, int> expected;
   for (int step = 0; step < 200000; ++step) {
     // Few distinct points at several scales, so that they collide and come again; fewer and fewer are kept at
@@ -37,6 +38,22 @@ TEST(LatticeMap, AgreesWithAnOrderedMapUnderRandomInsertionsAndRemovals) {
   std::map<LatticePoint, int> listed;
   table.for_each([&](LatticePoint p, int value) { EXPECT_TRUE(listed.emplace(p, value).second); });
   EXPECT_EQ(listed, expected);
+}
+
+TEST(LatticeMap, AgreesWithAnOrderedMapUnderRandomInsertionsAndRemovals) {
+  expect_agreement_with_an_ordered_map<LatticeMap<int>>();
+  expect_agreement_with_an_ordered_map<LatticeMap<int, LatticePoint, true>>();
+}
+
+TEST(LatticeMap, IsCompactWhereAsked) {
+  LatticeMap<int, LatticePoint, true> table;
+  const std::size_t entry = sizeof(LatticePoint) + sizeof(int);
+  for (std::int32_t n = 0; n < 10000; ++n) {
+    *table.insert({n, 3, 1 << 20}).first = n;
+    if (n < 100) continue;
+    ASSERT_LE(table.bytes(), entry * table.size() * 15 / 7 + 2 * entry);
+    ASSERT_GE(table.bytes(), entry * table.size() * 10 / 7);
+  }
 }
 
 TEST(LatticeMap, NewEntriesHaveDefaultValues) {

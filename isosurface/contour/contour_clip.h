@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/geometry/vec3.h"
+#include "isosurface/contour/contour.h"
+
+namespace adamas {
+
+/// Leaves of a contour what lies at x <= end.x, y <= end.y and z <= end.z. Where a plane cuts an edge there
+/// is one new point, which all triangles at the edge share: the surface stays closed but for the planes.
+/// Points without a triangle go.
+void clip_contour(Contour& contour, const Vec3& end);
+
+}  // namespace adamas
