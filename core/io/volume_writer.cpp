@@ -72,9 +72,9 @@ const char* vtk_type(SampleType type) {
 std::string vti_header(const std::string& name, const VolumeGrid& grid, const std::string& array) {
   const auto& n = grid.dimensions;
   // VTK counts points along an axis in 32 bits.
-  const std::uint64_t most = std::numeric_limits<std::int32_t>::max();
-  if (std::any_of(n.begin(), n.end(), [most](std::uint64_t size) { return size > most; })) {
-    fail("{}: expected at most {} samples along each axis of a .vti, found {} x {} x {}", name, most, n[0],
+  constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (std::any_of(n.begin(), n.end(), [](std::uint64_t size) { return size > kMost; })) {
+    fail("{}: expected at most {} samples along each axis of a .vti, found {} x {} x {}", name, kMost, n[0],
          n[1], n[2]);
   }
   const std::string extent = fmt::format("0 {} 0 {} 0 {}", n[0] - 1, n[1] - 1, n[2] - 1);
