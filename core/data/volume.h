@@ -39,6 +39,7 @@ struct VolumeGrid {
   [[nodiscard]] std::uint64_t samples() const { return plane_samples() * dimensions[2]; }
   /// Of one plane of equal k.
   [[nodiscard]] std::uint64_t plane_bytes() const { return plane_samples() * sample_bytes(type); }
+  [[nodiscard]] std::uint64_t bytes() const { return plane_bytes() * dimensions[2]; }
 
   /// Throws Error with `name` where there is no sample, the samples take more bytes than can be counted (at
   /// eight bytes each), a spacing is not positive, or a place is not finite.

@@ -11,26 +11,11 @@ namespace {
 
 constexpr std::size_t kShown = 40;
 
-std::optional<StoredType> stored_type(const std::string& element) {
-  // MET_LONG is as long as the writer's machine had it.
-  const std::pair<const char*, StoredType> kKnown[] = {
-      {"MET_CHAR", StoredType::kInt8},       {"MET_UCHAR", StoredType::kUint8},
-      {"MET_SHORT", StoredType::kInt16},     {"MET_USHORT", StoredType::kUint16},
-      {"MET_INT", StoredType::kInt32},       {"MET_UINT", StoredType::kUint32},
-      {"MET_LONG_LONG", StoredType::kInt64}, {"MET_ULONG_LONG", StoredType::kUint64},
-      {"MET_FLOAT", StoredType::kFloat32},   {"MET_DOUBLE", StoredType::kFloat64}};
-  for (const auto& [name, type] : kKnown) {
-    if (element == name) return type;
-  }
-  return {};
-}
-
 class Parser {
  public:
   Parser(std::string_view text, const std::filesystem::path& path)
       : path_(path), fields_(parse_meta_image_fields(text, path.string())) {
     source_.name = path.string();
-    source_.format = "MetaImage";
   }
 
   VolumeSource run() {
@@ -53,7 +38,7 @@ class Parser {
       fail_field("BinaryData", "binary samples");
     const char* channels = "ElementNumberOfChannels";
     if (fields_.has(channels) && fields_.value(channels) != "1") fail_field(channels, "one value per sample");
-    const auto type = stored_type(fields_.value("ElementType"));
+    const auto type = find_stored_type(fields_.value("ElementType"), TypeNames::kMetaImage);
     if (!type) fail_field("ElementType", "a type of numbers");
     source_.set_stored(*type);
     source_.big_endian = fields_.is_true("BinaryDataByteOrderMSB") || fields_.is_true("ElementByteOrderMSB");

@@ -8,7 +8,6 @@ namespace adamas {
 VolumeSource nrrd_source(std::string_view text, const std::filesystem::path& path) {
   VolumeSource source;
   source.name = path.string();
-  source.format = "NRRD";
   const NrrdHeader header = parse_nrrd_header(text, source.name);
   if (header.encoding != NrrdEncoding::kRaw) {
     fail("{}: expected samples that are not compressed (encoding: raw), found {}", source.name,

@@ -190,7 +190,6 @@ VolumeReader open_volume(const std::filesystem::path& path, const std::string& a
 VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume) {
   VolumeSource source;
   source.name = path.string();
-  source.format = "raw samples";
   source.file = path;
   source.skip_bytes = volume.header_bytes;
   source.exact = true;

@@ -6,39 +6,6 @@
 
 namespace adamas {
 
-namespace {
-
-struct StoredTypeInfo {
-  const char* name;
-  std::size_t bytes;
-  SampleType becomes;
-};
-
-/// By StoredType.
-constexpr StoredTypeInfo kTypes[] = {
-    {"int8", 1, SampleType::kInt16},      {"uint8", 1, SampleType::kUint8},
-    {"int16", 2, SampleType::kInt16},     {"uint16", 2, SampleType::kUint16},
-    {"int32", 4, SampleType::kFloat32},   {"uint32", 4, SampleType::kFloat32},
-    {"int64", 8, SampleType::kFloat32},   {"uint64", 8, SampleType::kFloat32},
-    {"float32", 4, SampleType::kFloat32}, {"float64", 8, SampleType::kFloat32}};
-
-const StoredTypeInfo& info(StoredType type) { return kTypes[static_cast<std::size_t>(type)]; }
-
-}  // namespace
-
-std::size_t stored_bytes(StoredType type) { return info(type).bytes; }
-
-const char* stored_name(StoredType type) { return info(type).name; }
-
-std::optional<StoredType> find_stored_type(std::string_view name) {
-  for (std::size_t i = 0; i < std::size(kTypes); ++i) {
-    if (kTypes[i].name == name) return static_cast<StoredType>(i);
-  }
-  return {};
-}
-
-SampleType sample_type_for(StoredType type) { return info(type).becomes; }
-
 void VolumeSource::set_stored(StoredType type) {
   stored = type;
   grid.type = sample_type_for(type);

@@ -4,41 +4,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "core/data/volume.h"
 #include "core/io/grid_axes.h"
+#include "core/io/stored_type.h"
 
 namespace adamas {
 
-/// The type of samples in a file.
-enum class StoredType : std::uint8_t {
-  kInt8,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kInt64,
-  kUint64,
-  kFloat32,
-  kFloat64
-};
-
-/// Size of one sample in a file.
-std::size_t stored_bytes(StoredType type);
-/// "int8", "float64".
-const char* stored_name(StoredType type);
-std::optional<StoredType> find_stored_type(std::string_view name);
-/// What such samples become: themselves, int16 for int8, else float32.
-SampleType sample_type_for(StoredType type);
-
 /// What the header of a volume comes to: where its samples lie, and how.
 struct VolumeSource {
-  std::string name;    ///< for messages
-  std::string format;  ///< "NRRD"
+  std::string name;  ///< for messages
   std::filesystem::path file;
   std::uint64_t header_bytes = 0;  ///< at the file's beginning
   std::uint64_t skip_lines = 0;    ///< behind them, and

@@ -13,24 +13,11 @@ namespace {
 
 constexpr std::size_t kShown = 40;
 
-std::optional<StoredType> stored_type(std::string_view name) {
-  const std::pair<std::string_view, StoredType> kKnown[] = {
-      {"Int8", StoredType::kInt8},      {"UInt8", StoredType::kUint8},   {"Int16", StoredType::kInt16},
-      {"UInt16", StoredType::kUint16},  {"Int32", StoredType::kInt32},   {"UInt32", StoredType::kUint32},
-      {"Int64", StoredType::kInt64},    {"UInt64", StoredType::kUint64}, {"Float32", StoredType::kFloat32},
-      {"Float64", StoredType::kFloat64}};
-  for (const auto& [known, type] : kKnown) {
-    if (name == known) return type;
-  }
-  return {};
-}
-
 class Parser {
  public:
   Parser(std::string_view text, const std::filesystem::path& path, std::string array)
       : text_(text), name_(path.string()), array_(std::move(array)), tags_(text, name_) {
     source_.name = name_;
-    source_.format = "VTK XML image";
     source_.file = path;
   }
 
@@ -137,7 +124,7 @@ class Parser {
   }
 
   void read_array(const XmlTag& tag) {
-    const auto type = stored_type(tag.value("type"));
+    const auto type = find_stored_type(tag.value("type"), TypeNames::kVtk);
     if (!type) fail_value("DataArray type", "a type of numbers", tag.value("type"));
     source_.set_stored(*type);
     if (tag.has("NumberOfComponents") && tag.value("NumberOfComponents") != "1") {

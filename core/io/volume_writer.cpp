@@ -8,6 +8,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
+#include "core/io/stored_type.h"
 #include "core/io/xml_text.h"
 
 namespace adamas {
@@ -32,41 +33,13 @@ std::string nrrd_header(const VolumeGrid& grid, const std::string& data_name) {
       data_name.empty() ? "" : "data file: " + data_name + "\n");
 }
 
-const char* meta_image_type(SampleType type) {
-  switch (type) {
-    case SampleType::kUint8:
-      return "MET_UCHAR";
-    case SampleType::kUint16:
-      return "MET_USHORT";
-    case SampleType::kInt16:
-      return "MET_SHORT";
-    case SampleType::kFloat32:
-      return "MET_FLOAT";
-  }
-  return "";
-}
-
 std::string meta_image_header(const VolumeGrid& grid, const std::string& data_name) {
   return fmt::format(
       "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
       "CompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = {}\nElementSpacing = {}\n"
       "DimSize = {}\nElementType = {}\nElementDataFile = {}\n",
-      numbers(grid.origin), numbers(grid.spacing), sizes(grid), meta_image_type(grid.type),
-      data_name.empty() ? "LOCAL" : data_name);
-}
-
-const char* vtk_type(SampleType type) {
-  switch (type) {
-    case SampleType::kUint8:
-      return "UInt8";
-    case SampleType::kUint16:
-      return "UInt16";
-    case SampleType::kInt16:
-      return "Int16";
-    case SampleType::kFloat32:
-      return "Float32";
-  }
-  return "";
+      numbers(grid.origin), numbers(grid.spacing), sizes(grid),
+      stored_name(stored_type(grid.type), TypeNames::kMetaImage), data_name.empty() ? "LOCAL" : data_name);
 }
 
 std::string vti_header(const std::string& name, const VolumeGrid& grid, const std::string& array) {
@@ -88,8 +61,9 @@ std::string vti_header(const std::string& name, const VolumeGrid& grid, const st
       "        <DataArray type=\"{4}\" Name=\"{3}\" format=\"appended\" offset=\"0\"/>\n"
       "      </PointData>\n      <CellData/>\n    </Piece>\n  </ImageData>\n"
       "  <AppendedData encoding=\"raw\">\n   _",
-      extent, numbers(grid.origin), numbers(grid.spacing), quoted, vtk_type(grid.type));
-  const std::uint64_t bytes = grid.samples() * sample_bytes(grid.type);
+      extent, numbers(grid.origin), numbers(grid.spacing), quoted,
+      stored_name(stored_type(grid.type), TypeNames::kVtk));
+  const std::uint64_t bytes = grid.bytes();
   text.append(reinterpret_cast<const char*>(&bytes), sizeof(bytes));
   return text;
 }
@@ -143,7 +117,7 @@ VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& 
   }
   header_ = std::make_unique<OutputStream>(path);
   if (apart) data_ = std::make_unique<OutputStream>(data_file);
-  check_room(apart ? data_file : path, grid.plane_bytes() * grid.dimensions[2]);
+  check_room(apart ? data_file : path, grid.bytes());
   header_->write(text);
 }
 

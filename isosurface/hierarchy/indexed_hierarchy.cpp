@@ -14,6 +14,13 @@ namespace adamas {
 
 namespace {
 
+/// Slots of the diamond's tetrahedra in the domain.
+std::uint8_t slots_in(const Diamond& diamond, const Domain& domain) {
+  unsigned bits = 0;
+  for (const int slot : diamond.tetrahedra(domain)) bits |= 1u << slot;
+  return static_cast<std::uint8_t>(bits);
+}
+
 /// Slots of child `c`'s tetrahedra that splitting a diamond with these tetrahedra makes.
 std::uint8_t halves(const DiamondType& type, int c, std::uint8_t tetrahedra) {
   unsigned bits = 0;
@@ -36,7 +43,7 @@ IndexedHierarchy::IndexedHierarchy(const Domain& domain, int levels)
     for (int j = 0; j < roots[1]; ++j) {
       for (int i = 0; i < roots[0]; ++i) {
         const LatticePoint centre{side * i + side / 2, side * j + side / 2, side * k + side / 2};
-        diamonds_.insert(key(centre)).first->tetrahedra = 0x3f;
+        diamonds_.insert(key(centre)).first->tetrahedra = slots_in(Diamond(centre), domain_);
         tetrahedron_count_ += 6;
       }
     }
@@ -80,10 +87,9 @@ bool IndexedHierarchy::merge(LatticePoint p) {
   prefetch(p);
   const Diamond diamond(p);
   const DiamondType& type = diamond.type();
-  unsigned tetrahedra = 0;
-  for (const int slot : diamond.tetrahedra(domain_)) tetrahedra |= 1u << slot;
+  const std::uint8_t tetrahedra = slots_in(diamond, domain_);
   for (int c = 0; c < type.child_count; ++c) {
-    const std::uint8_t made = halves(type, c, static_cast<std::uint8_t>(tetrahedra));
+    const std::uint8_t made = halves(type, c, tetrahedra);
     if (made == 0) continue;
     const PackedPoint child = key(diamond.child(c));
     State& state = *diamonds_.find(child);
@@ -91,7 +97,7 @@ bool IndexedHierarchy::merge(LatticePoint p) {
     if (state.tetrahedra == 0) diamonds_.erase(child);
   }
   State& state = *diamonds_.find(key(p));
-  state.tetrahedra = static_cast<std::uint8_t>(tetrahedra);
+  state.tetrahedra = tetrahedra;
   state.split = false;
   tetrahedron_count_ -= static_cast<std::size_t>(std::popcount(tetrahedra));
   for (const LatticePoint parent : diamond.parents(domain_)) --diamonds_.find(key(parent))->split_children;
@@ -104,8 +110,8 @@ void IndexedHierarchy::validate_diamond(LatticePoint p, const State& state) cons
   };
   require(domain_.contains(p) && !domain_.is_root_corner(p), "no diamond's point");
   const Diamond diamond(p);
-  unsigned whole = 0, expected = 0;
-  for (const int slot : diamond.tetrahedra(domain_)) whole |= 1u << slot;
+  const unsigned whole = slots_in(diamond, domain_);
+  unsigned expected = 0;
   const auto parents = diamond.parents(domain_);
   bool complete = true;
   for (const LatticePoint parent : parents) {
@@ -114,10 +120,9 @@ void IndexedHierarchy::validate_diamond(LatticePoint p, const State& state) cons
       continue;
     }
     const Diamond up(parent);
-    unsigned there = 0;
-    for (const int slot : up.tetrahedra(domain_)) there |= 1u << slot;
+    const std::uint8_t there = slots_in(up, domain_);
     for (int c = 0; c < up.child_count(); ++c) {
-      if (up.child(c) == p) expected |= halves(up.type(), c, static_cast<std::uint8_t>(there));
+      if (up.child(c) == p) expected |= halves(up.type(), c, there);
     }
   }
   if (parents.empty()) expected = whole;

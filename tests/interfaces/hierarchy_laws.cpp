@@ -15,15 +15,9 @@ namespace {
 
 Domain unit_domain(std::array<int, 3> roots) { return {{{0, 0, 0}, {1, 1, 1}}, roots}; }
 
-std::array<LatticePoint, 4> points(const HierarchyTopology& h, TetrahedronId t) {
-  std::array<LatticePoint, 4> result;
-  for (std::size_t v = 0; v < 4; ++v) result[v] = h.lattice(h.vertices(t)[v]);
-  return result;
-}
-
 std::vector<test::ReferenceTetrahedron> mesh(const HierarchyTopology& h) {
   std::vector<test::ReferenceTetrahedron> result;
-  h.for_each_leaf([&](TetrahedronId t) { result.push_back(test::sorted(points(h, t))); });
+  h.for_each_leaf([&](TetrahedronId t) { result.push_back(test::sorted(h.corners(t))); });
   return result;
 }
 
@@ -160,7 +154,7 @@ TEST_P(HierarchyLaws, UniformRefinementIsBruteForceBisection) {
     for (const TetrahedronId t : leaves) {
       EXPECT_EQ(hierarchy.phase(t), generation % 3);
       EXPECT_EQ(hierarchy.level(t), generation / 3);
-      const auto p = points(hierarchy, t);
+      const auto p = hierarchy.corners(t);
       const auto [a, b] = test::longest_edge(p);
       EXPECT_EQ(a, 0u);
       EXPECT_EQ(b, 1u);

@@ -1,0 +1,49 @@
+#include "core/io/stored_type.h"
+
+#include <array>
+
+namespace adamas {
+
+namespace {
+
+struct StoredTypeInfo {
+  std::array<const char*, 3> names;  ///< by TypeNames
+  std::size_t bytes;
+  SampleType becomes;
+};
+
+/// By StoredType. MET_LONG is not among them: it is as long as the writer's machine had it.
+constexpr StoredTypeInfo kTypes[] = {{{"int8", "Int8", "MET_CHAR"}, 1, SampleType::kInt16},
+                                     {{"uint8", "UInt8", "MET_UCHAR"}, 1, SampleType::kUint8},
+                                     {{"int16", "Int16", "MET_SHORT"}, 2, SampleType::kInt16},
+                                     {{"uint16", "UInt16", "MET_USHORT"}, 2, SampleType::kUint16},
+                                     {{"int32", "Int32", "MET_INT"}, 4, SampleType::kFloat32},
+                                     {{"uint32", "UInt32", "MET_UINT"}, 4, SampleType::kFloat32},
+                                     {{"int64", "Int64", "MET_LONG_LONG"}, 8, SampleType::kFloat32},
+                                     {{"uint64", "UInt64", "MET_ULONG_LONG"}, 8, SampleType::kFloat32},
+                                     {{"float32", "Float32", "MET_FLOAT"}, 4, SampleType::kFloat32},
+                                     {{"float64", "Float64", "MET_DOUBLE"}, 8, SampleType::kFloat32}};
+
+const StoredTypeInfo& info(StoredType type) { return kTypes[static_cast<std::size_t>(type)]; }
+
+}  // namespace
+
+std::size_t stored_bytes(StoredType type) { return info(type).bytes; }
+
+const char* stored_name(StoredType type, TypeNames names) {
+  return info(type).names[static_cast<std::size_t>(names)];
+}
+
+std::optional<StoredType> find_stored_type(std::string_view name, TypeNames names) {
+  for (std::size_t i = 0; i < std::size(kTypes); ++i) {
+    const auto type = static_cast<StoredType>(i);
+    if (stored_name(type, names) == name) return type;
+  }
+  return {};
+}
+
+SampleType sample_type_for(StoredType type) { return info(type).becomes; }
+
+StoredType stored_type(SampleType type) { return find_stored_type(sample_name(type)).value(); }
+
+}  // namespace adamas

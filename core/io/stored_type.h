@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "core/data/volume.h"
+
+namespace adamas {
+
+/// The type of samples in a file.
+enum class StoredType : std::uint8_t {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat32,
+  kFloat64
+};
+
+/// Whose names of types: ours ("float64"), those of VTK's XML files ("Float64"), of MetaImage ("MET_DOUBLE").
+enum class TypeNames : std::uint8_t { kOwn, kVtk, kMetaImage };
+
+/// Size of one sample in a file.
+std::size_t stored_bytes(StoredType type);
+const char* stored_name(StoredType type, TypeNames names = TypeNames::kOwn);
+std::optional<StoredType> find_stored_type(std::string_view name, TypeNames names = TypeNames::kOwn);
+/// What such samples become: themselves, int16 for int8, else float32.
+SampleType sample_type_for(StoredType type);
+/// As which samples are written.
+StoredType stored_type(SampleType type);
+
+}  // namespace adamas
