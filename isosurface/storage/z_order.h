@@ -25,8 +25,17 @@ class ZOrder {
     return std::uint64_t{1} << (3 * (bits_ - level));
   }
 
+  /// Plain z-order: bit b of i, j and k at the bits 3 b, 3 b + 1 and 3 b + 2.
+  static constexpr std::uint64_t interleave(LatticePoint p) {
+    return spread(p.i) | spread(p.j) << 1 | spread(p.k) << 2;
+  }
+  /// The inverse.
+  static constexpr LatticePoint deinterleave(std::uint64_t z) {
+    return {gather(z), gather(z >> 1), gather(z >> 2)};
+  }
+
   [[nodiscard]] constexpr std::uint64_t index(LatticePoint p) const {
-    const std::uint64_t z = spread(p.i) | spread(p.j) << 1 | spread(p.k) << 2;
+    const std::uint64_t z = interleave(p);
     if (z == 0) return 0;
     const int below = std::countr_zero(z) / 3;
     const std::uint64_t n = z >> (3 * below);
@@ -37,8 +46,7 @@ class ZOrder {
     if (index == 0) return {0, 0, 0};
     const int top = (std::bit_width(index) + 2) / 3;
     const std::uint64_t rest = index - before(top);
-    const std::uint64_t z = (rest + rest / 7 + 1) << (3 * (bits_ - top));
-    return {gather(z), gather(z >> 1), gather(z >> 2)};
+    return deinterleave((rest + rest / 7 + 1) << (3 * (bits_ - top)));
   }
 
  private:

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "isosurface/storage/page.h"
+
+namespace adamas {
+
+/// How the samples of pages are coded; the numbers are those in files.
+enum class SampleCoding : std::uint8_t {
+  kSplitEdge = 0,      ///< the dissertation's: mean of the split edge's ends, lead-1 codes (D 4.5)
+  kInterpolation = 1,  ///< cubic on edges, then faces, then centres; contexts of local variation
+};
+
+/// Makes pages of samples into bytes and back, lossless. Built by a SampleSurvey, or from the tables of a
+/// file. May be used by several threads at once. Word: see Page.
+template <class Word>
+class SampleCodec {
+ public:
+  using Samples = typename Page<Word>::template Points<Word>;
+  using Around = typename Surroundings<Word>::template Points<Word>;
+
+  virtual ~SampleCodec() = default;
+
+  /// From which `parse_sample_codec` makes the codec again; the same bytes for equal surveys.
+  [[nodiscard]] virtual std::vector<std::byte> tables() const = 0;
+  /// Appends the page's own points, in whole bytes. `around` is not read where the page is complete; of
+  /// `samples` only places that have points are read.
+  virtual void encode(const PageShape& shape, const Around& around, const Samples& samples,
+                      std::vector<std::byte>& out) const = 0;
+  /// Fills all places of `samples` that have points, those of coarser levels from `around`. Returns false,
+  /// and leaves anything in `samples`, where the bytes are not what `encode` of some page gives.
+  [[nodiscard]] virtual bool decode(std::span<const std::byte> bytes, const PageShape& shape,
+                                    const Around& around, Samples& samples) const = 0;
+};
+
+/// Counts what pages hold, for the tables of the codec that will code them. Codecs code any page, also one
+/// that was not counted, only less well.
+template <class Word>
+class SampleSurvey {
+ public:
+  using Samples = typename SampleCodec<Word>::Samples;
+  using Around = typename SampleCodec<Word>::Around;
+
+  virtual ~SampleSurvey() = default;
+
+  virtual void add(const PageShape& shape, const Around& around, const Samples& samples) = 0;
+  /// Adds what another survey, of the same coding, has counted. The order of pages and of merging does not
+  /// matter.
+  virtual void merge(const SampleSurvey& other) = 0;
+  [[nodiscard]] virtual std::unique_ptr<SampleCodec<Word>> codec() const = 0;
+};
+
+template <class Word>
+std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding);
+
+/// Throws Error, which begins with `name`, unless some codec's `tables` could have given just these bytes.
+template <class Word>
+std::unique_ptr<SampleCodec<Word>> parse_sample_codec(SampleCoding coding, std::span<const std::byte> tables,
+                                                      std::string_view name);
+
+}  // namespace adamas

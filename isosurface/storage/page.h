@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/data/volume.h"
+#include "isosurface/storage/page_grid.h"
+
+namespace adamas {
+
+/// Samples as unsigned integers in the order of their values (`ordered` in
+/// isosurface/compression/split_edge_prediction.h), in as many bits as they have.
+template <class Sample>
+using OrderedWord = std::conditional_t<sizeof(Sample) == 1, std::uint8_t,
+                                       std::conditional_t<sizeof(Sample) == 2, std::uint16_t, std::uint32_t>>;
+
+/// What is known of a page's points: of all 16^3 of its cube, those of coarser levels too, by place (i
+/// running fastest). Places beyond PageGrid::count hold anything. Word: OrderedWord of the samples' type.
+template <class Word>
+struct Page {
+  template <class T>
+  using Points = std::array<T, PageGrid::kPoints>;
+
+  Points<Word> samples;
+  /// Of the point's diamond: least and greatest sample in and on it, NaN and infinities left out; low > high
+  /// where nothing is left.
+  Points<Word> low, high;
+  /// Of the diamond: its isosurface error, as a code of its level's ErrorScale.
+  Points<std::uint8_t> errors;
+};
+
+/// What the points of a page are predicted from: those of the next coarser level, round the page. Along each
+/// axis the place c from 0 to kSide - 1 is the point 16 block + 2 (c - 1) of the page's level: one before the
+/// page to two behind its last even point. Points beyond the data's extent repeat the last one before them.
+/// i runs fastest.
+template <class Word>
+struct Surroundings {
+  static constexpr int kSide = 11;
+  static constexpr std::size_t kPoints = 1331;
+  template <class T>
+  using Points = std::array<T, kPoints>;
+
+  Points<Word> samples, low, high;
+  Points<std::uint8_t> errors;  ///< codes, of the level that the diamond of each point has
+};
+
+/// Place in Surroundings of the point that lies at `q` of the page, whose coordinates are even.
+constexpr std::size_t surrounding_place(LatticePoint q) {
+  return static_cast<std::size_t>((q.i / 2 + 1) + 11 * ((q.j / 2 + 1) + 11 * (q.k / 2 + 1)));
+}
+
+/// A page of which one part after another becomes known, as who codes it sees it.
+struct PageShape {
+  LatticePoint count;  ///< PageGrid::count
+  bool complete;       ///< PageGrid::is_complete
+  int level;           ///< PageId::level
+
+  /// Whether a place has a point that is the page's own: whose values the page keeps.
+  [[nodiscard]] bool owns(LatticePoint q) const {
+    return q.i < count.i && q.j < count.j && q.k < count.k && (complete || ((q.i | q.j | q.k) & 1) != 0);
+  }
+};
+
+}  // namespace adamas

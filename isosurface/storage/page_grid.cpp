@@ -1,0 +1,53 @@
+#include "isosurface/storage/page_grid.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "core/base/error.h"
+#include "isosurface/storage/z_order.h"
+
+namespace adamas {
+
+PageGrid::PageGrid(const std::array<std::uint64_t, 3>& dimensions) {
+  constexpr std::uint64_t kMost = (std::uint64_t{1} << kMaxDepth) + 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint64_t n = dimensions[static_cast<std::size_t>(axis)];
+    if (n == 0 || n > kMost) fail("expected 1 to {} samples along every axis, found {}", kMost, n);
+    last_[axis] = static_cast<std::int32_t>(n - 1);
+  }
+  const std::int32_t greatest = std::max({last_.i, last_.j, last_.k});
+  while ((std::int32_t{1} << depth_) < greatest) ++depth_;
+}
+
+std::uint64_t PageGrid::number(const PageId& page) const {
+  return std::uint64_t{1} << (3 * (top() - page.level)) | ZOrder::interleave(page.block);
+}
+
+PageId PageGrid::page(std::uint64_t number) const {
+  const int finer = (std::bit_width(number) - 1) / 3;
+  return {top() - finer, ZOrder::deinterleave(number & ~(std::uint64_t{1} << (3 * finer)))};
+}
+
+bool PageGrid::contains(const PageId& page) const {
+  if (page.level < 0 || page.level > top()) return false;
+  const LatticePoint n = blocks(page.level);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (page.block[axis] < 0 || page.block[axis] >= n[axis]) return false;
+  }
+  // A single point, whose coordinates are all even, belongs to a coarser level.
+  return is_complete(page) || count(page) != LatticePoint{1, 1, 1};
+}
+
+std::uint64_t PageGrid::page_count() const {
+  std::uint64_t total = 0;
+  for (int level = 0; level <= top(); ++level) {
+    const LatticePoint n = blocks(level);
+    total +=
+        static_cast<std::uint64_t>(n.i) * static_cast<std::uint64_t>(n.j) * static_cast<std::uint64_t>(n.k);
+    const PageId corner{level, {n.i - 1, n.j - 1, n.k - 1}};
+    if (!contains(corner)) --total;
+  }
+  return total;
+}
+
+}  // namespace adamas
