@@ -9,6 +9,7 @@
 #include "core/geometry/tetrahedron_contour.h"
 #include "core/geometry/vec3.h"
 #include "core/lattice/domain.h"
+#include "core/lattice/lattice_map.h"
 #include "core/lattice/lattice_point.h"
 #include "isosurface/hierarchy/indexed_hierarchy.h"
 
@@ -57,6 +58,26 @@ struct CrossedTetrahedron {
   LatticePoint diamond;
   std::uint8_t slot, above;  ///< above: the vertices whose values are not below the isovalue, as bits
   std::array<double, 4> values;
+};
+
+/// A contour that grows by a tetrahedron at a time. Points are numbered as they are first met.
+class ContourBuilder {
+ public:
+  ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options);
+
+  /// Throws Error where the surface has more points than 32 bits can number.
+  void add(const CrossedTetrahedron& tetrahedron);
+  /// The contour, clipped; the builder is not to be used then.
+  [[nodiscard]] Contour finish();
+
+ private:
+  [[nodiscard]] std::uint32_t edge_point(LatticePoint a, LatticePoint b, double value_a, double value_b);
+
+  Domain domain_;
+  double isovalue_;
+  ContourOptions options_;
+  Contour contour_;
+  LatticeMap<std::uint32_t> indices_;
 };
 
 /// Those that the contour crosses, in any order; see extract_contour.

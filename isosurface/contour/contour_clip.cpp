@@ -44,10 +44,11 @@ BorderPoint between(const BorderPoint& a, const BorderPoint& b, double t) {
   return result;
 }
 
-/// The part of a contour on one side of a plane across an axis.
+/// The part of a contour before (beyond = 1) or behind (beyond = -1) a plane across an axis.
 class PlaneClip {
  public:
-  PlaneClip(Contour& contour, int axis, double end) : contour_(contour), axis_(axis), end_(end) {}
+  PlaneClip(Contour& contour, int axis, double plane, int beyond)
+      : contour_(contour), axis_(axis), plane_(plane), beyond_(beyond) {}
 
   void run() {
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -59,7 +60,7 @@ class PlaneClip {
   /// -1 inside, 0 on the plane, 1 beyond it.
   [[nodiscard]] int side(std::uint32_t point) const {
     const double x = contour_.points[point][axis_];
-    return static_cast<int>(x > end_) - static_cast<int>(x < end_);
+    return beyond_ * (static_cast<int>(x > plane_) - static_cast<int>(x < plane_));
   }
 
   void clip(const std::array<std::uint32_t, 3>& triangle) {
@@ -87,9 +88,9 @@ class PlaneClip {
         fail("a contour has more than 2^32 - 1 points at the data's border");
       entry->second = static_cast<std::uint32_t>(contour_.points.size());
       const Vec3 p = contour_.points[a], q = contour_.points[b];
-      const double t = (end_ - p[axis_]) / (q[axis_] - p[axis_]);
+      const double t = (plane_ - p[axis_]) / (q[axis_] - p[axis_]);
       Vec3 point = point_between(p, q, t);
-      point[axis_] = end_;
+      point[axis_] = plane_;
       contour_.border_points.push_back(between(as_mean(contour_, a), as_mean(contour_, b), t));
       contour_.points.push_back(point);
     }
@@ -98,7 +99,8 @@ class PlaneClip {
 
   Contour& contour_;
   int axis_;
-  double end_;
+  double plane_;
+  int beyond_;
   std::unordered_map<std::uint64_t, std::uint32_t> cuts_;  ///< by the two points of an edge
 };
 
@@ -129,13 +131,16 @@ void remove_unused_points(Contour& contour) {
 
 }  // namespace
 
-void clip_contour(Contour& contour, const Vec3& end) {
+void clip_contour(Contour& contour, const Box3& box) {
   bool clipped = false;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto beyond = [&](const Vec3& p) { return p[axis] > end[axis]; };
-    if (std::none_of(contour.points.begin(), contour.points.end(), beyond)) continue;
-    PlaneClip(contour, axis, end[axis]).run();
-    clipped = true;
+    for (const int beyond : {1, -1}) {
+      const double plane = beyond > 0 ? box.max[axis] : box.min[axis];
+      const auto outside = [&](const Vec3& p) { return beyond * p[axis] > beyond * plane; };
+      if (std::none_of(contour.points.begin(), contour.points.end(), outside)) continue;
+      PlaneClip(contour, axis, plane, beyond).run();
+      clipped = true;
+    }
   }
   if (clipped) remove_unused_points(contour);
 }

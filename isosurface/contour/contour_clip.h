@@ -5,9 +5,9 @@
 
 namespace adamas {
 
-/// Leaves of a contour what lies at x <= end.x, y <= end.y and z <= end.z. Where a plane cuts an edge there
-/// is one new point, which all triangles at the edge share: the surface stays closed but for the planes.
-/// Points without a triangle go.
-void clip_contour(Contour& contour, const Vec3& end);
+/// Leaves of a contour what lies in the box. Where one of its planes cuts an edge there is one new point,
+/// which all triangles at the edge share: the surface stays closed but for the planes. Points without a
+/// triangle go.
+void clip_contour(Contour& contour, const Box3& box);
 
 }  // namespace adamas

@@ -124,7 +124,7 @@ TEST(ContourClipping, TrianglesOnThePlaneStay) {
   square.points = {{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}, {2, 0, 0}, {0, 0, 0}};
   square.edge_points.resize(6);
   square.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 4}, {5, 4, 1}};
-  clip_contour(square, {1, 5, 5});
+  clip_contour(square, {{-5, -5, -5}, {1, 5, 5}});
   // The one beyond goes, and the last one keeps the half up to its corner on the plane.
   const std::vector<std::array<std::uint32_t, 3>> wanted{{0, 1, 2}, {0, 2, 3}, {4, 5, 1}};
   EXPECT_EQ(square.triangles, wanted);

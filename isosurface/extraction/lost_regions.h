@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "isosurface/storage/page_grid.h"
+
+namespace adamas {
+
+/// How far the diamonds that come from splitting one, and from splitting those, reach from its point along
+/// each axis, in units of its scale: by its phase. The box of a diamond so far around contains its
+/// children's.
+constexpr std::int32_t nested_reach(int phase) { return 5 - phase; }
+
+/// Where a mesh must stay coarse because pages cannot be had: the diamonds that are never split. With a
+/// diamond all that come from it are among them, so that what is left can be split in a conforming mesh.
+class LostRegions {
+ public:
+  [[nodiscard]] bool empty() const { return regions_.empty(); }
+
+  void add(const PageId& page) { regions_.push_back(page); }
+
+  /// For the diamond of this phase and point, whose scale is 2^level samples.
+  [[nodiscard]] bool blocks(LatticePoint p, int level, int phase) const {
+    return std::any_of(regions_.begin(), regions_.end(),
+                       [&](const PageId& page) { return blocks(page, p, level, phase); });
+  }
+
+ private:
+  static bool blocks(const PageId& page, LatticePoint p, int level, int phase) {
+    if (level > page.level) return false;
+    const std::int32_t reach = (nested_reach(0) << page.level) - (nested_reach(phase) << level);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t begin = page.block[axis] * PageGrid::kSide << page.level;
+      const std::int32_t end = begin + ((PageGrid::kSide - 1) << page.level);
+      if (p[axis] < begin - reach || p[axis] > end + reach) return false;
+    }
+    return true;
+  }
+
+  std::vector<PageId> regions_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace adamas {
+
+static_assert(std::endian::native == std::endian::little, "files are little-endian, and read as they are");
+
+/// Appends numbers to bytes, little-endian.
+class ByteWriter {
+ public:
+  explicit ByteWriter(std::vector<std::byte>& out) : out_(out) {}
+
+  template <class T>
+  void number(T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    const auto* first = reinterpret_cast<const std::byte*>(&value);
+    out_.insert(out_.end(), first, first + sizeof(T));
+  }
+  /// Seven bits a byte, the lowest first; the highest bit says that more follow.
+  void varint(std::uint64_t value) {
+    for (; value >= 0x80; value >>= 7) out_.push_back(static_cast<std::byte>(value | 0x80));
+    out_.push_back(static_cast<std::byte>(value));
+  }
+  void bytes(std::span<const std::byte> bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
+  /// Their number before them.
+  void sized_bytes(std::span<const std::byte> all) {
+    varint(all.size());
+    bytes(all);
+  }
+
+ private:
+  std::vector<std::byte>& out_;
+};
+
+/// Takes numbers from the front of bytes. Once something was not there, everything is 0 and good() false.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+  [[nodiscard]] bool good() const { return good_; }
+  [[nodiscard]] std::span<const std::byte> rest() const { return rest_; }
+
+  template <class T>
+  T number() {
+    static_assert(std::is_arithmetic_v<T>);
+    T value{};
+    const std::span<const std::byte> from = bytes(sizeof(T));
+    if (!from.empty()) std::memcpy(&value, from.data(), sizeof(T));
+    return value;
+  }
+  /// What ByteWriter::varint wrote, and nothing longer.
+  std::uint64_t varint() {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 64; shift += 7) {
+      const auto byte = number<std::uint8_t>();
+      const std::uint64_t part = byte & 0x7fu;
+      if (shift == 63 && part > 1) break;
+      value |= part << shift;
+      if ((byte & 0x80u) != 0) continue;
+      if (part == 0 && shift > 0) break;
+      return good_ ? value : 0;
+    }
+    fail();
+    return 0;
+  }
+  /// As many bytes; none where there are fewer.
+  std::span<const std::byte> bytes(std::uint64_t size) {
+    if (size > rest_.size()) {
+      fail();
+      return {};
+    }
+    const auto taken = rest_.first(static_cast<std::size_t>(size));
+    rest_ = rest_.subspan(static_cast<std::size_t>(size));
+    return taken;
+  }
+  std::span<const std::byte> sized_bytes() { return bytes(varint()); }
+
+ private:
+  void fail() {
+    good_ = false;
+    rest_ = {};
+  }
+
+  std::span<const std::byte> rest_;
+  bool good_ = true;
+};
+
+}  // namespace adamas

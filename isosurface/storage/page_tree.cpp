@@ -1,0 +1,182 @@
+#include "isosurface/storage/page_tree.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/assert.h"
+
+namespace adamas {
+
+namespace {
+
+/// Where along an axis the 11 places of Surroundings lie in the pages of the next coarser level.
+struct AxisPlaces {
+  std::array<std::int32_t, 2> blocks{};
+  int block_count = 0;
+  std::array<std::uint8_t, Surroundings<std::uint8_t>::kSide> which{}, place{};
+
+  AxisPlaces(std::int32_t block, std::int32_t extent) {
+    for (std::int32_t c = 0; c < Surroundings<std::uint8_t>::kSide; ++c) {
+      const std::int32_t at = std::clamp(8 * block + c - 1, 0, extent);
+      const std::int32_t parent = at / PageGrid::kSide;
+      if (block_count == 0 || blocks[static_cast<std::size_t>(block_count - 1)] != parent)
+        blocks[static_cast<std::size_t>(block_count++)] = parent;
+      which[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(block_count - 1);
+      place[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(at % PageGrid::kSide);
+    }
+  }
+};
+
+}  // namespace
+
+template <class Word>
+PageTree<Word>::PageTree(const PageGrid& grid, std::size_t capacity, Loader loader)
+    : grid_(grid), capacity_(std::max(capacity, kLeast)), loader_(std::move(loader)) {
+  for (int level = 0; level <= grid_.top(); ++level) {
+    const LatticePoint n = grid_.blocks(level);
+    places_.emplace_back(
+        static_cast<std::size_t>(n.i) * static_cast<std::size_t>(n.j) * static_cast<std::size_t>(n.k), kNone);
+  }
+}
+
+template <class Word>
+std::uint32_t& PageTree<Word>::slot_of(const PageId& id) {
+  const LatticePoint n = grid_.blocks(id.level), b = id.block;
+  const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
+  return places_[at(id.level)][at(b.i) + at(n.i) * (at(b.j) + at(n.j) * at(b.k))];
+}
+
+template <class Word>
+const Page<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
+  const std::uint32_t found = slot_of(id);
+  if (found != kNone) {
+    Slot& slot = slots_[found];
+    if (wanted && !slot.wanted) {
+      slot.wanted = true;
+      --predictors_;
+    }
+    if (newest_ != found) {
+      unlink(found);
+      make_newest(found);
+    }
+    return slot.page.get();
+  }
+  Surroundings<Word> around;
+  if (!surroundings(id, around)) return nullptr;
+  // Not before: what predicts the page may have pushed others out.
+  const std::uint32_t fresh = free_slot();
+  Slot& slot = slots_[fresh];
+  const PageShape shape{grid_.count(id), grid_.is_complete(id), id.level};
+  if (!shape.complete) fill_coarser(shape, around, *slot.page);
+  // A cube whose only point is a coarser one has no page.
+  if (grid_.contains(id)) {
+    if (!loader_(id, shape, around, *slot.page)) {
+      free_.push_back(fresh);
+      return nullptr;
+    }
+    ++loaded_;
+    predictors_ += wanted ? 0 : 1;
+  } else {
+    wanted = true;
+  }
+  slot.id = id;
+  slot.wanted = wanted;
+  slot_of(id) = fresh;
+  make_newest(fresh);
+  return slot.page.get();
+}
+
+template <class Word>
+bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around) {
+  if (grid_.is_complete(id)) return true;
+  const LatticePoint extent = grid_.extent(id.level + 1);
+  const AxisPlaces x(id.block.i, extent.i), y(id.block.j, extent.j), z(id.block.k, extent.k);
+  constexpr std::size_t kSide = Surroundings<Word>::kSide;
+  for (int bz = 0; bz < z.block_count; ++bz) {
+    for (int by = 0; by < y.block_count; ++by) {
+      for (int bx = 0; bx < x.block_count; ++bx) {
+        const auto block = [](const AxisPlaces& axis, int b) {
+          return axis.blocks[static_cast<std::size_t>(b)];
+        };
+        const Page<Word>* from = page({id.level + 1, {block(x, bx), block(y, by), block(z, bz)}}, false);
+        if (from == nullptr) return false;
+        for (std::size_t k = 0; k < kSide; ++k) {
+          if (z.which[k] != bz) continue;
+          for (std::size_t j = 0; j < kSide; ++j) {
+            if (y.which[j] != by) continue;
+            const std::size_t row =
+                PageGrid::kSide * (y.place[j] + std::size_t{PageGrid::kSide} * z.place[k]);
+            const std::size_t to = kSide * (j + kSide * k);
+            for (std::size_t i = 0; i < kSide; ++i) {
+              if (x.which[i] != bx) continue;
+              const std::size_t at = row + x.place[i];
+              around.samples[to + i] = from->samples[at];
+              around.low[to + i] = from->low[at];
+              around.high[to + i] = from->high[at];
+              around.errors[to + i] = from->errors[at];
+            }
+          }
+        }
+      }
+    }
+  }
+  return true;
+}
+
+template <class Word>
+void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Word>& around,
+                                  Page<Word>& page) {
+  LatticePoint q{};
+  for (q.k = 0; q.k < shape.count.k; q.k += 2) {
+    for (q.j = 0; q.j < shape.count.j; q.j += 2) {
+      for (q.i = 0; q.i < shape.count.i; q.i += 2) {
+        const std::size_t to = PageGrid::place(q, 0), from = surrounding_place(q);
+        page.samples[to] = around.samples[from];
+        page.low[to] = around.low[from];
+        page.high[to] = around.high[from];
+        page.errors[to] = around.errors[from];
+      }
+    }
+  }
+}
+
+template <class Word>
+std::uint32_t PageTree<Word>::free_slot() {
+  ++generation_;
+  if (!free_.empty()) {
+    const std::uint32_t slot = free_.back();
+    free_.pop_back();
+    return slot;
+  }
+  if (slots_.size() < capacity_) {
+    slots_.push_back({{}, std::make_unique<Page<Word>>()});
+    return static_cast<std::uint32_t>(slots_.size() - 1);
+  }
+  const std::uint32_t slot = oldest_;
+  ADAMAS_ASSERT(slot != kNone);
+  slot_of(slots_[slot].id) = kNone;
+  unlink(slot);
+  return slot;
+}
+
+template <class Word>
+void PageTree<Word>::unlink(std::uint32_t slot) {
+  const Slot& s = slots_[slot];
+  (s.newer == kNone ? newest_ : slots_[s.newer].older) = s.older;
+  (s.older == kNone ? oldest_ : slots_[s.older].newer) = s.newer;
+}
+
+template <class Word>
+void PageTree<Word>::make_newest(std::uint32_t slot) {
+  Slot& s = slots_[slot];
+  s.newer = kNone;
+  s.older = newest_;
+  (newest_ == kNone ? oldest_ : slots_[newest_].newer) = slot;
+  newest_ = slot;
+}
+
+template class PageTree<std::uint8_t>;
+template class PageTree<std::uint16_t>;
+template class PageTree<std::uint32_t>;
+
+}  // namespace adamas

@@ -1,0 +1,140 @@
+#include "isosurface/storage/store_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "core/base/checksum.h"
+#include "core/base/error.h"
+
+namespace adamas {
+
+StoreFile::StoreFile(const std::filesystem::path& path, Paging paging) : name_(path.string()) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown))
+    fail("{}: expected a store of adamas, found {}", name_,
+         std::filesystem::exists(path, unknown) ? "no regular file" : "no such file");
+  file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  if (file_ < 0 || fstat(file_, &status) != 0) {
+    const int reason = errno;
+    if (file_ >= 0) close(file_);
+    fail("{}: cannot be read: {}", name_, std::strerror(reason));
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+  try {
+    if (paging == Paging::kMap && size_ > 0) {
+      void* mapping = mmap(nullptr, size_, PROT_READ, MAP_SHARED, file_, 0);
+      if (mapping == MAP_FAILED) fail("{}: cannot be mapped: {}", name_, std::strerror(errno));
+      mapping_ = static_cast<const std::byte*>(mapping);
+    }
+    const StorePrologue prologue =
+        StorePrologue::parse(bytes_at(0, std::min<std::uint64_t>(size_, StorePrologue::kBytes)), name_);
+    if (prologue.root_offset > size_ || prologue.root_size != size_ - prologue.root_offset)
+      fail("{}: expected {} bytes, found {}", name_, prologue.root_offset + prologue.root_size, size_);
+    root_ = StoreRoot::parse(bytes_at(prologue.root_offset, prologue.root_size), prologue.root_offset, name_);
+    grid_ = PageGrid(root_.header.grid.dimensions);
+  } catch (...) {
+    if (mapping_ != nullptr) munmap(const_cast<std::byte*>(mapping_), size_);
+    close(file_);
+    throw;
+  }
+}
+
+StoreFile::~StoreFile() {
+  if (mapping_ != nullptr) munmap(const_cast<std::byte*>(mapping_), size_);
+  close(file_);
+}
+
+std::span<const std::byte> StoreFile::bytes_at(std::uint64_t offset, std::uint64_t size) {
+  if (offset > size_ || size > size_ - offset)
+    fail("{}: expected {} bytes at {}, found {} in all", name_, size, offset, size_);
+  bytes_read_ += size;
+  const auto count = static_cast<std::size_t>(size);
+  if (mapping_ != nullptr) return {mapping_ + offset, count};
+  if (buffer_.size() < count) buffer_.resize(count);
+  for (std::size_t done = 0; done < count;) {
+    const ssize_t got = pread(file_, buffer_.data() + done, count - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) fail("{}: cannot be read at {}: {}", name_, offset + done, std::strerror(errno));
+    done += static_cast<std::size_t>(got);
+  }
+  return std::span<const std::byte>(buffer_).first(count);
+}
+
+const StoreFile::Chunk& StoreFile::chunk(const DirectoryChunk& from) {
+  const auto [at, fresh] = chunks_.try_emplace({from.step, from.first});
+  if (fresh) {
+    at->second.numbers = chunk_pages(grid_, from.first);
+    const auto bytes = bytes_at(from.offset, from.size);
+    if (crc32c(bytes) == from.checksum) {
+      if (auto entries = parse_entries(grid_, from, bytes, sample_bytes(root_.header.grid.type)))
+        at->second.entries = std::move(*entries);
+    }
+  }
+  return at->second;
+}
+
+std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page) {
+  const std::uint64_t number = grid_.number(page);
+  const ChunkKey key{step, number / DirectoryChunk::kPages * DirectoryChunk::kPages};
+  const auto known = chunks_.find(key);
+  const Chunk* found = known != chunks_.end() ? &known->second : nullptr;
+  if (found == nullptr) {
+    const auto from = std::lower_bound(root_.chunks.begin(), root_.chunks.end(), key,
+                                       [](const DirectoryChunk& c, const ChunkKey& k) {
+                                         return ChunkKey{c.step, c.first} < k;
+                                       });
+    if (from == root_.chunks.end() || ChunkKey{from->step, from->first} != key) return {};
+    found = &chunk(*from);
+  }
+  const auto at = std::lower_bound(found->numbers.begin(), found->numbers.end(), number);
+  if (found->entries.empty() || at == found->numbers.end() || *at != number) return {};
+  return found->entries[static_cast<std::size_t>(at - found->numbers.begin())];
+}
+
+StoreFile::Payload StoreFile::read(std::uint32_t step, const PageId& page) {
+  const std::optional<PageEntry> found = entry(step, page);
+  if (!found) return {PageState::kDamaged, {}};
+  for (const std::uint64_t offset : {found->offset, found->copy}) {
+    // What a damaged directory says may lie anywhere.
+    if (offset == 0 || offset > size_ || found->size > size_ - offset) continue;
+    const auto bytes = bytes_at(offset, found->size);
+    if (crc32c(bytes) == found->checksum)
+      return {offset == found->offset ? PageState::kWhole : PageState::kCopied, bytes};
+  }
+  return {PageState::kDamaged, {}};
+}
+
+bool StoreFile::copy_is_whole(const PageEntry& entry) {
+  if (entry.copy == 0) return true;
+  return entry.size <= size_ && entry.copy <= size_ - entry.size &&
+         crc32c(bytes_at(entry.copy, entry.size)) == entry.checksum;
+}
+
+void StoreFile::check_directory() {
+  std::uint64_t pages = 0, copies = 0, entries = 0, chunks = 0;
+  for (const DirectoryChunk& from : root_.chunks) {
+    const Chunk& found = chunk(from);
+    if (found.entries.empty() && !found.numbers.empty())
+      fail("{}: the part of the directory at {} is damaged", name_, from.offset);
+    for (const PageEntry& entry : found.entries) {
+      pages += entry.size;
+      copies += entry.copy != 0 ? entry.size : 0;
+    }
+    entries += found.entries.size();
+    chunks += from.size;
+  }
+  if (entries != grid_.page_count() * root_.header.steps)
+    fail("{}: expected {} pages, found {}", name_, grid_.page_count() * root_.header.steps, entries);
+  const std::uint64_t root = root_.serialise().size();
+  const std::uint64_t total = StorePrologue::kBytes + pages + copies + chunks + root;
+  if (total != size_) fail("{}: expected {} bytes by its directory, found {}", name_, total, size_);
+}
+
+}  // namespace adamas

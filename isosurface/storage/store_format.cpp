@@ -1,0 +1,216 @@
+#include "isosurface/storage/store_format.h"
+
+#include <array>
+#include <bit>
+#include <cstring>
+
+#include "core/base/checksum.h"
+#include "core/base/error.h"
+#include "isosurface/storage/byte_stream.h"
+
+namespace adamas {
+
+namespace {
+
+// A carriage return and a line feed show transfers that took the file for text.
+constexpr std::array<char, 8> kMagic{'a', 'd', 'a', 'm', 'a', 's', '\r', '\n'};
+
+void write_grid(ByteWriter& out, const VolumeGrid& grid) {
+  out.number(static_cast<std::uint8_t>(grid.type));
+  for (const std::uint64_t n : grid.dimensions) out.number(n);
+  for (int axis = 0; axis < 3; ++axis) out.number(grid.spacing[axis]);
+  for (int axis = 0; axis < 3; ++axis) out.number(grid.origin[axis]);
+}
+
+VolumeGrid read_grid(ByteReader& in, std::string_view name) {
+  VolumeGrid grid;
+  const auto type = in.number<std::uint8_t>();
+  if (type > static_cast<std::uint8_t>(SampleType::kFloat32))
+    fail("{}: expected a type of samples from 0 to 3, found {}", name, type);
+  grid.type = static_cast<SampleType>(type);
+  for (std::uint64_t& n : grid.dimensions) n = in.number<std::uint64_t>();
+  for (int axis = 0; axis < 3; ++axis) grid.spacing[axis] = in.number<double>();
+  for (int axis = 0; axis < 3; ++axis) grid.origin[axis] = in.number<double>();
+  return grid;
+}
+
+void write_header(ByteWriter& out, const StoreHeader& header) {
+  write_grid(out, header.grid);
+  out.number(static_cast<std::uint8_t>(header.coding));
+  out.number(header.subtree_depth);
+  out.number(static_cast<std::uint8_t>(header.gradients));
+  out.number(header.steps);
+  for (const std::uint64_t n : {header.bytes.samples, header.bytes.values, header.bytes.gradients})
+    out.number(n);
+  for (const auto* tables : {&header.sample_tables, &header.value_tables, &header.gradient_tables})
+    out.sized_bytes(*tables);
+}
+
+StoreHeader read_header(ByteReader& in, std::string_view name) {
+  StoreHeader header;
+  header.grid = read_grid(in, name);
+  const auto choice = [&](const char* what, int most) {
+    const auto value = in.number<std::uint8_t>();
+    if (value > most) fail("{}: expected {} from 0 to {}, found {}", name, what, most, value);
+    return value;
+  };
+  header.coding = static_cast<SampleCoding>(choice("a coding of samples", 1));
+  header.subtree_depth = choice("a depth of subtrees", 2);
+  header.gradients = choice("a coding of gradients", 1) != 0;
+  header.steps = in.number<std::uint32_t>();
+  for (std::uint64_t* n : {&header.bytes.samples, &header.bytes.values, &header.bytes.gradients})
+    *n = in.number<std::uint64_t>();
+  for (auto* tables : {&header.sample_tables, &header.value_tables, &header.gradient_tables}) {
+    const auto bytes = in.sized_bytes();
+    tables->assign(bytes.begin(), bytes.end());
+  }
+  if (!in.good()) fail("{}: expected a header, found its end too soon", name);
+  header.grid.check(std::string(name));
+  if (header.steps == 0) fail("{}: expected a step or more, found none", name);
+  return header;
+}
+
+void write_chunk(ByteWriter& out, const DirectoryChunk& chunk) {
+  out.number(chunk.step);
+  for (const std::uint64_t n : {chunk.first, chunk.offset, chunk.size, chunk.pages, chunk.copies})
+    out.varint(n);
+  out.number(chunk.checksum);
+}
+
+DirectoryChunk read_chunk(ByteReader& in) {
+  DirectoryChunk chunk;
+  chunk.step = in.number<std::uint32_t>();
+  for (std::uint64_t* n : {&chunk.first, &chunk.offset, &chunk.size, &chunk.pages, &chunk.copies})
+    *n = in.varint();
+  chunk.checksum = in.number<std::uint32_t>();
+  return chunk;
+}
+
+void check_chunks(const StoreRoot& root, const PageGrid& grid, std::uint64_t end, std::string_view name) {
+  const DirectoryChunk* before = nullptr;
+  for (const DirectoryChunk& chunk : root.chunks) {
+    if (chunk.step >= root.header.steps || chunk.first % DirectoryChunk::kPages != 0 ||
+        chunk.first >= std::uint64_t{2} << (3 * grid.top()))
+      fail("{}: expected pages of its steps, found a directory of others", name);
+    if (before != nullptr && std::pair(before->step, before->first) >= std::pair(chunk.step, chunk.first))
+      fail("{}: expected a directory in the order of pages, found another", name);
+    if (chunk.offset > end || chunk.size > end - chunk.offset || chunk.pages > end || chunk.copies > end)
+      fail("{}: expected a directory inside the file, found one beyond its end", name);
+    before = &chunk;
+  }
+}
+
+}  // namespace
+
+std::vector<std::byte> StorePrologue::serialise() const {
+  std::vector<std::byte> bytes(kMagic.size());
+  std::memcpy(bytes.data(), kMagic.data(), kMagic.size());
+  ByteWriter out(bytes);
+  out.number(kVersion);
+  out.number(root_offset);
+  out.number(root_size);
+  out.number(crc32c(bytes));
+  return bytes;
+}
+
+StorePrologue StorePrologue::parse(std::span<const std::byte> bytes, std::string_view name) {
+  if (bytes.size() < kMagic.size() || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
+    fail("{}: expected a store of adamas (\"adamas\" at its beginning), found something else", name);
+  ByteReader in(bytes.subspan(kMagic.size()));
+  StorePrologue prologue;
+  const auto version = in.number<std::uint32_t>();
+  prologue.root_offset = in.number<std::uint64_t>();
+  prologue.root_size = in.number<std::uint64_t>();
+  const auto checksum = in.number<std::uint32_t>();
+  if (!in.good()) fail("{}: expected {} bytes or more, found {}", name, kBytes, bytes.size());
+  if (version != kVersion) fail("{}: expected version {} of the format, found {}", name, kVersion, version);
+  if (checksum != crc32c(bytes.first(kBytes - 4))) fail("{}: its first {} bytes are damaged", name, kBytes);
+  return prologue;
+}
+
+std::vector<std::byte> StoreRoot::serialise() const {
+  std::vector<std::byte> bytes;
+  ByteWriter out(bytes);
+  write_header(out, header);
+  out.varint(chunks.size());
+  for (const DirectoryChunk& chunk : chunks) write_chunk(out, chunk);
+  out.number(crc32c(bytes));
+  return bytes;
+}
+
+StoreRoot StoreRoot::parse(std::span<const std::byte> bytes, std::uint64_t root_offset,
+                           std::string_view name) {
+  constexpr std::size_t kChecksum = sizeof(std::uint32_t);
+  std::uint32_t checksum = 0;
+  if (bytes.size() >= kChecksum) std::memcpy(&checksum, bytes.last(kChecksum).data(), kChecksum);
+  if (bytes.size() < kChecksum || checksum != crc32c(bytes.first(bytes.size() - kChecksum)))
+    fail("{}: the {} bytes at its end, which say where everything lies, are damaged", name, bytes.size());
+  ByteReader in(bytes.first(bytes.size() - kChecksum));
+  StoreRoot root;
+  root.header = read_header(in, name);
+  const PageGrid grid(root.header.grid.dimensions);
+  constexpr std::size_t kLeastChunkBytes = 13;
+  const std::uint64_t count = in.varint();
+  if (count > in.rest().size() / kLeastChunkBytes)
+    fail("{}: expected {} parts of a directory, found room for fewer", name, count);
+  for (std::uint64_t n = 0; n < count; ++n) root.chunks.push_back(read_chunk(in));
+  if (!in.good() || !in.rest().empty()) fail("{}: expected a directory, found other bytes", name);
+  check_chunks(root, grid, root_offset, name);
+  return root;
+}
+
+std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first) {
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t number = first; number < first + DirectoryChunk::kPages; ++number) {
+    // Numbers between those of two levels are nobody's.
+    if (number == 0 || (std::bit_width(number) - 1) % 3 != 0) continue;
+    if (grid.contains(grid.page(number))) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std::size_t word_bytes) {
+  std::vector<std::byte> bytes;
+  ByteWriter out(bytes);
+  for (const PageEntry& entry : entries) {
+    out.varint(entry.size);
+    out.number(entry.checksum);
+    for (const std::uint32_t word : {entry.low, entry.high})
+      out.bytes(std::as_bytes(std::span(&word, 1)).first(word_bytes));
+  }
+  return bytes;
+}
+
+std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
+                                                    std::span<const std::byte> bytes,
+                                                    std::size_t word_bytes) {
+  ByteReader in(bytes);
+  const auto word = [&] {
+    std::uint32_t value = 0;
+    const auto from = in.bytes(word_bytes);
+    if (!from.empty()) std::memcpy(&value, from.data(), word_bytes);
+    return value;
+  };
+  std::vector<PageEntry> entries;
+  std::uint64_t offset = chunk.pages, copy = chunk.copies;
+  for (const std::uint64_t number : chunk_pages(grid, chunk.first)) {
+    PageEntry entry;
+    const std::uint64_t size = in.varint();
+    if (size > ~std::uint32_t{0}) return {};
+    entry.size = static_cast<std::uint32_t>(size);
+    entry.checksum = in.number<std::uint32_t>();
+    entry.low = word();
+    entry.high = word();
+    entry.offset = offset;
+    offset += size;
+    if (grid.page(number).level >= kCopiedLevel) {
+      entry.copy = copy;
+      copy += size;
+    }
+    entries.push_back(entry);
+  }
+  if (!in.good() || !in.rest().empty()) return {};
+  return entries;
+}
+
+}  // namespace adamas

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/data/volume.h"
+#include "isosurface/compression/sample_codec.h"
+#include "isosurface/storage/page_grid.h"
+
+namespace adamas {
+
+// The stored volume as a file; docs/file_formats.md has its bytes.
+
+/// Bytes of what pages hold, as they lie in the file, the second copies of coarse pages apart.
+struct StoreBytes {
+  std::uint64_t samples = 0, values = 0, gradients = 0;
+};
+
+/// What a store says of itself as a whole.
+struct StoreHeader {
+  VolumeGrid grid;
+  SampleCoding coding = SampleCoding::kInterpolation;
+  std::uint8_t subtree_depth = 0;  ///< pages of levels from this on hold errors and ranges; 0 to 2
+  bool gradients = false;          ///< whether pages hold directions of gradients
+  std::uint32_t steps = 1;
+  StoreBytes bytes;
+  std::vector<std::byte> sample_tables, value_tables, gradient_tables;
+};
+
+/// What the directory says of a page.
+struct PageEntry {
+  std::uint64_t offset = 0;  ///< in the file
+  std::uint64_t copy = 0;    ///< of the second copy, 0 where there is none
+  std::uint32_t size = 0;
+  std::uint32_t checksum = 0;
+  /// The union of the ranges of its points' diamonds, as ordered words; low > high where nothing is in them.
+  std::uint32_t low = 0, high = 0;
+};
+
+/// Pages whose numbers agree but for the last nine bits have their directory entries in one piece. Pages, and
+/// their copies, lie in the file one after another.
+struct DirectoryChunk {
+  std::uint32_t step = 0;
+  std::uint64_t first = 0;  ///< the least page number of the chunk, a multiple of kPages
+  static constexpr std::uint64_t kPages = 512;
+
+  std::uint64_t offset = 0, size = 0;  ///< of the entries in the file
+  std::uint32_t checksum = 0;          ///< of the entries
+  std::uint64_t pages = 0;             ///< offset of the first page
+  std::uint64_t copies = 0;            ///< offset of the first copy
+};
+
+/// Levels from this on, the coarsest 1/64 of the samples, are in the file twice.
+inline constexpr int kCopiedLevel = 2;
+
+/// What a file begins with; everything else is found from here.
+struct StorePrologue {
+  static constexpr std::size_t kBytes = 32;
+  static constexpr std::uint32_t kVersion = 1;
+
+  std::uint64_t root_offset = 0, root_size = 0;
+
+  [[nodiscard]] std::vector<std::byte> serialise() const;
+  /// Throws Error, which begins with `name`, where the bytes are not those of a store of this version.
+  static StorePrologue parse(std::span<const std::byte> bytes, std::string_view name);
+};
+
+/// The last part of a file: the header and where the directory lies.
+struct StoreRoot {
+  StoreHeader header;
+  std::vector<DirectoryChunk> chunks;  ///< in ascending order of step and first page
+
+  [[nodiscard]] std::vector<std::byte> serialise() const;
+  /// Throws Error, which begins with `name`, where the bytes are damaged or say what cannot be: chunks out of
+  /// order or outside the `root_offset` bytes before the root.
+  static StoreRoot parse(std::span<const std::byte> bytes, std::uint64_t root_offset, std::string_view name);
+};
+
+/// Numbers of the pages that a chunk has, in ascending order.
+std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first);
+
+/// The entries of a chunk's pages in that order. Words have `word_bytes` bytes.
+std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std::size_t word_bytes);
+/// Offsets and copies too. Nothing where the bytes are not those of so many entries.
+std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
+                                                    std::span<const std::byte> bytes, std::size_t word_bytes);
+
+}  // namespace adamas

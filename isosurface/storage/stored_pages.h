@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "isosurface/compression/sample_codec.h"
+#include "isosurface/compression/value_codec.h"
+#include "isosurface/storage/page_tree.h"
+#include "isosurface/storage/store_file.h"
+
+namespace adamas {
+
+/// What reading a store has met with.
+struct PageCounts {
+  std::uint64_t pages = 0;       ///< read for their own sake
+  std::uint64_t predictors = 0;  ///< read only since others are predicted from them
+  std::uint64_t bytes = 0;       ///< of both and of the directory
+  std::uint64_t copies = 0;      ///< pages that were damaged, of which the second copy was whole
+  std::uint64_t damaged = 0;     ///< pages that cannot be had
+};
+
+/// The parts of a page's bytes in a store.
+struct PagePayload {
+  std::span<const std::byte> samples, values, gradients;
+};
+
+/// Joins the parts; the inverse.
+std::vector<std::byte> join_payload(const PagePayload& parts);
+/// False where the bytes are not those of three parts.
+[[nodiscard]] bool split_payload(std::span<const std::byte> bytes, PagePayload& parts);
+
+/// The decoded pages of one step of a store. Word: OrderedWord of the store's samples.
+template <class Word>
+class StoredPages {
+ public:
+  /// `memory`: bytes that decoded pages may take. Throws Error where the tables are damaged. The file must
+  /// outlive this.
+  StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
+
+  [[nodiscard]] StoreFile& file() { return file_; }
+  [[nodiscard]] const PageGrid& grid() const { return file_.grid(); }
+
+  /// The page, or null where it is damaged or predicted from one that is. Valid until the next call.
+  const Page<Word>* page(const PageId& id) { return tree_.page(id); }
+  /// What the directory says of it; nothing where that is damaged.
+  std::optional<PageEntry> entry(const PageId& id) { return file_.entry(step_, id); }
+  /// Changes whenever a page that page() gave may have gone.
+  [[nodiscard]] std::uint64_t generation() const { return tree_.generation(); }
+
+  /// Pages that were found damaged, in the order in which they were met.
+  [[nodiscard]] const std::vector<PageId>& damaged() const { return damaged_; }
+  [[nodiscard]] PageCounts counts() const;
+
+ private:
+  bool load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around, Page<Word>& page);
+
+  StoreFile& file_;
+  std::uint32_t step_;
+  std::unique_ptr<SampleCodec<Word>> samples_;
+  ValueCodec<Word> values_;
+  PageTree<Word> tree_;
+  std::vector<PageId> damaged_;
+  std::uint64_t copies_ = 0;
+};
+
+extern template class StoredPages<std::uint8_t>;
+extern template class StoredPages<std::uint16_t>;
+extern template class StoredPages<std::uint32_t>;
+
+}  // namespace adamas
