@@ -9,7 +9,7 @@
 #include "cli/generate_commands.h"
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
-#include "core/io/volume_writer.h"
+#include "cli/volume_output.h"
 #include "datasets/buckyball.h"
 
 namespace adamas {
@@ -33,49 +33,14 @@ SampleType parse_type(const std::string& name) {
                        [&name](SampleType type) { return sample_name(type) == name; });
 }
 
-void write_planes(const Buckyball& ball, const std::string& output, VolumeWriter& writer,
-                  Progress& progress) {
-  std::vector<std::byte> samples(ball.grid().plane_bytes());
-  const std::uint64_t planes = ball.grid().dimensions[2];
-  for (std::uint64_t k = 0; k < planes; ++k) {
-    progress.step("writing " + output, static_cast<double>(k) / static_cast<double>(planes));
-    ball.plane(k, samples);
-    writer.write_plane(samples);
-  }
-  writer.finish();
-}
-
-/// Writes the file, and that of its samples where it is another; returns their bytes.
-std::size_t write_files(const Buckyball& ball, const std::string& output, Session& session) {
-  OutputSet& outputs = session.outputs;
-  const std::string data = volume_data_file(output).string();
-  VolumeWriterOptions options;
-  options.array = "buckyball";
-  const auto write = [&](const std::filesystem::path& path) {
-    VolumeWriter writer(path, ball.grid(), options);
-    write_planes(ball, output, writer, session.console);
-  };
-  if (data.empty()) {
-    outputs.write(output, write);
-    return outputs.bytes(output);
-  }
-  outputs.write(output, [&](const auto& path) {
-    outputs.write(data, [&](const auto& data_path) {
-      options.data_file = data_path;
-      options.data_name = std::filesystem::path(data).filename().string();
-      write(path);
-    });
-  });
-  return outputs.bytes(output) + outputs.bytes(data);
-}
-
 void run(const Options& options, Session& session) {
   const auto n = parse_dimensions("--dimensions", options.dimensions);
-  session.outputs.declare("-o", options.output, {".vti", ".nrrd", ".nhdr", ".mha", ".mhd", ".raw"});
-  session.outputs.declare("-o", volume_data_file(options.output).string());
+  declare_volume_output(options.output, session.outputs);
   const Buckyball ball({n[0], n[1], n[2]}, parse_type(options.type));
-  const std::size_t bytes = write_files(ball, options.output, session);
   const VolumeGrid& grid = ball.grid();
+  const std::size_t bytes = write_volume_output(
+      options.output, grid, "buckyball",
+      [&](std::uint64_t k, std::span<std::byte> samples) { ball.plane(k, samples); }, session);
   Figures figures{{"dimensions", n}, {"bytes", bytes}, {"type", options.type}};
   figures["spacing"] = {grid.spacing.x, grid.spacing.y, grid.spacing.z};
   figures["seconds"] = session.console.seconds();
@@ -99,11 +64,7 @@ void add_generate_buckyball(CLI::App& generate, Session& session) {
   command->add_option("--type", options->type, "Of the samples, whose values fill its range; float32: 0 to 1")
       ->check(one_of(type_names()))
       ->capture_default_str();
-  command
-      ->add_option("-o,--output", options->output,
-                   "The volume: .vti, .nrrd, .mha, .nhdr or .mhd with a .raw beside it, or .raw alone")
-      ->required()
-      ->type_name("FILE");
+  add_volume_output(*command, options->output);
 }
 
 }  // namespace adamas

@@ -25,9 +25,10 @@ bool split_payload(std::span<const std::byte> bytes, PagePayload& parts) {
 }
 
 template <class Word>
-StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory)
+StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory, PageParts parts)
     : file_(file),
       step_(step),
+      parts_(parts),
       samples_(parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())),
       values_(ValueCodec<Word>::parse(file.header().value_tables, file.name())),
       tree_(file.grid(), memory / sizeof(Page<Word>),
@@ -42,7 +43,7 @@ bool StoredPages<Word>::load(const PageId& id, const PageShape& shape, const Sur
   PagePayload parts;
   if (payload.state == PageState::kDamaged || !split_payload(payload.bytes, parts) ||
       !samples_->decode(parts.samples, shape, around.samples, page.samples) ||
-      !values_.decode(parts.values, shape, around, page)) {
+      (parts_ == PageParts::kAll && !values_.decode(parts.values, shape, around, page))) {
     damaged_.push_back(id);
     return false;
   }

@@ -32,19 +32,24 @@ std::vector<std::byte> join_payload(const PagePayload& parts);
 /// False where the bytes are not those of three parts.
 [[nodiscard]] bool split_payload(std::span<const std::byte> bytes, PagePayload& parts);
 
+/// What of pages is decoded: samples alone leave errors and ranges undefined.
+enum class PageParts : std::uint8_t { kAll, kSamples };
+
 /// The decoded pages of one step of a store. Word: OrderedWord of the store's samples.
 template <class Word>
 class StoredPages {
  public:
   /// `memory`: bytes that decoded pages may take. Throws Error where the tables are damaged. The file must
   /// outlive this.
-  StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
+  StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory, PageParts parts = PageParts::kAll);
 
   [[nodiscard]] StoreFile& file() { return file_; }
   [[nodiscard]] const PageGrid& grid() const { return file_.grid(); }
 
   /// The page, or null where it is damaged or predicted from one that is. Valid until the next call.
   const Page<Word>* page(const PageId& id) { return tree_.page(id); }
+  /// What is known round a page; false where something cannot be had.
+  bool surroundings(const PageId& id, Surroundings<Word>& around) { return tree_.surroundings(id, around); }
   /// What the directory says of it; nothing where that is damaged.
   std::optional<PageEntry> entry(const PageId& id) { return file_.entry(step_, id); }
   /// Changes whenever a page that page() gave may have gone.
@@ -59,6 +64,7 @@ class StoredPages {
 
   StoreFile& file_;
   std::uint32_t step_;
+  PageParts parts_;
   std::unique_ptr<SampleCodec<Word>> samples_;
   ValueCodec<Word> values_;
   PageTree<Word> tree_;

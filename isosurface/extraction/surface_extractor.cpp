@@ -1,0 +1,304 @@
+#include "isosurface/extraction/surface_extractor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/geometry/tetrahedron_contour.h"
+#include "isosurface/contour/contour_clip.h"
+#include "isosurface/extraction/diamond_halves.h"
+
+namespace adamas {
+
+template <class Sample>
+SurfaceExtractor<Sample>::SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages)
+    : diamonds_(pages), subtree_bisections_(3 * pages.file().header().subtree_depth) {
+  const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
+  root_ = {middle, middle, middle};
+}
+
+template <class Sample>
+int SurfaceExtractor<Sample>::generation(LatticePoint p) const {
+  const Diamond diamond(p);
+  return 3 * diamond.level() + diamond.phase();
+}
+
+template <class Sample>
+bool SurfaceExtractor<Sample>::reaches_region(LatticePoint p, int level, int phase) const {
+  const LatticePoint at = diamonds_.in_samples(p);
+  const double reach = std::ldexp(nested_reach(phase), level);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (at[axis] + reach < (*region_)[0][axis] || at[axis] - reach > (*region_)[1][axis]) return false;
+  }
+  return true;
+}
+
+template <class Sample>
+int SurfaceExtractor<Sample>::rank(LatticePoint p) {
+  if (!diamonds_.is_stored(p)) return 0;
+  if (region_ || !lost_.empty()) {
+    const int level = diamonds_.level(p), phase = Diamond(p).phase();
+    if (region_ && !reaches_region(p, level, phase)) return 0;
+    if (lost_.blocks(diamonds_.in_samples(p), level, phase)) return 0;
+  }
+  return diamonds_.rank_if_crossed(p, request_.isovalue);
+}
+
+template <class Sample>
+bool SurfaceExtractor<Sample>::is_split(LatticePoint p, const Cut& cut) {
+  const int r = rank(p);
+  if (r != cut.rank) return r > cut.rank;
+  if (r == 0) return false;
+  const int g = generation(p);
+  if (g != cut.generation) return g < cut.generation;
+  return std::binary_search(cut.last.begin(), cut.last.end(), p);
+}
+
+template <class Sample>
+bool SurfaceExtractor<Sample>::leads_to(LatticePoint parent, LatticePoint child) const {
+  for (const LatticePoint p : Diamond(child).parents(diamonds_.domain())) {
+    if (diamonds_.is_stored(p)) return p == parent;
+  }
+  return false;
+}
+
+template <class Sample>
+typename SurfaceExtractor<Sample>::Vertices SurfaceExtractor<Sample>::vertices(const Diamond& diamond,
+                                                                               bool with_middle) {
+  Vertices result;
+  const int count = diamond.tetrahedron_count();
+  if (diamonds_.domain().boundary_count(diamond.point()) == 0) {
+    result.slots = (1u << count) - 1;
+  } else {
+    for (const int slot : diamond.tetrahedra(diamonds_.domain())) result.slots |= 1u << slot;
+  }
+  const auto [a, b] = diamond.split_edge();
+  result.begin = diamonds_.sample(a);
+  result.end = diamonds_.sample(b);
+  if (with_middle) result.middle = diamonds_.sample(diamond.point());
+  // Tetrahedron `slot` has the vertices `slot` and `slot` + 1 of the ring.
+  const unsigned used = result.slots | result.slots << 1 | result.slots >> (count - 1);
+  for (int r = 0; r < count; ++r) {
+    if ((used >> r & 1) != 0) result.ring[static_cast<std::size_t>(r)] = diamonds_.sample(diamond.ring(r));
+  }
+  result.ring[static_cast<std::size_t>(count)] = result.ring[0];
+  return result;
+}
+
+namespace {
+
+unsigned above(const std::array<double, 4>& values, double isovalue) {
+  unsigned bits = 0;
+  for (std::size_t v = 0; v < 4; ++v) bits |= unsigned{values[v] >= isovalue} << v;
+  return bits;
+}
+
+std::array<double, 4> half_values(const TetrahedronHalf& half, const std::array<double, 4>& values,
+                                  double middle) {
+  std::array<double, 4> result;
+  for (std::size_t v = 0; v < 4; ++v) result[v] = half.vertices[v] < 4 ? values[half.vertices[v]] : middle;
+  return result;
+}
+
+}  // namespace
+
+template <class Sample>
+template <class Fn>
+void SurfaceExtractor<Sample>::for_each_crossed(LatticePoint diamond, int slot,
+                                                const std::array<double, 4>& values, int bisections,
+                                                Fn&& fn) {
+  if (bisections == 0) {
+    const unsigned bits = above(values, request_.isovalue);
+    if (kTetrahedronContours[bits].triangle_count != 0)
+      fn(CrossedTetrahedron{diamond, static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(bits),
+                            values});
+    return;
+  }
+  const Diamond d(diamond);
+  const double middle = diamonds_.sample(diamond);
+  for (const int end : {0, 1}) {
+    const TetrahedronHalf& half = DiamondHalves::of(d.type_index(), slot, end);
+    for_each_crossed(d.child(half.child), half.slot, half_values(half, values, middle), bisections - 1, fn);
+  }
+}
+
+template <class Sample>
+std::int64_t SurfaceExtractor<Sample>::count_triangles(LatticePoint diamond, int slot,
+                                                       const std::array<double, 4>& values) {
+  std::int64_t count = 0;
+  for_each_crossed(diamond, slot, values, subtree_bisections_, [&](const CrossedTetrahedron& t) {
+    const bool finite =
+        std::all_of(t.values.begin(), t.values.end(), [](double value) { return std::isfinite(value); });
+    count += finite ? kTetrahedronContours[t.above].triangle_count : 0;
+  });
+  return count;
+}
+
+template <class Sample>
+std::int64_t SurfaceExtractor<Sample>::added_triangles(LatticePoint p) {
+  const Diamond diamond(p);
+  const Vertices v = vertices(diamond, true);
+  std::int64_t added = 0;
+  for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
+    if ((v.slots >> slot & 1) == 0) continue;
+    const std::array<double, 4> values = v.tetrahedron(slot);
+    added -= count_triangles(p, slot, values);
+    for (const int end : {0, 1}) {
+      const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
+      added += count_triangles(diamond.child(half.child), half.slot, half_values(half, values, v.middle));
+    }
+  }
+  return added;
+}
+
+template <class Sample>
+typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_error() const {
+  Cut cut;
+  cut.rank = diamonds_.rank_within(request_.error);
+  // All of the next rank.
+  return cut;
+}
+
+template <class Sample>
+typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangles(std::uint64_t budget,
+                                                                                  Progress& progress) {
+  const int least = diamonds_.rank_within(request_.error);
+  const Diamond root(root_);
+  const Vertices v = vertices(root, false);
+  std::int64_t triangles = 0;
+  for (int slot = 0; slot < root.tetrahedron_count(); ++slot)
+    triangles += count_triangles(root_, slot, v.tetrahedron(slot));
+  // By rank, then by generation: no diamond has a greater rank, or with the same rank an earlier generation,
+  // than its parents.
+  std::vector<std::map<int, Points>> waiting(StoredDiamonds<Sample>::kRanks);
+  if (const int r = rank(root_); r > least) waiting[static_cast<std::size_t>(r)][0].push_back(root_);
+  for (int r = StoredDiamonds<Sample>::kRanks - 1; r > least; --r) {
+    auto& generations = waiting[static_cast<std::size_t>(r)];
+    while (!generations.empty()) {
+      const auto [g, points] = *generations.begin();
+      generations.erase(generations.begin());
+      progress.step("choosing", static_cast<double>(triangles) / static_cast<double>(budget));
+      for (std::size_t n = 0; n < points.size(); ++n) {
+        const std::int64_t added = added_triangles(points[n]);
+        if (triangles + added > static_cast<std::int64_t>(budget)) {
+          Cut cut{r, g, {points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n)}};
+          std::sort(cut.last.begin(), cut.last.end());
+          return cut;
+        }
+        triangles += added;
+        for (const LatticePoint child : Diamond(points[n]).children(diamonds_.domain())) {
+          if (!leads_to(points[n], child)) continue;
+          if (const int c = rank(child); c > least)
+            waiting[static_cast<std::size_t>(c)][g + 1].push_back(child);
+        }
+      }
+    }
+  }
+  return cut_by_error();
+}
+
+template <class Sample>
+ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& progress) {
+  ExtractedSurface surface;
+  const Domain& domain = diamonds_.domain();
+  ContourBuilder builder(domain, request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
+  const auto emit = [&](LatticePoint diamond, int slot, const std::array<double, 4>& values) {
+    for_each_crossed(diamond, slot, values, subtree_bisections_,
+                     [&](const CrossedTetrahedron& t) { builder.add(t); });
+  };
+  const auto note_error = [&](LatticePoint p) {
+    surface.max_error = std::max(surface.max_error, diamonds_.error(rank(p)));
+  };
+  Points current, next;
+  surface.tetrahedra = static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count());
+  if (is_split(root_, cut)) {
+    current.push_back(root_);
+  } else {
+    note_error(root_);
+    const Vertices v = vertices(Diamond(root_), false);
+    for (int slot = 0; slot < Diamond(root_).tetrahedron_count(); ++slot)
+      emit(root_, slot, v.tetrahedron(slot));
+  }
+  for (int g = 0; !current.empty(); ++g) {
+    progress.step("extracting", g / (3.0 * diamonds_.levels()));
+    next.clear();
+    for (const LatticePoint p : current) {
+      const Diamond diamond(p);
+      const Vertices v = vertices(diamond, true);
+      ++surface.diamonds;
+      surface.tetrahedra += static_cast<std::uint64_t>(diamond.tetrahedron_count(domain));
+      for (int c = 0; c < diamond.child_count(); ++c) {
+        const LatticePoint child = diamond.child(c);
+        if (!domain.contains(child) || is_beyond(Diamond(child), diamonds_.last_sample())) continue;
+        if (is_split(child, cut)) {
+          if (leads_to(p, child)) next.push_back(child);
+          continue;
+        }
+        note_error(child);
+        for (const auto& half : diamond.type().child_tetrahedra[static_cast<std::size_t>(c)]) {
+          if ((v.slots >> half.slot & 1) == 0) continue;
+          emit(child, half.child_slot,
+               half_values({{}, half.child_slot, half.vertices}, v.tetrahedron(half.slot), v.middle));
+        }
+      }
+    }
+    current.swap(next);
+  }
+  surface.tetrahedra <<= subtree_bisections_;
+  surface.contour = builder.finish();
+  if (request_.region) clip_contour(surface.contour, *request_.region);
+  return surface;
+}
+
+template <class Sample>
+ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
+  if (!request_.max_triangles) return contour_of(cut_by_error(), progress);
+  // The data's border and the region's cut triangles into several, which the first choice does not know.
+  for (std::uint64_t budget = *request_.max_triangles;;) {
+    ExtractedSurface surface = contour_of(cut_by_triangles(budget, progress), progress);
+    const std::uint64_t found = surface.contour.triangles.size();
+    if (found <= *request_.max_triangles || surface.diamonds == 0) return surface;
+    budget -= std::min(budget, std::max<std::uint64_t>(1, found - *request_.max_triangles));
+  }
+}
+
+template <class Sample>
+ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request, Progress& progress) {
+  request_ = request;
+  region_.reset();
+  if (request.region) {
+    const Vec3 spacing = diamonds_.domain().box().size() / std::ldexp(1.0, diamonds_.levels());
+    const auto in_samples = [&](const Vec3& p) {
+      Vec3 result;
+      for (int axis = 0; axis < 3; ++axis)
+        result[axis] = (p[axis] - diamonds_.domain().box().min[axis]) / spacing[axis];
+      return result;
+    };
+    region_ = {in_samples(request.region->min), in_samples(request.region->max)};
+  }
+  std::vector<PageId> lost;
+  for (;;) {
+    try {
+      ExtractedSurface surface = extract_once(progress);
+      surface.lost = lost;
+      return surface;
+    } catch (const PageLost& missing) {
+      const auto [level, block] = missing.page;
+      const std::string what =
+          fmt::format("the page of level {} at {}, {}, {}", level, block.i, block.j, block.k);
+      if (request.strict) fail("{} is damaged", what);
+      if (level == diamonds_.grid().top() || std::find(lost.begin(), lost.end(), missing.page) != lost.end())
+        fail("{} is damaged, without which there is no surface", what);
+      lost.push_back(missing.page);
+      lost_.add(missing.page);
+    }
+  }
+}
+
+template class SurfaceExtractor<std::uint8_t>;
+template class SurfaceExtractor<std::uint16_t>;
+template class SurfaceExtractor<std::int16_t>;
+template class SurfaceExtractor<float>;
+
+}  // namespace adamas

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "isosurface/extraction/lost_regions.h"
+#include "isosurface/extraction/stored_diamonds.h"
+#include "isosurface/extraction/surface_request.h"
+
+namespace adamas {
+
+/// Isosurfaces of a store. The mesh they come from is that in which just those diamonds are split that the
+/// surface crosses with an error that is too great: since no child has a greater error or range than a
+/// parent, it is conforming, and a diamond at a time tells of it without a table of the mesh.
+template <class Sample>
+class SurfaceExtractor {
+ public:
+  /// The pages must outlive this.
+  explicit SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages);
+
+  [[nodiscard]] const Domain& domain() const { return diamonds_.domain(); }
+  /// Least and greatest sample of the store.
+  std::array<double, 2> range() { return diamonds_.range(); }
+
+  /// Throws Error where the store is too damaged for any surface, or damaged at all and the request strict.
+  ExtractedSurface extract(const SurfaceRequest& request, Progress& progress = SilentProgress::instance());
+
+ private:
+  using Points = std::vector<LatticePoint>;
+
+  /// Which diamonds are split: those of greater rank, those of that rank and an earlier generation, and some
+  /// of that generation.
+  struct Cut {
+    int rank = 0;
+    int generation = 0;
+    Points last;  ///< in ascending order
+  };
+  /// The values at the vertices of a diamond's tetrahedra in the domain, whose slots are `slots`.
+  struct Vertices {
+    unsigned slots = 0;
+    double begin = 0, end = 0, middle = 0;
+    std::array<double, 9> ring{};
+    [[nodiscard]] std::array<double, 4> tetrahedron(int slot) const {
+      const auto s = static_cast<std::size_t>(slot);
+      return {begin, end, ring[s], ring[s + 1]};
+    }
+  };
+
+  ExtractedSurface extract_once(Progress& progress);
+  Cut cut_by_error() const;
+  Cut cut_by_triangles(std::uint64_t budget, Progress& progress);
+  ExtractedSurface contour_of(const Cut& cut, Progress& progress);
+
+  /// The rank of a diamond that may be split, 0 of others.
+  int rank(LatticePoint p);
+  bool is_split(LatticePoint p, const Cut& cut);
+  [[nodiscard]] bool reaches_region(LatticePoint p, int level, int phase) const;
+  /// Whether `parent` is that of its parents through which `child` is come to.
+  [[nodiscard]] bool leads_to(LatticePoint parent, LatticePoint child) const;
+  [[nodiscard]] int generation(LatticePoint p) const;
+  Vertices vertices(const Diamond& diamond, bool with_middle);
+
+  /// Calls fn(tetrahedron) for those of the fine tetrahedra of a tetrahedron that the contour crosses.
+  template <class Fn>
+  void for_each_crossed(LatticePoint diamond, int slot, const std::array<double, 4>& values, int bisections,
+                        Fn&& fn);
+  std::int64_t count_triangles(LatticePoint diamond, int slot, const std::array<double, 4>& values);
+  /// How many more triangles there are once a diamond is split.
+  std::int64_t added_triangles(LatticePoint p);
+
+  StoredDiamonds<Sample> diamonds_;
+  int subtree_bisections_;
+  LatticePoint root_;
+  LostRegions lost_;
+  SurfaceRequest request_;
+  std::optional<std::array<Vec3, 2>> region_;  ///< in samples
+};
+
+extern template class SurfaceExtractor<std::uint8_t>;
+extern template class SurfaceExtractor<std::uint16_t>;
+extern template class SurfaceExtractor<std::int16_t>;
+extern template class SurfaceExtractor<float>;
+
+}  // namespace adamas

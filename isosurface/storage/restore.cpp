@@ -1,0 +1,118 @@
+#include "isosurface/storage/restore.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/storage/sample_dispatch.h"
+
+namespace adamas {
+
+namespace {
+
+/// The coordinates from `begin` to `end`, both included, that a block of a level has.
+struct BlockSpan {
+  std::int32_t begin, end;
+  BlockSpan(std::int32_t block, std::int32_t first, std::int32_t last)
+      : begin(std::max(first, PageGrid::kSide * block)),
+        end(std::min(last, PageGrid::kSide * block + PageGrid::kSide - 1)) {}
+};
+
+template <class Sample>
+class Restorer {
+ public:
+  using Word = OrderedWord<Sample>;
+
+  Restorer(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory)
+      : file_(file), part_(part), pages_(file, step, memory, PageParts::kSamples) {}
+
+  PageCounts run(const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
+    const std::size_t plane = part_.grid.plane_samples();
+    std::vector<Sample> planes(PageGrid::kSide * plane);
+    constexpr std::int32_t kSide = PageGrid::kSide;
+    for (std::int32_t block = part_.first.k / kSide; block <= part_.last.k / kSide; ++block) {
+      const BlockSpan z(block, part_.first.k, part_.last.k);
+      const double planes_done = z.begin - part_.first.k;
+      for (std::int32_t y = part_.first.j / kSide; y <= part_.last.j / kSide; ++y) {
+        progress.step("restoring", planes_done / (part_.last.k - part_.first.k + 1));
+        for (std::int32_t x = part_.first.i / kSide; x <= part_.last.i / kSide; ++x)
+          copy({part_.level, {x, y, block}}, z.begin, planes);
+      }
+      for (std::int32_t k = z.begin; k <= z.end; ++k) {
+        const auto at = static_cast<std::size_t>(k - z.begin) * plane;
+        sink(std::as_bytes(std::span(planes).subspan(at, plane)));
+      }
+    }
+    return pages_.counts();
+  }
+
+ private:
+  /// Copies what a page has of the part to the planes, the first of which is k = `base`.
+  void copy(const PageId& id, std::int32_t base, std::vector<Sample>& planes) {
+    const Page<Word>* page = pages_.page(id);
+    if (page == nullptr)
+      fail("{}: the page of level {} at {}, {}, {} is damaged, or one that it is predicted from",
+           file_.name(), id.level, id.block.i, id.block.j, id.block.k);
+    const BlockSpan x(id.block.i, part_.first.i, part_.last.i), y(id.block.j, part_.first.j, part_.last.j),
+        z(id.block.k, part_.first.k, part_.last.k);
+    for (std::int32_t k = z.begin; k <= z.end; ++k) {
+      for (std::int32_t j = y.begin; j <= y.end; ++j) {
+        const std::size_t from = PageGrid::place({x.begin, j, k}, 0);
+        const auto row = static_cast<std::size_t>(k - base) * part_.grid.plane_samples() +
+                         static_cast<std::size_t>(j - part_.first.j) * part_.grid.dimensions[0];
+        Sample* to = planes.data() + row + (x.begin - part_.first.i);
+        for (std::int32_t i = 0; i <= x.end - x.begin; ++i)
+          to[i] = from_ordered<Sample>(page->samples[from + static_cast<std::size_t>(i)]);
+      }
+    }
+  }
+
+  StoreFile& file_;
+  RestoredPart part_;
+  StoredPages<Word> pages_;
+};
+
+}  // namespace
+
+RestoredPart restored_part(const VolumeGrid& volume, int level, const std::optional<Box3>& region,
+                           const std::string& name) {
+  const PageGrid pages(volume.dimensions);
+  if (level < 0 || level > pages.top())
+    fail("{}: expected a level from 0 to {}, found {}", name, pages.top(), level);
+  RestoredPart part;
+  part.level = level;
+  part.grid = volume;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step = std::ldexp(volume.spacing[axis], level);
+    part.last[axis] = pages.last()[axis] >> level;
+    if (region) {
+      // A sample on the region's border counts, whatever its place was rounded to.
+      constexpr double kSlack = 1e-9;
+      const double low = (region->min[axis] - volume.origin[axis]) / step - kSlack;
+      const double high = (region->max[axis] - volume.origin[axis]) / step + kSlack;
+      const double end = part.last[axis];
+      part.first[axis] = static_cast<std::int32_t>(std::clamp(std::ceil(low), 0.0, end + 1));
+      part.last[axis] = static_cast<std::int32_t>(std::clamp(std::floor(high), -1.0, end));
+      if (part.first[axis] > part.last[axis])
+        fail("{}: expected a region with samples of level {}, found none along {}", name, level, "xyz"[axis]);
+    }
+    const auto a = static_cast<std::size_t>(axis);
+    part.grid.dimensions[a] = static_cast<std::uint64_t>(part.last[axis] - part.first[axis] + 1);
+    part.grid.origin[axis] += part.first[axis] * step;
+    part.grid.spacing[axis] = step;
+  }
+  return part;
+}
+
+PageCounts restore(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory,
+                   const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
+  return with_sample_type(part.grid.type, [&](auto sample) {
+    return Restorer<decltype(sample)>(file, step, part, memory).run(sink, progress);
+  });
+}
+
+}  // namespace adamas

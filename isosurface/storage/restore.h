@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "core/base/progress.h"
+#include "core/geometry/vec3.h"
+#include "isosurface/storage/stored_pages.h"
+
+namespace adamas {
+
+/// Samples of a level in a box: those whose coordinates are multiples of 2^level.
+struct RestoredPart {
+  int level = 0;
+  /// The first and the last sample along each axis, in units of 2^level.
+  LatticePoint first{}, last{};
+  VolumeGrid grid;
+};
+
+/// The part of a volume at a level, whole or what of it lies in a region. Throws Error, which begins with
+/// `name`, where there is no such level or no sample in the region.
+RestoredPart restored_part(const VolumeGrid& volume, int level, const std::optional<Box3>& region,
+                           const std::string& name);
+
+/// Gives the part's planes of equal k in ascending order to `sink`, as samples of the volume's type. Only
+/// pages that the part needs are read. Throws Error where a page is damaged.
+PageCounts restore(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory,
+                   const std::function<void(std::span<const std::byte>)>& sink, Progress& progress);
+
+}  // namespace adamas

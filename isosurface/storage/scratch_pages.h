@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "isosurface/storage/page.h"
+
+namespace adamas {
+
+/// The own points of pages as they are, in a file without a name, which goes with this.
+template <class Word>
+class ScratchPages {
+ public:
+  /// Throws Error where the folder cannot hold a file.
+  ScratchPages(const std::filesystem::path& folder, const PageGrid& grid);
+  ~ScratchPages();
+  ScratchPages(const ScratchPages&) = delete;
+  ScratchPages& operator=(const ScratchPages&) = delete;
+
+  /// Each page once. Throws Error where the disk is full.
+  void put(const PageId& id, const Page<Word>& page);
+  /// Fills the own points of a page that was put.
+  void get(const PageId& id, Page<Word>& page);
+
+ private:
+  static constexpr std::size_t kPointBytes = 3 * sizeof(Word) + 1;
+
+  std::uint64_t& offset(const PageId& id);
+
+  PageGrid grid_;
+  std::filesystem::path folder_;
+  int file_ = -1;
+  std::uint64_t size_ = 0;
+  std::vector<std::vector<std::uint64_t>> offsets_;  ///< by level and block
+  std::vector<std::byte> buffer_;
+};
+
+extern template class ScratchPages<std::uint8_t>;
+extern template class ScratchPages<std::uint16_t>;
+extern template class ScratchPages<std::uint32_t>;
+
+}  // namespace adamas

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "core/base/progress.h"
+#include "core/data/volume.h"
+#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/storage/store_format.h"
+
+namespace adamas {
+
+struct StoreOptions {
+  SampleCoding coding = SampleCoding::kInterpolation;
+  int subtree_depth = 0;  ///< 0, 1 or 2
+  /// Where scratch data of up to four times the input may lie.
+  std::filesystem::path scratch = std::filesystem::temp_directory_path();
+};
+
+/// What became of a volume.
+struct StoreFigures {
+  StoreBytes bytes;
+  std::uint64_t file_bytes = 0;
+  std::uint64_t pages = 0;
+};
+
+/// Preprocesses a volume, orders it in pages and compresses them into a store at `path`; messages name
+/// `shown`. Planes are asked for several times, in any order. Needs 1 GiB of memory and 64 bytes for each
+/// sample of a plane of equal k; the file is the same whatever the number of threads.
+StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,
+                         const PlaneSource& planes, const StoreOptions& options,
+                         Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas

@@ -1,0 +1,125 @@
+#include "isosurface/storage/verify.h"
+
+#include <fmt/format.h>
+
+#include "core/lattice/diamond.h"
+#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/storage/stored_pages.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::size_t kMostProblems = 20;
+
+template <class Sample>
+class Verifier {
+ public:
+  using Word = OrderedWord<Sample>;
+
+  Verifier(StoreFile& file, std::uint32_t step, std::size_t memory, VerifiedStore& result)
+      : file_(file), step_(step), pages_(file, step, memory), result_(result) {}
+
+  void run(Progress& progress) {
+    const PageGrid& grid = pages_.grid();
+    std::uint64_t done = 0;
+    for (int level = grid.top(); level >= 0; --level) {
+      const LatticePoint n = grid.blocks(level);
+      for (std::int32_t k = 0; k < n.k; ++k) {
+        for (std::int32_t j = 0; j < n.j; ++j) {
+          progress.step("verifying", static_cast<double>(done) / static_cast<double>(grid.page_count()));
+          for (std::int32_t i = 0; i < n.i; ++i) {
+            const PageId id{level, {i, j, k}};
+            if (!grid.contains(id)) continue;
+            ++done;
+            check(id);
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  void check(const PageId& id) {
+    ++result_.pages;
+    const StoreFile::Payload payload = file_.read(step_, id);
+    const std::optional<PageEntry> entry = file_.entry(step_, id);
+    if (payload.state == PageState::kCopied ||
+        (payload.state == PageState::kWhole && entry && !file_.copy_is_whole(*entry))) {
+      ++result_.bad_copies;
+      problem(id, "one of its two copies is damaged");
+    }
+    const Page<Word>* page = pages_.page(id);
+    if (page == nullptr) {
+      ++result_.bad_pages;
+      problem(id, payload.state == PageState::kDamaged ? "is damaged" : "is predicted from a damaged one");
+    } else if (!is_lawful(id, *page)) {
+      ++result_.bad_pages;
+      problem(id, "has errors or ranges greater than those of the diamonds they come from");
+    }
+  }
+
+  /// Diamonds of a page and those that they come from, as far as the page has both.
+  bool is_lawful(const PageId& id, const Page<Word>& page) const {
+    const PageGrid& grid = pages_.grid();
+    const PageShape shape{grid.count(id), grid.is_complete(id), id.level};
+    LatticePoint q{};
+    for (q.k = 0; q.k < shape.count.k; ++q.k) {
+      for (q.j = 0; q.j < shape.count.j; ++q.j) {
+        for (q.i = 0; q.i < shape.count.i; ++q.i) {
+          const LatticePoint at = PageGrid::kSide * id.block + q;
+          const int zeros = trailing_zeros(at);
+          if (id.level + zeros + 1 >= grid.depth() || (!shape.complete && zeros > 0)) continue;
+          const DiamondType& type = kDiamondTypes[static_cast<std::size_t>(diamond_type(at, zeros))];
+          for (int c = 0; c < type.parent_count; ++c) {
+            const LatticePoint parent = q + (1 << zeros) * type.parent_offsets[static_cast<std::size_t>(c)];
+            if (is_in(parent, shape) && !is_within(page, q, parent, zeros, id)) return false;
+          }
+        }
+      }
+    }
+    return true;
+  }
+
+  static bool is_in(LatticePoint q, const PageShape& shape) {
+    return q.i >= 0 && q.j >= 0 && q.k >= 0 && q.i < shape.count.i && q.j < shape.count.j &&
+           q.k < shape.count.k;
+  }
+
+  static bool is_within(const Page<Word>& page, LatticePoint child, LatticePoint parent, int child_zeros,
+                        const PageId& id) {
+    const std::size_t c = PageGrid::place(child, 0), p = PageGrid::place(parent, 0);
+    // A code of the next coarser level is twice the error, four codes more.
+    const int coarser = 4 * (trailing_zeros(PageGrid::kSide * id.block + parent) - child_zeros);
+    const int parent_rank = page.errors[p] == 0 ? 0 : page.errors[p] + coarser;
+    if (page.errors[c] != 0 && parent_rank < page.errors[c]) return false;
+    return page.low[c] > page.high[c] || (page.low[p] <= page.low[c] && page.high[p] >= page.high[c]);
+  }
+
+  void problem(const PageId& id, const char* what) {
+    if (result_.problems.size() >= kMostProblems) return;
+    result_.problems.push_back(
+        fmt::format("page of level {} at {}, {}, {} {}", id.level, id.block.i, id.block.j, id.block.k, what));
+  }
+
+  StoreFile& file_;
+  std::uint32_t step_;
+  StoredPages<Word> pages_;
+  VerifiedStore& result_;
+};
+
+}  // namespace
+
+VerifiedStore verify_store(StoreFile& file, std::size_t memory, Progress& progress) {
+  file.check_directory();
+  VerifiedStore result;
+  for (std::uint32_t step = 0; step < file.header().steps; ++step) {
+    with_sample_type(file.header().grid.type, [&](auto sample) {
+      Verifier<decltype(sample)>(file, step, memory, result).run(progress);
+    });
+  }
+  return result;
+}
+
+}  // namespace adamas

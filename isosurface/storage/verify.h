@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "isosurface/storage/store_file.h"
+
+namespace adamas {
+
+/// What a check of a store has found.
+struct VerifiedStore {
+  std::uint64_t pages = 0;
+  std::uint64_t bad_pages = 0;   ///< damaged, both copies where there are two, or predicted from such
+  std::uint64_t bad_copies = 0;  ///< pages one of whose two copies is damaged
+  /// One line for each of the first problems.
+  std::vector<std::string> problems;
+};
+
+/// Reads every byte of a store: checksums, that all pages can be decoded, and that no diamond has a greater
+/// error or range than those that it comes from. Throws Error where the directory is damaged.
+VerifiedStore verify_store(StoreFile& file, std::size_t memory, Progress& progress);
+
+}  // namespace adamas
