@@ -38,9 +38,16 @@ void run(const Options& options, Session& session) {
   declare_volume_output(options.output, session.outputs);
   const Buckyball ball({n[0], n[1], n[2]}, parse_type(options.type));
   const VolumeGrid& grid = ball.grid();
-  const std::size_t bytes = write_volume_output(
-      options.output, grid, "buckyball",
-      [&](std::uint64_t k, std::span<std::byte> samples) { ball.plane(k, samples); }, session);
+  const auto make = [&](const PlaneSink& sink) {
+    std::vector<std::byte> samples(grid.plane_bytes());
+    const std::uint64_t planes = grid.dimensions[2];
+    for (std::uint64_t k = 0; k < planes; ++k) {
+      session.console.step("writing " + options.output, static_cast<double>(k) / static_cast<double>(planes));
+      ball.plane(k, samples);
+      sink(samples);
+    }
+  };
+  const std::size_t bytes = write_volume_output(options.output, grid, "buckyball", make, session);
   Figures figures{{"dimensions", n}, {"bytes", bytes}, {"type", options.type}};
   figures["spacing"] = {grid.spacing.x, grid.spacing.y, grid.spacing.z};
   figures["seconds"] = session.console.seconds();

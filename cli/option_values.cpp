@@ -46,6 +46,22 @@ std::size_t parse_count(const std::string& option, const std::string& text, std:
   return value;
 }
 
+std::size_t parse_size(const std::string& option, const std::string& text) {
+  constexpr std::string_view kUnits = "KMGT";
+  std::size_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto [at, code] = std::from_chars(text.data(), end, value);
+  const std::size_t unit = at + 1 == end
+                               ? kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(*at))))
+                               : std::string_view::npos;
+  const unsigned shift = unit == std::string_view::npos ? 0 : 10 * (static_cast<unsigned>(unit) + 1);
+  const bool whole = at == end || unit != std::string_view::npos;
+  if (code != std::errc() || !whole || value == 0 || value > (~std::size_t{0} >> shift)) {
+    wrong_usage("{}: expected a size as 100000, 512K, 256M or 2G, found '{}'", option, text);
+  }
+  return value << shift;
+}
+
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
   std::vector<double> values;
   for (const std::string& part : split(text)) {

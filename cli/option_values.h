@@ -19,6 +19,8 @@ namespace adamas {
 double parse_positive(const std::string& option, const std::string& text);
 /// A whole number of at least that.
 std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least = 1);
+/// "256M": bytes, in units of 1024 with K, M, G or T; at least 1.
+std::size_t parse_size(const std::string& option, const std::string& text);
 /// "1,2.5,-3": that many finite numbers.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
 Vec3 parse_vector(const std::string& option, const std::string& text);

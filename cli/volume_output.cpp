@@ -1,7 +1,6 @@
 #include "cli/volume_output.h"
 
 #include <filesystem>
-#include <vector>
 
 #include "core/io/volume_writer.h"
 
@@ -21,20 +20,13 @@ void declare_volume_output(const std::string& output, OutputSet& outputs) {
 }
 
 std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
-                                const std::function<void(std::uint64_t, std::span<std::byte>)>& plane,
-                                Session& session) {
+                                const std::function<void(const PlaneSink&)>& make, Session& session) {
   OutputSet& outputs = session.outputs;
   VolumeWriterOptions options;
   options.array = array;
   const auto write = [&](const std::filesystem::path& path) {
     VolumeWriter writer(path, grid, options);
-    std::vector<std::byte> samples(grid.plane_bytes());
-    const std::uint64_t planes = grid.dimensions[2];
-    for (std::uint64_t k = 0; k < planes; ++k) {
-      session.console.step("writing " + output, static_cast<double>(k) / static_cast<double>(planes));
-      plane(k, samples);
-      writer.write_plane(samples);
-    }
+    make([&](std::span<const std::byte> samples) { writer.write_plane(samples); });
     writer.finish();
   };
   const std::string data = volume_data_file(output).string();

@@ -17,10 +17,11 @@ void add_volume_output(CLI::App& command, std::string& output);
 /// Declares the file and, where its samples go to another, that one.
 void declare_volume_output(const std::string& output, OutputSet& outputs);
 
-/// Writes the declared files from planes, which `plane(k, samples)` fills in ascending order; returns their
-/// bytes.
+/// Takes one plane after another.
+using PlaneSink = std::function<void(std::span<const std::byte>)>;
+
+/// Writes the declared files from the planes that `make(sink)` gives in ascending order; returns their bytes.
 std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
-                                const std::function<void(std::uint64_t, std::span<std::byte>)>& plane,
-                                Session& session);
+                                const std::function<void(const PlaneSink&)>& make, Session& session);
 
 }  // namespace adamas

@@ -1,0 +1,105 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/option_checks.h"
+#include "cli/option_values.h"
+#include "cli/volume_input.h"
+#include "isosurface/storage/store_builder.h"
+
+namespace adamas {
+
+namespace {
+
+struct Options {
+  VolumeInput input;
+  std::string coding = "interpolation", subtrees = "0", output;
+};
+
+double ratio(std::uint64_t before, std::uint64_t after) {
+  return after > 0 ? static_cast<double>(before) / static_cast<double>(after) : 0;
+}
+
+void report(const VolumeReader& reader, const StoreFigures& store, Session& session) {
+  Console& console = session.console;
+  const VolumeGrid& grid = reader.grid();
+  const auto [nx, ny, nz] = grid.dimensions;
+  const std::uint64_t input = grid.bytes();
+  const double seconds = console.seconds();
+  const auto bytes = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
+  const auto ratio_text = [&](std::uint64_t n) {
+    return n > 0 ? fmt::format("{:.2f}", ratio(input, n)) : "-";
+  };
+  console.print("{} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
+  console.table({{"", "bytes", "ratio"},
+                 {"input", bytes(input), ""},
+                 {"samples", bytes(store.bytes.samples), ratio_text(store.bytes.samples)},
+                 {"errors and ranges", bytes(store.bytes.values), ratio_text(store.bytes.values)},
+                 {"file", bytes(store.file_bytes), ratio_text(store.file_bytes)}});
+  console.print("{} pages in {:.1f} s, {:.1f} M samples/s\n", store.pages, seconds,
+                static_cast<double>(grid.samples()) / seconds / 1e6);
+  if (const std::string note = reader.note(); !note.empty()) console.note("{}", note);
+  Figures figures{{"samples", grid.samples()},
+                  {"dimensions", grid.dimensions},
+                  {"type", sample_name(grid.type)},
+                  {"bytes_input", input},
+                  {"bytes_data", store.bytes.samples},
+                  {"bytes_gradients", store.bytes.gradients},
+                  {"bytes_errors", store.bytes.values},
+                  {"bytes_file", store.file_bytes},
+                  {"ratio_data", ratio(input, store.bytes.samples)},
+                  {"ratio", ratio(input, store.file_bytes)},
+                  {"pages", store.pages},
+                  {"seconds", seconds},
+                  {"peak_memory_bytes", peak_memory_bytes()}};
+  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+}
+
+void run(const Options& options, Session& session) {
+  session.outputs.declare("-o", options.output, {".adm"});
+  VolumeReader reader = open_volume_input(options.input, session);
+  StoreOptions store;
+  store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
+  store.subtree_depth = options.subtrees[0] - '0';
+  if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
+  StoreFigures figures;
+  session.outputs.write(options.output, [&](const auto& path) {
+    figures = build_store(
+        path, options.output, reader.grid(),
+        [&reader](std::uint64_t k, std::span<std::byte> samples) { reader.read_plane(k, samples); }, store,
+        session.console);
+  });
+  report(reader, figures, session);
+  session.outputs.commit();
+}
+
+}  // namespace
+
+void add_store(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(app, session, "store", "Preprocesses and compresses a volume, without loss, into one file",
+                  "adamas store head.raw --dimensions 512,512,300 --type uint16 -o head.adm",
+                  [options, &session] { run(*options, session); });
+  add_volume_input(*command, options->input);
+  command
+      ->add_option(
+          "--coding", options->coding,
+          "How samples are predicted: from their neighbours, or as in the dissertation from the ends of "
+          "the split edge")
+      ->check(one_of({"interpolation", "split-edge"}))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--subtrees", options->subtrees,
+          "Levels of tetrahedra below those that surfaces are refined by: less to store, coarser steps")
+      ->check(one_of({"0", "1", "2"}))
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "The store (.adm)")->required()->type_name("FILE");
+}
+
+}  // namespace adamas

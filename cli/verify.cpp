@@ -1,0 +1,50 @@
+#include "isosurface/storage/verify.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/store_input.h"
+#include "core/base/error.h"
+
+namespace adamas {
+
+namespace {
+
+void run(const StoreInput& options, Session& session) {
+  const std::size_t memory = store_memory(options);
+  const std::unique_ptr<StoreFile> file = open_store(options, session);
+  const VerifiedStore found = verify_store(*file, memory, session.console);
+  session.console.clear();
+  for (const std::string& line : found.problems) session.console.print("{}\n", line);
+  const std::uint64_t untold = found.bad_pages + found.bad_copies - found.problems.size();
+  if (untold > 0) session.console.print("and {} more\n", untold);
+  Figures figures{{"pages", found.pages},
+                  {"bad_pages", found.bad_pages},
+                  {"bad_copies", found.bad_copies},
+                  {"seconds", session.console.seconds()}};
+  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  session.outputs.commit();
+  if (found.bad_pages + found.bad_copies > 0)
+    fail(
+        "{}: expected {} pages without damage, found {} that cannot be had and {} of which one of two copies "
+        "is "
+        "damaged",
+        options.path, found.pages, found.bad_pages, found.bad_copies);
+  session.console.print("{} pages, all sound\n", found.pages);
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<StoreInput>();
+  CLI::App* command = add_command(app, session, "verify", "Checks every byte of a store, and its laws",
+                                  "adamas verify head.adm", [options, &session] { run(*options, session); });
+  add_store_input(*command, *options);
+}
+
+}  // namespace adamas

@@ -1,0 +1,120 @@
+#include "isosurface/extraction/surface_normals.h"
+
+#include <limits>
+#include <memory>
+
+#include "core/lattice/lattice_map.h"
+#include "isosurface/gradients/gradient_estimator.h"
+
+namespace adamas {
+
+namespace {
+
+/// Gradients at lattice points, each worked out once.
+template <class Sample>
+class VertexGradients {
+ public:
+  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages) : diamonds_(pages) {}
+
+  /// From neighbours `step` away.
+  Vec3 at(LatticePoint p, std::int32_t step) {
+    // Vertices of a finer mesh than this one have a gradient of their own.
+    const auto [index, is_new] = indices_.insert(p);
+    if (is_new || steps_[*index] != step) {
+      const Vec3 gradient = estimate(p, step);
+      if (!is_new) return gradient;
+      *index = static_cast<std::uint32_t>(gradients_.size());
+      gradients_.push_back(gradient);
+      steps_.push_back(step);
+    }
+    return gradients_[*index];
+  }
+
+  /// How far away neighbours are in a mesh that has the edge.
+  [[nodiscard]] static std::int32_t step(const EdgePoint& edge) {
+    const LatticePoint way = edge.second - edge.first;
+    return std::int32_t{1} << trailing_zeros(way);
+  }
+
+ private:
+  Vec3 estimate(LatticePoint p, std::int32_t step) {
+    Neighbourhood values;
+    for (int dk = -1; dk <= 1; ++dk) {
+      for (int dj = -1; dj <= 1; ++dj) {
+        for (int di = -1; di <= 1; ++di)
+          values[neighbour(di, dj, dk)] = sample(p + step * LatticePoint{di, dj, dk});
+      }
+    }
+    return estimator(step)(values);
+  }
+
+  double sample(LatticePoint p) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const LatticePoint last = diamonds_.last_sample();
+    if (p.i < 0 || p.j < 0 || p.k < 0 || p.i > last.i || p.j > last.j || p.k > last.k) return kNone;
+    try {
+      return diamonds_.sample(p);
+    } catch (const PageLost&) {
+      return kNone;
+    }
+  }
+
+  const GradientEstimator& estimator(std::int32_t step) {
+    auto& found = estimators_[static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(step)))];
+    if (!found) found = std::make_unique<GradientEstimator>(step * diamonds_.domain().spacing());
+    return *found;
+  }
+
+  StoredDiamonds<Sample> diamonds_;
+  std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
+  LatticeMap<std::uint32_t> indices_;
+  std::vector<Vec3> gradients_;
+  std::vector<std::int32_t> steps_;
+};
+
+Vec3 direction(const Vec3& gradient) {
+  const double length = norm(gradient);
+  return length > 0 && std::isfinite(length) ? -1 / length * gradient : Vec3{};
+}
+
+}  // namespace
+
+template <class Sample>
+std::vector<Vec3> surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
+                                  Progress& progress) {
+  VertexGradients<Sample> gradients(pages);
+  std::vector<Vec3> normals;
+  normals.reserve(contour.points.size());
+  for (const EdgePoint& edge : contour.edge_points) {
+    if (normals.size() % 65536 == 0)
+      progress.step("normals",
+                    static_cast<double>(normals.size()) / static_cast<double>(contour.points.size()));
+    const std::int32_t step = gradients.step(edge);
+    const Vec3 a = gradients.at(edge.first, step), b = gradients.at(edge.second, step);
+    normals.push_back(direction((1 - edge.parameter) * a + edge.parameter * b));
+  }
+  for (const BorderPoint& point : contour.border_points) {
+    std::int32_t step = std::int32_t{1} << kRootBits;
+    for (std::size_t v = 1; v < 4; ++v) {
+      const LatticePoint way = point.vertices[v] - point.vertices[0];
+      if (point.weights[v] != 0 && way != LatticePoint{})
+        step = std::min(step, std::int32_t{1} << trailing_zeros(way));
+    }
+    Vec3 gradient;
+    for (std::size_t v = 0; v < 4; ++v) {
+      if (point.weights[v] != 0) gradient += point.weights[v] * gradients.at(point.vertices[v], step);
+    }
+    normals.push_back(direction(gradient));
+  }
+  return normals;
+}
+
+template std::vector<Vec3> surface_normals<std::uint8_t>(StoredPages<std::uint8_t>&, const Contour&,
+                                                         Progress&);
+template std::vector<Vec3> surface_normals<std::uint16_t>(StoredPages<std::uint16_t>&, const Contour&,
+                                                          Progress&);
+template std::vector<Vec3> surface_normals<std::int16_t>(StoredPages<std::uint16_t>&, const Contour&,
+                                                         Progress&);
+template std::vector<Vec3> surface_normals<float>(StoredPages<std::uint32_t>&, const Contour&, Progress&);
+
+}  // namespace adamas

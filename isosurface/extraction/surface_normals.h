@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/geometry/vec3.h"
+#include "isosurface/contour/contour.h"
+#include "isosurface/extraction/stored_diamonds.h"
+
+namespace adamas {
+
+/// A unit vector for each point of a surface, to values below the isovalue, as the triangles' normals point;
+/// zero where nothing changes. They are gradients at the ends of the mesh's edges, by least squares from the
+/// 26 neighbours as far away as the mesh is fine there, interpolated along the edge. Samples that cannot be
+/// had do not count.
+template <class Sample>
+std::vector<Vec3> surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
+                                  Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas
