@@ -118,6 +118,18 @@ ResidualCode ResidualCode::parse(std::span<const std::byte> tables, int bits, st
   return {lead_one, std::move(codes)};
 }
 
+bool ResidualCode::codes(std::span<const std::uint32_t> residuals) const {
+  int previous = 0;
+  for (const std::uint32_t residual : residuals) {
+    const int symbol = lead_one_.split(residual).symbol;
+    if (codes_[static_cast<std::size_t>(previous)].words()[static_cast<std::size_t>(symbol)].length == 0) {
+      return false;
+    }
+    previous = symbol;
+  }
+  return true;
+}
+
 void ResidualCode::encode(std::span<const std::uint32_t> residuals, std::vector<std::byte>& out) const {
   BitWriter writer(out);
   int previous = 0;

@@ -29,6 +29,9 @@ class ResidualCode {
 
   [[nodiscard]] int bits() const { return lead_one_.bits(); }
 
+  /// Whether the code has words for all of these.
+  [[nodiscard]] bool codes(std::span<const std::uint32_t> residuals) const;
+
   /// Appends the page to `out`, in whole bytes. Bits of a residual beyond the modulus are ignored. Throws
   /// Error at a residual that the code has no word for; `out` is not to be used then.
   void encode(std::span<const std::uint32_t> residuals, std::vector<std::byte>& out) const;

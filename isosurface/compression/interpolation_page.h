@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "isosurface/compression/activity_context.h"
+#include "isosurface/compression/interpolation_cells.h"
+#include "isosurface/compression/interpolation_prediction.h"
+#include "isosurface/compression/residual_token.h"
+
+namespace adamas {
+
+/// A page on its way to residuals or back, set by set: `predict`, then `residuals` or what was decoded, then
+/// `apply`. Residuals are folded (ResidualToken) and lie by parity, then by point, i running fastest.
+template <class Word>
+class InterpolationPage {
+ public:
+  using Samples = typename Page<Word>::template Points<Word>;
+  using Around = typename Surroundings<Word>::template Points<Word>;
+  using Cells = InterpolationCells<Word>;
+  using Value = typename Cells::Value;
+  static constexpr std::size_t kMostInSet = 3 * 512;
+
+  InterpolationPage(LatticePoint count, const Around& around) : count_(count) {
+    for (std::size_t n = 0; n < around.size(); ++n) cells_.values[0][n] = static_cast<Value>(around[n]);
+    for (typename Cells::Cells& residuals : cells_.residuals) residuals.fill(0);
+  }
+
+  /// Number of residuals of a set.
+  [[nodiscard]] std::size_t size(int set) const {
+    std::size_t total = 0;
+    for (int n = 0; n < Cells::parities(set); ++n) total += static_cast<std::size_t>(box(set, n).size());
+    return total;
+  }
+
+  void predict(int set) { prediction_.predict(set, cells_); }
+
+  /// What `of` makes of the activity round each point.
+  template <class Of>
+  void contexts(int set, Of&& of, std::uint8_t* contexts) const {
+    for (int n = 0; n < Cells::parities(set); ++n) {
+      const Value* const activity = cells_.activity[static_cast<std::size_t>(n)].data();
+      box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
+        for (int i = 0; i < row; ++i) {
+          contexts[before + static_cast<std::size_t>(i)] = of(activity[cell + static_cast<std::size_t>(i)]);
+        }
+      });
+      contexts += box(set, n).size();
+    }
+  }
+
+  void residuals(int set, const Samples& samples, Word* folded) const {
+    for (int n = 0; n < Cells::parities(set); ++n) {
+      const Value* const values = cells_.values[parity(set, n)].data();
+      const Word* const first = samples.data() + sample(parity(set, n));
+      box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
+        const Word* const from = first + sample_row(cell);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
+          folded[before + i] =
+              ResidualToken<Word>::fold(static_cast<Word>(from[2 * i] - static_cast<Word>(values[cell + i])));
+        }
+      });
+      folded += box(set, n).size();
+    }
+  }
+
+  /// Makes predictions the samples.
+  void apply(int set, const Word* folded) {
+    for (int n = 0; n < Cells::parities(set); ++n) {
+      Value* const values = cells_.values[parity(set, n)].data();
+      // There is nothing that needs those of the centres.
+      Value* const magnitudes = cells_.residuals[parity(set, n) % 7].data();
+      box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
+          const Word word = folded[before + i];
+          values[cell + i] =
+              static_cast<Word>(static_cast<Word>(values[cell + i]) + ResidualToken<Word>::unfold(word));
+          magnitudes[cell + i] = static_cast<Value>((word >> 1) + (word & 1));
+        }
+      });
+      folded += box(set, n).size();
+    }
+  }
+
+  /// All points of the page, and others.
+  void store(Samples& samples) const {
+    for (std::size_t k = 0; k < PageGrid::kSide; ++k) {
+      for (std::size_t j = 0; j < PageGrid::kSide; ++j) {
+        const std::size_t parity = (j & 1) * 2 + (k & 1) * 4, cell = 1 + 11 * (j / 2 + 1 + 11 * (k / 2 + 1));
+        const Value* const even = cells_.values[parity].data() + cell;
+        const Value* const odd = cells_.values[parity + 1].data() + cell;
+        Word* const to = samples.data() + PageGrid::kSide * (j + PageGrid::kSide * k);
+        for (std::size_t i = 0; i < PageGrid::kSide / 2; ++i) {
+          to[2 * i] = static_cast<Word>(even[i]);
+          to[2 * i + 1] = static_cast<Word>(odd[i]);
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t parity(int set, int n) {
+    return static_cast<std::size_t>(
+        Cells::kParities[static_cast<std::size_t>(set)][static_cast<std::size_t>(n)]);
+  }
+  [[nodiscard]] ParityBox box(int set, int n) const {
+    return ParityBox::of(count_, static_cast<int>(parity(set, n)));
+  }
+  /// Place in the page of the first point of a parity.
+  static constexpr std::size_t sample(std::size_t parity) {
+    return (parity & 1) + PageGrid::kSide * ((parity >> 1 & 1) + PageGrid::kSide * (parity >> 2));
+  }
+  /// How far from there the row is that begins at a cell.
+  static constexpr std::size_t sample_row(std::size_t cell) {
+    return 2 * PageGrid::kSide * (cell / 11 % 11 - 1 + PageGrid::kSide * (cell / Cells::kPlane - 1));
+  }
+
+  LatticePoint count_;
+  Cells cells_;
+  InterpolationPrediction<Word> prediction_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "isosurface/compression/bit_stream.h"
+#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/storage/page.h"
+#include "isosurface/storage/z_order.h"
+
+namespace adamas {
+
+/// What the first byte of a coded page says about the others.
+enum class PageKind : std::uint8_t {
+  kRaw = 0,       ///< the page's own samples as they are, the least byte first
+  kSmooth = 1,    ///< nothing follows: all samples are as predicted
+  kResiduals = 2  ///< the residuals' code
+};
+
+/// Number of points that the page keeps.
+inline std::size_t own_points(const PageShape& shape) {
+  const auto box = [](std::int32_t i, std::int32_t j, std::int32_t k) {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(j) * static_cast<std::size_t>(k);
+  };
+  const LatticePoint n = shape.count;
+  return box(n.i, n.j, n.k) - (shape.complete ? 0 : box((n.i + 1) / 2, (n.j + 1) / 2, (n.k + 1) / 2));
+}
+
+/// f(q, index in hierarchical z-order of 16^3 points) for the points that the page keeps, in this order.
+template <class F>
+void for_each_own_point(const PageShape& shape, F&& f) {
+  static constexpr ZOrder kOrder(4);
+  for (std::uint64_t index = shape.complete ? 0 : kOrder.size(1); index < kOrder.size(); ++index) {
+    const LatticePoint q = kOrder.point(index);
+    if (shape.owns(q)) f(q, index);
+  }
+}
+
+/// Fills the points of coarser levels.
+template <class Word>
+void take_coarser(const typename Surroundings<Word>::template Points<Word>& around,
+                  typename Page<Word>::template Points<Word>& samples) {
+  for (std::int32_t k = 0; k < PageGrid::kSide; k += 2) {
+    for (std::int32_t j = 0; j < PageGrid::kSide; j += 2) {
+      const Word* from = around.data() + surrounding_place({0, j, k});
+      Word* to = samples.data() + PageGrid::place({0, j, k}, 0);
+      for (int i = 0; i < PageGrid::kSide / 2; ++i) to[2 * i] = from[i];
+    }
+  }
+}
+
+/// The prediction of a point of a complete page from points that come before it in hierarchical z-order.
+template <class Word>
+Word predicted_inside(LatticePoint q, const PageShape& shape,
+                      const typename Page<Word>::template Points<Word>& samples) {
+  if (q == LatticePoint{0, 0, 0}) return 0;
+  const auto [a, b] = predictors(q, {shape.count.i, shape.count.j, shape.count.k});
+  return static_cast<Word>(predicted(samples[PageGrid::place(a, 0)], samples[PageGrid::place(b, 0)]));
+}
+
+/// Writes a page raw, its kind included.
+template <class Word>
+void write_raw(const PageShape& shape, const typename Page<Word>::template Points<Word>& samples,
+               std::vector<std::byte>& out) {
+  out.push_back(static_cast<std::byte>(PageKind::kRaw));
+  for_each_own_point(shape, [&](LatticePoint q, std::uint64_t) {
+    const Word sample = samples[PageGrid::place(q, 0)];
+    for (std::size_t b = 0; b < sizeof(Word); ++b)
+      out.push_back(static_cast<std::byte>(sample >> 8 * b & 0xff));
+  });
+}
+
+/// The inverse, of what follows the kind; false where it has another size.
+template <class Word>
+bool read_raw(std::span<const std::byte> bytes, const PageShape& shape,
+              typename Page<Word>::template Points<Word>& samples) {
+  if (bytes.size() != own_points(shape) * sizeof(Word)) return false;
+  const std::byte* next = bytes.data();
+  for_each_own_point(shape, [&](LatticePoint q, std::uint64_t) {
+    std::uint32_t sample = 0;
+    for (std::size_t b = 0; b < sizeof(Word); ++b) sample |= std::to_integer<std::uint32_t>(*next++) << 8 * b;
+    samples[PageGrid::place(q, 0)] = static_cast<Word>(sample);
+  });
+  return true;
+}
+
+}  // namespace adamas

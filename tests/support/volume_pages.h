@@ -1,0 +1,91 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "isosurface/compression/sample_codec.h"
+#include "isosurface/storage/page.h"
+#include "isosurface/storage/page_grid.h"
+
+namespace adamas::test {
+
+/// A volume in memory and its pages, straight from their definitions.
+template <class Word>
+class VolumePages {
+ public:
+  using Samples = typename SampleCodec<Word>::Samples;
+  using Around = typename SampleCodec<Word>::Around;
+  struct Content {
+    PageShape shape;
+    Around around;
+    Samples samples;  ///< `unused` where there is no point
+  };
+
+  /// One sample per point, i running fastest.
+  VolumePages(const std::array<std::uint64_t, 3>& dimensions, std::vector<Word> samples)
+      : grid_(dimensions), dimensions_(dimensions), samples_(std::move(samples)) {
+    for (int level = grid_.top(); level >= 0; --level) {
+      const LatticePoint n = grid_.blocks(level);
+      for (std::int32_t k = 0; k < n.k; ++k)
+        for (std::int32_t j = 0; j < n.j; ++j)
+          for (std::int32_t i = 0; i < n.i; ++i) {
+            const PageId page{level, {i, j, k}};
+            if (grid_.contains(page)) pages_.push_back(page);
+          }
+    }
+  }
+
+  [[nodiscard]] const PageGrid& grid() const { return grid_; }
+  [[nodiscard]] const std::vector<PageId>& pages() const { return pages_; }
+  [[nodiscard]] std::size_t bytes() const { return samples_.size() * sizeof(Word); }
+
+  /// At virtual points, the nearest sample.
+  [[nodiscard]] Word at(LatticePoint p) const {
+    const LatticePoint last = grid_.last();
+    const auto i = static_cast<std::size_t>(std::min(p.i, last.i));
+    const auto j = static_cast<std::size_t>(std::min(p.j, last.j));
+    const auto k = static_cast<std::size_t>(std::min(p.k, last.k));
+    return samples_[i + dimensions_[0] * (j + dimensions_[1] * k)];
+  }
+
+  /// Fills a page's content.
+  void content(const PageId& page, Content& result, Word unused = 0) const {
+    const LatticePoint end = grid_.extent(page.level);
+    const auto point = [&](LatticePoint q) {
+      LatticePoint p{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t at = PageGrid::kSide * page.block[axis] + q[axis];
+        // Those of the surroundings are of the next coarser level, and end where it does.
+        const std::int32_t greatest = (q[axis] & 1) == 0 ? (end[axis] + 1) / 2 * 2 : end[axis];
+        p[axis] = std::clamp(at, 0, greatest) * (1 << page.level);
+      }
+      return p;
+    };
+    result.shape = {grid_.count(page), grid_.is_complete(page), page.level};
+    const LatticePoint n = result.shape.count;
+    for (std::int32_t k = 0; k < PageGrid::kSide; ++k)
+      for (std::int32_t j = 0; j < PageGrid::kSide; ++j)
+        for (std::int32_t i = 0; i < PageGrid::kSide; ++i) {
+          const bool inside = i < n.i && j < n.j && k < n.k;
+          result.samples[PageGrid::place({i, j, k}, 0)] = inside ? at(point({i, j, k})) : unused;
+        }
+    for (std::int32_t k = -2; k <= 18; k += 2)
+      for (std::int32_t j = -2; j <= 18; j += 2)
+        for (std::int32_t i = -2; i <= 18; i += 2) {
+          result.around[surrounding_place({i, j, k})] = at(point({i, j, k}));
+        }
+  }
+
+ private:
+  PageGrid grid_;
+  std::array<std::uint64_t, 3> dimensions_;
+  std::vector<Word> samples_;
+  std::vector<PageId> pages_;
+};
+
+}  // namespace adamas::test
