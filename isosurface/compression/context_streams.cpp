@@ -1,0 +1,148 @@
+#include "isosurface/compression/context_coder.h"
+
+namespace adamas {
+namespace {
+
+constexpr int kWordBits = 16;
+constexpr int kEscapedBits = 8;
+constexpr std::size_t kLanes = ContextCoder::kLanes;
+
+/// States and words lie in the stream with the least byte first.
+std::uint32_t load_word(const std::byte* at) {
+  return std::to_integer<std::uint32_t>(at[0]) | std::to_integer<std::uint32_t>(at[1]) << 8;
+}
+
+std::uint32_t step(const ContextCoder::Entry* entries, std::uint32_t state, std::uint32_t& symbol) {
+  const ContextCoder::Entry entry = entries[state & (ContextCoder::kScale - 1)];
+  symbol = entry & 255;
+  return (entry >> 8 & 0xfff) * (state >> ContextCoder::kScaleBits) + (entry >> 20);
+}
+
+/// The stream as it grows from its end: the decoder will take what comes last first.
+struct BackwardStates {
+  std::array<std::uint32_t, kLanes> states;
+  std::vector<std::uint16_t> words;
+
+  void push(std::size_t lane, std::uint32_t start, std::uint32_t frequency, int scale_bits) {
+    std::uint32_t& state = states[lane];
+    if (state >> (32 - scale_bits) >= frequency) {
+      words.push_back(static_cast<std::uint16_t>(state));
+      state >>= kWordBits;
+    }
+    state = ((state / frequency) << scale_bits) + state % frequency + start;
+  }
+};
+
+}  // namespace
+
+void ContextEncoder::put(std::span<const std::uint16_t> contexts, std::span<const std::uint8_t> symbols) {
+  ADAMAS_ASSERT(contexts.size() == symbols.size());
+  for (std::size_t n = 0; n < symbols.size(); ++n) {
+    items_.push_back({contexts[n], symbols[n], static_cast<std::uint8_t>(n % kLanes)});
+  }
+}
+
+void ContextEncoder::finish(std::vector<std::byte>& out) const {
+  BackwardStates stream;
+  stream.states.fill(ContextCoder::kLeastState);
+  stream.words.reserve(items_.size() / 2);
+  for (std::size_t n = items_.size(); n-- > 0;) {
+    const auto [context, symbol, lane] = items_[n];
+    ContextCoder::Range range = coder_.range(context, symbol);
+    if (range.frequency == 0) {
+      stream.push(lane, symbol, 1, kEscapedBits);
+      range = coder_.escape(context);
+    }
+    stream.push(lane, range.start, range.frequency, ContextCoder::kScaleBits);
+  }
+  const auto append = [&out](std::uint32_t number, int bytes) {
+    for (int n = 0; n < bytes; ++n) out.push_back(static_cast<std::byte>(number >> (8 * n) & 0xff));
+  };
+  for (const std::uint32_t state : stream.states) append(state, 4);
+  for (std::size_t n = stream.words.size(); n-- > 0;) append(stream.words[n], 2);
+}
+
+ContextDecoder::ContextDecoder(const ContextCoder& coder, std::span<const std::byte> bytes)
+    : coder_(coder), next_(bytes.data()), end_(bytes.data() + bytes.size()) {
+  states_.fill(ContextCoder::kLeastState);
+  if (bytes.size() < 4 * kLanes) {
+    good_ = false;
+    next_ = end_;
+    return;
+  }
+  for (std::uint32_t& state : states_) {
+    state = load_word(next_) | load_word(next_ + 2) << kWordBits;
+    next_ += 4;
+    good_ = good_ && state >= ContextCoder::kLeastState;
+  }
+}
+
+void ContextDecoder::renormalise(std::uint32_t& state) {
+  if (state >= ContextCoder::kLeastState) return;
+  state <<= kWordBits;
+  if (end_ - next_ < 2) {
+    good_ = false;
+    return;
+  }
+  state |= load_word(next_);
+  next_ += 2;
+}
+
+std::uint8_t ContextDecoder::decode_one(std::uint32_t& state, std::uint16_t context) {
+  std::uint32_t symbol = 0;
+  state = step(coder_.entries(context), state, symbol);
+  renormalise(state);
+  if (symbol == ContextCoder::kEscape) {
+    symbol = state & ((1u << kEscapedBits) - 1);
+    state >>= kEscapedBits;
+    renormalise(state);
+    if (symbol >= coder_.symbols() || coder_.range(context, symbol).frequency != 0) {
+      good_ = false;
+      symbol = 0;
+    }
+  }
+  return static_cast<std::uint8_t>(symbol);
+}
+
+void ContextDecoder::decode(std::span<const std::uint16_t> contexts, std::span<std::uint8_t> symbols) {
+  ADAMAS_ASSERT(contexts.size() == symbols.size());
+  std::size_t n = 0;
+  std::array<std::uint32_t, kLanes> states = states_;
+  while (symbols.size() - n >= kLanes) {
+    // Up to two words for each symbol.
+    if (end_ - next_ < 4 * static_cast<std::ptrdiff_t>(kLanes)) break;
+    std::array<std::uint32_t, kLanes> found{}, before = states;
+    const std::byte* next = next_;
+    std::uint32_t escaped = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      std::uint32_t state = step(coder_.entries(contexts[n + lane]), states[lane], found[lane]);
+      const bool low = state < ContextCoder::kLeastState;
+      const std::uint32_t longer = state << kWordBits | load_word(next);
+      states[lane] = low ? longer : state;
+      next += low ? 2 : 0;
+      escaped |= found[lane] == ContextCoder::kEscape ? 1u : 0u;
+    }
+    if (escaped != 0) [[unlikely]] {
+      states = before;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        symbols[n + lane] = decode_one(states[lane], contexts[n + lane]);
+      }
+    } else {
+      next_ = next;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        symbols[n + lane] = static_cast<std::uint8_t>(found[lane]);
+      }
+    }
+    n += kLanes;
+  }
+  for (; n < symbols.size(); ++n) symbols[n] = decode_one(states[n % kLanes], contexts[n]);
+  states_ = states;
+}
+
+bool ContextDecoder::finish() const {
+  bool least = true;
+  for (const std::uint32_t state : states_) least = least && state == ContextCoder::kLeastState;
+  return good_ && least && next_ == end_;
+}
+
+}  // namespace adamas

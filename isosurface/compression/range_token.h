@@ -1,0 +1,53 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+namespace adamas {
+
+/// Where a range begins, as seen from the word `predicted` and the bound at or before it: a symbol, and bits
+/// that it leaves open.
+template <class Word>
+struct RangeToken {
+  static constexpr int kBits = 8 * sizeof(Word);
+  static constexpr std::uint8_t kPredicted = 0;  ///< just there
+  static constexpr std::uint8_t kBound = 1;      ///< at the bound, which is another word
+  static constexpr std::uint8_t kFirst = 2;      ///< the distance is 1; then 2, 3, 4 to 5, 6 to 7, 8 to 11...
+  static constexpr std::uint8_t kBehind =
+      static_cast<std::uint8_t>(kFirst + 2 * kBits - 1);  ///< all bits follow
+  static constexpr std::size_t kSymbols = kBehind + 1;
+
+  std::uint8_t symbol = 0;
+  std::uint32_t extra = 0;
+
+  static constexpr RangeToken of(Word value, Word predicted, Word bound) {
+    if (value == predicted) return {kPredicted, 0};
+    if (value == bound) return {kBound, 0};
+    if (value > predicted) return {kBehind, value};
+    const auto distance = static_cast<std::uint32_t>(predicted - value);
+    if (distance < 4) return {static_cast<std::uint8_t>(kFirst + distance - 1), 0};
+    const auto bits = static_cast<int>(std::bit_width(distance));
+    const std::uint32_t half = distance >> (bits - 2) & 1;
+    return {static_cast<std::uint8_t>(kFirst + 3 + 2 * (bits - 3) + static_cast<int>(half)),
+            distance & ((1u << (bits - 2)) - 1)};
+  }
+
+  /// Of a symbol from kFirst on.
+  static constexpr int extra_bits(std::uint8_t symbol) {
+    if (symbol == kBehind) return kBits;
+    return symbol < kFirst + 3 ? 0 : (symbol - kFirst - 3) / 2 + 1;
+  }
+
+  /// The word from a symbol from kFirst on. Another token may stand for it too, or none if the symbol is not
+  /// one that `of` gives.
+  [[nodiscard]] constexpr Word value(Word predicted) const {
+    if (symbol == kBehind) return static_cast<Word>(extra);
+    const int number = symbol - kFirst;
+    if (number < 3) return static_cast<Word>(predicted - number - 1);
+    const int bits = (number - 3) / 2 + 3;
+    const auto lead = static_cast<std::uint32_t>(2 + ((number - 3) & 1)) << (bits - 2);
+    return static_cast<Word>(predicted - (lead | extra));
+  }
+};
+
+}  // namespace adamas

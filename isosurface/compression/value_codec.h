@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "isosurface/compression/context_coder.h"
+#include "isosurface/storage/page.h"
+
+namespace adamas {
+
+/// Counts what errors and ranges pages hold, for the tables of the codec that will code them. Codecs code any
+/// page, also one that was not counted, only less well.
+template <class Word>
+class ValueSurvey {
+ public:
+  ValueSurvey();
+
+  /// `around` is not read where the page is complete; of `page` only places that have points are read.
+  void add(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
+  /// Adds what another survey has counted. The order of pages and of merging does not matter.
+  void merge(const ValueSurvey& other) { counts_.merge(other.counts_); }
+
+  [[nodiscard]] const ContextCounts& counts() const { return counts_; }
+
+ private:
+  ContextCounts counts_;
+};
+
+/// Makes the error codes and the ranges of a page's own points into bytes and back, lossless, whatever they
+/// are, but for ranges with low > high, of which all come back as low = the greatest word, high = 0. What is
+/// known of coarser levels and of the page's samples is made use of. May be used by several threads at once.
+/// Word: see Page.
+template <class Word>
+class ValueCodec {
+ public:
+  explicit ValueCodec(const ValueSurvey<Word>& survey) : coder_(survey.counts()) {}
+
+  /// From which `parse` makes the codec again; the same bytes for equal surveys.
+  [[nodiscard]] std::vector<std::byte> tables() const;
+  /// Throws Error, which begins with `name`, unless some codec's `tables` could have given just these bytes.
+  [[nodiscard]] static ValueCodec parse(std::span<const std::byte> tables, std::string_view name);
+
+  /// Appends the values of the page's own points, in whole bytes. `around` is not read where the page is
+  /// complete; of `page` only places that have points are read.
+  void encode(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page,
+              std::vector<std::byte>& out) const;
+  /// Fills the errors and ranges of all places that have points, those of coarser levels from `around`; the
+  /// samples are those with which the page was encoded. Returns false, and leaves anything in the errors and
+  /// ranges, where the bytes are not what `encode` of some page gives.
+  [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape,
+                            const Surroundings<Word>& around, Page<Word>& page) const;
+
+ private:
+  explicit ValueCodec(ContextCoder coder) : coder_(std::move(coder)) {}
+
+  ContextCoder coder_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "isosurface/compression/value_walk.h"
+
+namespace adamas {
+
+/// How a page's errors are coded, and its ranges. The first that serves is taken.
+enum class ErrorMode : std::uint8_t {
+  kZero,   ///< all are 0
+  kEqual,  ///< all are the same
+  kCoded
+};
+enum class RangeMode : std::uint8_t {
+  kPredicted,     ///< all as predicted
+  kEmpty,         ///< all have nothing in them
+  kCodedButSure,  ///< those that were sure are as predicted, the others are coded
+  kCoded
+};
+
+/// What is to be found of a page's errors and ranges to know their modes.
+template <class Word>
+struct ValueSummary {
+  bool any_error = false, errors_differ = false;
+  std::uint8_t first_error = 0;
+  bool any_other = false;       ///< a word of a range that is not predicted
+  bool any_sure_other = false;  ///< among those that were sure
+  bool any_word = false;        ///< a range that is not empty
+
+  void add_error(std::uint8_t code) {
+    if (!any_error) first_error = code;
+    any_error = true;
+    errors_differ |= code != first_error;
+  }
+  void add_range(Word value, Word predicted, bool sure) {
+    any_other |= value != predicted;
+    any_sure_other |= sure && value != predicted;
+    any_word |= value != ValueFields<Word>::kUnknown;
+  }
+
+  [[nodiscard]] ErrorMode error_mode() const {
+    if (errors_differ) return ErrorMode::kCoded;
+    return first_error == 0 ? ErrorMode::kZero : ErrorMode::kEqual;
+  }
+  [[nodiscard]] RangeMode range_mode() const {
+    if (!any_other) return RangeMode::kPredicted;
+    if (!any_word) return RangeMode::kEmpty;
+    return any_sure_other ? RangeMode::kCoded : RangeMode::kCodedButSure;
+  }
+};
+
+/// What a page's errors and ranges are coded as.
+template <class Word>
+class ValueSymbols {
+ public:
+  ValueSymbols(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
+
+  struct Stage {
+    std::vector<std::uint16_t> contexts;
+    std::vector<std::uint8_t> symbols;
+  };
+  struct Extra {
+    std::uint32_t bits;
+    int count;
+  };
+
+  [[nodiscard]] const ValueSummary<Word>& summary() const { return summary_; }
+  /// Those to be coded, by stages.
+  [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
+  /// The bits that symbols leave open, in their order.
+  [[nodiscard]] const std::vector<Extra>& extras() const { return extras_; }
+
+  // For walk_values.
+  void errors(const ValueStage<std::uint8_t>& stage,
+              const typename Page<Word>::template Points<std::uint8_t>& codes);
+  void range(const ValueStage<Word>& stage, std::size_t side,
+             const typename Page<Word>::template Points<Word>& words);
+
+ private:
+  void leave_out_what_modes_tell();
+
+  ValueSummary<Word> summary_;
+  std::vector<Stage> stages_;
+  std::vector<std::size_t> range_stages_;  ///< which of them
+  std::vector<Extra> extras_;
+};
+
+}  // namespace adamas
