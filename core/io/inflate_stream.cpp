@@ -12,42 +12,72 @@ namespace adamas {
 
 namespace {
 
-struct Inflater {
-  z_stream zip{};
-  Inflater() { inflateInit2(&zip, 15 + 32); }
-  ~Inflater() { inflateEnd(&zip); }
+constexpr char kGzip = '\x1f';
+
+class Inflater {
+ public:
+  explicit Inflater(const ByteSupply& compressed) : supply_(compressed), out_(std::size_t{1} << 18) {
+    inflateInit2(&zip_, 15 + 32);
+  }
+  ~Inflater() { inflateEnd(&zip_); }
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
+
+  /// False where the stream is corrupt or ends early.
+  bool run(const std::function<void(std::string_view)>& receive) {
+    if (!more_input()) return false;
+    const bool gzip = *zip_.next_in == static_cast<Bytef>(kGzip);
+    for (int state = Z_OK; state == Z_OK;) {
+      if (zip_.avail_in == 0) more_input();
+      zip_.next_out = reinterpret_cast<Bytef*>(out_.data());
+      zip_.avail_out = static_cast<uInt>(out_.size());
+      state = inflate(&zip_, Z_NO_FLUSH);
+      const std::size_t made = out_.size() - zip_.avail_out;
+      total_ += made;
+      if (made > 0) receive({out_.data(), made});
+      if (state == Z_STREAM_END) {
+        if (!gzip || (zip_.avail_in == 0 && !more_input())) return true;
+        if (*zip_.next_in != static_cast<Bytef>(kGzip)) return true;
+        state = inflateReset(&zip_);
+      } else if (state == Z_BUF_ERROR && (zip_.avail_in > 0 || more_input())) {
+        state = Z_OK;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::uint64_t total() const { return total_; }
+
+ private:
+  bool more_input() {
+    if (piece_.empty()) piece_ = supply_();
+    const std::size_t step = std::min<std::size_t>(piece_.size(), std::numeric_limits<uInt>::max());
+    zip_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(piece_.data()));
+    zip_.avail_in = static_cast<uInt>(step);
+    piece_.remove_prefix(step);
+    return step > 0;
+  }
+
+  const ByteSupply& supply_;
+  std::string_view piece_;
+  std::vector<char> out_;
+  z_stream zip_{};
+  std::uint64_t total_ = 0;
 };
 
 }  // namespace
 
+std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
+                             const std::function<void(std::string_view)>& receive) {
+  Inflater inflater(compressed);
+  if (!inflater.run(receive))
+    fail("{}: expected whole compressed data, found corrupt or truncated ones", name);
+  return inflater.total();
+}
+
 std::size_t inflate_stream(std::string_view compressed, const std::string& name,
                            const std::function<void(std::string_view)>& receive) {
-  Inflater inflater;
-  z_stream& zip = inflater.zip;
-  std::vector<char> out(std::size_t{1} << 18);
-  std::size_t total = 0;
-  int state = Z_OK;
-  while (state == Z_OK) {
-    if (zip.avail_in == 0) {
-      const std::size_t step = std::min<std::size_t>(compressed.size(), std::numeric_limits<uInt>::max());
-      zip.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
-      zip.avail_in = static_cast<uInt>(step);
-      compressed.remove_prefix(step);
-    }
-    zip.next_out = reinterpret_cast<Bytef*>(out.data());
-    zip.avail_out = static_cast<uInt>(out.size());
-    state = inflate(&zip, Z_NO_FLUSH);
-    const std::size_t made = out.size() - zip.avail_out;
-    total += made;
-    if (made > 0) receive({out.data(), made});
-    // No progress without input: the stream ends early.
-    if (state == Z_OK && made == 0 && zip.avail_in == 0 && compressed.empty()) break;
-  }
-  if (state != Z_STREAM_END)
-    fail("{}: expected whole compressed data, found corrupt or truncated ones", name);
-  return total;
+  return inflate_stream(supply_text(compressed), name, receive);
 }
 
 }  // namespace adamas

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "core/data/volume.h"
 
@@ -34,5 +35,32 @@ std::optional<StoredType> find_stored_type(std::string_view name, TypeNames name
 SampleType sample_type_for(StoredType type);
 /// As which samples are written.
 StoredType stored_type(SampleType type);
+
+/// Calls `visit` with a value, zero, of the type.
+template <class Visit>
+void visit_stored_type(StoredType type, Visit&& visit) {
+  switch (type) {
+    case StoredType::kInt8:
+      return std::forward<Visit>(visit)(std::int8_t{});
+    case StoredType::kUint8:
+      return std::forward<Visit>(visit)(std::uint8_t{});
+    case StoredType::kInt16:
+      return std::forward<Visit>(visit)(std::int16_t{});
+    case StoredType::kUint16:
+      return std::forward<Visit>(visit)(std::uint16_t{});
+    case StoredType::kInt32:
+      return std::forward<Visit>(visit)(std::int32_t{});
+    case StoredType::kUint32:
+      return std::forward<Visit>(visit)(std::uint32_t{});
+    case StoredType::kInt64:
+      return std::forward<Visit>(visit)(std::int64_t{});
+    case StoredType::kUint64:
+      return std::forward<Visit>(visit)(std::uint64_t{});
+    case StoredType::kFloat32:
+      return std::forward<Visit>(visit)(float{});
+    case StoredType::kFloat64:
+      return std::forward<Visit>(visit)(double{});
+  }
+}
 
 }  // namespace adamas

@@ -33,9 +33,11 @@ class Parser {
   }
 
   void refuse_other_kinds() {
-    if (fields_.is_true("CompressedData")) fail_field("CompressedData", "samples that are not compressed");
-    if (fields_.has("BinaryData") && !fields_.is_true("BinaryData"))
-      fail_field("BinaryData", "binary samples");
+    if (fields_.is_true("CompressedData")) source_.coding = SampleCoding::kDeflate;
+    if (fields_.has("BinaryData") && !fields_.is_true("BinaryData")) {
+      if (source_.packed()) fail_field("BinaryData", "binary samples where they are compressed");
+      source_.coding = SampleCoding::kText;
+    }
     const char* channels = "ElementNumberOfChannels";
     if (fields_.has(channels) && fields_.value(channels) != "1") fail_field(channels, "one value per sample");
     const auto type = find_stored_type(fields_.value("ElementType"), TypeNames::kMetaImage);
@@ -70,7 +72,13 @@ class Parser {
     const auto skip = parse_number_list<std::int64_t>(fields_.value("HeaderSize"));
     if (!skip || skip->size() != 1 || skip->front() < -1) fail_field("HeaderSize", "a number of bytes");
     source_.at_end = skip->front() < 0;
-    if (!source_.at_end) source_.skip_bytes = static_cast<std::uint64_t>(skip->front());
+    if (!source_.packed()) {
+      if (!source_.at_end) source_.skip_bytes = static_cast<std::uint64_t>(skip->front());
+      return;
+    }
+    if (source_.at_end) fail_field("HeaderSize", "a number of bytes where samples are compressed or text");
+    // Its own header may count as well as one before it.
+    source_.header_bytes += static_cast<std::uint64_t>(skip->front());
   }
 
   /// A number per axis under the first of the keys that is there, else `otherwise`.

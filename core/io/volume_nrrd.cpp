@@ -9,10 +9,8 @@ VolumeSource nrrd_source(std::string_view text, const std::filesystem::path& pat
   VolumeSource source;
   source.name = path.string();
   const NrrdHeader header = parse_nrrd_header(text, source.name);
-  if (header.encoding != NrrdEncoding::kRaw) {
-    fail("{}: expected samples that are not compressed (encoding: raw), found {}", source.name,
-         header.encoding == NrrdEncoding::kGzip ? "gzip" : "text");
-  }
+  if (header.encoding == NrrdEncoding::kGzip) source.coding = SampleCoding::kDeflate;
+  if (header.encoding == NrrdEncoding::kText) source.coding = SampleCoding::kText;
   if (header.components != 1) {
     fail("{}: expected one value per sample, found {}", source.name, header.components);
   }
@@ -24,8 +22,9 @@ VolumeSource nrrd_source(std::string_view text, const std::filesystem::path& pat
     fail("{}: expected a header of less than {} bytes, found a longer one", source.name, kLongestHeader);
   }
   source.skip_lines = header.line_skip;
-  source.at_end = header.byte_skip < 0;
-  if (!source.at_end) source.skip_bytes = static_cast<std::uint64_t>(header.byte_skip);
+  // From the end one can count only where it is in sight.
+  source.at_end = header.byte_skip < 0 && !source.packed();
+  if (header.byte_skip > 0) source.skip_bytes = static_cast<std::uint64_t>(header.byte_skip);
   if (header.data_file.empty()) source.header_bytes = header.header_bytes;
   source.set_stored(find_stored_type(header.type).value());
   source.big_endian = header.big_endian;

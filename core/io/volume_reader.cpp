@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
-#include "core/io/input_file.h"
 
 namespace adamas {
 
@@ -50,27 +50,17 @@ void turn(std::byte* samples, std::uint64_t nx, std::uint64_t ny, bool along_x, 
 }  // namespace
 
 VolumeReader::VolumeReader(VolumeSource source) : source_(std::move(source)) {
+  ADAMAS_ASSERT(!source_.packed());
   source_.grid.check(source_.name);
+  file_ = source_.scratch ? source_.scratch : FileHandle::open(source_.file);
   find_samples();
 }
 
 void VolumeReader::find_samples() {
   const std::string& name = source_.name;
-  const std::uint64_t size = check_input_file(source_.file);
+  const std::uint64_t size = file_->size();
   const std::uint64_t expected = source_.sample_file_bytes();
-  stream_.open(source_.file, std::ios::binary);
-  begin_ = source_.header_bytes;
-  std::vector<std::byte> piece;
-  for (std::uint64_t lines = source_.skip_lines; lines > 0;) {
-    if (begin_ >= size)
-      fail("{}: expected {} lines to skip, found {}", name, source_.skip_lines, source_.skip_lines - lines);
-    piece.resize(std::min<std::uint64_t>(kPiece, size - begin_));
-    read_at(begin_, piece.data(), piece.size());
-    for (const std::byte b : piece) {
-      ++begin_;
-      if (b == std::byte{'\n'} && --lines == 0) break;
-    }
-  }
+  begin_ = file_->behind_lines(source_.header_bytes, source_.skip_lines, name);
   const std::uint64_t left = size - std::min(begin_, size);
   if (source_.at_end) source_.skip_bytes = left - std::min(expected, left);
   const std::uint64_t before = source_.skip_bytes + source_.count_bytes;
@@ -93,11 +83,9 @@ void VolumeReader::find_samples() {
 }
 
 void VolumeReader::read_at(std::uint64_t at, std::byte* bytes, std::size_t size) {
-  stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(at));
-  stream_.read(reinterpret_cast<char*>(bytes), static_cast<std::streamsize>(size));
-  if (!stream_) {
-    fail("{}: expected {} bytes from byte {} on, found {}", source_.name, size, at, stream_.gcount());
+  const std::size_t found = file_->read_some(at, {bytes, size});
+  if (found != size) {
+    fail("{}: expected {} bytes from byte {} on, found {}", source_.name, size, at, found);
   }
 }
 
@@ -118,11 +106,18 @@ void VolumeReader::read_converted(std::uint64_t at, std::span<std::byte> samples
     for (std::size_t i = 0; i < count; ++i) {
       Stored value;
       std::memcpy(&value, buffer_.data() + i * sizeof(Stored), sizeof(Stored));
-      const auto sample = converted<Sample>(value);
-      std::memcpy(samples.data() + (begin + i) * sizeof(Sample), &sample, sizeof(Sample));
       // Wide enough for both, so that the difference is that of the numbers themselves; NaN differs from
       // none.
-      const long double change = std::abs(static_cast<long double>(sample) - static_cast<long double>(value));
+      long double exact = static_cast<long double>(value);
+      Sample sample{};
+      if (source_.scaled()) {
+        exact = source_.slope * exact + source_.intercept;
+        sample = converted<Sample>(static_cast<double>(exact));
+      } else {
+        sample = converted<Sample>(value);
+      }
+      std::memcpy(samples.data() + (begin + i) * sizeof(Sample), &sample, sizeof(Sample));
+      const long double change = std::abs(static_cast<long double>(sample) - exact);
       if (!(change > 0)) continue;
       ++changed_;
       greatest_change_ = std::max(greatest_change_, static_cast<double>(change));
@@ -130,33 +125,22 @@ void VolumeReader::read_converted(std::uint64_t at, std::span<std::byte> samples
   }
 }
 
+template <class Stored>
+void VolumeReader::read_plane_of(std::uint64_t at, std::span<std::byte> samples) {
+  if constexpr (std::is_same_v<Stored, std::int8_t>) {
+    if (!source_.scaled()) return read_converted<Stored, std::int16_t>(at, samples);
+  } else if constexpr (sizeof(Stored) <= 2 || std::is_same_v<Stored, float>) {
+    if (!source_.scaled()) return read_as_stored(at, samples);
+  }
+  read_converted<Stored, float>(at, samples);
+}
+
 void VolumeReader::read_plane(std::uint64_t k, std::span<std::byte> samples) {
   const VolumeGrid& volume = source_.grid;
   ADAMAS_ASSERT(k < volume.dimensions[2] && samples.size() == volume.plane_bytes());
   const std::uint64_t plane = source_.reversed[2] ? volume.dimensions[2] - 1 - k : k;
   const std::uint64_t at = begin_ + plane * volume.plane_samples() * stored_bytes(source_.stored);
-  switch (source_.stored) {
-    case StoredType::kInt8:
-      read_converted<std::int8_t, std::int16_t>(at, samples);
-      break;
-    case StoredType::kInt32:
-      read_converted<std::int32_t, float>(at, samples);
-      break;
-    case StoredType::kUint32:
-      read_converted<std::uint32_t, float>(at, samples);
-      break;
-    case StoredType::kInt64:
-      read_converted<std::int64_t, float>(at, samples);
-      break;
-    case StoredType::kUint64:
-      read_converted<std::uint64_t, float>(at, samples);
-      break;
-    case StoredType::kFloat64:
-      read_converted<double, float>(at, samples);
-      break;
-    default:
-      read_as_stored(at, samples);
-  }
+  visit_stored_type(source_.stored, [&]<class Stored>(Stored) { read_plane_of<Stored>(at, samples); });
   const auto [nx, ny, nz] = volume.dimensions;
   const auto [along_x, along_y, along_z] = source_.reversed;
   if (sample_bytes(volume.type) == 1) return turn<std::uint8_t>(samples.data(), nx, ny, along_x, along_y);
@@ -165,40 +149,16 @@ void VolumeReader::read_plane(std::uint64_t k, std::span<std::byte> samples) {
 }
 
 std::string VolumeReader::note() const {
+  std::string text = source_.remark;
   const std::string from = stored_name(source_.stored), to = sample_name(source_.grid.type);
-  if (from == to) return {};
-  return fmt::format("{}: {} samples are read as {}, {}", source_.name, from, to,
-                     changed_ == 0
-                         ? "without loss"
-                         : fmt::format("{} of them changed, by at most {:.3g}", changed_, greatest_change_));
-}
-
-VolumeReader open_volume(const std::filesystem::path& path, const std::string& array) {
-  const std::string extension = file_extension(path);
-  const bool nrrd = extension == ".nrrd" || extension == ".nhdr";
-  const bool meta_image = extension == ".mha" || extension == ".mhd";
-  if (!nrrd && !meta_image && extension != ".vti") {
-    fail("{}: expected a volume whose name ends in .nrrd, .nhdr, .mha, .mhd or .vti, found '{}'",
-         path.string(), extension);
+  if (from != to || source_.scaled()) {
+    if (!text.empty()) text += "; ";
+    text += fmt::format("{} samples are read as {}, ", from, to);
+    if (source_.scaled()) text += fmt::format("times {:.9g} plus {:.9g}, ", source_.slope, source_.intercept);
+    text += changed_ == 0 ? "without loss"
+                          : fmt::format("{} of them changed, by at most {:.3g}", changed_, greatest_change_);
   }
-  const std::string text = read_beginning(path);
-  return VolumeReader(nrrd         ? nrrd_source(text, path)
-                      : meta_image ? meta_image_source(text, path)
-                                   : vti_source(text, path, array));
-}
-
-VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume) {
-  VolumeSource source;
-  source.name = path.string();
-  source.file = path;
-  source.skip_bytes = volume.header_bytes;
-  source.exact = true;
-  source.set_stored(volume.type);
-  source.big_endian = volume.big_endian;
-  source.grid.dimensions = volume.dimensions;
-  source.grid.spacing = volume.spacing;
-  source.grid.origin = volume.origin;
-  return VolumeReader(std::move(source));
+  return text.empty() ? text : source_.name + ": " + text;
 }
 
 }  // namespace adamas

@@ -4,11 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/data/volume.h"
 #include "core/io/volume_source.h"
 
@@ -29,7 +30,8 @@ struct RawVolume {
 /// does not know become float32.
 class VolumeReader {
  public:
-  /// Throws Error where the file is missing or has not the size that the source states.
+  /// Throws Error where the file is missing or has not the size that the source states, whose samples must
+  /// not be packed.
   explicit VolumeReader(VolumeSource source);
 
   [[nodiscard]] const VolumeGrid& grid() const { return source_.grid; }
@@ -49,20 +51,30 @@ class VolumeReader {
   void find_samples();
   void read_at(std::uint64_t at, std::byte* bytes, std::size_t size);
   void read_as_stored(std::uint64_t at, std::span<std::byte> samples);
+  template <class Stored>
+  void read_plane_of(std::uint64_t at, std::span<std::byte> samples);
   template <class Stored, class Sample>
   void read_converted(std::uint64_t at, std::span<std::byte> samples);
 
   VolumeSource source_;
   std::uint64_t begin_ = 0;  ///< of the samples in the file
-  std::ifstream stream_;
+  std::shared_ptr<const FileHandle> file_;
   std::vector<std::byte> buffer_;
   std::uint64_t changed_ = 0;
   double greatest_change_ = 0;
 };
 
-/// Opens .nrrd, .nhdr, .mha, .mhd or .vti, uncompressed, with one value per sample; `array` is the name of
-/// one in a .vti that has several. Throws Error that names the file at anything else.
-VolumeReader open_volume(const std::filesystem::path& path, const std::string& array = {});
+struct VolumeOptions {
+  std::string array;                     ///< of a file with several: the name of one
+  std::filesystem::path scratch_folder;  ///< for unpacked samples; empty: the system's for temporary files
+};
+
+/// Opens a volume of one value per sample, of the format that the name ends in or, where that says nothing,
+/// that the first bytes show (docs/file_formats.md lists them). Samples that cannot be read in place, plane
+/// by plane, are unpacked first, into a file that is gone with the reader; that is what `progress` is for.
+/// Throws Error, with the file's name, at anything else.
+VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions& options = {},
+                         Progress& progress = SilentProgress::instance());
 
 /// Throws Error where the file has not exactly the size that follows.
 VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume);

@@ -1,3 +1,5 @@
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -15,8 +17,12 @@ constexpr std::size_t kShown = 40;
 
 class Parser {
  public:
-  Parser(std::string_view text, const std::filesystem::path& path, std::string array)
-      : text_(text), name_(path.string()), array_(std::move(array)), tags_(text, name_) {
+  Parser(const XmlSkeleton& skeleton, const std::filesystem::path& path, std::string array)
+      : skeleton_(skeleton),
+        text_(skeleton.text),
+        name_(path.string()),
+        array_(std::move(array)),
+        tags_(text_, name_) {
     source_.name = name_;
     source_.file = path;
   }
@@ -27,22 +33,35 @@ class Parser {
       if (tag->name == "PointData") {
         on_points = !tag->closing && !tag->empty;
         if (!tag->closing) scalars_ = tag->value("Scalars");
+        points_end_ = tag->closing || tag->empty;
       }
+      if (on_points) follow_array(*tag);
       if (tag->closing) continue;
       if (tag->name == "VTKFile") read_file(*tag);
       if (tag->name == "ImageData") read_image(*tag);
       if (tag->name == "Piece" && has_image_) read_piece(*tag);
-      if (tag->name == "DataArray" && on_points) arrays_.push_back(*tag);
       if (tag->name != "AppendedData") continue;
       if (!has_image_) break;
       read_array(chosen_array());
-      find_samples(*tag);
+      if (inline_) break;
+      find_appended(*tag);
       return source_;
     }
-    fail("{}: expected an image file of VTK with appended raw data, found none", name_);
+    if (!has_image_) fail("{}: expected an image file of VTK, found none", name_);
+    if (!points_end_) fail("{}: expected whole PointData, found a part or none", name_);
+    const Array& array = chosen_array();
+    read_array(array);
+    find_inline(array);
+    return source_;
   }
 
  private:
+  struct Array {
+    XmlTag tag;
+    std::optional<std::size_t> begin;  ///< of the text in it, of that which is no further tag's
+    bool whole = false;
+  };
+
   [[noreturn]] void fail_value(std::string_view what, std::string_view expected,
                                std::string_view found) const {
     fail("{}: {}: expected {}, found '{}'", name_, what, expected, printable(found, kShown));
@@ -59,8 +78,10 @@ class Parser {
 
   void read_file(const XmlTag& tag) {
     if (tag.value("type") != "ImageData") fail_value("VTKFile type", "ImageData", tag.value("type"));
-    if (tag.has("compressor"))
-      fail_value("compressor", "samples that are not compressed", tag.value("compressor"));
+    compressed_ = tag.has("compressor");
+    if (compressed_ && tag.value("compressor") != "vtkZLibDataCompressor") {
+      fail_value("compressor", "vtkZLibDataCompressor or none", tag.value("compressor"));
+    }
     const std::string_view order = tag.value("byte_order"), count = tag.value("header_type");
     if (order != "LittleEndian" && order != "BigEndian") {
       fail_value("byte_order", "LittleEndian or BigEndian", order);
@@ -110,12 +131,31 @@ class Parser {
     }
   }
 
-  [[nodiscard]] const XmlTag& chosen_array() const {
+  /// Notes arrays and where the text in them begins.
+  void follow_array(const XmlTag& tag) {
+    if (tag.name == "DataArray" && !tag.closing) {
+      arrays_.push_back({tag, {}, tag.empty});
+    } else if (arrays_.empty() || arrays_.back().whole) {
+      return;
+    }
+    Array& array = arrays_.back();
+    if (tag.name == "DataArray" && tag.closing) array.whole = true;
+    const bool own = tag.name == "DataArray" || (tag.name == "InformationKey" && (tag.closing || tag.empty));
+    if (array.whole || array.begin || !own) return;
+    const std::size_t at = text_.find_first_not_of(" \t\r\n", tags_.position());
+    // Blanks may be all that is kept of it.
+    if (at == std::string_view::npos || text_[at] != '<' || at - tags_.position() >= 64) {
+      array.begin = tags_.position();
+    }
+  }
+
+  [[nodiscard]] const Array& chosen_array() const {
     const std::string wanted = array_.empty() ? std::string(scalars_) : xml_attribute(array_);
     std::string names;
-    for (const XmlTag& tag : arrays_) {
-      if (!wanted.empty() && tag.value("Name") == wanted) return tag;
-      names += (names.empty() ? "'" : ", '") + printable(tag.value("Name"), kShown) + "'";
+    for (const Array& array : arrays_) {
+      const std::string_view name = array.tag.value("Name");
+      if (!wanted.empty() && name == wanted) return array;
+      names += (names.empty() ? "'" : ", '") + printable(name, kShown) + "'";
     }
     if (array_.empty() && arrays_.size() == 1) return arrays_[0];
     if (arrays_.empty()) fail("{}: expected an array on points, found none", name_);
@@ -123,45 +163,65 @@ class Parser {
     fail("{}: expected an array '{}' on points, found {}", name_, array_, names);
   }
 
-  void read_array(const XmlTag& tag) {
+  void read_array(const Array& array) {
+    const XmlTag& tag = array.tag;
     const auto type = find_stored_type(tag.value("type"), TypeNames::kVtk);
     if (!type) fail_value("DataArray type", "a type of numbers", tag.value("type"));
     source_.set_stored(*type);
     if (tag.has("NumberOfComponents") && tag.value("NumberOfComponents") != "1") {
       fail_value("NumberOfComponents", "one value per sample", tag.value("NumberOfComponents"));
     }
-    if (tag.value("format") != "appended") {
-      fail_value("DataArray format", "appended raw data", tag.value("format"));
+    const std::string_view format = tag.value("format");
+    inline_ = format != "appended";
+    source_.base64 = source_.before_tag = format == "binary";
+    if (format == "ascii") {
+      source_.coding = SampleCoding::kText;
+      source_.before_tag = true;
+      return;
     }
+    if (compressed_) source_.coding = SampleCoding::kVtkBlocks;
+    if (format == "binary") return;
+    if (format != "appended") fail_value("DataArray format", "appended, binary or ascii", format);
     source_.skip_bytes = numbers<std::uint64_t>(tag, "offset", 1).front();
   }
 
+  void find_inline(const Array& array) {
+    if (!inline_) fail("{}: expected appended data, found the file's end", name_);
+    const std::string name = printable(array.tag.value("Name"), kShown);
+    if (!array.begin || !array.whole) fail("{}: expected a whole array '{}', found a part", name_, name);
+    source_.header_bytes = skeleton_.file_position(*array.begin);
+  }
+
   /// They begin behind the underscore that follows the tag.
-  void find_samples(const XmlTag& tag) {
-    if (tag.value("encoding") != "raw") {
-      fail_value("AppendedData encoding", "raw", tag.value("encoding"));
+  void find_appended(const XmlTag& tag) {
+    const std::string_view encoding = tag.value("encoding");
+    if (encoding != "raw" && encoding != "base64") {
+      fail_value("AppendedData encoding", "raw or base64", encoding);
     }
+    source_.base64 = source_.before_tag = encoding == "base64";
     const std::size_t at = text_.find_first_not_of(" \t\r\n", tags_.position());
     if (tag.empty || at == std::string_view::npos || text_[at] != '_') {
       fail("{}: expected '_' before the appended data, found none", name_);
     }
-    source_.header_bytes = at + 1;
+    source_.header_bytes = skeleton_.file_position(at + 1);
   }
 
+  const XmlSkeleton& skeleton_;
   std::string_view text_;
   std::string name_, array_;
   XmlTags tags_;
   VolumeSource source_;
   std::vector<std::int64_t> extent_;
-  bool has_image_ = false;
+  bool has_image_ = false, compressed_ = false, inline_ = false, points_end_ = false;
   std::string_view scalars_;
-  std::vector<XmlTag> arrays_;
+  std::vector<Array> arrays_;
 };
 
 }  // namespace
 
-VolumeSource vti_source(std::string_view text, const std::filesystem::path& path, const std::string& array) {
-  return Parser(text, path, array).run();
+VolumeSource vti_source(const XmlSkeleton& skeleton, const std::filesystem::path& path,
+                        const std::string& array) {
+  return Parser(skeleton, path, array).run();
 }
 
 }  // namespace adamas

@@ -13,6 +13,7 @@
 #include "core/io/meta_image_check.h"
 #include "core/io/network_text.h"
 #include "core/io/nrrd_header.h"
+#include "core/io/volume_reader.h"
 #include "core/io/volume_source.h"
 #include "interfaces/reference/mesher_messages.h"
 #include "tests/fuzz/require.h"
@@ -97,9 +98,23 @@ inline void nrrd_volume(std::string_view bytes) { volume_source(nrrd_source(byte
 inline void meta_image_volume(std::string_view bytes) { volume_source(meta_image_source(bytes, "fuzz.mha")); }
 
 inline void vti_volume(std::string_view bytes) {
-  const VolumeSource source = vti_source(bytes, "fuzz.vti", "");
+  const XmlSkeleton skeleton = read_xml_skeleton(supply_text(bytes), "fuzz");
+  require(skeleton.text.size() <= bytes.size(), "a skeleton longer than the text");
+  for (const auto& [here, there] : skeleton.places) require(here <= there, "a place before its own");
+  const VolumeSource source = vti_source(skeleton, "fuzz.vti", "");
   volume_source(source);
   require(source.header_bytes <= bytes.size(), "header longer than the text");
+}
+
+inline void nifti_volume(std::string_view bytes) { volume_source(nifti_source(bytes, "fuzz.nii")); }
+
+/// A .vti whole, with the unpacking of what is encoded or compressed in it.
+inline void packed_vti(std::string_view bytes) {
+  const TemporaryFile file(bytes, ".vti");
+  VolumeReader reader = open_volume(file.path());
+  require(reader.grid().bytes() <= (bytes.size() + 1) * 8 * kGreatestInflation, "samples from nowhere");
+  std::vector<std::byte> plane(reader.grid().plane_bytes());
+  for (std::uint64_t k = 0; k < reader.grid().dimensions[2]; ++k) reader.read_plane(k, plane);
 }
 
 }  // namespace adamas::fuzz

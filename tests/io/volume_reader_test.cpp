@@ -6,43 +6,17 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/io/volume_files.h"
 #include "tests/io/volume_samples.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
 namespace {
 
+using test::bytes_of_values;
 using test::put_bytes;
-
-std::vector<std::byte> read_all(VolumeReader& reader) {
-  const VolumeGrid& grid = reader.grid();
-  std::vector<std::byte> samples(grid.plane_bytes() * grid.dimensions[2]);
-  // Backwards: planes may be read in any order.
-  for (std::uint64_t k = grid.dimensions[2]; k-- > 0;) {
-    reader.read_plane(k, std::span(samples).subspan(k * grid.plane_bytes(), grid.plane_bytes()));
-  }
-  return samples;
-}
-
-template <class T>
-std::vector<T> read_as(VolumeReader& reader) {
-  EXPECT_EQ(sizeof(T), sample_bytes(reader.grid().type));
-  const auto bytes = read_all(reader);
-  std::vector<T> values(bytes.size() / sizeof(T));
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  return values;
-}
-
-template <class T>
-std::string bytes_of_values(const std::vector<T>& values, bool big_endian = false) {
-  std::string bytes;
-  for (const T& value : values) {
-    std::string one(reinterpret_cast<const char*>(&value), sizeof(T));
-    if (big_endian) std::reverse(one.begin(), one.end());
-    bytes += one;
-  }
-  return bytes;
-}
+using test::read_all;
+using test::read_as;
 
 RawVolume raw_volume(const VolumeGrid& grid) {
   RawVolume raw;
@@ -139,7 +113,7 @@ TEST(VolumeReader, VtiOfOtherPrograms) {
   EXPECT_EQ(reader.grid().spacing, (Vec3{2, 1, 4}));
   EXPECT_EQ(reader.grid().origin, (Vec3{5, 0, -4})) << "of the extent's first sample";
   EXPECT_EQ(read_as<float>(reader), values);
-  VolumeReader first = open_volume(scratch / "a.vti", "first");
+  VolumeReader first = open_volume(scratch / "a.vti", {"first", {}});
   EXPECT_EQ(read_as<std::int16_t>(first), (std::vector<std::int16_t>{97, 98, 99, 100, 101, 102}));
   EXPECT_TRUE(test::says(first.note(), "a.vti: int8 samples are read as int16, without loss"));
 }

@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/io/inflate_stream.h"
+#include "core/io/input_file.h"
+#include "core/io/volume_format.h"
+#include "core/io/volume_reader.h"
+#include "core/io/volume_unpacking.h"
+
+namespace adamas {
+
+namespace {
+
+/// The first bytes of a NIfTI file, as they are once unpacked.
+std::string nifti_header(const std::filesystem::path& path) {
+  if (!file_extension(path).ends_with(".gz")) return read_beginning(path);
+  constexpr std::size_t kHeader = 352;
+  struct Enough {};
+  std::string header;
+  try {
+    inflate_stream(supply_file(FileHandle::open(path), 0), path.string(), [&](std::string_view piece) {
+      header += piece.substr(0, kHeader - header.size());
+      if (header.size() == kHeader) throw Enough();
+    });
+  } catch (const Enough&) {
+  }
+  return header;
+}
+
+/// The header of a pair, of whichever of its files.
+std::filesystem::path nifti_path(const std::filesystem::path& path) {
+  if (!file_extension(path).starts_with(".img")) return path;
+  const std::filesystem::path header = path.parent_path() / (file_stem(path) + ".hdr");
+  std::filesystem::path packed = header;
+  packed += ".gz";
+  return !std::filesystem::exists(header) && std::filesystem::exists(packed) ? packed : header;
+}
+
+VolumeSource find_source(const std::filesystem::path& path, const VolumeOptions& options) {
+  switch (find_volume_format(path)) {
+    case VolumeFormat::kNrrd:
+      return nrrd_source(read_beginning(path), path);
+    case VolumeFormat::kMetaImage:
+      return meta_image_source(read_beginning(path), path);
+    case VolumeFormat::kVti: {
+      const std::string name = path.string();
+      return vti_source(read_xml_skeleton(supply_file(FileHandle::open(path), 0), name), path, options.array);
+    }
+    case VolumeFormat::kNifti: {
+      const std::filesystem::path header = nifti_path(path);
+      return nifti_source(nifti_header(header), header);
+    }
+    default:
+      fail("{}: expected a volume of a known format, found another", path.string());
+  }
+}
+
+}  // namespace
+
+VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions& options,
+                         Progress& progress) {
+  VolumeSource source = find_source(path, options);
+  if (source.packed()) source = unpack_volume(std::move(source), options.scratch_folder, progress);
+  return VolumeReader(std::move(source));
+}
+
+VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume) {
+  VolumeSource source;
+  source.name = path.string();
+  source.file = path;
+  source.skip_bytes = volume.header_bytes;
+  source.exact = true;
+  source.set_stored(volume.type);
+  source.big_endian = volume.big_endian;
+  source.grid.dimensions = volume.dimensions;
+  source.grid.spacing = volume.spacing;
+  source.grid.origin = volume.origin;
+  return VolumeReader(std::move(source));
+}
+
+}  // namespace adamas

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "core/base/progress.h"
+#include "core/io/volume_source.h"
+
+namespace adamas {
+
+/// Takes the unpacked samples of a volume into a scratch file.
+class SampleSink {
+ public:
+  /// `source` stays with the caller. Throws Error where there is no room for the scratch file.
+  SampleSink(const VolumeSource& source, const std::filesystem::path& folder, Progress& progress);
+
+  /// Takes the first `expected` bytes in all and leaves the others alone. Throws Cancelled, and Error where
+  /// the disk is full.
+  void take(std::span<const std::byte> bytes);
+  void take(std::string_view text) { take(std::as_bytes(std::span(text.data(), text.size()))); }
+
+  [[nodiscard]] std::uint64_t expected() const { return expected_; }
+  [[nodiscard]] std::uint64_t found() const { return file_->size(); }
+  /// The source, with its samples in the scratch file as they are stored. Throws Error where there are fewer
+  /// than expected.
+  [[nodiscard]] VolumeSource finish() const;
+
+ private:
+  const VolumeSource& source_;
+  Progress& progress_;
+  std::shared_ptr<FileHandle> file_;
+  std::uint64_t expected_ = 0, reported_ = 0;
+};
+
+}  // namespace adamas

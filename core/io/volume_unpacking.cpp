@@ -1,0 +1,187 @@
+#include "core/io/volume_unpacking.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/io/byte_supply.h"
+#include "core/io/inflate_stream.h"
+#include "core/io/printable.h"
+#include "core/io/sample_sink.h"
+
+namespace adamas {
+
+namespace {
+
+class Unpacker {
+ public:
+  Unpacker(const VolumeSource& source, ByteSupply supply, SampleSink& sink)
+      : source_(source), name_(source.name), bytes_(std::move(supply)), sink_(sink) {}
+
+  void run() {
+    switch (source_.coding) {
+      case SampleCoding::kRaw:
+        return copy_counted();
+      case SampleCoding::kDeflate:
+        return inflate_all();
+      case SampleCoding::kText:
+        return read_text();
+      case SampleCoding::kVtkBlocks:
+        return inflate_blocks();
+    }
+  }
+
+ private:
+  /// The next of the unsigned numbers that precede samples.
+  std::uint64_t count() {
+    std::array<char, 8> bytes{};
+    const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(source_.count_bytes);
+    if (!bytes_.take_all(bytes.data(), source_.count_bytes)) {
+      fail("{}: expected a count of {} bytes before the samples, found the end", name_, source_.count_bytes);
+    }
+    if (source_.big_endian) std::reverse(bytes.begin(), end);
+    return std::bit_cast<std::uint64_t>(bytes);
+  }
+
+  void copy_counted() {
+    const std::uint64_t size = count();
+    if (size != sink_.expected()) {
+      fail("{}: expected an array of {} bytes, found one of {}", name_, sink_.expected(), size);
+    }
+    const ByteSupply part = bytes_.part(size);
+    for (std::string_view piece = part(); !piece.empty(); piece = part()) sink_.take(piece);
+  }
+
+  void inflate_all() {
+    std::uint64_t skip = source_.skip_bytes;
+    inflate_stream(bytes_.part(~std::uint64_t{0}), name_, [&](std::string_view piece) {
+      const std::size_t skipped = static_cast<std::size_t>(std::min<std::uint64_t>(skip, piece.size()));
+      skip -= skipped;
+      sink_.take(piece.substr(skipped));
+    });
+  }
+
+  void inflate_blocks() {
+    const std::uint64_t blocks = count(), size = count(), last = count();
+    // What a header may say without a product that overflows.
+    const std::uint64_t expected = sink_.expected(), full = last > 0 ? blocks - 1 : blocks;
+    if (blocks == 0 || last > size || size > expected || full > expected / std::max<std::uint64_t>(size, 1) ||
+        full * size + last != expected) {
+      fail("{}: expected compressed blocks for {} bytes, found {} of {} bytes with {} in the last", name_,
+           expected, blocks, size, last > 0 ? last : size);
+    }
+    std::vector<std::uint64_t> packed;
+    for (std::uint64_t i = 0; i < blocks; ++i) packed.push_back(count());
+    for (std::uint64_t i = 0; i < blocks; ++i) inflate_block(i, packed[i], i < full ? size : last);
+  }
+
+  void inflate_block(std::uint64_t block, std::uint64_t packed, std::uint64_t size) {
+    const std::string name = fmt::format("{}: block {}", name_, block);
+    const ByteSupply part = bytes_.part(packed);
+    std::uint64_t found = 0;
+    inflate_stream(part, name, [&](std::string_view piece) {
+      found += piece.size();
+      if (found > size) fail("{}: expected {} bytes, found more", name, size);
+      sink_.take(piece);
+    });
+    if (found != size) fail("{}: expected {} bytes, found {}", name, size, found);
+    // What the stream did not need.
+    for (std::string_view rest = part(); !rest.empty();) rest = part();
+  }
+
+  void read_text() {
+    for (std::uint64_t skip = source_.skip_bytes; skip > 0;) {
+      const std::string_view skipped = bytes_.take(skip);
+      if (skipped.empty()) fail("{}: expected {} bytes to skip, found fewer", name_, source_.skip_bytes);
+      skip -= skipped.size();
+    }
+    visit_stored_type(source_.stored, [this]<class Stored>(Stored) { read_numbers<Stored>(); });
+  }
+
+  /// The next word between blanks and commas, empty at the end. It may have been cut there: only a tag or a
+  /// blank behind it shows that it is whole.
+  std::string_view word() {
+    constexpr std::string_view kSpace = " \t\r\n,";
+    constexpr std::size_t kLongest = 512;
+    word_.clear();
+    while (true) {
+      if (text_.empty()) text_ = bytes_.take(kPiece);
+      if (text_.empty()) return source_.before_tag ? std::string_view(word_) : std::string_view();
+      if (word_.empty()) text_.remove_prefix(std::min(text_.find_first_not_of(kSpace), text_.size()));
+      const std::size_t end = text_.find_first_of(kSpace);
+      word_ += text_.substr(0, std::min(end, kLongest));
+      if (word_.size() > kLongest || end != std::string_view::npos) {
+        text_.remove_prefix(std::min(end, text_.size()));
+        return word_;
+      }
+      text_ = {};
+    }
+  }
+
+  template <class Stored>
+  void read_numbers() {
+    const std::uint64_t count = source_.grid.samples();
+    std::vector<Stored> values;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::string_view text = word();
+      if (text.empty()) fail("{}: expected {} numbers, found {}", name_, count, i);
+      Stored value{};
+      const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (code != std::errc() || end != text.data() + text.size()) {
+        fail("{}: expected {} numbers of {}, found '{}' after {}", name_, count, stored_name(source_.stored),
+             printable(text, 40), i);
+      }
+      values.push_back(value);
+      if (values.size() * sizeof(Stored) < kPiece && i + 1 < count) continue;
+      sink_.take(std::as_bytes(std::span(values)));
+      values.clear();
+    }
+  }
+
+  static constexpr std::size_t kPiece = std::size_t{1} << 18;
+
+  const VolumeSource& source_;
+  const std::string& name_;
+  ByteTaker bytes_;
+  SampleSink& sink_;
+  std::string_view text_;
+  std::string word_;
+};
+
+/// Throws Error where not even the best compression could hold the samples in what is left of the file.
+void check_size(const VolumeSource& source, std::uint64_t left) {
+  const std::uint64_t expected = source.sample_file_bytes();
+  if (expected / kGreatestInflation <= left) return;
+  const auto& n = source.grid.dimensions;
+  fail("{}: expected {} bytes for {} x {} x {} samples of {}, found {} packed ones", source.name, expected,
+       n[0], n[1], n[2], stored_name(source.stored), left);
+}
+
+}  // namespace
+
+VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& folder, Progress& progress) {
+  source.grid.check(source.name);
+  const auto file = FileHandle::open(source.file);
+  // Behind a tag, an offset leads into text, where blanks count as characters.
+  std::uint64_t begin = file->behind_lines(source.header_bytes, source.skip_lines, source.name);
+  if (source.coding != SampleCoding::kDeflate && source.coding != SampleCoding::kText) {
+    begin += std::min(source.skip_bytes, file->size());
+  }
+  check_size(source, file->size() - std::min(begin, file->size()));
+  ByteSupply bytes = supply_file(file, begin);
+  if (source.before_tag) bytes = supply_before(std::move(bytes), '<');
+  if (source.base64) bytes = supply_base64(std::move(bytes), source.name);
+  SampleSink sink(source, folder, progress);
+  Unpacker(source, std::move(bytes), sink).run();
+  VolumeSource result = sink.finish();
+  // Numbers in text were stored as this machine has them.
+  if (source.coding == SampleCoding::kText) result.big_endian = false;
+  return result;
+}
+
+}  // namespace adamas

@@ -1,0 +1,167 @@
+// NIfTI-1 volumes, written byte by byte here.
+
+#include <cmath>
+
+#include "tests/io/volume_files.h"
+
+namespace adamas {
+namespace {
+
+using test::bytes_of_values;
+using test::deflated;
+using test::message_of_volume;
+using test::put_bytes;
+using test::read_numbers;
+using test::says;
+using test::Wrapping;
+
+/// The header of a volume of 3 x 2 x 2 samples, and what comes before the samples in a single file.
+class NiftiHeader {
+ public:
+  explicit NiftiHeader(bool big_endian = false) : big_(big_endian) {
+    put<std::int32_t>(0, {348});
+    put<std::int16_t>(40, {3, 3, 2, 2, 1, 1, 1, 1});
+    put<std::int16_t>(70, {2, 8});
+    put<float>(76, {1, 0.5f, 2, 3});
+    put<float>(108, {352});
+    magic("n+1");
+  }
+  template <class T>
+  NiftiHeader& put(std::size_t at, const std::vector<T>& values) {
+    const std::string bytes = bytes_of_values(values, big_);
+    bytes_.replace(at, bytes.size(), bytes);
+    return *this;
+  }
+  NiftiHeader& magic(const std::string& text) {
+    bytes_.replace(344, text.size(), text);
+    return *this;
+  }
+  NiftiHeader& type(std::int16_t code, std::size_t bytes) {
+    return put<std::int16_t>(70, {code, static_cast<std::int16_t>(8 * bytes)});
+  }
+  [[nodiscard]] std::string text() const { return bytes_; }
+
+ private:
+  std::string bytes_ = std::string(352, '\0');
+  bool big_;
+};
+
+const std::string kBytes = "\1\2\3\4\5\6\7\10\11\12\13\14";
+
+TEST(NiftiVolume, EveryTypeInEitherByteOrder) {
+  constexpr std::int16_t kCodes[] = {256, 2, 4, 512, 8, 768, 1024, 1280, 16, 64};
+  const test::Scratch scratch;
+  for (const StoredType type : test::kStoredTypes) {
+    visit_stored_type(type, [&]<class T>(T) {
+      for (const bool big : {false, true}) {
+        const auto values = test::typical_values<T>();
+        const std::string bytes = bytes_of_values(values, big);
+        NiftiHeader header(big);
+        header.type(kCodes[static_cast<std::size_t>(type)], sizeof(T));
+        put_bytes(scratch / "a.nii", header.text() + bytes);
+        put_bytes(scratch / "b.nii.gz", deflated(header.text() + bytes, Wrapping::kGzip));
+        put_bytes(scratch / "c.bin", header.text() + bytes);
+        header.magic("ni1").put<float>(108, {4});
+        put_bytes(scratch / "d.hdr", header.text());
+        put_bytes(scratch / "d.img", "1234" + bytes);
+        put_bytes(scratch / "e.hdr.gz", deflated(header.text(), Wrapping::kGzip));
+        put_bytes(scratch / "e.img.gz", deflated("1234" + bytes, Wrapping::kGzip));
+        for (const char* file : {"a.nii", "b.nii.gz", "c.bin", "d.hdr", "d.img", "e.hdr.gz", "e.img.gz"}) {
+          VolumeReader reader = open_volume(scratch / file);
+          EXPECT_EQ(reader.grid().dimensions, (std::array<std::uint64_t, 3>{3, 2, 2}));
+          EXPECT_EQ(reader.grid().spacing, (Vec3{0.5, 2, 3}));
+          EXPECT_EQ(reader.grid().type, sample_type_for(type));
+          EXPECT_EQ(read_numbers(reader), test::as_doubles(values))
+              << file << " " << stored_name(type) << big;
+        }
+      }
+    });
+  }
+}
+
+VolumeReader open_header(const test::Scratch& scratch, const NiftiHeader& header) {
+  put_bytes(scratch / "a.nii", header.text() + kBytes);
+  return open_volume(scratch / "a.nii");
+}
+
+TEST(NiftiVolume, ScaledValues) {
+  const test::Scratch scratch;
+  VolumeReader plain = open_header(scratch, NiftiHeader().put<float>(112, {1, 0}));
+  EXPECT_EQ(plain.grid().type, SampleType::kUint8);
+  VolumeReader none = open_header(scratch, NiftiHeader().put<float>(112, {std::nanf(""), std::nanf("")}));
+  EXPECT_EQ(none.grid().type, SampleType::kUint8);
+  VolumeReader scaled = open_header(scratch, NiftiHeader().put<float>(112, {0.5f, -3}));
+  EXPECT_EQ(scaled.grid().type, SampleType::kFloat32);
+  const auto numbers = read_numbers(scaled);
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(numbers[i], 0.5 * static_cast<double>(i + 1) - 3);
+  EXPECT_TRUE(
+      says(scaled.note(), "a.nii: uint8 samples are read as float32, times 0.5 plus -3, without loss"));
+}
+
+TEST(NiftiVolume, PlacesOfTheHeader) {
+  const test::Scratch scratch;
+  VolumeReader flipped = open_header(scratch, NiftiHeader().put<std::int16_t>(254, {1}).put<float>(
+                                                  280, {-2, 0, 0, 10, 0, 3, 0, 20, 0, 0, 4, 30}));
+  EXPECT_EQ(flipped.grid().spacing, (Vec3{2, 3, 4}));
+  EXPECT_EQ(flipped.grid().origin, (Vec3{6, 20, 30}));
+  EXPECT_EQ(read_numbers(flipped), (std::vector<double>{3, 2, 1, 6, 5, 4, 9, 8, 7, 12, 11, 10}));
+  // Half a turn about z, and the last axis mirrored.
+  VolumeReader turned = open_header(scratch, NiftiHeader()
+                                                 .put<float>(76, {-1, 0.5f, 2, 3})
+                                                 .put<std::int16_t>(252, {1})
+                                                 .put<float>(256, {0, 0, 1, 1, 2, 3}));
+  EXPECT_EQ(turned.grid().spacing, (Vec3{0.5, 2, 3}));
+  EXPECT_EQ(turned.grid().origin, (Vec3{0, 0, 0}));
+  EXPECT_EQ(read_numbers(turned), (std::vector<double>{12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1}));
+  EXPECT_EQ(turned.note(), "");
+  VolumeReader oblique = open_header(scratch, NiftiHeader().put<std::int16_t>(254, {1}).put<float>(
+                                                  280, {1, 1, 0, 9, -1, 1, 0, 9, 0, 0, 1, 9}));
+  EXPECT_EQ(oblique.grid().spacing, (Vec3{0.5, 2, 3}));
+  EXPECT_EQ(oblique.grid().origin, (Vec3{0, 0, 0}));
+  EXPECT_TRUE(
+      says(oblique.note(), "a.nii: axes that are not parallel to x, y and z, in this order, are left out"));
+}
+
+TEST(NiftiVolume, BadHeaders) {
+  const test::Scratch scratch;
+  const auto message = [&](const NiftiHeader& header) {
+    return test::error_of([&] { open_header(scratch, header); });
+  };
+  EXPECT_TRUE(
+      says(message(NiftiHeader().put<std::int32_t>(0, {347})), "a.nii: expected NIfTI-1, found something"));
+  EXPECT_TRUE(says(message(NiftiHeader().put<std::int32_t>(0, {540})), "expected NIfTI-1, found NIfTI-2"));
+  EXPECT_TRUE(says(message(NiftiHeader().magic("xyz")), "expected NIfTI-1, found something else"));
+  for (const std::int16_t axes : {0, 8, -1}) {
+    EXPECT_TRUE(
+        says(message(NiftiHeader().put<std::int16_t>(40, {axes})), "expected one to seven dimensions"));
+  }
+  EXPECT_TRUE(
+      says(message(NiftiHeader().put<std::int16_t>(40, {3, 3, 0})), "expected positive sizes, found 0"));
+  EXPECT_TRUE(says(message(NiftiHeader().put<std::int16_t>(40, {4, 3, 2, 1, 2})),
+                   "expected one value per sample and one time, found 2 along dimension 4"));
+  EXPECT_TRUE(says(message(NiftiHeader().type(128, 3)), "one number per sample, found the datatype 128"));
+  EXPECT_TRUE(says(message(NiftiHeader().type(2, 2)), "expected 8 bits for samples of uint8, found 16"));
+  for (const float offset : {100.0f, -1.0f, 352.5f, 1e20f, std::nanf(""), HUGE_VALF}) {
+    EXPECT_TRUE(says(message(NiftiHeader().put<float>(108, {offset})), "expected samples from byte 348"));
+  }
+  EXPECT_TRUE(says(message(NiftiHeader().put<std::int16_t>(40, {3, 32767, 32767, 32767})),
+                   "expected 35181150961663 bytes"));
+  EXPECT_TRUE(says(message(NiftiHeader().put<std::int16_t>(254, {1}).put<float>(
+                       280, {1, 0, 0, std::nanf(""), 0, 1, 0, 0, 0, 0, 1, 0})),
+                   "expected a finite origin along x"));
+  put_bytes(scratch / "b.hdr", NiftiHeader().magic("ni1").text());
+  EXPECT_TRUE(says(message_of_volume(scratch / "b.hdr"), "b.img: expected a file, found none"));
+}
+
+TEST(NiftiVolume, EveryTruncationIsAnError) {
+  const test::Scratch scratch;
+  const std::string whole = NiftiHeader().text() + kBytes;
+  put_bytes(scratch / "a.nii", whole);
+  test::expect_every_truncation_is_an_error(scratch / "a.nii", scratch / "a.nii", whole.size());
+  const std::string packed = deflated(whole, Wrapping::kGzip);
+  put_bytes(scratch / "b.nii.gz", packed);
+  test::expect_every_truncation_is_an_error(scratch / "b.nii.gz", scratch / "b.nii.gz", packed.size());
+}
+
+}  // namespace
+}  // namespace adamas
