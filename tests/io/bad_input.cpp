@@ -1,5 +1,3 @@
-#include <signal.h>
-#include <sys/resource.h>
 #include <zlib.h>
 
 #include <cstring>
@@ -12,6 +10,7 @@
 #include "core/io/multi_material_writer.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "sample_data.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
@@ -282,26 +281,6 @@ TEST(BadInput, OneWholeNumberArraySaysWhatToPass) {
                              [](const auto& a, const auto& b) { return std::stoi(a) < std::stoi(b); }));
 }
 
-/// While it lives, no file may grow beyond `bytes`, as on a full disk.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit now{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &now);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    ::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
-
 TEST(BadInput, FullDiskIsAnErrorAndLeavesNothing) {
   const Scratch scratch, empty;
   std::vector<std::pair<std::string, std::function<void(const std::filesystem::path&)>>> writers;
@@ -319,7 +298,7 @@ TEST(BadInput, FullDiskIsAnErrorAndLeavesNothing) {
     write(scratch / name);
     const auto size = std::filesystem::file_size(scratch / name);
     for (const std::uintmax_t room : {std::uintmax_t{0}, size / 2, size - 1}) {
-      const FileSizeLimit limit(room);
+      const test::FileSizeLimit limit(room);
       EXPECT_TRUE(
           says(error_of([&write, &name, &empty] { write(empty / name); }), name + ": could not be written"));
     }

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "core/base/progress.h"
+#include "core/data/triangle_surface.h"
+
+namespace adamas {
+
+enum class SurfaceFormat : std::uint8_t { kPly, kStl, kObj, kVtp, kGlb, kGltf };
+
+/// By the extension, in any case: .ply, .stl, .obj, .vtp, .glb, .gltf.
+std::optional<SurfaceFormat> surface_format(const std::filesystem::path& path);
+
+/// Writes a surface by extension; equal surfaces give equal bytes. Numbers are floats, but coordinates in
+/// .ply, .vtp and .obj are doubles where floats do not suffice (single_precision_suffices); .glb and .gltf
+/// then hold them relative to a translation. .stl has points alone, once for each triangle; .obj has no
+/// values; .glb and .gltf have a normal where the surface has zero. Throws Error for other extensions, for
+/// what is no surface (TriangleSurface::check), where the format cannot count or hold what there is, and
+/// where the file cannot be written in full.
+void write_surface(const std::filesystem::path& path, const TriangleSurface& surface,
+                   Progress& progress = SilentProgress::instance());
+
+/// Whether floats tell the points of a surface apart well enough: where the greatest coordinate, by
+/// magnitude, is at most 4096 times the mean length of the triangles' edges, so that rounding moves a
+/// coordinate by at most 1/4096 of that length, and both are in the normal range of floats.
+bool single_precision_suffices(const TriangleSurface& surface);
+
+}  // namespace adamas
