@@ -27,6 +27,10 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_slice(app, session);
   add_probe(app, session);
   add_experiment(app, session);
+  add_store(app, session);
+  add_restore(app, session);
+  add_verify(app, session);
+  add_isosurface(app, session);
   add_completion(app, session);
   add_common_checks(app);
 }

@@ -38,6 +38,10 @@ void add_compare(CLI::App& app, Session& session);
 void add_slice(CLI::App& app, Session& session);
 void add_probe(CLI::App& app, Session& session);
 void add_experiment(CLI::App& app, Session& session);
+void add_store(CLI::App& app, Session& session);
+void add_restore(CLI::App& app, Session& session);
+void add_verify(CLI::App& app, Session& session);
+void add_isosurface(CLI::App& app, Session& session);
 void add_completion(CLI::App& app, Session& session);
 
 /// The whole command line.

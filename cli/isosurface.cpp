@@ -32,13 +32,7 @@ struct Options {
 /// "0.7", "0.7 voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
 /// diagonal.
 double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
-  Vec3 size;
-  double least = grid.spacing.x;
-  for (int axis = 0; axis < 3; ++axis) {
-    size[axis] =
-        grid.spacing[axis] * static_cast<double>(grid.dimensions[static_cast<std::size_t>(axis)] - 1);
-    least = std::min(least, grid.spacing[axis]);
-  }
+  const double least = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   for (const char* unit : {"voxels", "voxel", "v"}) {
     const std::string_view name(unit);
     if (!text.ends_with(name)) continue;
@@ -48,7 +42,7 @@ double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
     return least * parse_positive("--error", number);
   }
   if (text == "0") return 0;
-  return parse_error_target("--error", text).of(norm(size));
+  return parse_error_target("--error", text).of(grid.box().diagonal());
 }
 
 SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {

@@ -11,6 +11,7 @@
 #include "cli/option_values.h"
 #include "cli/slice_panels.h"
 #include "cli/slice_polygons.h"
+#include "cli/store_slab.h"
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
@@ -134,6 +135,22 @@ void choose_cells(const Options& options, const SliceInput& input, const SliceOp
                                         shows_cells(input, style.plane, size, panels));
 }
 
+/// The samples of a store round the plane.
+SliceInput load_store_slice(const Options& options, const Plane& plane,
+                            const std::function<void(const SliceInput&)>& check, Session& session) {
+  if (!options.original.empty())
+    wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.input.path);
+  if (const std::string unused = options.input.material_option(); !unused.empty() && unused != "--field")
+    wrong_usage("{}: expected data with materials as INPUT, found {}", unused, options.input.path);
+  SliceInput input;
+  input.name = options.input.path;
+  StoreInput store;
+  store.path = options.input.path;
+  input.data = std::make_unique<MultiMaterialData>(store_slab(store, plane, session));
+  check(input);
+  return input;
+}
+
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   SliceStyle style;
@@ -141,7 +158,9 @@ void run(const Options& options, Session& session) {
   const SliceOptions size = picture_size(options);
   InputOptions from = options.input;
   style.field = split_fields(from);
-  style.interfaces = !options.no_interfaces;
+  const bool stored = is_store(from.path);
+  if (stored && style.field.empty()) style.field = kSampleField;
+  style.interfaces = !options.no_interfaces && !stored;
   check_options(options, style.field, session.outputs);
   const bool polygons = file_extension(options.output) == ".vtp";
 
@@ -155,8 +174,10 @@ void run(const Options& options, Session& session) {
     }
     for (const SliceMode mode : wanted) choose_field(read, mode, style);
   };
-  const SliceInput input = load_slice_input(
-      from, options.original, style.interfaces && !polygons ? &style.plane : nullptr, check, console);
+  const SliceInput input =
+      stored ? load_store_slice(options, style.plane, check, session)
+             : load_slice_input(from, options.original,
+                                style.interfaces && !polygons ? &style.plane : nullptr, check, console);
   choose_cells(options, input, size, wanted.size(), style);
   std::vector<CrossSection> sections;
   for (const SliceMode mode : wanted) {
@@ -211,7 +232,8 @@ void add_slice(CLI::App& app, Session& session) {
       [options, &session] { run(*options, session); });
   command
       ->add_option("input", options->input.path,
-                   std::string("What to cut: ") + kGridFiles + ", or a mesh from adamas resample (.vtu)")
+                   std::string("What to cut: ") + kGridFiles +
+                       ", a mesh from adamas resample (.vtu), or a store from adamas store (.adm)")
       ->required()
       ->type_name("FILE");
   command->add_option("--plane", options->plane, "The plane, at right angles to an axis")

@@ -20,6 +20,13 @@ const char* sample_name(SampleType type) {
   return "";
 }
 
+Box3 VolumeGrid::box() const {
+  Box3 box{origin, origin};
+  for (int axis = 0; axis < 3; ++axis)
+    box.max[axis] += spacing[axis] * (static_cast<double>(dimensions[static_cast<std::size_t>(axis)]) - 1);
+  return box;
+}
+
 void VolumeGrid::check(const std::string& name) const {
   constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 59;
   std::uint64_t product = 1;

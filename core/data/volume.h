@@ -41,6 +41,9 @@ struct VolumeGrid {
   [[nodiscard]] std::uint64_t plane_bytes() const { return plane_samples() * sample_bytes(type); }
   [[nodiscard]] std::uint64_t bytes() const { return plane_bytes() * dimensions[2]; }
 
+  /// From the first sample to the last.
+  [[nodiscard]] Box3 box() const;
+
   /// Throws Error with `name` where there is no sample, the samples take more bytes than can be counted (at
   /// eight bytes each), a spacing is not positive, or a place is not finite.
   void check(const std::string& name) const;

@@ -268,7 +268,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
   request_ = request;
   region_.reset();
   if (request.region) {
-    const Vec3 spacing = diamonds_.domain().box().size() / std::ldexp(1.0, diamonds_.levels());
+    const Vec3 spacing = std::ldexp(1.0, -diamonds_.levels()) * diamonds_.domain().box().size();
     const auto in_samples = [&](const Vec3& p) {
       Vec3 result;
       for (int axis = 0; axis < 3; ++axis)

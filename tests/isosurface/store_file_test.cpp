@@ -1,0 +1,196 @@
+#include "isosurface/storage/store_file.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/base/checksum.h"
+#include "core/base/error.h"
+#include "isosurface/storage/byte_stream.h"
+#include "isosurface/storage/store_file_writer.h"
+#include "tests/support/scratch.h"
+
+namespace adamas {
+namespace {
+
+std::vector<std::byte> random_bytes(std::mt19937& random, std::size_t size) {
+  std::vector<std::byte> bytes(size);
+  for (std::byte& b : bytes) b = static_cast<std::byte>(random());
+  return bytes;
+}
+
+TEST(Checksum, IsCastagnolis) {
+  const std::string text = "123456789";
+  const auto bytes = std::as_bytes(std::span(text));
+  EXPECT_EQ(crc32c(bytes), 0xe3069283u);  // the check value of RFC 3720's polynomial
+  EXPECT_EQ(crc32c(bytes.subspan(4), crc32c(bytes.first(4))), crc32c(bytes));
+  EXPECT_EQ(crc32c({}), 0u);
+}
+
+TEST(ByteStream, VarintsAreTheShortest) {
+  for (const std::uint64_t value : {0ull, 1ull, 127ull, 128ull, 300ull, 1ull << 35, ~0ull}) {
+    std::vector<std::byte> bytes;
+    ByteWriter(bytes).varint(value);
+    ByteReader in(bytes);
+    EXPECT_EQ(in.varint(), value);
+    EXPECT_TRUE(in.good() && in.rest().empty());
+    const std::span<const std::byte> all(bytes);
+    ByteReader cut(all.first(all.size() - 1));
+    cut.varint();
+    EXPECT_FALSE(cut.good());
+  }
+  const std::vector<std::byte> longer{std::byte{0x81}, std::byte{0}};
+  ByteReader in(longer);
+  in.varint();
+  EXPECT_FALSE(in.good());
+}
+
+/// A store of two steps with random bytes as pages.
+class StoreOfRandomPages : public testing::Test {
+ protected:
+  StoreOfRandomPages() {
+    header_.grid.dimensions = {70, 33, 40};
+    header_.grid.type = SampleType::kUint16;
+    header_.grid.spacing = {1, 2, 0.5};
+    header_.grid.origin = {-3, 0, 7};
+    header_.coding = SampleCoding::kSplitEdge;
+    header_.subtree_depth = 1;
+    header_.steps = 2;
+    header_.sample_tables = random_bytes(random_, 100);
+    header_.value_tables = random_bytes(random_, 3);
+    header_.bytes = {10, 20, 30};
+    write();
+  }
+
+  void write() {
+    const PageGrid grid(header_.grid.dimensions);
+    StoreFileWriter writer(path_, "store.adm", header_);
+    for (std::uint32_t step = 0; step < header_.steps; ++step) {
+      for (std::uint64_t number = 0; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
+        if (number == 0 || (std::bit_width(number) - 1) % 3 != 0 || !grid.contains(grid.page(number)))
+          continue;
+        Written page{step, grid.page(number), random_bytes(random_, random_() % 200), random_() & 0xffffu,
+                     random_() & 0xffffu};
+        writer.add_page(step, number, page.bytes, static_cast<std::uint32_t>(page.low),
+                        static_cast<std::uint32_t>(page.high));
+        pages_.push_back(std::move(page));
+      }
+    }
+    size_ = writer.finish(header_);
+  }
+
+  struct Written {
+    std::uint32_t step;
+    PageId id;
+    std::vector<std::byte> bytes;
+    std::uint64_t low, high;
+  };
+
+  std::mt19937 random_{7};
+  test::Scratch folder_;
+  std::filesystem::path path_ = folder_ / "store.adm";
+  StoreHeader header_;
+  std::vector<Written> pages_;
+  std::uint64_t size_ = 0;
+};
+
+TEST_F(StoreOfRandomPages, GivesThemBack) {
+  for (const Paging paging : {Paging::kRead, Paging::kMap}) {
+    StoreFile file(path_, paging);
+    EXPECT_EQ(file.size(), size_);
+    EXPECT_EQ(file.size(), std::filesystem::file_size(path_));
+    EXPECT_EQ(file.header().grid.dimensions, header_.grid.dimensions);
+    EXPECT_EQ(file.header().grid.type, header_.grid.type);
+    EXPECT_EQ(file.header().grid.spacing.y, 2);
+    EXPECT_EQ(file.header().grid.origin.z, 7);
+    EXPECT_EQ(file.header().coding, header_.coding);
+    EXPECT_EQ(file.header().subtree_depth, 1);
+    EXPECT_EQ(file.header().steps, 2u);
+    EXPECT_EQ(file.header().sample_tables, header_.sample_tables);
+    EXPECT_EQ(file.header().value_tables, header_.value_tables);
+    EXPECT_EQ(file.header().bytes.gradients, 30u);
+    file.check_directory();
+    for (const Written& page : pages_) {
+      const auto entry = file.entry(page.step, page.id);
+      ASSERT_TRUE(entry);
+      EXPECT_EQ(entry->low, page.low);
+      EXPECT_EQ(entry->high, page.high);
+      EXPECT_EQ(entry->copy != 0, page.id.level >= kCopiedLevel);
+      EXPECT_TRUE(file.copy_is_whole(*entry));
+      const StoreFile::Payload payload = file.read(page.step, page.id);
+      EXPECT_EQ(payload.state, PageState::kWhole);
+      EXPECT_TRUE(
+          std::equal(payload.bytes.begin(), payload.bytes.end(), page.bytes.begin(), page.bytes.end()));
+    }
+  }
+}
+
+TEST_F(StoreOfRandomPages, EveryFlippedBitIsFound) {
+  const std::string whole = test::bytes_of(path_);
+  std::size_t fatal = 0, repaired = 0, lost = 0;
+  for (std::size_t at = 0; at < whole.size(); at += 11 + at % 5) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 1 << at % 8);
+    test::put_bytes(path_, bytes);
+    std::size_t found = 0;
+    try {
+      StoreFile file(path_);
+      for (const Written& page : pages_) {
+        const StoreFile::Payload payload = file.read(page.step, page.id);
+        repaired += payload.state == PageState::kCopied ? 1 : 0;
+        lost += payload.state == PageState::kDamaged ? 1 : 0;
+        found += payload.state != PageState::kWhole ? 1 : 0;
+        // What is given is right, whatever was damaged.
+        if (payload.state != PageState::kDamaged) {
+          ASSERT_TRUE(
+              std::equal(payload.bytes.begin(), payload.bytes.end(), page.bytes.begin(), page.bytes.end()));
+        }
+        const auto entry = file.entry(page.step, page.id);
+        found += entry && !file.copy_is_whole(*entry) ? 1 : 0;
+      }
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("store.adm"), std::string::npos) << e.what();
+      ++fatal;
+      ++found;
+    }
+    EXPECT_GT(found, 0u) << "byte " << at;
+  }
+  EXPECT_GT(fatal, 0u);
+  EXPECT_GT(repaired, 0u);
+  EXPECT_GT(lost, 0u);
+}
+
+TEST_F(StoreOfRandomPages, EveryTruncationIsTold) {
+  const std::string whole = test::bytes_of(path_);
+  for (std::size_t size = 0; size < whole.size(); size += size < 100 ? 1 : 97) {
+    test::put_bytes(path_, whole.substr(0, size));
+    EXPECT_THROW(StoreFile(path_, Paging::kRead), Error) << size;
+    EXPECT_THROW(StoreFile(path_, Paging::kMap), Error) << size;
+  }
+  test::put_bytes(path_, whole + '\0');
+  EXPECT_THROW(StoreFile(path_, Paging::kRead), Error);
+}
+
+TEST(StoreFile, RefusesOtherFiles) {
+  const test::Scratch folder;
+  EXPECT_THROW(StoreFile(folder / "missing.adm"), Error);
+  EXPECT_THROW(StoreFile(folder.folder()), Error);
+  std::ofstream(folder / "text.adm") << "not a store, but long enough to be one, at least at its head";
+  EXPECT_THROW(StoreFile(folder / "text.adm"), Error);
+}
+
+TEST(StoreFileWriter, TellsOfAFullDisk) {
+  StoreHeader header;
+  header.grid.dimensions = {1, 1, 1};
+  StoreFileWriter writer("/dev/full", "out.adm", header);
+  try {
+    writer.add_page(0, 1, std::vector<std::byte>(100000), 0, 0);
+    writer.finish(header);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(std::string(e.what()).rfind("out.adm: ", 0), 0u) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace adamas
