@@ -1,0 +1,183 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "isosurface/preprocessing/ancestor.h"
+#include "isosurface/preprocessing/coarse_samples.h"
+#include "isosurface/preprocessing/cube_samples.h"
+#include "isosurface/preprocessing/error_code.h"
+#include "isosurface/preprocessing/leaf_points.h"
+#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/preprocess.h"
+
+namespace adamas {
+
+/// Own errors of the diamonds of scale 8 and more, as far as they come from the samples of one cube of 16^3
+/// cells: of every tetrahedron that has part of the cube.
+template <class Sample>
+class CoarseErrors {
+ public:
+  using Real = RealOf<Sample>;
+  using Word = OrderedWord<Sample>;
+
+  CoarseErrors(int depth, LatticePoint last, const Vec3& spacing, const CoarseSamples<Word>& coarse)
+      : depth_(depth), last_(last), spacing_(spacing), coarse_(coarse), factors_(slope_factors(spacing)) {
+    for (int level = 0; level < depth; ++level)
+      greatest_.push_back(level_error_scale(spacing, level).greatest());
+  }
+
+  /// Raises the own codes of `levels`, the first of which has the samples round the cube.
+  void measure(const CubeSamples<Sample>& cube, std::vector<LevelValues<Word>>& levels) const {
+    int mirrored = 0;
+    for (int axis = 0; axis < 3; ++axis) mirrored |= (cube.base[axis] >> 4 & 1) << axis;
+    for (const LeafPoints::Leaf& leaf : leaf_points_.leaves()) {
+      const Part part = part_of(cube, leaf, mirrored);
+      std::array<LatticePoint, 4> corners{};
+      for (std::size_t c = 0; c < 4; ++c) corners[c] = place(cube.base, leaf.corners[c], mirrored);
+      Ancestor cell(corners, place(cube.base, leaf.split_vertex, mirrored), depth_);
+      do {
+        const int bits = cell.scale_bits();
+        LevelValues<Word>& level = levels[static_cast<std::size_t>(bits)];
+        const LatticePoint at = cell.split_vertex();
+        const LatticePoint p{at.i >> bits, at.j >> bits, at.k >> bits}, size = level.size();
+        if (p.i >= size.i || p.j >= size.j || p.k >= size.k) continue;
+        level.raise(p, error_code(squared_ratio(cell, part, levels.front())));
+      } while (cell.ascend());
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMostPoints = 512;
+  /// The samples of a leaf.
+  struct Part {
+    LatticePoint base;
+    int mirrored;
+    std::size_t first, count;
+    alignas(16) std::array<Real, kMostPoints> samples;
+    alignas(16) std::array<double, kMostPoints> exact;  ///< the same, not filled where Real is double
+  };
+  /// constant + i x + j y + k z in the coordinates of LeafPoints.
+  struct Linear {
+    double constant = 0;
+    std::array<double, 3> slope{};
+  };
+
+  static LatticePoint place(LatticePoint base, LatticePoint p, int mirrored) {
+    for (int axis = 0; axis < 3; ++axis) base[axis] += (mirrored >> axis & 1) != 0 ? 16 - p[axis] : p[axis];
+    return base;
+  }
+
+  [[nodiscard]] Part part_of(const CubeSamples<Sample>& cube, const LeafPoints::Leaf& leaf,
+                             int mirrored) const {
+    Part part;
+    part.base = cube.base;
+    part.mirrored = mirrored;
+    part.first = leaf.first;
+    part.count = leaf.last - leaf.first;
+    ADAMAS_ASSERT(part.count <= kMostPoints);
+    const std::uint16_t* places = leaf_points_.places(mirrored) + leaf.first;
+    for (std::size_t n = 0; n < part.count; ++n) part.samples[n] = cube.whole[places[n]];
+    if constexpr (sizeof(Real) < sizeof(double)) {
+      if (depth_ > kExactBits + 1) std::copy_n(part.samples.begin(), part.count, part.exact.begin());
+    }
+    return part;
+  }
+
+  /// Up to tetrahedra of this scale the linear interpolation of integers is exact in a float: slopes are
+  /// multiples of 1 / (2 scale), and at most the greatest integer over the scale.
+  static constexpr int kExactBits = sizeof(Sample) == 1 ? 14 : 6;
+
+  [[nodiscard]] double squared_ratio(const Ancestor& cell, const Part& part,
+                                     const LevelValues<Word>& samples) const {
+    const auto bits = static_cast<std::size_t>(cell.scale_bits());
+    const double diameter = world_diameter(cell.corners(), spacing_) / greatest_[bits];
+    std::array<double, 4> values{};
+    double sum = 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      values[c] = value(cell.corners()[c], samples);
+      sum += std::abs(values[c]);
+    }
+    if (!std::isfinite(sum)) return diameter * diameter;
+    const Linear linear = interpolation(cell, values, part);
+    double error = 0;
+    if constexpr (sizeof(Real) == sizeof(double)) {
+      error = difference(linear, part.samples.data(), part);
+      if (error > 0) error += sum * 0x1p-48;
+    } else {
+      error = cell.scale_bits() <= kExactBits ? difference(linear, part.samples.data(), part)
+                                              : difference(linear, part.exact.data(), part);
+    }
+    if (!(error > 0)) return 0;
+    double slope = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double step = linear.slope[axis] * static_cast<double>(1 << bits);
+      slope += step * step * factors_[axis];
+    }
+    return std::min(error * error / slope, diameter * diameter);
+  }
+
+  [[nodiscard]] double value(LatticePoint p, const LevelValues<Word>& samples) const {
+    const Word word = ((p.i | p.j | p.k) & 15) == 0
+                          ? coarse_.at(p)
+                          : samples.samples(std::min(p.j, last_.j),
+                                            std::min(p.k, last_.k))[std::min(p.i, last_.i)];
+    return from_ordered<Sample>(word);
+  }
+
+  /// Of the values at the corners.
+  static Linear interpolation(const Ancestor& cell, const std::array<double, 4>& values, const Part& part) {
+    const auto& c = cell.corners();
+    const auto edge = [&](std::size_t n) {
+      const LatticePoint e = c[n] - c[0];
+      return Vec3{static_cast<double>(e.i), static_cast<double>(e.j), static_cast<double>(e.k)};
+    };
+    // The determinant is a power of two: nothing is rounded.
+    const Vec3 u = edge(1), v = edge(2), w = edge(3);
+    const Vec3 vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+    const Vec3 sum = (values[1] - values[0]) * vw + (values[2] - values[0]) * wu + (values[3] - values[0]) * uv;
+    const Vec3 slope = (1 / dot(u, vw)) * sum;
+    Linear linear;
+    linear.constant = values[0];
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool is_mirrored = (part.mirrored >> axis & 1) != 0;
+      const std::int32_t origin = part.base[axis] + (is_mirrored ? 16 : 0);
+      linear.constant += slope[axis] * (origin - c[0][axis]);
+      linear.slope[static_cast<std::size_t>(axis)] = is_mirrored ? -slope[axis] : slope[axis];
+    }
+    return linear;
+  }
+
+  /// The greatest difference between the samples and the linear function.
+  template <class T>
+  [[nodiscard]] double difference(const Linear& linear, const T* samples, const Part& part) const {
+    const T *x = leaf_points_.coordinates<T>(0) + part.first, *y = leaf_points_.coordinates<T>(1) + part.first,
+            *z = leaf_points_.coordinates<T>(2) + part.first;
+    const auto constant = static_cast<T>(linear.constant);
+    const auto i = static_cast<T>(linear.slope[0]), j = static_cast<T>(linear.slope[1]),
+               k = static_cast<T>(linear.slope[2]);
+    constexpr std::size_t kLanes = LeafPoints::kPadding;
+    std::array<T, kLanes> greatest{};
+    for (std::size_t n = 0; n < part.count; n += kLanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::size_t m = n + lane;
+        const T error = std::abs(constant + i * x[m] + j * y[m] + k * z[m] - samples[m]);
+        greatest[lane] = error > greatest[lane] ? error : greatest[lane];
+      }
+    }
+    return static_cast<double>(*std::max_element(greatest.begin(), greatest.end()));
+  }
+
+  int depth_;
+  LatticePoint last_;
+  Vec3 spacing_;
+  const CoarseSamples<Word>& coarse_;
+  std::array<double, 3> factors_;
+  std::vector<double> greatest_;  ///< error by level
+  LeafPoints leaf_points_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "isosurface/preprocessing/error_code.h"
+#include "isosurface/preprocessing/leaf_ranges.h"
+#include "isosurface/preprocessing/level_values.h"
+
+namespace adamas {
+
+/// Makes errors and ranges monotone, from the finest level up, plane by plane: a diamond takes what its
+/// children have. With a point's coordinates in units of its level the children are its two neighbours along
+/// each odd axis, but in phase 2, where there is one odd coordinate: there they are the eight points of the
+/// next finer level round it.
+template <class Word>
+class LevelSweep {
+ public:
+  /// `last`: sample of the volume.
+  LevelSweep(std::vector<LevelValues<Word>>& levels, LatticePoint last)
+      : levels_(levels), last_(last), next_(levels.size(), 0) {}
+
+  /// All tetrahedra have been measured that touch the diamonds in planes of the level up to `measured`. Sweeps
+  /// what can be swept, in this level alone; to be called from the finest one up.
+  void advance(int level, std::int32_t measured) {
+    std::int32_t complete = measured;
+    if (level > 0 && done(level - 1) < levels_[index(level - 1)].size().k - 1)
+      complete = std::min(complete, (done(level - 1) - 1) >> 1);
+    for (; next_[index(level)] <= complete; ++next_[index(level)]) {
+      const std::int32_t z = next_[index(level)];
+      if (level == 0) find_leaf_ranges(z);
+      const bool is_end = z + 1 == levels_[index(level)].size().k;
+      if (z % 2 == 0) {
+        sweep_plane(level, z);
+        if (z > 0) finish_odd_plane(level, z - 1);
+      } else if (is_end) {
+        finish_odd_plane(level, z);
+      }
+    }
+  }
+
+  /// The last plane whose points, and those of all planes before it, have their final values.
+  [[nodiscard]] std::int32_t done(int level) const {
+    const std::int32_t next = next_[index(level)];
+    // An odd plane still needs the one behind it.
+    return next % 2 == 1 || next == levels_[index(level)].size().k ? next - 1 : next - 2;
+  }
+
+ private:
+  using Values = LevelValues<Word>;
+  static std::size_t index(int level) { return static_cast<std::size_t>(level); }
+  static constexpr std::size_t kGrain = 16;
+
+  void find_leaf_ranges(std::int32_t z) {
+    Values& values = levels_.front();
+    const LeafRanges<Word> ranges(values, last_);
+    parallel_for(static_cast<std::size_t>(values.size().j), kGrain,
+                 [&](std::size_t j) { ranges.find(static_cast<std::int32_t>(j), z); });
+  }
+
+  void finish_odd_plane(int level, std::int32_t z) {
+    sweep_plane(level, z);
+    if (index(level) + 1 == levels_.size()) return;
+    Values& parents = levels_[index(level) + 1];
+    for (const std::int32_t parent : {(z - 1) / 2, (z + 1) / 2}) {
+      if (parent >= parents.size().k) continue;
+      parallel_for(static_cast<std::size_t>(parents.size().j), kGrain, [&](std::size_t j) {
+        pull(levels_[index(level)], parents, static_cast<std::int32_t>(j), parent, z);
+      });
+    }
+  }
+
+  /// Phase 1, and in odd planes phase 0 after it.
+  void sweep_plane(int level, std::int32_t z) {
+    Values& values = levels_[index(level)];
+    for (const int odd_axes : {2, 3}) {
+      parallel_for(static_cast<std::size_t>(values.size().j), kGrain, [&](std::size_t row) {
+        const auto j = static_cast<std::int32_t>(row);
+        const std::int32_t odd_i = odd_axes - j % 2 - z % 2;
+        if (odd_i == 0 || odd_i == 1) take_neighbours(values, j, z, odd_i);
+      });
+    }
+  }
+
+  /// Points of the row whose first coordinate has this parity.
+  static void take_neighbours(Values& values, std::int32_t j, std::int32_t z, std::int32_t odd_i) {
+    const LatticePoint size = values.size();
+    if (odd_i == 1) {
+      take(values, j, z, 1, j, z, -1, size.i);
+      take(values, j, z, 1, j, z, 1, size.i - 1);
+    }
+    if (j % 2 == 1) {
+      take(values, j, z, odd_i, j - 1, z, 0, size.i);
+      if (j + 1 < size.j) take(values, j, z, odd_i, j + 1, z, 0, size.i);
+    }
+    if (z % 2 == 1) {
+      take(values, j, z, odd_i, j, z - 1, 0, size.i);
+      if (z + 1 < size.k) take(values, j, z, odd_i, j, z + 1, 0, size.i);
+    }
+  }
+
+  /// Takes from the points `shift` along another row.
+  static void take(Values& values, std::int32_t j, std::int32_t z, std::int32_t first, std::int32_t from_j,
+                   std::int32_t from_z, std::int32_t shift, std::int32_t end) {
+    const int generations = values.generations();
+    for (int g = 0; g <= generations; ++g) {
+      std::uint8_t* to = values.codes(g, j, z);
+      const std::uint8_t* from = values.codes(g == 0 ? 0 : g - 1, from_j, from_z);
+      for (std::int32_t i = first; i < end; i += 2) to[i] = std::max(to[i], from[i + shift]);
+    }
+    Word *low = values.low(j, z), *high = values.high(j, z);
+    const Word *from_low = values.low(from_j, from_z), *from_high = values.high(from_j, from_z);
+    for (std::int32_t i = first; i < end; i += 2) {
+      low[i] = std::min(low[i], from_low[i + shift]);
+      high[i] = std::max(high[i], from_high[i + shift]);
+    }
+  }
+
+  /// Phase 2 of row (j, z) of the coarser level, from the plane `fine_z` of the finer one.
+  static void pull(Values& fine, Values& coarse, std::int32_t j, std::int32_t z, std::int32_t fine_z) {
+    if (j % 2 == 1 && z % 2 == 1) return;
+    const std::int32_t first = (j + z) % 2 == 0 ? 1 : 0;
+    for (const std::int32_t fine_j : {2 * j - 1, 2 * j + 1}) {
+      if (fine_j < 0 || fine_j >= fine.size().j) continue;
+      for (const std::int32_t shift : {-1, 1})
+        pull_row(fine, coarse, j, z, fine_j, fine_z, first == 0 && shift < 0 ? 2 : first, shift);
+    }
+  }
+
+  static void pull_row(Values& fine, Values& coarse, std::int32_t j, std::int32_t z, std::int32_t fine_j,
+                       std::int32_t fine_z, std::int32_t first, std::int32_t shift) {
+    const std::int32_t end = std::min(coarse.size().i, (fine.size().i - 1 - shift) / 2 + 1);
+    for (int g = 0; g <= coarse.generations(); ++g) {
+      std::uint8_t* to = coarse.codes(g, j, z);
+      const std::uint8_t* from = fine.codes(g == 0 ? 0 : g - 1, fine_j, fine_z);
+      for (std::int32_t i = first; i < end; i += 2)
+        to[i] = std::max(to[i], coarser_code(from[2 * i + shift], 1));
+    }
+    Word *low = coarse.low(j, z), *high = coarse.high(j, z);
+    const Word *from_low = fine.low(fine_j, fine_z), *from_high = fine.high(fine_j, fine_z);
+    for (std::int32_t i = first; i < end; i += 2) {
+      low[i] = std::min(low[i], from_low[2 * i + shift]);
+      high[i] = std::max(high[i], from_high[2 * i + shift]);
+    }
+  }
+
+  std::vector<Values>& levels_;
+  LatticePoint last_;
+  std::vector<std::int32_t> next_;
+};
+
+}  // namespace adamas

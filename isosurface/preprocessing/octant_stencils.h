@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "core/lattice/diamond_type.h"
+
+namespace adamas {
+
+/// Octants of a cube of 16^3 cells whose corner is a multiple of 16. They are mirror images of each other, with
+/// the diagonal of each one's first split running from the cube's corner to its centre: seen from their corner
+/// of the cube all eight are cut by bisection in the same way, as the cube from (0, 0, 0) to (8, 8, 8) is. That
+/// way is worked out here once, and measured in all eight at a time.
+class OctantStencils {
+ public:
+  static constexpr int kSide = 9;  ///< points
+  static constexpr int kPoints = kSide * kSide * kSide;
+  static constexpr int kOctants = 8;
+  static constexpr int kCube = 17;  ///< points of the whole cube per axis
+
+  /// `depth`: of the lattice, which may be smaller than an octant.
+  OctantStencils(int depth, const Vec3& spacing);
+
+  /// A sample in a tetrahedron, and how the corners' values are interpolated there.
+  struct Point {
+    std::int32_t offset;  ///< in points, from the diamond's
+    std::array<float, 4> weights;
+  };
+  /// A tetrahedron as seen from its diamond. Its corners stand in this order: phase 0, along three edges of the
+  /// cube from end to end of the split edge; phase 1, one end, the corner of the face, the other end, the
+  /// cube's centre; phase 2, the ends, the face's centre, the cube's centre.
+  struct Shape {
+    std::array<std::int32_t, 4> corners;
+    std::array<std::int32_t, 3> axes;  ///< along which the steps from corner to corner lead
+    std::uint32_t first, last;         ///< of points()
+    float diameter;                    ///< the square of its ratio to the scale's greatest error
+  };
+  struct SmallDiamond {
+    std::int32_t place;
+    int phase;
+    std::uint32_t first, last;  ///< of shape_indices()
+  };
+
+  [[nodiscard]] const std::vector<SmallDiamond>& diamonds() const { return diamonds_; }
+  [[nodiscard]] const std::vector<std::uint16_t>& shape_indices() const { return shape_indices_; }
+  [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }
+  [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+  /// For each axis: the square of what turns a slope, per half the tetrahedron's cube, into the ratio of the
+  /// scale's greatest error to the distance over which a value changes by one.
+  [[nodiscard]] const std::array<double, 3>& slope_factors() const { return slope_factors_; }
+  /// How many octants are in the lattice: 8, or the first one alone.
+  [[nodiscard]] int octants() const { return octants_; }
+
+  static constexpr std::int32_t place(LatticePoint p) { return p.i + kSide * (p.j + kSide * p.k); }
+
+ private:
+  void add_shapes(int scale_bits, const Vec3& spacing);
+  void add_diamonds(int bits);
+
+  std::vector<SmallDiamond> diamonds_;
+  std::vector<std::uint16_t> shape_indices_;
+  std::vector<Shape> shapes_;  ///< by scale, type, slot
+  std::vector<Point> points_;
+  std::array<double, 3> slope_factors_{};
+  int octants_;
+};
+
+/// For each axis: the squares of what OctantStencils::slope_factors says.
+std::array<double, 3> slope_factors(const Vec3& spacing);
+
+}  // namespace adamas

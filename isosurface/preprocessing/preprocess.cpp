@@ -1,0 +1,183 @@
+#include "isosurface/preprocessing/preprocess.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/assert.h"
+#include "core/base/error.h"
+#include "core/lattice/diamond_type.h"
+#include "isosurface/preprocessing/coarse_samples.h"
+#include "isosurface/preprocessing/level_sweep.h"
+#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/page_writer.h"
+#include "isosurface/preprocessing/slab_errors.h"
+
+namespace adamas {
+
+namespace {
+
+/// Levels finer than this one are held in part, in as many planes as are at work.
+constexpr int kWholeLevel = CoarseSamples<std::uint8_t>::kBits;
+constexpr std::int32_t kSlab = 16;
+
+template <class Sample>
+class Preprocessing {
+ public:
+  using Word = OrderedWord<Sample>;
+
+  Preprocessing(const VolumeGrid& volume, const PlaneSource& planes, const PageSink<Sample>& sink,
+                const PreprocessOptions& options, Progress& progress)
+      : grid_(volume.dimensions),
+        last_(grid_.last()),
+        planes_(planes),
+        progress_(progress),
+        samples_(volume.plane_samples()),
+        words_(volume.plane_samples()),
+        coarse_(last_),
+        levels_(make_levels(grid_, 3 * options.subtree_depth)),
+        errors_(grid_, volume.spacing, coarse_),
+        sweep_(levels_, last_),
+        writer_(grid_, options.subtree_depth, levels_, coarse_, sink) {}
+
+  void run() {
+    read_coarse();
+    for (std::int32_t slab = 0; slab < errors_.slabs(); ++slab) {
+      progress_.step("preprocessing", static_cast<double>(slab) / errors_.slabs());
+      read_slab(slab);
+      if (grid_.depth() == 0) break;
+      errors_.measure(slab, levels_);
+      finish(slab);
+    }
+    writer_.write_coarsest();
+    progress_.report("preprocessing", 1);
+  }
+
+ private:
+  using Levels = std::vector<LevelValues<Word>>;
+
+  static Levels make_levels(const PageGrid& grid, int generations) {
+    Levels levels;
+    for (int level = 0; level < std::max(1, grid.depth()); ++level) {
+      LatticePoint size = grid.extent(level) + LatticePoint{1, 1, 1};
+      // Where an axis is but one sample the diamonds beside it stand between those on it.
+      for (int axis = 0; axis < 3; ++axis) size[axis] = std::max(size[axis], 2);
+      const bool is_whole = level >= kWholeLevel;
+      // A slab; a row of pages that it does not finish; and that its last two planes are not final.
+      const int planes = is_whole ? size.k : 18 + (kSlab >> level);
+      levels.emplace_back(size, planes, generations, !is_whole);
+    }
+    return levels;
+  }
+
+  void read(std::int32_t k) {
+    planes_(static_cast<std::uint64_t>(k), std::as_writable_bytes(std::span(samples_)));
+    std::transform(samples_.begin(), samples_.end(), words_.begin(),
+                   [](Sample s) { return static_cast<Word>(ordered(s)); });
+  }
+
+  void read_coarse() {
+    if (grid_.depth() <= 3) return;
+    for (std::int32_t n = 0; n < coarse_.planes(); ++n) {
+      progress_.step("reading coarse samples", static_cast<double>(n) / coarse_.planes());
+      read(coarse_.plane(n));
+      coarse_.take(n, words_.data());
+    }
+  }
+
+  /// The planes behind those of the slab before, up to the first of the slab behind.
+  void read_slab(std::int32_t slab) {
+    const std::int32_t first = slab == 0 ? 0 : kSlab * slab + 1, end = kSlab * (slab + 1);
+    for (std::int32_t k = first; k <= end; ++k) {
+      if (k <= last_.k) read(k);
+      for (int level = 0; level < std::min(kWholeLevel, static_cast<int>(levels_.size())); ++level) {
+        if ((k & ((1 << level) - 1)) != 0 || k >> level >= levels_[static_cast<std::size_t>(level)].size().k)
+          continue;
+        levels_[static_cast<std::size_t>(level)].open(k >> level);
+        // Beyond the data lie the samples of the last plane, which are still there.
+        keep_samples(level, k >> level);
+      }
+    }
+  }
+
+  void keep_samples(int level, std::int32_t z) {
+    LevelValues<Word>& values = levels_[static_cast<std::size_t>(level)];
+    const LatticePoint size = values.size();
+    const std::size_t row = static_cast<std::size_t>(last_.i) + 1;
+    for (std::int32_t j = 0; j < size.j; ++j) {
+      const Word* from = words_.data() + row * static_cast<std::size_t>(std::min(j << level, last_.j));
+      Word* to = values.samples(j, z);
+      for (std::int32_t i = 0; i < size.i; ++i) to[i] = from[std::min(i << level, last_.i)];
+    }
+  }
+
+  void finish(std::int32_t slab) {
+    const bool is_last = slab + 1 == errors_.slabs();
+    for (int level = 0; level < grid_.depth(); ++level) {
+      const std::int32_t all = levels_[static_cast<std::size_t>(level)].size().k - 1;
+      std::int32_t measured = all;
+      if (!is_last) measured = level < kWholeLevel ? std::min(all, (kSlab * (slab + 1) >> level) - 1) : -1;
+      sweep_.advance(level, measured);
+      writer_.write(level, sweep_.done(level));
+    }
+  }
+
+  PageGrid grid_;
+  LatticePoint last_;
+  const PlaneSource& planes_;
+  Progress& progress_;
+  std::vector<Sample> samples_;  ///< of the plane that was read
+  std::vector<Word> words_;      ///< the same
+  CoarseSamples<Word> coarse_;
+  Levels levels_;
+  SlabErrors<Sample> errors_;
+  LevelSweep<Word> sweep_;
+  PageWriter<Sample> writer_;
+};
+
+}  // namespace
+
+template <class Sample>
+void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSink<Sample>& sink,
+                const PreprocessOptions& options, Progress& progress) {
+  grid.check("volume");
+  if (options.subtree_depth < 0 || options.subtree_depth > 2)
+    fail("expected subtrees of depth 0, 1 or 2, found {}", options.subtree_depth);
+  ADAMAS_ASSERT(sample_bytes(grid.type) == sizeof(Sample));
+  Preprocessing<Sample>(grid, planes, sink, options, progress).run();
+}
+
+double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& spacing) {
+  double greatest = 0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const LatticePoint edge = corners[a] - corners[b];
+      greatest = std::max(greatest, squared_norm({edge.i * spacing.x, edge.j * spacing.y, edge.k * spacing.z}));
+    }
+  }
+  return std::sqrt(greatest);
+}
+
+ErrorScale level_error_scale(const Vec3& spacing, int level) {
+  double greatest = 0;
+  for (const DiamondType& type : kDiamondTypes) {
+    for (std::size_t slot = 0; slot < static_cast<std::size_t>(type.tetrahedron_count); ++slot) {
+      const std::size_t next = (slot + 1) % static_cast<std::size_t>(type.tetrahedron_count);
+      greatest = std::max(
+          greatest, world_diameter({-type.direction, type.direction, type.ring[slot], type.ring[next]}, spacing));
+    }
+  }
+  // A power of two: codes of the same error differ by four from level to level.
+  return ErrorScale(std::ldexp(greatest, level));
+}
+
+template void preprocess<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint8_t>&,
+                         const PreprocessOptions&, Progress&);
+template void preprocess<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint16_t>&,
+                         const PreprocessOptions&, Progress&);
+template void preprocess<std::int16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::int16_t>&,
+                         const PreprocessOptions&, Progress&);
+template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&,
+                         const PreprocessOptions&, Progress&);
+
+}  // namespace adamas

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "core/base/progress.h"
+#include "core/data/volume.h"
+#include "core/lattice/lattice_point.h"
+#include "isosurface/preprocessing/error_scale.h"
+#include "isosurface/storage/page.h"
+#include "isosurface/storage/page_grid.h"
+
+namespace adamas {
+
+/// Fills the samples of plane k, as VolumeReader::read_plane does.
+using PlaneSource = std::function<void(std::uint64_t k, std::span<std::byte> samples)>;
+
+struct PreprocessOptions {
+  /// 0, 1 or 2: a tetrahedron stands for those that this many levels more of bisection make of it. Errors and
+  /// ranges exist for that many levels less.
+  int subtree_depth = 0;
+};
+
+/// Takes one page. Called for one at a time, in an order that depends on the volume's dimensions alone.
+template <class Sample>
+using PageSink = std::function<void(const PageId&, const Page<OrderedWord<Sample>>&)>;
+
+/// Works out what is stored of a volume (D 4.3): every page of its PageGrid once, with the samples, error
+/// codes and ranges of the points that are the page's own; other places hold anything.
+///
+/// A diamond's error is at least that of each of its tetrahedra: the greatest difference between the samples in
+/// and on it and the linear interpolation of its corners over the length of that interpolation's gradient, or
+/// the tetrahedron's diameter if that is less; 0 where there is no difference, the diameter where a corner is
+/// not finite. Its range covers the samples in and on its tetrahedra. Both cover those of its child diamonds.
+/// Samples that are not finite count in neither. Corners beyond the data have the nearest sample's value. With
+/// subtrees the error is that of the diamonds that many levels further, and finer levels have error 0 and
+/// low > high, as have the corners of the lattice. Errors are codes of level_error_scale.
+///
+/// Planes are read in ascending order, every 16th one twice. Memory does not grow with the number of planes,
+/// but for 1/4096 of the samples. Sample: uint8, uint16, int16 or float, as grid.type says. Throws Error for
+/// a grid that cannot be, Cancelled when `progress` says so, and what `planes` and `sink` throw.
+template <class Sample>
+void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSink<Sample>& sink,
+                const PreprocessOptions& options = {}, Progress& progress = SilentProgress::instance());
+
+/// The error scale of a level: its greatest error is the greatest diameter of the tetrahedra of the diamonds
+/// whose scale is 2^level samples.
+ErrorScale level_error_scale(const Vec3& spacing, int level);
+
+/// The greatest distance between two corners of a tetrahedron, where samples lie `spacing` apart.
+double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& spacing);
+
+}  // namespace adamas

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "isosurface/preprocessing/coarse_errors.h"
+#include "isosurface/preprocessing/cube_samples.h"
+#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/octant_errors.h"
+
+namespace adamas {
+
+/// Own errors of all diamonds, slab by slab of 16 cells along k.
+template <class Sample>
+class SlabErrors {
+ public:
+  using Word = OrderedWord<Sample>;
+  using Levels = std::vector<LevelValues<Word>>;
+
+  SlabErrors(const PageGrid& grid, const Vec3& spacing, const CoarseSamples<Word>& coarse)
+      : depth_(grid.depth()),
+        last_(grid.last()),
+        stencils_(depth_, spacing),
+        small_(stencils_),
+        large_(depth_, last_, spacing, coarse) {
+    // Cubes that touch the data with one side alone count: they have tetrahedra of diamonds on that side.
+    const std::int32_t cubes = std::max(1, (std::int32_t{1} << depth_) >> 4);
+    for (int axis = 0; axis < 3; ++axis) cubes_[axis] = std::min(last_[axis] / 16 + 1, cubes);
+  }
+
+  [[nodiscard]] std::int32_t slabs() const { return cubes_.k; }
+
+  /// Raises own codes by what slab `k` has; its samples are in levels.front(), up to the plane 16 k + 16.
+  void measure(std::int32_t k, Levels& levels) const {
+    // Cubes that are worked on at the same time have no point in common.
+    for (const LatticePoint first : {LatticePoint{0, 0, k}, {1, 0, k}, {0, 1, k}, {1, 1, k}}) {
+      const auto columns = static_cast<std::size_t>((cubes_.i - first.i + 1) / 2);
+      const auto rows = static_cast<std::size_t>((cubes_.j - first.j + 1) / 2);
+      parallel_chunks(columns * rows, 4, [&](std::size_t begin, std::size_t end) {
+        const auto work = std::make_unique_for_overwrite<Work>();
+        for (std::size_t n = begin; n < end; ++n) {
+          const auto i = static_cast<std::int32_t>(n % columns), j = static_cast<std::int32_t>(n / columns);
+          measure_cube({16 * (first.i + 2 * i), 16 * (first.j + 2 * j), 16 * k}, levels, *work);
+        }
+      });
+    }
+  }
+
+ private:
+  struct Work {
+    CubeSamples<Sample> samples;
+    typename OctantErrors<Sample>::Codes codes;
+  };
+
+  void measure_cube(LatticePoint base, Levels& levels, Work& work) const {
+    work.samples.load(levels.front(), last_, base);
+    small_.measure(work.samples, work.codes);
+    for (int level = 0; level < std::min(depth_, 3); ++level)
+      raise(levels[static_cast<std::size_t>(level)], level, base, work.codes.data());
+    if (depth_ > 3) large_.measure(work.samples, levels);
+  }
+
+  static void raise(LevelValues<Word>& values, int level, LatticePoint base, const std::uint8_t* codes) {
+    constexpr std::int32_t kCube = OctantStencils::kCube;
+    const LatticePoint size = values.size(), first{base.i >> level, base.j >> level, base.k >> level};
+    const std::int32_t side = 16 >> level;
+    for (std::int32_t k = 0; k <= std::min(side, size.k - 1 - first.k); ++k) {
+      for (std::int32_t j = 0; j <= std::min(side, size.j - 1 - first.j); ++j) {
+        std::uint8_t* row = values.codes(0, first.j + j, first.k + k) + first.i;
+        const std::uint8_t* from = codes + kCube * ((j << level) + kCube * (k << level));
+        const std::int32_t end = std::min(side, size.i - 1 - first.i);
+        for (std::int32_t i = 0; i <= end; ++i) row[i] = std::max(row[i], from[i << level]);
+      }
+    }
+  }
+
+  int depth_;
+  LatticePoint last_, cubes_{};
+  OctantStencils stencils_;
+  OctantErrors<Sample> small_;
+  CoarseErrors<Sample> large_;
+};
+
+}  // namespace adamas

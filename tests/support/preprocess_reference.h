@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "core/data/volume.h"
+#include "core/lattice/lattice_point.h"
+
+namespace adamas::test {
+
+/// A small volume: samples as numbers and as ordered words, i running fastest.
+struct ReferenceVolume {
+  VolumeGrid grid;
+  std::vector<double> values;
+  std::vector<std::uint32_t> words;
+
+  [[nodiscard]] LatticePoint last() const {
+    const auto at = [this](std::size_t axis) { return static_cast<std::int32_t>(grid.dimensions[axis] - 1); };
+    return {at(0), at(1), at(2)};
+  }
+  [[nodiscard]] std::size_t index(LatticePoint p) const {
+    const LatticePoint n = last() + LatticePoint{1, 1, 1};
+    return static_cast<std::size_t>(p.i) +
+           static_cast<std::size_t>(n.i) *
+               (static_cast<std::size_t>(p.j) + static_cast<std::size_t>(n.j) * static_cast<std::size_t>(p.k));
+  }
+  [[nodiscard]] bool contains(LatticePoint p) const;
+  /// The nearest sample's.
+  [[nodiscard]] double value(LatticePoint p) const;
+};
+
+/// What is to be stored of a diamond: bounds of its code, which differ where an error is near that of a code,
+/// and its range as words.
+struct ReferenceValues {
+  double own = 0;
+  std::uint8_t least_code = 0, greatest_code = 0;
+  std::uint32_t low = ~0u, high = 0;
+};
+
+/// Errors and ranges of all diamonds of a volume by their definition: every sample of a tetrahedron's bounding
+/// box is tried with integer barycentric coordinates, and every diamond looks at its children.
+class PreprocessReference {
+ public:
+  explicit PreprocessReference(const ReferenceVolume& volume);
+
+  [[nodiscard]] int depth() const { return depth_; }
+  /// Diamonds that touch the data with more than a side.
+  [[nodiscard]] const std::map<LatticePoint, ReferenceValues>& diamonds() const { return diamonds_; }
+  /// The codes when the errors of this many generations further count, least and greatest.
+  [[nodiscard]] std::array<std::uint8_t, 2> codes(LatticePoint p, int generations) const;
+  /// The greatest error of the tetrahedra that so many rounds of bisection make of those of a diamond, without
+  /// those whose diamonds lie wholly outside.
+  [[nodiscard]] double error_of_descendants(LatticePoint p, int generations) const;
+  /// Child diamonds in the lattice.
+  [[nodiscard]] std::vector<LatticePoint> children(LatticePoint p) const;
+
+ private:
+  using Corners = std::array<LatticePoint, 4>;
+
+  [[nodiscard]] bool in_lattice(LatticePoint p) const;
+  [[nodiscard]] bool exists(LatticePoint p) const;
+  [[nodiscard]] std::vector<Corners> tetrahedra(LatticePoint p) const;
+  /// The tetrahedron's own error; takes its samples into the range.
+  double measure(const Corners& corners, ReferenceValues& values) const;
+  [[nodiscard]] double descend(const Corners& corners, int generations) const;
+  void add(LatticePoint p);
+
+  const ReferenceVolume& volume_;
+  int depth_ = 0;
+  std::map<LatticePoint, ReferenceValues> diamonds_;
+};
+
+}  // namespace adamas::test
