@@ -12,7 +12,7 @@ foreach(module core interfaces isosurface datasets)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${module}/*.h)
   foreach(header IN LISTS headers)
     # Those with headers of other libraries are for sources beside them: who links to us need not have VTK's.
-    file(STRINGS ${PROJECT_SOURCE_DIR}/${header} foreign REGEX "^#include <(vtk|CGAL/|Eigen/|cairo|tbb/)")
+    file(STRINGS ${PROJECT_SOURCE_DIR}/${header} foreign REGEX "^#include <(vtk|hdf5|png|CGAL/|Eigen/|cairo|tbb/)")
     if(foreign)
       continue()
     endif()

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/io/inflate_stream.h"
 #include "core/io/input_file.h"
 #include "core/io/volume_format.h"
+#include "core/io/volume_import.h"
 #include "core/io/volume_reader.h"
 #include "core/io/volume_unpacking.h"
 
@@ -37,7 +37,8 @@ std::filesystem::path nifti_path(const std::filesystem::path& path) {
   return !std::filesystem::exists(header) && std::filesystem::exists(packed) ? packed : header;
 }
 
-VolumeSource find_source(const std::filesystem::path& path, const VolumeOptions& options) {
+VolumeSource find_source(const std::filesystem::path& path, const VolumeOptions& options,
+                         Progress& progress) {
   switch (find_volume_format(path)) {
     case VolumeFormat::kNrrd:
       return nrrd_source(read_beginning(path), path);
@@ -51,16 +52,22 @@ VolumeSource find_source(const std::filesystem::path& path, const VolumeOptions&
       const std::filesystem::path header = nifti_path(path);
       return nifti_source(nifti_header(header), header);
     }
-    default:
-      fail("{}: expected a volume of a known format, found another", path.string());
+    case VolumeFormat::kHdf5:
+      return import_hdf5(path, options, progress);
+    case VolumeFormat::kTiff:
+    case VolumeFormat::kPng:
+      return import_stack({path}, {1, 1, 1}, {}, options, progress);
+    case VolumeFormat::kOtherGrid:
+      return import_grid(path, options, progress);
   }
+  return {};
 }
 
 }  // namespace
 
 VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions& options,
                          Progress& progress) {
-  VolumeSource source = find_source(path, options);
+  VolumeSource source = find_source(path, options, progress);
   if (source.packed()) source = unpack_volume(std::move(source), options.scratch_folder, progress);
   return VolumeReader(std::move(source));
 }

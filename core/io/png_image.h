@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace adamas {
+
+/// A gray picture of 8 or 16 bits.
+struct PngImage {
+  std::uint32_t width = 0, height = 0;
+  int bits = 8;
+  std::vector<std::byte> samples;  ///< rows from the top, in the machine's byte order
+};
+
+/// Throws Error that names the file at other pictures and at what is no whole PNG. Not for the main process:
+/// a library reads it.
+PngImage read_png(const std::filesystem::path& path);
+
+}  // namespace adamas

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace adamas {
+
+/// What the samples of a page are.
+struct TiffLayout {
+  std::uint32_t width = 0, height = 0;
+  std::uint16_t bits = 1, samples = 1;  ///< of a sample; at a pixel
+  bool is_signed = false, is_float = false;
+  bool operator==(const TiffLayout&) const = default;
+
+  /// "uint16".
+  [[nodiscard]] std::string type() const;
+  [[nodiscard]] std::size_t row_bytes() const { return std::size_t{width} * samples * bits / 8; }
+};
+
+/// The pages of a TIFF file one after the other, and their rows. Throws Error that names the file at what
+/// cannot be read and at images in tiles or of other samples than whole numbers of 8, 16 or 32 bits and float
+/// of 32. Not for the main process: libtiff may crash on a corrupt file.
+class TiffPages {
+ public:
+  explicit TiffPages(const std::filesystem::path& path);
+  ~TiffPages();
+  TiffPages(const TiffPages&) = delete;
+  TiffPages& operator=(const TiffPages&) = delete;
+
+  /// Of the present page, first the first.
+  [[nodiscard]] const TiffLayout& layout() const { return layout_; }
+  [[nodiscard]] std::size_t page() const { return page_; }
+  /// How many pages there are.
+  [[nodiscard]] std::size_t count() const;
+  /// layout().row_bytes() bytes in the machine's order; rows are read one after the other.
+  void read_row(std::uint32_t y, std::span<std::byte> row);
+  /// False behind the last page. Throws Error where the next has another layout.
+  bool next_page();
+
+ private:
+  struct File;
+  [[nodiscard]] TiffLayout find_layout() const;
+  void check_messages() const;
+
+  std::string name_;
+  std::unique_ptr<File> file_;
+  TiffLayout layout_;
+  std::size_t page_ = 0;
+};
+
+}  // namespace adamas

@@ -1,0 +1,105 @@
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "core/base/error.h"
+#include "core/io/grid_file.h"
+#include "core/io/input_file.h"
+#include "core/io/legacy_vtk_check.h"
+#include "core/io/volume_import.h"
+#include "core/io/vtk_grid_reader.h"
+
+namespace adamas {
+
+namespace {
+
+const GridArray& chosen_array(const std::string& name, const GridFile& file, const std::string& wanted) {
+  const GridArray* found = nullptr;
+  std::string names;
+  for (const GridArray& array : file.arrays) {
+    if (array.centering != Centering::kPoints) continue;
+    names += (names.empty() ? "'" : ", '") + array.name + "'";
+    if (!wanted.empty() ? array.name != wanted : array.components != 1) continue;
+    if (found != nullptr && wanted.empty()) fail("{}: expected the name of an array, found {}", name, names);
+    found = &array;
+  }
+  if (found == nullptr) {
+    fail("{}: expected an array {} on points, found {}", name,
+         wanted.empty() ? "of one value per sample" : "'" + wanted + "'", names.empty() ? "none" : names);
+  }
+  if (found->components != 1) {
+    fail("{}: array '{}': expected one value per sample, found {}", name, wanted, found->components);
+  }
+  return *found;
+}
+
+/// Spacing and origin of evenly spaced nodes.
+void set_places(const std::string& name, const GridFile& file, ImportedVolume& volume) {
+  constexpr double kUneven = 1e-5;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& nodes = file.nodes[static_cast<std::size_t>(axis)];
+    volume.dimensions[static_cast<std::size_t>(axis)] = nodes.size();
+    if (nodes.empty()) fail("{}: expected samples along three axes, found none", name);
+    volume.origin[axis] = nodes.front();
+    if (nodes.size() == 1) continue;
+    const double step = (nodes.back() - nodes.front()) / static_cast<double>(nodes.size() - 1);
+    volume.spacing[axis] = step;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const double off = std::abs(nodes[i] - nodes.front() - static_cast<double>(i) * step);
+      if (!(off <= kUneven * std::abs(step))) {
+        fail("{}: expected even spacing along {}, found a sample at {} instead of {}", name, "xyz"[axis],
+             nodes[i], nodes.front() + static_cast<double>(i) * step);
+      }
+    }
+  }
+}
+
+/// The type of a file's array that its values, which are int32 or float here, still are of.
+StoredType kept_type(const GridArray& array) {
+  const auto type = find_stored_type(array.type);
+  if (array.integral()) return type && stored_bytes(*type) < 4 ? *type : StoredType::kInt32;
+  return StoredType::kFloat32;
+}
+
+void send(const GridArray& array, StoredType type, ImportSink& sink) {
+  constexpr std::size_t kPiece = std::size_t{1} << 16;
+  visit_stored_type(type, [&]<class Stored>(Stored) {
+    std::visit(
+        [&](const auto& values) {
+          std::vector<Stored> piece;
+          for (std::size_t begin = 0; begin < values.size(); begin += kPiece) {
+            const std::size_t end = std::min(begin + kPiece, values.size());
+            piece.clear();
+            for (std::size_t i = begin; i < end; ++i) piece.push_back(static_cast<Stored>(values[i]));
+            sink.samples(std::as_bytes(std::span(piece)));
+          }
+        },
+        array.values);
+  });
+}
+
+}  // namespace
+
+VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions& options,
+                         Progress& progress) {
+  const std::string name = path.string();
+  const std::size_t size = check_input_file(path);
+  if (file_extension(path) == ".vtk") check_legacy_vtk(path);
+  return import_volume(name, size, options, progress, [&](ImportSink& sink) {
+    const GridFile file = read_grid_with_vtk(path);
+    const GridArray& array = chosen_array(name, file, options.array);
+    ImportedVolume volume;
+    set_places(name, file, volume);
+    volume.stored = kept_type(array);
+    const auto& n = volume.dimensions;
+    if (array.size() != n[0] * n[1] * n[2]) {
+      fail("{}: array '{}': expected {} values, found {}", name, array.name, n[0] * n[1] * n[2],
+           array.size());
+    }
+    const bool wide = !array.integral() && array.type != "float32";
+    sink.begin(volume, wide ? array.type + " samples are read as float32" : "");
+    send(array, volume.stored, sink);
+  });
+}
+
+}  // namespace adamas

@@ -1,0 +1,61 @@
+#include "core/io/volume_import.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/io/sample_sink.h"
+
+namespace adamas {
+
+namespace {
+
+/// No compression that these libraries know makes more of a byte.
+constexpr std::uint64_t kGreatestExpansion = 10'000;
+
+}  // namespace
+
+void ImportSink::begin(const ImportedVolume& volume, const std::string& remark) {
+  bytes_.put(volume);
+  bytes_.put(remark);
+}
+
+VolumeSource import_volume(const std::string& name, std::uint64_t input_bytes, const VolumeOptions& options,
+                           Progress& progress, const std::function<void(ImportSink&)>& produce) {
+  constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
+  VolumeSource result;
+  const auto receive = [&](ByteSource& bytes) {
+    const auto volume = bytes.get<ImportedVolume>();
+    VolumeSource source;
+    source.name = name;
+    source.remark = bytes.get_string();
+    if (volume.stored > StoredType::kFloat64) fail("{}: expected a type of numbers, found none", name);
+    source.set_stored(volume.stored);
+    source.grid.dimensions = volume.dimensions;
+    source.grid.spacing = volume.spacing;
+    source.grid.origin = volume.origin;
+    source.grid.check(name);
+    const auto& n = volume.dimensions;
+    if (source.sample_file_bytes() / kGreatestExpansion > input_bytes) {
+      fail("{}: expected {} bytes for {} x {} x {} samples of {}, found a file of {}", name,
+           source.sample_file_bytes(), n[0], n[1], n[2], stored_name(volume.stored), input_bytes);
+    }
+    SampleSink sink(source, options.scratch_folder, progress);
+    std::vector<std::byte> piece;
+    while (sink.found() < sink.expected()) {
+      piece.resize(static_cast<std::size_t>(std::min(kPiece, sink.expected() - sink.found())));
+      bytes.read(piece.data(), piece.size());
+      sink.take(piece);
+    }
+    result = sink.finish();
+  };
+  read_in_child(
+      name, static_cast<std::size_t>(input_bytes),
+      [&](ByteSink& bytes) {
+        ImportSink sink(bytes);
+        produce(sink);
+      },
+      receive);
+  return result;
+}
+
+}  // namespace adamas

@@ -1,0 +1,141 @@
+#include "core/io/volume_stack.h"
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/io/volume_import.h"
+
+namespace adamas {
+
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// A part of a pattern: text, or what stands for other text.
+struct Part {
+  enum class Kind { kText, kAny, kOne, kNumber } kind = Kind::kText;
+  std::string text;
+  std::size_t digits = 0;  ///< of a number, at least
+};
+
+/// "%d", "%i", "%4d" or "%04d" at the beginning: how many characters it takes, and the digits; 0: none.
+std::size_t number_format(const std::string& text, std::size_t at, std::size_t& digits) {
+  std::size_t end = at + 1;
+  while (end < text.size() && is_digit(text[end])) ++end;
+  if (end >= text.size() || (text[end] != 'd' && text[end] != 'i' && text[end] != 'u')) return 0;
+  digits = 1;
+  std::from_chars(text.data() + at + 1, text.data() + end, digits);
+  digits = std::max<std::size_t>(digits, 1);
+  return end + 1 - at;
+}
+
+std::vector<Part> parts_of(const std::string& pattern) {
+  std::vector<Part> parts;
+  for (std::size_t at = 0; at < pattern.size();) {
+    const char c = pattern[at];
+    std::size_t digits = 0, length = 1;
+    if (c == '%' && (length = number_format(pattern, at, digits)) > 0) {
+      parts.push_back({Part::Kind::kNumber, {}, digits});
+    } else if (c == '#') {
+      length = std::min(pattern.find_first_not_of('#', at), pattern.size()) - at;
+      parts.push_back({Part::Kind::kNumber, {}, length});
+    } else if (c == '*' || c == '?') {
+      parts.push_back({c == '*' ? Part::Kind::kAny : Part::Kind::kOne, {}, 0});
+    } else {
+      length = 1;
+      if (parts.empty() || parts.back().kind != Part::Kind::kText) parts.push_back({});
+      parts.back().text += c;
+    }
+    at += length;
+  }
+  return parts;
+}
+
+/// By the table of which prefixes fit, so that no pattern takes long.
+bool fits(const std::string& name, const std::vector<Part>& parts) {
+  const std::size_t size = name.size();
+  std::vector<bool> reached(size + 1);
+  reached[0] = true;
+  for (const Part& part : parts) {
+    std::vector<bool> next(size + 1);
+    for (std::size_t at = 0; at <= size; ++at) {
+      if (!reached[at]) continue;
+      switch (part.kind) {
+        case Part::Kind::kText:
+          if (name.compare(at, part.text.size(), part.text) == 0) next[at + part.text.size()] = true;
+          break;
+        case Part::Kind::kAny:
+          std::fill(next.begin() + static_cast<std::ptrdiff_t>(at), next.end(), true);
+          break;
+        case Part::Kind::kOne:
+          if (at < size) next[at + 1] = true;
+          break;
+        case Part::Kind::kNumber: {
+          std::size_t end = at;
+          while (end < size && is_digit(name[end])) ++end;
+          // Beyond its width a number has no zeros in front.
+          if (end - at == part.digits || (end - at > part.digits && name[at] != '0')) next[end] = true;
+        }
+      }
+    }
+    reached = std::move(next);
+  }
+  return reached[size];
+}
+
+}  // namespace
+
+bool natural_less(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+      ++i, ++j;
+      continue;
+    }
+    const auto number = [](const std::string& text, std::size_t& at) {
+      while (at < text.size() && text[at] == '0') ++at;
+      const std::size_t begin = at;
+      while (at < text.size() && is_digit(text[at])) ++at;
+      return text.substr(begin, at - begin);
+    };
+    const std::string left = number(a, i), right = number(b, j);
+    if (left.size() != right.size()) return left.size() < right.size();
+    if (left != right) return left < right;
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;  // they differ in zeros before numbers, at most
+}
+
+std::vector<std::filesystem::path> match_stack(const std::filesystem::path& pattern) {
+  const std::vector<Part> parts = parts_of(pattern.filename().string());
+  if (std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.kind == Part::Kind::kText; })) {
+    fail("{}: expected a pattern with *, ?, # or %d in the file's name, found none", pattern.string());
+  }
+  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
+  std::error_code code;
+  std::filesystem::directory_iterator entries(folder, code);
+  if (code) fail("{}: expected a folder that can be read: {}", folder.string(), code.message());
+  std::vector<std::string> names;
+  for (; !code && entries != std::filesystem::directory_iterator(); entries.increment(code)) {
+    std::error_code other;
+    std::string name = entries->path().filename().string();
+    if (entries->is_regular_file(other) && fits(name, parts)) names.push_back(std::move(name));
+  }
+  if (names.empty()) fail("{}: expected files of such names, found none", pattern.string());
+  std::sort(names.begin(), names.end(), natural_less);
+  std::vector<std::filesystem::path> paths;
+  for (const std::string& name : names) {
+    paths.push_back(pattern.has_parent_path() ? pattern.parent_path() / name : std::filesystem::path(name));
+  }
+  return paths;
+}
+
+VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths, const Vec3& spacing,
+                               const Vec3& origin, const VolumeOptions& options, Progress& progress) {
+  return VolumeReader(import_stack(paths, spacing, origin, options, progress));
+}
+
+}  // namespace adamas

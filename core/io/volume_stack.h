@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/io/volume_reader.h"
+
+namespace adamas {
+
+/// A volume of pictures, TIFF or PNG, one plane each in the order given, or of the pages of one TIFF. They
+/// are unpacked first, as open_volume does it. Throws Error, with the file's name, where one cannot be read,
+/// is no gray picture or differs in size or type from the first.
+VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths,
+                               const Vec3& spacing = {1, 1, 1}, const Vec3& origin = {},
+                               const VolumeOptions& options = {},
+                               Progress& progress = SilentProgress::instance());
+
+/// The files of a folder whose names fit a pattern, in natural order (9 before 10). In the file's name '*'
+/// stands for any characters, '?' for one, a run of '#' for a number of at least as many digits, and '%d' or
+/// '%04d' for a number as printf writes it. Throws Error with the pattern where none fits or there is nothing
+/// of that kind in it.
+std::vector<std::filesystem::path> match_stack(const std::filesystem::path& pattern);
+
+/// Whether text `a` comes before `b` when runs of digits are compared as numbers.
+bool natural_less(const std::string& a, const std::string& b);
+
+}  // namespace adamas

@@ -1,0 +1,100 @@
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/png_image.h"
+#include "core/io/tiff_pages.h"
+#include "core/io/volume_format.h"
+#include "core/io/volume_import.h"
+
+namespace adamas {
+
+namespace {
+
+struct PlaneKind {
+  std::uint64_t width = 0, height = 0;
+  StoredType type = StoredType::kUint8;
+  bool operator==(const PlaneKind&) const = default;
+};
+
+/// Reads the pictures of a stack, in the child.
+class StackReader {
+ public:
+  StackReader(const std::vector<std::filesystem::path>& paths, ImportedVolume volume, ImportSink& sink)
+      : paths_(paths), volume_(volume), sink_(sink) {}
+
+  void run() {
+    for (const auto& path : paths_) {
+      switch (find_volume_format(path)) {
+        case VolumeFormat::kTiff:
+          read_tiff(path);
+          break;
+        case VolumeFormat::kPng:
+          read_png_plane(path);
+          break;
+        default:
+          fail("{}: expected a picture, TIFF or PNG, found another format", path.string());
+      }
+    }
+  }
+
+ private:
+  void expect(const std::filesystem::path& path, const PlaneKind& kind, std::uint64_t planes) {
+    if (volume_.dimensions[2] == 0) {
+      kind_ = kind;
+      volume_.dimensions = {kind.width, kind.height, planes};
+      volume_.stored = kind.type;
+      sink_.begin(volume_);
+    } else if (kind != kind_) {
+      fail("{}: expected {} x {} samples of {} as in {}, found {} x {} of {}", path.string(), kind_.width,
+           kind_.height, stored_name(kind_.type), paths_.front().string(), kind.width, kind.height,
+           stored_name(kind.type));
+    }
+  }
+
+  void read_tiff(const std::filesystem::path& path) {
+    TiffPages pages(path);
+    const TiffLayout& layout = pages.layout();
+    if (layout.samples != 1) {
+      fail("{}: expected one value per sample, found {}", path.string(), layout.samples);
+    }
+    const std::size_t count = pages.count();
+    if (paths_.size() > 1 && count != 1) fail("{}: expected one page, found {}", path.string(), count);
+    expect(path, {layout.width, layout.height, find_stored_type(layout.type()).value()},
+           paths_.size() > 1 ? paths_.size() : count);
+    std::vector<std::byte> row(layout.row_bytes());
+    do {
+      for (std::uint32_t y = 0; y < layout.height; ++y) {
+        pages.read_row(y, row);
+        sink_.samples(row);
+      }
+    } while (pages.next_page());
+  }
+
+  void read_png_plane(const std::filesystem::path& path) {
+    const PngImage image = read_png(path);
+    expect(path, {image.width, image.height, image.bits == 16 ? StoredType::kUint16 : StoredType::kUint8},
+           paths_.size());
+    sink_.samples(image.samples);
+  }
+
+  const std::vector<std::filesystem::path>& paths_;
+  ImportedVolume volume_;
+  ImportSink& sink_;
+  PlaneKind kind_;
+};
+
+}  // namespace
+
+VolumeSource import_stack(const std::vector<std::filesystem::path>& paths, const Vec3& spacing,
+                          const Vec3& origin, const VolumeOptions& options, Progress& progress) {
+  if (paths.empty()) fail("expected the pictures of a stack, found none");
+  std::uint64_t bytes = 0;
+  for (const auto& path : paths) bytes += check_input_file(path);
+  const std::string others = paths.size() > 1 ? fmt::format(" and {} others", paths.size() - 1) : "";
+  ImportedVolume volume;
+  volume.spacing = spacing;
+  volume.origin = origin;
+  return import_volume(paths.front().string() + others, bytes, options, progress,
+                       [&](ImportSink& sink) { StackReader(paths, volume, sink).run(); });
+}
+
+}  // namespace adamas
