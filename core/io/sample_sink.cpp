@@ -43,7 +43,7 @@ VolumeSource SampleSink::finish() const {
   result.count_bytes = 0;
   result.at_end = result.base64 = result.before_tag = false;
   result.exact = true;
-  result.coding = SampleCoding::kRaw;
+  result.coding = SamplePacking::kRaw;
   progress_.report(kStage, 1);
   return result;
 }

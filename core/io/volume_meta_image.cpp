@@ -33,10 +33,10 @@ class Parser {
   }
 
   void refuse_other_kinds() {
-    if (fields_.is_true("CompressedData")) source_.coding = SampleCoding::kDeflate;
+    if (fields_.is_true("CompressedData")) source_.coding = SamplePacking::kDeflate;
     if (fields_.has("BinaryData") && !fields_.is_true("BinaryData")) {
       if (source_.packed()) fail_field("BinaryData", "binary samples where they are compressed");
-      source_.coding = SampleCoding::kText;
+      source_.coding = SamplePacking::kText;
     }
     const char* channels = "ElementNumberOfChannels";
     if (fields_.has(channels) && fields_.value(channels) != "1") fail_field(channels, "one value per sample");

@@ -136,7 +136,7 @@ class Parser {
     source_.file = path_;
     const bool packed = file_extension(path_).ends_with(".gz");
     (packed ? source_.skip_bytes : source_.header_bytes) = static_cast<std::uint64_t>(offset);
-    if (packed) source_.coding = SampleCoding::kDeflate;
+    if (packed) source_.coding = SamplePacking::kDeflate;
     if (single_) return;
     set_image_file();
   }
@@ -151,7 +151,7 @@ class Parser {
     const std::uint64_t offset = source_.skip_bytes + source_.header_bytes;
     const bool packed = !std::filesystem::exists(source_.file) && std::filesystem::exists(gzip);
     if (packed) source_.file = gzip;
-    source_.coding = packed ? SampleCoding::kDeflate : SampleCoding::kRaw;
+    source_.coding = packed ? SamplePacking::kDeflate : SamplePacking::kRaw;
     source_.skip_bytes = packed ? offset : 0;
     source_.header_bytes = packed ? 0 : offset;
     source_.name += ": " + source_.file.string();

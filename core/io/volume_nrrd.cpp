@@ -9,8 +9,8 @@ VolumeSource nrrd_source(std::string_view text, const std::filesystem::path& pat
   VolumeSource source;
   source.name = path.string();
   const NrrdHeader header = parse_nrrd_header(text, source.name);
-  if (header.encoding == NrrdEncoding::kGzip) source.coding = SampleCoding::kDeflate;
-  if (header.encoding == NrrdEncoding::kText) source.coding = SampleCoding::kText;
+  if (header.encoding == NrrdEncoding::kGzip) source.coding = SamplePacking::kDeflate;
+  if (header.encoding == NrrdEncoding::kText) source.coding = SamplePacking::kText;
   if (header.components != 1) {
     fail("{}: expected one value per sample, found {}", source.name, header.components);
   }

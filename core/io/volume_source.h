@@ -17,7 +17,7 @@
 namespace adamas {
 
 /// How the bytes of a file stand for samples.
-enum class SampleCoding : std::uint8_t {
+enum class SamplePacking : std::uint8_t {
   kRaw,
   kDeflate,    ///< one zlib or gzip stream, up to the file's end
   kText,       ///< decimal numbers with blanks or commas between them
@@ -36,7 +36,7 @@ struct VolumeSource {
   std::size_t count_bytes = 0;     ///< of an unsigned number before them, how many bytes they take
   StoredType stored = StoredType::kUint8;
   bool big_endian = false;
-  SampleCoding coding = SampleCoding::kRaw;
+  SamplePacking coding = SamplePacking::kRaw;
   bool base64 = false;      ///< the coded bytes are written as base64
   bool before_tag = false;  ///< they end where the next XML tag begins
   /// Where the samples are the bytes of this file instead, unpacked.
@@ -47,7 +47,7 @@ struct VolumeSource {
   VolumeGrid grid;                  ///< with the type that the samples become
 
   [[nodiscard]] std::uint64_t sample_file_bytes() const { return grid.samples() * stored_bytes(stored); }
-  [[nodiscard]] bool packed() const { return coding != SampleCoding::kRaw || base64; }
+  [[nodiscard]] bool packed() const { return coding != SamplePacking::kRaw || base64; }
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   void set_stored(StoredType type);
   /// Sets spacing, origin and `reversed` for grid.dimensions. Throws Error where an axis is not parallel to

@@ -25,13 +25,13 @@ class Unpacker {
 
   void run() {
     switch (source_.coding) {
-      case SampleCoding::kRaw:
+      case SamplePacking::kRaw:
         return copy_counted();
-      case SampleCoding::kDeflate:
+      case SamplePacking::kDeflate:
         return inflate_all();
-      case SampleCoding::kText:
+      case SamplePacking::kText:
         return read_text();
-      case SampleCoding::kVtkBlocks:
+      case SamplePacking::kVtkBlocks:
         return inflate_blocks();
     }
   }
@@ -169,7 +169,7 @@ VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& fol
   const auto file = FileHandle::open(source.file);
   // Behind a tag, an offset leads into text, where blanks count as characters.
   std::uint64_t begin = file->behind_lines(source.header_bytes, source.skip_lines, source.name);
-  if (source.coding != SampleCoding::kDeflate && source.coding != SampleCoding::kText) {
+  if (source.coding != SamplePacking::kDeflate && source.coding != SamplePacking::kText) {
     begin += std::min(source.skip_bytes, file->size());
   }
   check_size(source, file->size() - std::min(begin, file->size()));
@@ -180,7 +180,7 @@ VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& fol
   Unpacker(source, std::move(bytes), sink).run();
   VolumeSource result = sink.finish();
   // Numbers in text were stored as this machine has them.
-  if (source.coding == SampleCoding::kText) result.big_endian = false;
+  if (source.coding == SamplePacking::kText) result.big_endian = false;
   return result;
 }
 

@@ -175,11 +175,11 @@ class Parser {
     inline_ = format != "appended";
     source_.base64 = source_.before_tag = format == "binary";
     if (format == "ascii") {
-      source_.coding = SampleCoding::kText;
+      source_.coding = SamplePacking::kText;
       source_.before_tag = true;
       return;
     }
-    if (compressed_) source_.coding = SampleCoding::kVtkBlocks;
+    if (compressed_) source_.coding = SamplePacking::kVtkBlocks;
     if (format == "binary") return;
     if (format != "appended") fail_value("DataArray format", "appended, binary or ascii", format);
     source_.skip_bytes = numbers<std::uint64_t>(tag, "offset", 1).front();

@@ -1,7 +1,11 @@
 #include "isosurface/gradients/octahedral_codes.h"
 
 #include <algorithm>
+<<<<<<< HEAD
 #include <cmath>
+=======
+#include <cstring>
+>>>>>>> w-surfaces
 
 #include "core/base/assert.h"
 #include "isosurface/gradients/direction_code.h"
@@ -10,6 +14,14 @@ namespace adamas {
 
 namespace {
 
+<<<<<<< HEAD
+=======
+/// Two directions are encoded at once: vectors as g++ and clang have them, with a select by a comparison.
+using Pair [[gnu::vector_size(16)]] = double;
+using Mask [[gnu::vector_size(16)]] = std::int64_t;
+constexpr std::size_t kLanes = 2;
+
+>>>>>>> w-surfaces
 constexpr std::size_t kBlock = 256;
 constexpr double kSteps = 127;
 constexpr int kMiddle = 128;
@@ -23,11 +35,27 @@ OctahedralCode encode_one(const Vec3& direction) {
   return {bytes[0], bytes[1]};
 }
 
+<<<<<<< HEAD
 double sign(double x) { return x < 0 ? -1 : 1; }
+=======
+inline Pair both(double x) { return Pair{x, x}; }
+inline Pair magnitude(Pair x) { return x < both(0) ? -x : x; }
+/// -1 or 1, as direction_code.cpp has it: 1 for -0.
+inline Pair sign(Pair x) { return x < both(0) ? both(-1) : both(1); }
+
+/// The greatest whole number that is not greater; of small ones alone.
+inline Pair floor_of(Pair x) {
+  // Here doubles are whole numbers.
+  const Pair whole = both(6755399441055744.0);
+  const Pair rounded = (x + whole) - whole;
+  return rounded > x ? rounded - both(1) : rounded;
+}
+>>>>>>> w-surfaces
 
 /// A code, and what its direction has in common with the one to be encoded: the cosine is
 /// sqrt(dot2 / length2).
 struct Candidate {
+<<<<<<< HEAD
   double a, b, dot2, length2;
 };
 
@@ -54,12 +82,35 @@ inline void keep_better(Candidate& best, const Candidate& other, std::int32_t& u
   const bool tied = std::abs(mine - its) <= kTie * mine;
   unsure |= static_cast<std::int32_t>(tied) & static_cast<std::int32_t>(!same);
   const bool better = its > mine;
+=======
+  Pair a, b, dot2, length2;
+};
+
+/// The code of the whole steps a and b, as seen from (x, y, z).
+inline Candidate candidate(Pair a, Pair b, Pair x, Pair y, Pair z) {
+  const Pair width = magnitude(a), depth = magnitude(b);
+  const Pair height = both(kSteps) - width - depth;
+  const Mask below = height < both(0);
+  const Pair u = below ? (both(kSteps) - depth) * sign(a) : a;
+  const Pair v = below ? (both(kSteps) - width) * sign(b) : b;
+  const Pair dot = x * u + y * v + z * height;
+  return {a, b, dot * dot, u * u + v * v + height * height};
+}
+
+/// Keeps the better of the two; adds to `unsure` where that is for the one-by-one code to say.
+inline void keep_better(Candidate& best, const Candidate& other, Mask& unsure) {
+  const Pair mine = best.dot2 * other.length2, its = other.dot2 * best.length2;
+  const Mask differ = (best.a != other.a) | (best.b != other.b);
+  unsure |= (magnitude(mine - its) <= both(kTie) * mine) & differ;
+  const Mask better = its > mine;
+>>>>>>> w-surfaces
   best.a = better ? other.a : best.a;
   best.b = better ? other.b : best.b;
   best.dot2 = better ? other.dot2 : best.dot2;
   best.length2 = better ? other.length2 : best.length2;
 }
 
+<<<<<<< HEAD
 /// Up to kBlock directions.
 void encode_block(const double* x, const double* y, const double* z, std::size_t count,
                   OctahedralCode* codes) {
@@ -88,6 +139,53 @@ void encode_block(const double* x, const double* y, const double* z, std::size_t
                 static_cast<std::uint8_t>(kMiddle + second[i])};
     if (unsure[i] != 0) codes[i] = encode_one({x[i], y[i], z[i]});
   }
+=======
+/// The whole steps, and where they are not sure.
+struct Steps {
+  Pair a, b;
+  Mask unsure;
+};
+
+/// By the same formulas as encode_direction, with the same candidates.
+inline Steps steps_of(Pair x, Pair y, Pair z) {
+  const Pair sum = magnitude(x) + magnitude(y) + magnitude(z);
+  const Mask usable = (sum > both(kLeast)) & (sum < both(kMost));
+  const Pair divisor = usable ? sum : both(1);
+  const Pair nx = (usable ? x : both(1)) / divisor, ny = (usable ? y : both(0)) / divisor,
+             nz = (usable ? z : both(0)) / divisor;
+  const Mask below = nz < both(0);
+  const Pair u = both(kSteps) * (below ? (both(1) - magnitude(ny)) * sign(nx) : nx);
+  const Pair v = both(kSteps) * (below ? (both(1) - magnitude(nx)) * sign(ny) : ny);
+  const Pair a = floor_of(u), b = floor_of(v);
+  const Pair next_a = a < u ? a + both(1) : a, next_b = b < v ? b + both(1) : b;
+  Mask unsure = ~usable;
+  Candidate best = candidate(a, b, nx, ny, nz);
+  keep_better(best, candidate(a, next_b, nx, ny, nz), unsure);
+  keep_better(best, candidate(next_a, b, nx, ny, nz), unsure);
+  keep_better(best, candidate(next_a, next_b, nx, ny, nz), unsure);
+  return {best.a, best.b, unsure};
+}
+
+inline Pair load(const double* from, std::size_t count) {
+  Pair result = both(0);
+  std::memcpy(&result, from, std::min(count, kLanes) * sizeof(double));
+  return result;
+}
+
+void encode_block(const double* x, const double* y, const double* z, std::size_t count,
+                  OctahedralCode* codes) {
+  const auto encode = [=](std::size_t i, std::size_t lanes) {
+    const Steps steps = steps_of(load(x + i, lanes), load(y + i, lanes), load(z + i, lanes));
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      codes[i + lane] = {static_cast<std::uint8_t>(kMiddle + static_cast<int>(steps.a[lane])),
+                         static_cast<std::uint8_t>(kMiddle + static_cast<int>(steps.b[lane]))};
+      if (steps.unsure[lane] != 0) codes[i + lane] = encode_one({x[i + lane], y[i + lane], z[i + lane]});
+    }
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) encode(i, kLanes);
+  if (i < count) encode(i, count - i);
+>>>>>>> w-surfaces
 }
 
 }  // namespace
@@ -95,10 +193,14 @@ void encode_block(const double* x, const double* y, const double* z, std::size_t
 void encode_octahedral(std::span<const double> x, std::span<const double> y, std::span<const double> z,
                        std::span<OctahedralCode> codes) {
   ADAMAS_ASSERT(x.size() == codes.size() && y.size() == codes.size() && z.size() == codes.size());
+<<<<<<< HEAD
   for (std::size_t begin = 0; begin < codes.size(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, codes.size() - begin);
     encode_block(x.data() + begin, y.data() + begin, z.data() + begin, count, codes.data() + begin);
   }
+=======
+  encode_block(x.data(), y.data(), z.data(), codes.size(), codes.data());
+>>>>>>> w-surfaces
 }
 
 void encode_octahedral(std::span<const Gradient> gradients, std::span<OctahedralCode> codes) {
