@@ -1,11 +1,7 @@
 #include "isosurface/gradients/octahedral_codes.h"
 
 #include <algorithm>
-<<<<<<< HEAD
-#include <cmath>
-=======
 #include <cstring>
->>>>>>> w-surfaces
 
 #include "core/base/assert.h"
 #include "isosurface/gradients/direction_code.h"
@@ -14,14 +10,11 @@ namespace adamas {
 
 namespace {
 
-<<<<<<< HEAD
-=======
 /// Two directions are encoded at once: vectors as g++ and clang have them, with a select by a comparison.
 using Pair [[gnu::vector_size(16)]] = double;
 using Mask [[gnu::vector_size(16)]] = std::int64_t;
 constexpr std::size_t kLanes = 2;
 
->>>>>>> w-surfaces
 constexpr std::size_t kBlock = 256;
 constexpr double kSteps = 127;
 constexpr int kMiddle = 128;
@@ -35,9 +28,6 @@ OctahedralCode encode_one(const Vec3& direction) {
   return {bytes[0], bytes[1]};
 }
 
-<<<<<<< HEAD
-double sign(double x) { return x < 0 ? -1 : 1; }
-=======
 inline Pair both(double x) { return Pair{x, x}; }
 inline Pair magnitude(Pair x) { return x < both(0) ? -x : x; }
 /// -1 or 1, as direction_code.cpp has it: 1 for -0.
@@ -50,39 +40,10 @@ inline Pair floor_of(Pair x) {
   const Pair rounded = (x + whole) - whole;
   return rounded > x ? rounded - both(1) : rounded;
 }
->>>>>>> w-surfaces
 
 /// A code, and what its direction has in common with the one to be encoded: the cosine is
 /// sqrt(dot2 / length2).
 struct Candidate {
-<<<<<<< HEAD
-  double a, b, dot2, length2;
-};
-
-/// The code of the whole steps a and b, as seen from (x, y, z). Without branches, as all below, so that two
-/// directions can be encoded at once.
-inline Candidate candidate(double a, double b, double x, double y, double z) {
-  const double height = kSteps - std::abs(a) - std::abs(b);
-  const bool below = height < 0;
-  const double u = below ? (kSteps - std::abs(b)) * sign(a) : a;
-  const double v = below ? (kSteps - std::abs(a)) * sign(b) : b;
-  const double dot = x * u + y * v + z * height;
-  return {a, b, dot * dot, u * u + v * v + height * height};
-}
-
-inline double floor_of(double x) {
-  const double cut = static_cast<std::int32_t>(x);
-  return cut > x ? cut - 1 : cut;
-}
-
-/// Keeps the better of the two; `unsure` becomes 1 where that is for exact arithmetic to say.
-inline void keep_better(Candidate& best, const Candidate& other, std::int32_t& unsure) {
-  const double mine = best.dot2 * other.length2, its = other.dot2 * best.length2;
-  const bool same = best.a == other.a && best.b == other.b;
-  const bool tied = std::abs(mine - its) <= kTie * mine;
-  unsure |= static_cast<std::int32_t>(tied) & static_cast<std::int32_t>(!same);
-  const bool better = its > mine;
-=======
   Pair a, b, dot2, length2;
 };
 
@@ -103,43 +64,12 @@ inline void keep_better(Candidate& best, const Candidate& other, Mask& unsure) {
   const Mask differ = (best.a != other.a) | (best.b != other.b);
   unsure |= (magnitude(mine - its) <= both(kTie) * mine) & differ;
   const Mask better = its > mine;
->>>>>>> w-surfaces
   best.a = better ? other.a : best.a;
   best.b = better ? other.b : best.b;
   best.dot2 = better ? other.dot2 : best.dot2;
   best.length2 = better ? other.length2 : best.length2;
 }
 
-<<<<<<< HEAD
-/// Up to kBlock directions.
-void encode_block(const double* x, const double* y, const double* z, std::size_t count,
-                  OctahedralCode* codes) {
-  std::array<std::int32_t, kBlock> first, second, unsure;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double sum = std::abs(x[i]) + std::abs(y[i]) + std::abs(z[i]);
-    const bool usable = (sum > kLeast) & (sum < kMost);
-    const double divisor = usable ? sum : 1;
-    const double nx = (usable ? x[i] : 1) / divisor, ny = (usable ? y[i] : 0) / divisor,
-                 nz = (usable ? z[i] : 0) / divisor;
-    const double u = kSteps * (nz < 0 ? (1 - std::abs(ny)) * sign(nx) : nx);
-    const double v = kSteps * (nz < 0 ? (1 - std::abs(nx)) * sign(ny) : ny);
-    const double a = floor_of(u), b = floor_of(v);
-    const double next_a = a < u ? a + 1 : a, next_b = b < v ? b + 1 : b;
-    std::int32_t odd = usable ? 0 : 1;
-    Candidate best = candidate(a, b, nx, ny, nz);
-    keep_better(best, candidate(a, next_b, nx, ny, nz), odd);
-    keep_better(best, candidate(next_a, b, nx, ny, nz), odd);
-    keep_better(best, candidate(next_a, next_b, nx, ny, nz), odd);
-    first[i] = static_cast<std::int32_t>(best.a);
-    second[i] = static_cast<std::int32_t>(best.b);
-    unsure[i] = odd;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    codes[i] = {static_cast<std::uint8_t>(kMiddle + first[i]),
-                static_cast<std::uint8_t>(kMiddle + second[i])};
-    if (unsure[i] != 0) codes[i] = encode_one({x[i], y[i], z[i]});
-  }
-=======
 /// The whole steps, and where they are not sure.
 struct Steps {
   Pair a, b;
@@ -185,7 +115,6 @@ void encode_block(const double* x, const double* y, const double* z, std::size_t
   std::size_t i = 0;
   for (; i + kLanes <= count; i += kLanes) encode(i, kLanes);
   if (i < count) encode(i, count - i);
->>>>>>> w-surfaces
 }
 
 }  // namespace
@@ -193,14 +122,7 @@ void encode_block(const double* x, const double* y, const double* z, std::size_t
 void encode_octahedral(std::span<const double> x, std::span<const double> y, std::span<const double> z,
                        std::span<OctahedralCode> codes) {
   ADAMAS_ASSERT(x.size() == codes.size() && y.size() == codes.size() && z.size() == codes.size());
-<<<<<<< HEAD
-  for (std::size_t begin = 0; begin < codes.size(); begin += kBlock) {
-    const std::size_t count = std::min(kBlock, codes.size() - begin);
-    encode_block(x.data() + begin, y.data() + begin, z.data() + begin, count, codes.data() + begin);
-  }
-=======
   encode_block(x.data(), y.data(), z.data(), codes.size(), codes.data());
->>>>>>> w-surfaces
 }
 
 void encode_octahedral(std::span<const Gradient> gradients, std::span<OctahedralCode> codes) {

@@ -161,16 +161,12 @@ TEST(GradientSmoothing, DegenerateRegionsAreFilledFromTheirBorders) {
 }
 
 TEST(GradientSmoothing, ShortAveragesAreNotUsed) {
-<<<<<<< HEAD
-  // What cancels at once leaves everything as it is.
-=======
   // What cancels leaves everything as it is: weights are 2 and 1 here.
   Block two({2, 1, 1});
   two.gradients = {{1, 2, 3}, {-2, -4, -6}};
   two.smooth({1, 0, 0.25});
   EXPECT_EQ(two.gradients[0], (Gradient{1, 2, 3}));
   EXPECT_EQ(two.gradients[1], (Gradient{-1, -2, -3}));
->>>>>>> w-surfaces
   Block three({3, 1, 1});
   three.gradients = {{1, 2, 3}, {}, {-1, -2, -3}};
   three.smooth({1, 1, 0.25});
