@@ -68,7 +68,7 @@ class Layout {
   }
 
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
-  /// The document, with `uri` as further members of the buffer.
+  /// The document up to the end of the members of the buffer, of which `uri` is the last, and what follows.
   [[nodiscard]] std::array<std::string, 2> json(const char* uri) const;
 
   template <class Stream>

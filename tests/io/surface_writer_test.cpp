@@ -271,19 +271,19 @@ TEST(SurfaceWriter, RefusesWhatIsNoSurface) {
   EXPECT_EQ(scratch.entries(), 0);
 }
 
-/// Stops after the first report.
+/// Stops after the first report, unless told not to.
 class Impatient final : public Progress {
  public:
   void report(std::string_view, double fraction) override {
     EXPECT_GT(fraction, 0);
     EXPECT_LE(fraction, 1);
-    last_ = fraction;
-    ++reports_;
+    last = fraction;
+    ++reports;
   }
-  [[nodiscard]] bool cancelled() const override { return stops_ && reports_ > 0; }
-  bool stops_ = true;
-  int reports_ = 0;
-  double last_ = 0;
+  [[nodiscard]] bool cancelled() const override { return stops && reports > 0; }
+  bool stops = true;
+  int reports = 0;
+  double last = 0;
 };
 
 TEST(SurfaceWriter, ReportsAndCanBeStopped) {
@@ -292,14 +292,14 @@ TEST(SurfaceWriter, ReportsAndCanBeStopped) {
   for (const std::string& name : kNames) {
     Impatient progress;
     EXPECT_THROW(write_surface(scratch / name, surface, progress), Cancelled) << name;
-    EXPECT_EQ(progress.reports_, 1) << name;
+    EXPECT_EQ(progress.reports, 1) << name;
     EXPECT_EQ(scratch.entries(), 0) << name;
   }
   for (const std::string& name : kNames) {
     Impatient progress;
-    progress.stops_ = false;
+    progress.stops = false;
     write_surface(scratch / name, surface, progress);
-    EXPECT_EQ(progress.last_, 1) << name;
+    EXPECT_EQ(progress.last, 1) << name;
   }
 }
 

@@ -81,11 +81,11 @@ void expect_estimates(const Volume<Sample>& volume, const Vec3& spacing) {
 }
 
 template <class Sample>
-class OfSamples : public ::testing::Test {};
+class PlaneGradientsOf : public ::testing::Test {};
 using Samples = ::testing::Types<std::uint8_t, std::uint16_t, std::int16_t, float>;
-TYPED_TEST_SUITE(OfSamples, Samples);
+TYPED_TEST_SUITE(PlaneGradientsOf, Samples);
 
-TYPED_TEST(OfSamples, GradientsAreThoseOfTheEstimator) {
+TYPED_TEST(PlaneGradientsOf, GradientsAreThoseOfTheEstimator) {
   std::mt19937 random(6);
   for (const Vec3& spacing : {Vec3{1, 1, 1}, {0.5, 2, 1.25}, {1e-3, 40, 1}}) {
     for (const std::array<std::size_t, 3>& sizes : {std::array<std::size_t, 3>{23, 12, 6},
@@ -105,7 +105,7 @@ TYPED_TEST(OfSamples, GradientsAreThoseOfTheEstimator) {
   }
 }
 
-TYPED_TEST(OfSamples, EqualSamplesHaveNoDirection) {
+TYPED_TEST(PlaneGradientsOf, EqualSamplesHaveNoDirection) {
   Volume<TypeParam> volume({40, 7, 3});
   std::fill(volume.samples.begin(), volume.samples.end(), static_cast<TypeParam>(201));
   std::vector<OctahedralCode> codes(40 * 7, {1, 1});
