@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -20,15 +21,18 @@ class ByteWriter {
   template <class T>
   void number(T value) {
     static_assert(std::is_arithmetic_v<T>);
-    const auto* first = reinterpret_cast<const std::byte*>(&value);
-    out_.insert(out_.end(), first, first + sizeof(T));
+    bytes(std::as_bytes(std::span(&value, 1)));
   }
   /// Seven bits a byte, the lowest first; the highest bit says that more follow.
   void varint(std::uint64_t value) {
     for (; value >= 0x80; value >>= 7) out_.push_back(static_cast<std::byte>(value | 0x80));
     out_.push_back(static_cast<std::byte>(value));
   }
-  void bytes(std::span<const std::byte> bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
+  void bytes(std::span<const std::byte> bytes) {
+    const std::size_t at = out_.size();
+    out_.resize(at + bytes.size());
+    std::copy(bytes.begin(), bytes.end(), out_.begin() + static_cast<std::ptrdiff_t>(at));
+  }
   /// Their number before them.
   void sized_bytes(std::span<const std::byte> all) {
     varint(all.size());

@@ -103,9 +103,9 @@ void check_chunks(const StoreRoot& root, const PageGrid& grid, std::uint64_t end
 }  // namespace
 
 std::vector<std::byte> StorePrologue::serialise() const {
-  std::vector<std::byte> bytes(kMagic.size());
-  std::memcpy(bytes.data(), kMagic.data(), kMagic.size());
+  std::vector<std::byte> bytes;
   ByteWriter out(bytes);
+  out.bytes(std::as_bytes(std::span(kMagic)));
   out.number(kVersion);
   out.number(root_offset);
   out.number(root_size);
