@@ -10,6 +10,7 @@
 #include "isosurface/preprocessing/coarse_samples.h"
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/error_code.h"
+#include "isosurface/preprocessing/lanes.h"
 #include "isosurface/preprocessing/leaf_points.h"
 #include "isosurface/preprocessing/level_values.h"
 #include "isosurface/preprocessing/preprocess.h"
@@ -121,10 +122,10 @@ class CoarseErrors {
   }
 
   [[nodiscard]] double value(LatticePoint p, const LevelValues<Word>& samples) const {
-    const Word word = ((p.i | p.j | p.k) & 15) == 0
-                          ? coarse_.at(p)
-                          : samples.samples(std::min(p.j, last_.j),
-                                            std::min(p.k, last_.k))[std::min(p.i, last_.i)];
+    const Word word =
+        ((p.i | p.j | p.k) & 15) == 0
+            ? coarse_.at(p)
+            : samples.samples(std::min(p.j, last_.j), std::min(p.k, last_.k))[std::min(p.i, last_.i)];
     return from_ordered<Sample>(word);
   }
 
@@ -138,7 +139,8 @@ class CoarseErrors {
     // The determinant is a power of two: nothing is rounded.
     const Vec3 u = edge(1), v = edge(2), w = edge(3);
     const Vec3 vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
-    const Vec3 sum = (values[1] - values[0]) * vw + (values[2] - values[0]) * wu + (values[3] - values[0]) * uv;
+    const Vec3 sum =
+        (values[1] - values[0]) * vw + (values[2] - values[0]) * wu + (values[3] - values[0]) * uv;
     const Vec3 slope = (1 / dot(u, vw)) * sum;
     Linear linear;
     linear.constant = values[0];
@@ -154,21 +156,24 @@ class CoarseErrors {
   /// The greatest difference between the samples and the linear function.
   template <class T>
   [[nodiscard]] double difference(const Linear& linear, const T* samples, const Part& part) const {
-    const T *x = leaf_points_.coordinates<T>(0) + part.first, *y = leaf_points_.coordinates<T>(1) + part.first,
+    const T *x = leaf_points_.coordinates<T>(0) + part.first,
+            *y = leaf_points_.coordinates<T>(1) + part.first,
             *z = leaf_points_.coordinates<T>(2) + part.first;
-    const auto constant = static_cast<T>(linear.constant);
-    const auto i = static_cast<T>(linear.slope[0]), j = static_cast<T>(linear.slope[1]),
-               k = static_cast<T>(linear.slope[2]);
-    constexpr std::size_t kLanes = LeafPoints::kPadding;
-    std::array<T, kLanes> greatest{};
-    for (std::size_t n = 0; n < part.count; n += kLanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const std::size_t m = n + lane;
-        const T error = std::abs(constant + i * x[m] + j * y[m] + k * z[m] - samples[m]);
-        greatest[lane] = error > greatest[lane] ? error : greatest[lane];
-      }
+    using Vector = LanesOf<T>;
+    using Lanes = typename Vector::Lanes;
+    const Lanes zero{}, constant = zero + static_cast<T>(linear.constant);
+    const Lanes i = zero + static_cast<T>(linear.slope[0]), j = zero + static_cast<T>(linear.slope[1]),
+                k = zero + static_cast<T>(linear.slope[2]);
+    Lanes greatest{}, least{};
+    for (std::size_t n = 0; n < part.count; n += Vector::kCount) {
+      const Lanes above = constant + i * Vector::load(x + n) + j * Vector::load(y + n) +
+                          k * Vector::load(z + n) - Vector::load(samples + n);
+      greatest = Vector::greater(greatest, above);
+      least = Vector::greater(least, -above);
     }
-    return static_cast<double>(*std::max_element(greatest.begin(), greatest.end()));
+    std::array<T, Vector::kCount> errors;
+    Vector::store(errors.data(), Vector::greater(greatest, least));
+    return static_cast<double>(*std::max_element(errors.begin(), errors.end()));
   }
 
   int depth_;

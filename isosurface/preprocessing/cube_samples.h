@@ -38,8 +38,8 @@ struct CubeSamples {
 
   void load(const LevelValues<Word>& samples, LatticePoint last, LatticePoint first) {
     base = first;
-    all_count = std::is_integral_v<Sample> && base.i + 16 <= last.i && base.j + 16 <= last.j &&
-                base.k + 16 <= last.k;
+    all_count =
+        std::is_integral_v<Sample> && base.i + 16 <= last.i && base.j + 16 <= last.j && base.k + 16 <= last.k;
     for (std::int32_t k = 0; k < kCube; ++k) {
       for (std::int32_t j = 0; j < kCube; ++j) {
         const bool is_inside = base.j + j <= last.j && base.k + k <= last.k;
