@@ -36,6 +36,11 @@ struct CubeSamples {
   std::array<Real, kCube * kCube * kCube> whole;
   bool all_count = false;  ///< whether `counted` is not filled, being as `value`
 
+  /// Whether all samples are the same, so that there is no error.
+  [[nodiscard]] bool is_constant() const {
+    return all_count && std::all_of(whole.begin(), whole.end(), [this](Real s) { return s == whole[0]; });
+  }
+
   void load(const LevelValues<Word>& samples, LatticePoint last, LatticePoint first) {
     base = first;
     all_count =
