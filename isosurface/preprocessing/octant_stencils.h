@@ -57,6 +57,8 @@ class OctantStencils {
 
  private:
   void add_shapes(int scale_bits, const Vec3& spacing);
+  /// Those in the tetrahedron, without its corners.
+  void add_points(const std::array<LatticePoint, 4>& corners, std::int32_t scale);
   void add_diamonds(int bits);
 
   std::vector<SmallDiamond> diamonds_;
@@ -67,7 +69,7 @@ class OctantStencils {
   int octants_;
 };
 
-/// For each axis: the squares of what OctantStencils::slope_factors says.
+/// For each axis, what OctantStencils::slope_factors says.
 std::array<double, 3> slope_factors(const Vec3& spacing);
 
 }  // namespace adamas

@@ -152,11 +152,11 @@ double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& sp
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const LatticePoint edge = corners[a] - corners[b];
-      greatest =
-          std::max(greatest, squared_norm({edge.i * spacing.x, edge.j * spacing.y, edge.k * spacing.z}));
+      // Squares of very small or large spacings might not be numbers.
+      greatest = std::max(greatest, std::hypot(edge.i * spacing.x, edge.j * spacing.y, edge.k * spacing.z));
     }
   }
-  return std::sqrt(greatest);
+  return greatest;
 }
 
 ErrorScale level_error_scale(const Vec3& spacing, int level) {
