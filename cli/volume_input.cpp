@@ -6,6 +6,7 @@
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
+#include "core/io/volume_stack.h"
 
 namespace adamas {
 

@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "isosurface/preprocessing/ancestor.h"
 #include "isosurface/preprocessing/coarse_samples.h"
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/error_code.h"
+#include "isosurface/preprocessing/lanes.h"
 #include "isosurface/preprocessing/leaf_points.h"
 #include "isosurface/preprocessing/level_values.h"
 #include "isosurface/preprocessing/preprocess.h"
@@ -25,10 +28,11 @@ class CoarseErrors {
   using Word = OrderedWord<Sample>;
 
   CoarseErrors(int depth, LatticePoint last, const Vec3& spacing, const CoarseSamples<Word>& coarse)
-      : depth_(depth), last_(last), spacing_(spacing), coarse_(coarse), factors_(slope_factors(spacing)) {
-    for (int level = 0; level < depth; ++level)
-      greatest_.push_back(level_error_scale(spacing, level).greatest());
-  }
+      : depth_(depth),
+        last_(last),
+        unit_((1 / level_error_scale(spacing, 0).greatest()) * spacing),
+        coarse_(coarse),
+        factors_(slope_factors(spacing)) {}
 
   /// Raises the own codes of `levels`, the first of which has the samples round the cube.
   void measure(const CubeSamples<Sample>& cube, std::vector<LevelValues<Word>>& levels) const {
@@ -45,7 +49,7 @@ class CoarseErrors {
         const LatticePoint at = cell.split_vertex();
         const LatticePoint p{at.i >> bits, at.j >> bits, at.k >> bits}, size = level.size();
         if (p.i >= size.i || p.j >= size.j || p.k >= size.k) continue;
-        level.raise(p, error_code(squared_ratio(cell, part, levels.front())));
+        level.raise(p, code(cell, part, levels.front(), level.own(p)));
       } while (cell.ascend());
     }
   }
@@ -56,7 +60,9 @@ class CoarseErrors {
   struct Part {
     LatticePoint base;
     int mirrored;
+    std::array<LatticePoint, 4> corners;  ///< in the coordinates of LeafPoints
     std::size_t first, count;
+    double low, high;  ///< of the samples; low > high where none counts
     alignas(16) std::array<Real, kMostPoints> samples;
     alignas(16) std::array<double, kMostPoints> exact;  ///< the same, not filled where Real is double
   };
@@ -64,6 +70,9 @@ class CoarseErrors {
   struct Linear {
     double constant = 0;
     std::array<double, 3> slope{};
+    [[nodiscard]] double at(LatticePoint p) const {
+      return constant + slope[0] * p.i + slope[1] * p.j + slope[2] * p.k;
+    }
   };
 
   static LatticePoint place(LatticePoint base, LatticePoint p, int mirrored) {
@@ -76,11 +85,18 @@ class CoarseErrors {
     Part part;
     part.base = cube.base;
     part.mirrored = mirrored;
+    part.corners = leaf.corners;
     part.first = leaf.first;
     part.count = leaf.last - leaf.first;
     ADAMAS_ASSERT(part.count <= kMostPoints);
     const std::uint16_t* places = leaf_points_.places(mirrored) + leaf.first;
-    for (std::size_t n = 0; n < part.count; ++n) part.samples[n] = cube.whole[places[n]];
+    auto low = std::numeric_limits<Real>::infinity(), high = -low;
+    for (std::size_t n = 0; n < part.count; ++n) {
+      const Real sample = part.samples[n] = cube.whole[places[n]];
+      low = sample < low ? sample : low;
+      high = sample > high ? sample : high;
+    }
+    part.low = low, part.high = high;
     if constexpr (sizeof(Real) < sizeof(double)) {
       if (depth_ > kExactBits + 1) std::copy_n(part.samples.begin(), part.count, part.exact.begin());
     }
@@ -91,40 +107,69 @@ class CoarseErrors {
   /// multiples of 1 / (2 scale), and at most the greatest integer over the scale.
   static constexpr int kExactBits = sizeof(Sample) == 1 ? 14 : 6;
 
-  [[nodiscard]] double squared_ratio(const Ancestor& cell, const Part& part,
-                                     const LevelValues<Word>& samples) const {
-    const auto bits = static_cast<std::size_t>(cell.scale_bits());
-    const double diameter = world_diameter(cell.corners(), spacing_) / greatest_[bits];
+  /// Of the tetrahedron's error, as far as it comes from the part; anything less where that is at most
+  /// `known`.
+  [[nodiscard]] std::uint8_t code(const Ancestor& cell, const Part& part, const LevelValues<Word>& samples,
+                                  std::uint8_t known) const {
+    const double scale = std::ldexp(1.0, cell.scale_bits());
+    const double diameter = squared_diameter(cell.corners()) / (scale * scale);
     std::array<double, 4> values{};
     double sum = 0;
     for (std::size_t c = 0; c < 4; ++c) {
       values[c] = value(cell.corners()[c], samples);
       sum += std::abs(values[c]);
     }
-    if (!std::isfinite(sum)) return diameter * diameter;
+    if (!std::isfinite(sum)) return error_code(diameter);
     const Linear linear = interpolation(cell, values, part);
-    double error = 0;
-    if constexpr (sizeof(Real) == sizeof(double)) {
-      error = difference(linear, part.samples.data(), part);
-      if (error > 0) error += sum * 0x1p-48;
-    } else {
-      error = cell.scale_bits() <= kExactBits ? difference(linear, part.samples.data(), part)
-                                              : difference(linear, part.exact.data(), part);
-    }
-    if (!(error > 0)) return 0;
     double slope = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double step = linear.slope[axis] * static_cast<double>(1 << bits);
+      const double step = linear.slope[axis] * scale;
       slope += step * step * factors_[axis];
     }
-    return std::min(error * error / slope, diameter * diameter);
+    const auto code_of = [&](double error) {
+      return error > 0 ? error_code(std::min(error * error / slope, diameter)) : std::uint8_t{0};
+    };
+    // What rounding may take off; nothing is rounded where samples are integers.
+    const double slack = std::is_same_v<Sample, float> ? sum * 0x1p-48 : 0;
+    if (code_of(greatest_difference(linear, part) + slack) <= known) return 0;
+    const double error = difference(linear, part, cell.scale_bits());
+    return error > 0 ? code_of(error + slack) : std::uint8_t{0};
+  }
+
+  /// In units of the greatest error of level 0.
+  [[nodiscard]] double squared_diameter(const std::array<LatticePoint, 4>& corners) const {
+    double greatest = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const LatticePoint d = corners[a] - corners[b];
+        greatest = std::max(greatest, squared_norm({d.i * unit_.x, d.j * unit_.y, d.k * unit_.z}));
+      }
+    }
+    return greatest;
+  }
+
+  /// What the difference is at most, wherever the samples lie.
+  static double greatest_difference(const Linear& linear, const Part& part) {
+    double greatest = 0;
+    for (const LatticePoint corner : part.corners) {
+      const double value = linear.at(corner);
+      greatest = std::max({greatest, value - part.low, part.high - value});
+    }
+    return greatest;
+  }
+
+  [[nodiscard]] double difference(const Linear& linear, const Part& part, int scale_bits) const {
+    if constexpr (sizeof(Real) < sizeof(double)) {
+      if (scale_bits > kExactBits) return difference(linear, part.exact.data(), part);
+    }
+    return difference(linear, part.samples.data(), part);
   }
 
   [[nodiscard]] double value(LatticePoint p, const LevelValues<Word>& samples) const {
-    const Word word = ((p.i | p.j | p.k) & 15) == 0
-                          ? coarse_.at(p)
-                          : samples.samples(std::min(p.j, last_.j),
-                                            std::min(p.k, last_.k))[std::min(p.i, last_.i)];
+    const Word word =
+        ((p.i | p.j | p.k) & 15) == 0
+            ? coarse_.at(p)
+            : samples.samples(std::min(p.j, last_.j), std::min(p.k, last_.k))[std::min(p.i, last_.i)];
     return from_ordered<Sample>(word);
   }
 
@@ -138,7 +183,8 @@ class CoarseErrors {
     // The determinant is a power of two: nothing is rounded.
     const Vec3 u = edge(1), v = edge(2), w = edge(3);
     const Vec3 vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
-    const Vec3 sum = (values[1] - values[0]) * vw + (values[2] - values[0]) * wu + (values[3] - values[0]) * uv;
+    const Vec3 sum =
+        (values[1] - values[0]) * vw + (values[2] - values[0]) * wu + (values[3] - values[0]) * uv;
     const Vec3 slope = (1 / dot(u, vw)) * sum;
     Linear linear;
     linear.constant = values[0];
@@ -154,29 +200,31 @@ class CoarseErrors {
   /// The greatest difference between the samples and the linear function.
   template <class T>
   [[nodiscard]] double difference(const Linear& linear, const T* samples, const Part& part) const {
-    const T *x = leaf_points_.coordinates<T>(0) + part.first, *y = leaf_points_.coordinates<T>(1) + part.first,
+    const T *x = leaf_points_.coordinates<T>(0) + part.first,
+            *y = leaf_points_.coordinates<T>(1) + part.first,
             *z = leaf_points_.coordinates<T>(2) + part.first;
-    const auto constant = static_cast<T>(linear.constant);
-    const auto i = static_cast<T>(linear.slope[0]), j = static_cast<T>(linear.slope[1]),
-               k = static_cast<T>(linear.slope[2]);
-    constexpr std::size_t kLanes = LeafPoints::kPadding;
-    std::array<T, kLanes> greatest{};
-    for (std::size_t n = 0; n < part.count; n += kLanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const std::size_t m = n + lane;
-        const T error = std::abs(constant + i * x[m] + j * y[m] + k * z[m] - samples[m]);
-        greatest[lane] = error > greatest[lane] ? error : greatest[lane];
-      }
+    using Vector = LanesOf<T>;
+    using Lanes = typename Vector::Lanes;
+    const Lanes zero{}, constant = zero + static_cast<T>(linear.constant);
+    const Lanes i = zero + static_cast<T>(linear.slope[0]), j = zero + static_cast<T>(linear.slope[1]),
+                k = zero + static_cast<T>(linear.slope[2]);
+    Lanes greatest{}, least{};
+    for (std::size_t n = 0; n < part.count; n += Vector::kCount) {
+      const Lanes above = constant + i * Vector::load(x + n) + j * Vector::load(y + n) +
+                          k * Vector::load(z + n) - Vector::load(samples + n);
+      greatest = Vector::greater(greatest, above);
+      least = Vector::greater(least, -above);
     }
-    return static_cast<double>(*std::max_element(greatest.begin(), greatest.end()));
+    std::array<T, Vector::kCount> errors;
+    Vector::store(errors.data(), Vector::greater(greatest, least));
+    return static_cast<double>(*std::max_element(errors.begin(), errors.end()));
   }
 
   int depth_;
   LatticePoint last_;
-  Vec3 spacing_;
+  Vec3 unit_;  ///< spacing over the greatest error of level 0
   const CoarseSamples<Word>& coarse_;
   std::array<double, 3> factors_;
-  std::vector<double> greatest_;  ///< error by level
   LeafPoints leaf_points_;
 };
 

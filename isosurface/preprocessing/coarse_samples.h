@@ -29,20 +29,22 @@ class CoarseSamples {
     const std::size_t row = static_cast<std::size_t>(last_.i) + 1;
     for (std::int32_t j = 0; j <= end_.j; ++j) {
       const Word* from = samples + row * static_cast<std::size_t>(std::min(j << kBits, last_.j));
-      for (std::int32_t i = 0; i <= end_.i; ++i) words_[place({i, j, n})] = from[std::min(i << kBits, last_.i)];
+      for (std::int32_t i = 0; i <= end_.i; ++i)
+        words_[place({i, j, n})] = from[std::min(i << kBits, last_.i)];
     }
   }
 
   /// Coordinates are multiples of 16, and may lie anywhere beyond the data.
   [[nodiscard]] Word at(LatticePoint p) const {
-    return words_[place({std::min(p.i >> kBits, end_.i), std::min(p.j >> kBits, end_.j),
-                         std::min(p.k >> kBits, end_.k)})];
+    return words_[place(
+        {std::min(p.i >> kBits, end_.i), std::min(p.j >> kBits, end_.j), std::min(p.k >> kBits, end_.k)})];
   }
 
  private:
   [[nodiscard]] std::size_t place(LatticePoint q) const {
     const auto row = static_cast<std::size_t>(end_.i) + 1, rows = static_cast<std::size_t>(end_.j) + 1;
-    return static_cast<std::size_t>(q.i) + row * (static_cast<std::size_t>(q.j) + rows * static_cast<std::size_t>(q.k));
+    return static_cast<std::size_t>(q.i) +
+           row * (static_cast<std::size_t>(q.j) + rows * static_cast<std::size_t>(q.k));
   }
 
   LatticePoint last_, end_;

@@ -36,10 +36,15 @@ struct CubeSamples {
   std::array<Real, kCube * kCube * kCube> whole;
   bool all_count = false;  ///< whether `counted` is not filled, being as `value`
 
+  /// Whether all samples are the same, so that there is no error.
+  [[nodiscard]] bool is_constant() const {
+    return all_count && std::all_of(whole.begin(), whole.end(), [this](Real s) { return s == whole[0]; });
+  }
+
   void load(const LevelValues<Word>& samples, LatticePoint last, LatticePoint first) {
     base = first;
-    all_count = std::is_integral_v<Sample> && base.i + 16 <= last.i && base.j + 16 <= last.j &&
-                base.k + 16 <= last.k;
+    all_count =
+        std::is_integral_v<Sample> && base.i + 16 <= last.i && base.j + 16 <= last.j && base.k + 16 <= last.k;
     for (std::int32_t k = 0; k < kCube; ++k) {
       for (std::int32_t j = 0; j < kCube; ++j) {
         const bool is_inside = base.j + j <= last.j && base.k + k <= last.k;

@@ -57,7 +57,8 @@ void LeafPoints::add(LatticePoint p) {
     for (int axis = 0; axis < 3; ++axis) {
       if ((mirrored >> axis & 1) != 0) q[axis] = 16 - q[axis];
     }
-    places_[static_cast<std::size_t>(mirrored)].push_back(static_cast<std::uint16_t>(q.i + 17 * (q.j + 17 * q.k)));
+    places_[static_cast<std::size_t>(mirrored)].push_back(
+        static_cast<std::uint16_t>(q.i + 17 * (q.j + 17 * q.k)));
   }
 }
 

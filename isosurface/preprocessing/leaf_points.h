@@ -8,9 +8,9 @@
 
 namespace adamas {
 
-/// The 24 tetrahedra of phase 2 and scale 8 that a cube of 16^3 cells consists of. Every larger one consists of
-/// such. Coordinates are relative to the cube's first corner, for a cube whose own first split runs from there;
-/// in other cubes they are mirrored.
+/// The 24 tetrahedra of phase 2 and scale 8 that a cube of 16^3 cells consists of. Every larger one consists
+/// of such. Coordinates are relative to the cube's first corner, for a cube whose own first split runs from
+/// there; in other cubes they are mirrored.
 class LeafPoints {
  public:
   static constexpr std::size_t kLeaves = 24;

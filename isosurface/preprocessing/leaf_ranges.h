@@ -49,8 +49,7 @@ class LeafRanges {
         const bool is_across = axis == 0 || (axis == 1 ? dj == 0 : dz == 0);
         const bool is_along = axis == 1 ? dz == 0 : axis == 2 && dj == 0;
         if (!is_across && !is_along) continue;
-        const Word* row =
-            values_.samples(std::clamp(j + dj, 0, last_.j), std::clamp(z + dz, 0, last_.k));
+        const Word* row = values_.samples(std::clamp(j + dj, 0, last_.j), std::clamp(z + dz, 0, last_.k));
         // Three samples of the row, or the one at i.
         const bool is_middle = axis == 0 ? dj == 0 && dz == 0 : is_across;
         if (is_middle) {

@@ -22,8 +22,8 @@ class LevelSweep {
   LevelSweep(std::vector<LevelValues<Word>>& levels, LatticePoint last)
       : levels_(levels), last_(last), next_(levels.size(), 0) {}
 
-  /// All tetrahedra have been measured that touch the diamonds in planes of the level up to `measured`. Sweeps
-  /// what can be swept, in this level alone; to be called from the finest one up.
+  /// All tetrahedra have been measured that touch the diamonds in planes of the level up to `measured`.
+  /// Sweeps what can be swept, in this level alone; to be called from the finest one up.
   void advance(int level, std::int32_t measured) {
     std::int32_t complete = measured;
     if (level > 0 && done(level - 1) < levels_[index(level - 1)].size().k - 1)

@@ -57,7 +57,11 @@ class LevelValues {
     return codes_[static_cast<std::size_t>(generation)].data() + offset(j, z);
   }
 
-  /// Raises the diamond's own code; from any thread.
+  /// The diamond's own code; from any thread.
+  [[nodiscard]] std::uint8_t own(LatticePoint p) {
+    return std::atomic_ref<std::uint8_t>(codes(0, p.j, p.k)[p.i]).load(std::memory_order_relaxed);
+  }
+  /// Raises it; from any thread.
   void raise(LatticePoint p, std::uint8_t code) {
     const std::atomic_ref<std::uint8_t> own(codes(0, p.j, p.k)[p.i]);
     std::uint8_t old = own.load(std::memory_order_relaxed);

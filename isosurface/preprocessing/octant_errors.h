@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/error_code.h"
+#include "isosurface/preprocessing/lanes.h"
 #include "isosurface/preprocessing/octant_stencils.h"
 
 namespace adamas {
@@ -40,9 +40,9 @@ class OctantErrors {
     for (const OctantStencils::SmallDiamond& diamond : stencils_.diamonds()) {
       const std::ptrdiff_t first = std::ptrdiff_t{8} * diamond.place;
       alignas(16) std::array<Real, 8> squared;
-      for (std::size_t lane = 0; lane < 8; lane += kLanes) {
+      for (std::size_t lane = 0; lane < 8; lane += Vector::kCount) {
         const auto at = first + static_cast<std::ptrdiff_t>(lane);
-        store(squared.data() + lane, by_phase(diamond, value + at, counted + at));
+        Vector::store(squared.data() + lane, by_phase(diamond, value + at, counted + at));
       }
       for (int octant = 0; octant < stencils_.octants(); ++octant) {
         std::uint8_t& code = codes[places_[static_cast<std::size_t>(first + octant)]];
@@ -52,24 +52,14 @@ class OctantErrors {
   }
 
  private:
-  /// As many octants as the narrowest vector registers hold.
-  static constexpr std::size_t kLanes = 16 / sizeof(Real);
-  using Lanes __attribute__((vector_size(16))) = Real;
+  using Vector = LanesOf<Real>;
+  using Lanes = typename Vector::Lanes;
 
-  /// Of the four corners. (Vectors in the parameters of a template lose their length.)
+  /// Of the four corners.
   struct Corners {
     Lanes at[4];
     const Lanes& operator[](std::size_t n) const { return at[n]; }
   };
-
-  static Lanes load(const Real* from) {
-    Lanes lanes;
-    std::memcpy(&lanes, from, sizeof lanes);
-    return lanes;
-  }
-  static void store(Real* to, Lanes lanes) { std::memcpy(to, &lanes, sizeof lanes); }
-  /// a where b is NaN.
-  static Lanes greater(Lanes a, Lanes b) { return b > a ? b : a; }
 
   Lanes by_phase(const OctantStencils::SmallDiamond& diamond, const Real* value, const Real* counted) const {
     switch (diamond.phase) {
@@ -91,7 +81,7 @@ class OctantErrors {
     for (std::uint32_t n = diamond.first; n < diamond.last; ++n) {
       const OctantStencils::Shape& shape = stencils_.shapes()[stencils_.shape_indices()[n]];
       Corners corners;
-      for (std::size_t c = 0; c < 4; ++c) corners.at[c] = load(value + 8 * shape.corners[c]);
+      for (std::size_t c = 0; c < 4; ++c) corners.at[c] = Vector::load(value + 8 * shape.corners[c]);
       Lanes error = difference(shape, corners, counted);
       if constexpr (std::is_same_v<Sample, float>) error = widened(error, corners);
       const Lanes ratio = error * error / slope<Phase>(shape, corners);
@@ -102,22 +92,21 @@ class OctantErrors {
         const Lanes sum = zero * (corners[0] + corners[1] + corners[2] + corners[3]);
         bounded = sum == zero ? bounded : diameter;
       }
-      greatest = greater(greatest, bounded);
+      greatest = Vector::greater(greatest, bounded);
     }
     return greatest;
   }
 
   /// e_a of the tetrahedron.
-  Lanes difference(const OctantStencils::Shape& shape, const Corners& corners,
-                   const Real* counted) const {
+  Lanes difference(const OctantStencils::Shape& shape, const Corners& corners, const Real* counted) const {
     Lanes greatest{};
     const OctantStencils::Point* points = stencils_.points().data();
     for (std::uint32_t n = shape.first; n < shape.last; ++n) {
       const auto& [offset, w] = points[n];
       const Lanes linear = corners[0] * static_cast<Real>(w[0]) + corners[1] * static_cast<Real>(w[1]) +
                            corners[2] * static_cast<Real>(w[2]) + corners[3] * static_cast<Real>(w[3]);
-      const Lanes above = linear - load(counted + std::ptrdiff_t{8} * offset);
-      greatest = greater(greater(greatest, above), -above);
+      const Lanes above = linear - Vector::load(counted + std::ptrdiff_t{8} * offset);
+      greatest = Vector::greater(Vector::greater(greatest, above), -above);
     }
     return greatest;
   }
@@ -125,7 +114,7 @@ class OctantErrors {
   /// By more than what rounding may have taken off.
   static Lanes widened(Lanes error, const Corners& corners) {
     Lanes sum{};
-    for (const Lanes& corner : corners.at) sum += greater(corner, -corner);
+    for (const Lanes& corner : corners.at) sum += Vector::greater(corner, -corner);
     const Lanes zero{};
     return error > zero ? error + sum * static_cast<Real>(0x1p-49) : zero;
   }

@@ -67,7 +67,6 @@ OctantStencils::OctantStencils(int depth, const Vec3& spacing)
 }
 
 void OctantStencils::add_shapes(int scale_bits, const Vec3& spacing) {
-  const std::int32_t scale = std::int32_t{1} << scale_bits;
   const double greatest = level_error_scale(spacing, scale_bits).greatest();
   for (const DiamondType& type : kDiamondTypes) {
     for (int slot = 0; slot < 8; ++slot) {
@@ -75,28 +74,31 @@ void OctantStencils::add_shapes(int scale_bits, const Vec3& spacing) {
       if (slot < type.tetrahedron_count) {
         Corners corners = ordered_corners(type, slot);
         shape.axes = step_axes(corners, type.phase);
-        for (LatticePoint& c : corners) c = scale * c;
+        for (LatticePoint& c : corners) c = (1 << scale_bits) * c;
         for (std::size_t c = 0; c < 4; ++c) shape.corners[c] = place(corners[c]);
-        const Tetrahedron cell(
-            {place_of(corners[0]), place_of(corners[1]), place_of(corners[2]), place_of(corners[3])});
         const double ratio = world_diameter(corners, spacing) / greatest;
         shape.diameter = static_cast<float>(ratio * ratio);
         shape.first = static_cast<std::uint32_t>(points_.size());
-        for (std::int32_t k = -scale; k <= scale; ++k) {
-          for (std::int32_t j = -scale; j <= scale; ++j) {
-            for (std::int32_t i = -scale; i <= scale; ++i) {
-              // Multiples of 1 / (2 scale), so that nothing is rounded.
-              const Weights w = cell.weights(place_of({i, j, k}));
-              if (std::min({w[0], w[1], w[2], w[3]}) < 0 || std::max({w[0], w[1], w[2], w[3]}) == 1) continue;
-              points_.push_back({place({i, j, k}),
-                                 {static_cast<float>(w[0]), static_cast<float>(w[1]),
-                                  static_cast<float>(w[2]), static_cast<float>(w[3])}});
-            }
-          }
-        }
+        add_points(corners, 1 << scale_bits);
         shape.last = static_cast<std::uint32_t>(points_.size());
       }
       shapes_.push_back(shape);
+    }
+  }
+}
+
+void OctantStencils::add_points(const std::array<LatticePoint, 4>& corners, std::int32_t scale) {
+  const Tetrahedron cell(
+      {place_of(corners[0]), place_of(corners[1]), place_of(corners[2]), place_of(corners[3])});
+  for (std::int32_t k = -scale; k <= scale; ++k) {
+    for (std::int32_t j = -scale; j <= scale; ++j) {
+      for (std::int32_t i = -scale; i <= scale; ++i) {
+        // Multiples of 1 / (2 scale), so that nothing is rounded.
+        const Weights w = cell.weights(place_of({i, j, k}));
+        if (std::min({w[0], w[1], w[2], w[3]}) < 0 || std::max({w[0], w[1], w[2], w[3]}) == 1) continue;
+        const auto weight = [&w](std::size_t c) { return static_cast<float>(w[c]); };
+        points_.push_back({place({i, j, k}), {weight(0), weight(1), weight(2), weight(3)}});
+      }
     }
   }
 }

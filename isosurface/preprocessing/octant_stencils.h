@@ -9,10 +9,10 @@
 
 namespace adamas {
 
-/// Octants of a cube of 16^3 cells whose corner is a multiple of 16. They are mirror images of each other, with
-/// the diagonal of each one's first split running from the cube's corner to its centre: seen from their corner
-/// of the cube all eight are cut by bisection in the same way, as the cube from (0, 0, 0) to (8, 8, 8) is. That
-/// way is worked out here once, and measured in all eight at a time.
+/// Octants of a cube of 16^3 cells whose corner is a multiple of 16. They are mirror images of each other,
+/// with the diagonal of each one's first split running from the cube's corner to its centre: seen from their
+/// corner of the cube all eight are cut by bisection in the same way, as the cube from (0, 0, 0) to (8, 8, 8)
+/// is. That way is worked out here once, and measured in all eight at a time.
 class OctantStencils {
  public:
   static constexpr int kSide = 9;  ///< points
@@ -28,8 +28,8 @@ class OctantStencils {
     std::int32_t offset;  ///< in points, from the diamond's
     std::array<float, 4> weights;
   };
-  /// A tetrahedron as seen from its diamond. Its corners stand in this order: phase 0, along three edges of the
-  /// cube from end to end of the split edge; phase 1, one end, the corner of the face, the other end, the
+  /// A tetrahedron as seen from its diamond. Its corners stand in this order: phase 0, along three edges of
+  /// the cube from end to end of the split edge; phase 1, one end, the corner of the face, the other end, the
   /// cube's centre; phase 2, the ends, the face's centre, the cube's centre.
   struct Shape {
     std::array<std::int32_t, 4> corners;
@@ -57,6 +57,8 @@ class OctantStencils {
 
  private:
   void add_shapes(int scale_bits, const Vec3& spacing);
+  /// Those in the tetrahedron, without its corners.
+  void add_points(const std::array<LatticePoint, 4>& corners, std::int32_t scale);
   void add_diamonds(int bits);
 
   std::vector<SmallDiamond> diamonds_;
@@ -67,7 +69,7 @@ class OctantStencils {
   int octants_;
 };
 
-/// For each axis: the squares of what OctantStencils::slope_factors says.
+/// For each axis, what OctantStencils::slope_factors says.
 std::array<double, 3> slope_factors(const Vec3& spacing);
 
 }  // namespace adamas

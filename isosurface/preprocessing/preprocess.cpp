@@ -152,10 +152,11 @@ double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& sp
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const LatticePoint edge = corners[a] - corners[b];
-      greatest = std::max(greatest, squared_norm({edge.i * spacing.x, edge.j * spacing.y, edge.k * spacing.z}));
+      // Squares of very small or large spacings might not be numbers.
+      greatest = std::max(greatest, std::hypot(edge.i * spacing.x, edge.j * spacing.y, edge.k * spacing.z));
     }
   }
-  return std::sqrt(greatest);
+  return greatest;
 }
 
 ErrorScale level_error_scale(const Vec3& spacing, int level) {
@@ -164,7 +165,8 @@ ErrorScale level_error_scale(const Vec3& spacing, int level) {
     for (std::size_t slot = 0; slot < static_cast<std::size_t>(type.tetrahedron_count); ++slot) {
       const std::size_t next = (slot + 1) % static_cast<std::size_t>(type.tetrahedron_count);
       greatest = std::max(
-          greatest, world_diameter({-type.direction, type.direction, type.ring[slot], type.ring[next]}, spacing));
+          greatest,
+          world_diameter({-type.direction, type.direction, type.ring[slot], type.ring[next]}, spacing));
     }
   }
   // A power of two: codes of the same error differ by four from level to level.
@@ -172,12 +174,12 @@ ErrorScale level_error_scale(const Vec3& spacing, int level) {
 }
 
 template void preprocess<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint8_t>&,
-                         const PreprocessOptions&, Progress&);
+                                       const PreprocessOptions&, Progress&);
 template void preprocess<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint16_t>&,
-                         const PreprocessOptions&, Progress&);
+                                        const PreprocessOptions&, Progress&);
 template void preprocess<std::int16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::int16_t>&,
-                         const PreprocessOptions&, Progress&);
+                                       const PreprocessOptions&, Progress&);
 template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&,
-                         const PreprocessOptions&, Progress&);
+                                const PreprocessOptions&, Progress&);
 
 }  // namespace adamas

@@ -58,9 +58,11 @@ class SlabErrors {
 
   void measure_cube(LatticePoint base, Levels& levels, Work& work) const {
     work.samples.load(levels.front(), last_, base);
-    small_.measure(work.samples, work.codes);
-    for (int level = 0; level < std::min(depth_, 3); ++level)
-      raise(levels[static_cast<std::size_t>(level)], level, base, work.codes.data());
+    if (!work.samples.is_constant()) {
+      small_.measure(work.samples, work.codes);
+      for (int level = 0; level < std::min(depth_, 3); ++level)
+        raise(levels[static_cast<std::size_t>(level)], level, base, work.codes.data());
+    }
     if (depth_ > 3) large_.measure(work.samples, levels);
   }
 

@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "isosurface/compression/split_edge_prediction.h"
-#include "support/preprocess_reference.h"
+#include "tests/support/preprocess_reference.h"
 
 namespace adamas {
 namespace {
@@ -48,7 +48,8 @@ Sample sample_of(Kind kind, LatticePoint p, std::mt19937& random) {
       constexpr float kInfinity = std::numeric_limits<float>::infinity();
       const std::array<float, 4> holes{kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN(),
                                        -std::numeric_limits<float>::quiet_NaN()};
-      if (std::is_same_v<Sample, float> && random() % 40 == 0) return static_cast<Sample>(holes[random() % 4]);
+      if (std::is_same_v<Sample, float> && random() % 40 == 0)
+        return static_cast<Sample>(holes[random() % 4]);
       return static_cast<Sample>(static_cast<float>(60 + 40 * wave));
     }
     default:
@@ -161,7 +162,8 @@ void check(const TestVolume<Sample>& volume, int subtree_depth = 0) {
     }
     const ErrorScale scale = level_error_scale(volume.grid.spacing, trailing_zeros(p));
     if (subtree_depth > 0) {
-      ASSERT_GE(scale.decode(stored.code) * (1 + 1e-12), reference.error_of_descendants(p, 3 * subtree_depth));
+      ASSERT_GE(scale.decode(stored.code) * (1 + 1e-12),
+                reference.error_of_descendants(p, 3 * subtree_depth));
     }
     for (const LatticePoint child : reference.children(p)) {
       const auto of_child = points.find(child);
@@ -188,11 +190,10 @@ TEST(Preprocess, AgreesWithTheDefinitionOnCubesOfEverySize) {
 
 TEST(Preprocess, AgreesWithTheDefinitionOnBoxes) {
   int turn = 0;
-  for (const Dimensions& box : std::vector<Dimensions>{{2, 3, 4},   {5, 2, 9},   {3, 17, 2},  {17, 16, 15},
-                                                       {6, 11, 8},  {9, 1, 1},   {1, 9, 1},   {1, 1, 17},
-                                                       {13, 1, 7},  {1, 12, 10}, {17, 17, 1}, {4, 5, 1},
-                                                       {7, 13, 17}, {16, 9, 5},  {10, 14, 3}, {2, 2, 17},
-                                                       {12, 17, 9}, {15, 3, 11}, {8, 8, 17},  {17, 5, 12}}) {
+  for (const Dimensions& box : std::vector<Dimensions>{
+           {2, 3, 4},   {5, 2, 9},  {3, 17, 2},  {17, 16, 15}, {6, 11, 8}, {9, 1, 1},   {1, 9, 1},
+           {1, 1, 17},  {13, 1, 7}, {1, 12, 10}, {17, 17, 1},  {4, 5, 1},  {7, 13, 17}, {16, 9, 5},
+           {10, 14, 3}, {2, 2, 17}, {12, 17, 9}, {15, 3, 11},  {8, 8, 17}, {17, 5, 12}}) {
     check(TestVolume<std::uint16_t>(box, Kind::kRandom, {0.3, 2, 1}));
     check(TestVolume<std::uint8_t>(box, turn % 2 == 0 ? Kind::kSteps : Kind::kConstant));
     check(TestVolume<float>(box, turn % 3 == 0 ? Kind::kRandom : Kind::kHoles, {1, 1, 4}));
@@ -255,7 +256,8 @@ TEST(Preprocess, PagesDoNotDependOnTheNumberOfThreads) {
 TEST(Preprocess, LinearDataHaveNoError) {
   TestVolume<std::uint16_t> volume({33, 33, 33}, Kind::kConstant);
   for (std::size_t n = 0; n < volume.samples.size(); ++n)
-    volume.samples[n] = static_cast<std::uint16_t>(1000 + 31 * (n % 33) - 7 * (n / 33 % 33) + 500 * (n / 1089));
+    volume.samples[n] =
+        static_cast<std::uint16_t>(1000 + 31 * (n % 33) - 7 * (n / 33 % 33) + 500 * (n / 1089));
   for (const auto& [id, page] : pages_of(volume)) {
     const LatticePoint count = PageGrid(volume.grid.dimensions).count(id);
     for (std::int32_t n = 0; n < 4096; ++n) {
@@ -269,7 +271,8 @@ TEST(Preprocess, EveryPlaneIsReadInOrderAndCanBeTheLast) {
   const TestVolume<std::uint8_t> volume({20, 18, 50}, Kind::kRandom);
   std::vector<std::uint64_t> order;
   preprocess<std::uint8_t>(
-      volume.grid, [&](std::uint64_t k, std::span<std::byte>) { order.push_back(k); }, [](const auto&, const auto&) {});
+      volume.grid, [&](std::uint64_t k, std::span<std::byte>) { order.push_back(k); },
+      [](const auto&, const auto&) {});
   const std::size_t coarse = order.size() - 50;
   EXPECT_LE(coarse, 5u);
   for (std::size_t k = 0; k < 50; ++k) EXPECT_EQ(order[coarse + k], k);
@@ -280,12 +283,13 @@ TEST(Preprocess, EveryPlaneIsReadInOrderAndCanBeTheLast) {
     int reports = 0;
   } stopping;
   EXPECT_THROW(preprocess<std::uint8_t>(
-                   volume.grid, [](std::uint64_t, std::span<std::byte>) {}, [](const auto&, const auto&) {}, {},
-                   stopping),
+                   volume.grid, [](std::uint64_t, std::span<std::byte>) {}, [](const auto&, const auto&) {},
+                   {}, stopping),
                Cancelled);
-  EXPECT_THROW(preprocess<std::uint8_t>(
-                   volume.grid, [](std::uint64_t, std::span<std::byte>) {}, [](const auto&, const auto&) {}, {3}),
-               Error);
+  EXPECT_THROW(
+      preprocess<std::uint8_t>(
+          volume.grid, [](std::uint64_t, std::span<std::byte>) {}, [](const auto&, const auto&) {}, {3}),
+      Error);
 }
 
 TEST(Preprocess, ScaleOfALevelIsTheGreatestDiameter) {

@@ -1,11 +1,11 @@
-#include "support/preprocess_reference.h"
+#include "tests/support/preprocess_reference.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/lattice/diamond.h"
 #include "isosurface/preprocessing/preprocess.h"
-#include "support/bisection_reference.h"
+#include "tests/support/bisection_reference.h"
 
 namespace adamas::test {
 

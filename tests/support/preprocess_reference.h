@@ -24,8 +24,8 @@ struct ReferenceVolume {
   [[nodiscard]] std::size_t index(LatticePoint p) const {
     const LatticePoint n = last() + LatticePoint{1, 1, 1};
     return static_cast<std::size_t>(p.i) +
-           static_cast<std::size_t>(n.i) *
-               (static_cast<std::size_t>(p.j) + static_cast<std::size_t>(n.j) * static_cast<std::size_t>(p.k));
+           static_cast<std::size_t>(n.i) * (static_cast<std::size_t>(p.j) +
+                                            static_cast<std::size_t>(n.j) * static_cast<std::size_t>(p.k));
   }
   [[nodiscard]] bool contains(LatticePoint p) const;
   /// The nearest sample's.
@@ -40,8 +40,8 @@ struct ReferenceValues {
   std::uint32_t low = ~0u, high = 0;
 };
 
-/// Errors and ranges of all diamonds of a volume by their definition: every sample of a tetrahedron's bounding
-/// box is tried with integer barycentric coordinates, and every diamond looks at its children.
+/// Errors and ranges of all diamonds of a volume by their definition: every sample of a tetrahedron's
+/// bounding box is tried with integer barycentric coordinates, and every diamond looks at its children.
 class PreprocessReference {
  public:
   explicit PreprocessReference(const ReferenceVolume& volume);
@@ -51,8 +51,8 @@ class PreprocessReference {
   [[nodiscard]] const std::map<LatticePoint, ReferenceValues>& diamonds() const { return diamonds_; }
   /// The codes when the errors of this many generations further count, least and greatest.
   [[nodiscard]] std::array<std::uint8_t, 2> codes(LatticePoint p, int generations) const;
-  /// The greatest error of the tetrahedra that so many rounds of bisection make of those of a diamond, without
-  /// those whose diamonds lie wholly outside.
+  /// The greatest error of the tetrahedra that so many rounds of bisection make of those of a diamond,
+  /// without those whose diamonds lie wholly outside.
   [[nodiscard]] double error_of_descendants(LatticePoint p, int generations) const;
   /// Child diamonds in the lattice.
   [[nodiscard]] std::vector<LatticePoint> children(LatticePoint p) const;
