@@ -7,6 +7,13 @@
 
 #include "isosurface/storage/page.h"
 
+/// Before a loop that reads nothing that it writes, which compilers do not see where there are many arrays.
+#if defined(__clang__)
+#define ADAMAS_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define ADAMAS_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
 namespace adamas {
 
 /// A page and what is round it, by the parity of the coordinates: 11^3 cells of 2^3 points, that of place c
@@ -27,6 +34,10 @@ struct InterpolationCells {
   std::array<Cells, 7> residuals;
   /// Of the parities that are at work: how much the samples vary round the point.
   std::array<Cells, 3> activity;
+  /// For the edges: by axis, the difference between each even point and the next; and their sum round a
+  /// point.
+  std::array<Cells, 3> gradients;
+  Cells steps;
 
   static constexpr int kSets = 3;
   /// The parities of a set, which are predicted together: edges, faces, centres.

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "isosurface/compression/activity_context.h"
 #include "isosurface/compression/interpolation_cells.h"
@@ -33,7 +36,7 @@ class InterpolationPage {
     return total;
   }
 
-  void predict(int set) { prediction_.predict(set, cells_); }
+  void predict(int set) { InterpolationPrediction<Word>::predict(set, cells_); }
 
   /// What `of` makes of the activity round each point.
   template <class Of>
@@ -71,11 +74,17 @@ class InterpolationPage {
       // There is nothing that needs those of the centres.
       Value* const magnitudes = cells_.residuals[parity(set, n) % 7].data();
       box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
+        // By way of arrays that are no part of others: so that no step waits for another.
+        std::array<Value, 8> sums, sizes;
         for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
           const Word word = folded[before + i];
-          values[cell + i] =
-              static_cast<Word>(static_cast<Word>(values[cell + i]) + ResidualToken<Word>::unfold(word));
-          magnitudes[cell + i] = static_cast<Value>((word >> 1) + (word & 1));
+          const auto prediction = static_cast<Word>(values[cell + i]);
+          sums[i] = static_cast<Word>(prediction + ResidualToken<Word>::unfold(word));
+          sizes[i] = static_cast<Value>((word >> 1) + (word & 1));
+        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
+          values[cell + i] = sums[i];
+          magnitudes[cell + i] = sizes[i];
         }
       });
       folded += box(set, n).size();
@@ -90,15 +99,27 @@ class InterpolationPage {
         const Value* const even = cells_.values[parity].data() + cell;
         const Value* const odd = cells_.values[parity + 1].data() + cell;
         Word* const to = samples.data() + PageGrid::kSide * (j + PageGrid::kSide * k);
-        for (std::size_t i = 0; i < PageGrid::kSide / 2; ++i) {
-          to[2 * i] = static_cast<Word>(even[i]);
-          to[2 * i + 1] = static_cast<Word>(odd[i]);
-        }
+        interleave(even, odd, to);
       }
     }
   }
 
  private:
+  /// A row of the page.
+  static void interleave(const Value* even, const Value* odd, Word* to) {
+    constexpr std::size_t kPairs = PageGrid::kSide / 2;
+    if constexpr (sizeof(Word) == 1 && std::endian::native == std::endian::little) {
+      std::array<std::uint16_t, kPairs> pairs;
+      for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = static_cast<std::uint16_t>(even[i] | odd[i] << 8);
+      std::memcpy(to, pairs.data(), sizeof pairs);
+    } else {
+      for (std::size_t i = 0; i < kPairs; ++i) {
+        to[2 * i] = static_cast<Word>(even[i]);
+        to[2 * i + 1] = static_cast<Word>(odd[i]);
+      }
+    }
+  }
+
   static constexpr std::size_t parity(int set, int n) {
     return static_cast<std::size_t>(
         Cells::kParities[static_cast<std::size_t>(set)][static_cast<std::size_t>(n)]);
@@ -117,7 +138,6 @@ class InterpolationPage {
 
   LatticePoint count_;
   Cells cells_;
-  InterpolationPrediction<Word> prediction_;
 };
 
 }  // namespace adamas

@@ -1,10 +1,13 @@
 #include "tests/fuzz/replay.h"
 #include "tests/fuzz/residual_targets.h"
+#include "tests/fuzz/sample_targets.h"
 
 namespace adamas {
 namespace {
 
 TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::residual_code), 4u); }
+
+TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sample_codec), 8u); }
 
 }  // namespace
 }  // namespace adamas

@@ -14,17 +14,19 @@
 
 namespace adamas::test {
 
+/// What a codec of samples is given of a page.
+template <class Word>
+struct PageContent {
+  PageShape shape;
+  typename SampleCodec<Word>::Around around;
+  typename SampleCodec<Word>::Samples samples;
+};
+
 /// A volume in memory and its pages, straight from their definitions.
 template <class Word>
 class VolumePages {
  public:
-  using Samples = typename SampleCodec<Word>::Samples;
-  using Around = typename SampleCodec<Word>::Around;
-  struct Content {
-    PageShape shape;
-    Around around;
-    Samples samples;  ///< `unused` where there is no point
-  };
+  using Content = PageContent<Word>;
 
   /// One sample per point, i running fastest.
   VolumePages(const std::array<std::uint64_t, 3>& dimensions, std::vector<Word> samples)
@@ -53,7 +55,7 @@ class VolumePages {
     return samples_[i + dimensions_[0] * (j + dimensions_[1] * k)];
   }
 
-  /// Fills a page's content.
+  /// Fills a page's content; samples are `unused` where there is no point.
   void content(const PageId& page, Content& result, Word unused = 0) const {
     const LatticePoint end = grid_.extent(page.level);
     const auto point = [&](LatticePoint q) {

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "isosurface/compression/sample_codec.h"
+#include "tests/fuzz/require.h"
+
+namespace adamas::fuzz {
+
+/// Tables, and a page with surroundings that are a ramp: what is taken is written as it was read, but a page
+/// that is raw, which need not be the best.
+template <class Word>
+void sample_codec_of(SampleCoding coding, const PageShape& shape, std::span<const std::byte> tables,
+                     std::span<const std::byte> page) {
+  const auto codec = parse_sample_codec<Word>(coding, tables, "fuzz");
+  require(std::ranges::equal(codec->tables(), tables), "other tables");
+  typename SampleCodec<Word>::Around around;
+  for (std::size_t n = 0; n < around.size(); ++n) around[n] = static_cast<Word>(n * n * 7);
+  const auto samples = std::make_unique<typename SampleCodec<Word>::Samples>();
+  if (!codec->decode(page, shape, around, *samples)) fail("expected a page, found other bytes");
+  std::vector<std::byte> again;
+  codec->encode(shape, around, *samples, again);
+  require(page[0] == std::byte{0} || std::ranges::equal(again, page), "another page");
+}
+
+/// A header of 7 bytes: the size of a sample, and 128 more for kInterpolation; points per axis; whether the
+/// page is complete; the size of the tables in 2 bytes. Then the tables and the page.
+inline void sample_codec(std::string_view bytes) {
+  constexpr std::size_t kHeader = 7;
+  const auto given = std::as_bytes(std::span(bytes));
+  if (given.size() < kHeader) fail("expected a header, found {} bytes", given.size());
+  const auto number = [given](std::size_t at) { return std::to_integer<int>(given[at]); };
+  const auto coding = number(0) >= 128 ? SampleCoding::kInterpolation : SampleCoding::kSplitEdge;
+  const auto along = [&](std::size_t at) {
+    return static_cast<std::int32_t>(number(at) % PageGrid::kSide + 1);
+  };
+  const PageShape shape{{along(1), along(2), along(3)}, number(4) % 2 != 0, 0};
+  const auto size = std::min(static_cast<std::size_t>(number(5) + 256 * number(6)), given.size() - kHeader);
+  const auto tables = given.subspan(kHeader, size), page = given.subspan(kHeader + size);
+  const int word = number(0) % 128;
+  if (word == 1) return sample_codec_of<std::uint8_t>(coding, shape, tables, page);
+  if (word == 2) return sample_codec_of<std::uint16_t>(coding, shape, tables, page);
+  if (word == 4) return sample_codec_of<std::uint32_t>(coding, shape, tables, page);
+  fail("expected samples of 1, 2 or 4 bytes, found {}", word);
+}
+
+}  // namespace adamas::fuzz
