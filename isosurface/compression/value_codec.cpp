@@ -46,12 +46,14 @@ class ValueReader {
     }
     decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
     std::uint8_t all = 0;
+    ValueSummary<Word> summary = summary_;
     for (std::size_t n = 0; n < stage.size; ++n) {
       all |= symbols_[n];
       const auto code = static_cast<std::uint8_t>((symbols_[n] + stage.predicted[n]) & 63);
       codes[stage.places[n]] = code;
-      summary_.add_error(code);
+      summary.add_error(code);
     }
+    summary_ = summary;
     good_ = good_ && all < ValueContexts<Word>::kErrorSymbols;
   }
 
@@ -61,24 +63,14 @@ class ValueReader {
       for (std::size_t n = 0; n < stage.size; ++n) {
         put(stage, n, side, empty ? ValueFields<Word>::kUnknown : stage.predicted[n], words);
       }
+      put_sure(stage, side, words);
       return;
     }
-    // Those that are coded, and the others at once.
-    std::size_t count = 0;
+    decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
     for (std::size_t n = 0; n < stage.size; ++n) {
-      const bool told =
-          range_mode_ == RangeMode::kCodedButSure && ValueContexts<Word>::is_sure(stage.contexts[n]);
-      contexts_[count] = stage.contexts[n];
-      which_[count] = static_cast<std::uint16_t>(n);
-      count += told ? 0 : 1;
-      words[stage.places[n]] = seen_from(side, stage.predicted[n]);
+      put(stage, n, side, word(symbols_[n], stage.predicted[n], stage.bound[n]), words);
     }
-    summary_.any_word |= count < stage.size;
-    decoder_.decode({contexts_.data(), count}, {symbols_.data(), count});
-    for (std::size_t m = 0; m < count; ++m) {
-      const std::size_t n = which_[m];
-      put(stage, n, side, word(symbols_[m], stage.predicted[n], stage.bound[n]), words);
-    }
+    put_sure(stage, side, words);
   }
 
   /// Whether the page is one that is coded so.
@@ -91,6 +83,18 @@ class ValueReader {
   void put(const ValueStage<Word>& stage, std::size_t n, std::size_t side, Word value, Words& words) {
     summary_.add_range(value, stage.predicted[n], ValueContexts<Word>::is_sure(stage.contexts[n]));
     words[stage.places[n]] = seen_from(side, value);
+  }
+
+  void put_sure(const ValueStage<Word>& stage, std::size_t side, Words& words) {
+    auto all = ValueFields<Word>::kUnknown;
+    for (std::size_t n = 0; n < stage.segment_count; ++n) {
+      const auto [place, count] = stage.segments[n];
+      for (std::size_t m = place; m < place + 2u * count; m += 2) {
+        words[m] = seen_from(side, stage.sure[m]);
+        all &= stage.sure[m];
+      }
+    }
+    summary_.any_word |= all != ValueFields<Word>::kUnknown;
   }
 
   Word word(std::uint8_t symbol, Word predicted, Word bound) {
@@ -119,7 +123,6 @@ class ValueReader {
   std::uint8_t error_;
   ValueSummary<Word> summary_;
   bool good_ = true;
-  std::array<std::uint16_t, ValueStage<Word>::kMost> contexts_, which_;
   std::array<std::uint8_t, ValueStage<Word>::kMost> symbols_;
 };
 
@@ -162,7 +165,7 @@ void ValueCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& 
   const ErrorMode errors = symbols.summary().error_mode();
   const RangeMode ranges = symbols.summary().range_mode();
   out.push_back(head(errors, ranges));
-  if (errors == ErrorMode::kEqual) out.push_back(static_cast<std::byte>(symbols.summary().first_error));
+  if (errors == ErrorMode::kEqual) out.push_back(static_cast<std::byte>(symbols.summary().any_error));
   if (errors != ErrorMode::kCoded && !is_coded(ranges)) return;
   ContextEncoder encoder(coder_);
   for (const auto& stage : symbols.stages()) encoder.put(stage.contexts, stage.symbols);
@@ -208,7 +211,8 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
     walk_complete_values<Word>(shape, page, reader);
   } else {
     fill_coarser_values(shape, around, page);
-    walk_values<Word>(shape, around, page, reader);
+    const bool trust = ranges == RangeMode::kCodedButSure || ranges == RangeMode::kPredicted;
+    walk_values<Word>(shape, around, page, trust, reader);
   }
   return reader.finish(coded);
 }

@@ -121,7 +121,7 @@ void ValueFields<Word>::mirror(const PageShape& shape) {
 template <class Word>
 void ValueFields<Word>::load_parents(const PageShape& shape, const Surroundings<Word>& around) {
   for (auto& side : least) side.fill(0);
-  most_errors.fill(63);
+  error_room.fill(0);
   for (std::int32_t k = 1; k < shape.count.k; k += 2) {
     for (std::int32_t j = 1; j < shape.count.j; j += 2) {
       for (std::int32_t i = 1; i < shape.count.i; i += 2) {
@@ -136,7 +136,8 @@ void ValueFields<Word>::load_parents(const PageShape& shape, const Surroundings<
           const std::size_t place = surrounding_place(parent);
           least[0][cube] = std::max(least[0][cube], around.low[place]);
           least[1][cube] = std::max(least[1][cube], static_cast<Word>(~around.high[place]));
-          most_errors[cube] = std::min(most_errors[cube], around.errors[place]);
+          const int code = std::min<int>(around.errors[place], 63);
+          error_room[cube] = std::max(error_room[cube], static_cast<std::uint8_t>(63 - code));
         }
       }
     }

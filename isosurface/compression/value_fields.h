@@ -3,8 +3,9 @@
 #include <array>
 #include <cstdint>
 
-#include "core/geometry/vec3.h"
 #include "isosurface/compression/padded_grid.h"
+#include "isosurface/compression/row_lanes.h"
+#include "isosurface/compression/value_stage.h"
 #include "isosurface/storage/page.h"
 
 namespace adamas {
@@ -15,6 +16,22 @@ template <class T>
 using CubeNumbers = std::array<T, 1000>;
 constexpr std::size_t cube_place(std::int32_t i, std::int32_t j, std::int32_t k) {
   return static_cast<std::size_t>(i + 10 * (j + 10 * k));
+}
+
+/// For the points of a row, whose first is q, in steps of two: the greatest number of the cubes that each is in.
+template <class T>
+std::array<T, 8> greatest_of_cubes(const CubeNumbers<T>& cubes, LatticePoint q) {
+  RowLanes<T, 8> lanes(cubes.data() + cube_place(first_cube(q.i), first_cube(q.j), first_cube(q.k)));
+  for (std::int32_t k = first_cube(q.k); k <= last_cube(q.k); ++k) {
+    for (std::int32_t j = first_cube(q.j); j <= last_cube(q.j); ++j) {
+      for (std::int32_t i = first_cube(q.i); i <= last_cube(q.i); ++i) {
+        lanes.take_greatest(cubes.data() + cube_place(i, j, k));
+      }
+    }
+  }
+  std::array<T, 8> row;
+  lanes.store(row.data());
+  return row;
 }
 
 /// What is known of a page that is not complete while its values become known. Of the two sides of the
@@ -34,8 +51,8 @@ struct ValueFields {
   /// What no diamond in the cube or on its faces falls below: the greatest of the least samples of the
   /// diamonds that are parents of the cube's; 0 where they are not known.
   std::array<CubeNumbers<Word>, 2> least;
-  /// The least error code of these, on their own scale; 63 where they are not known.
-  CubeNumbers<std::uint8_t> most_errors;
+  /// 63 less the least error code of these, on their own scale; 0 where they are not known.
+  CubeNumbers<std::uint8_t> error_room;
 
  private:
   void load_points(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);

@@ -14,9 +14,23 @@ template <class Number>
 struct ValueStage {
   static constexpr std::size_t kMost = 1536;
 
+  /// Points that follow each other along i in steps of two.
+  struct Segment {
+    std::uint16_t place;  ///< of the first
+    std::uint16_t count;
+  };
+
+  /// The points that are coded.
   std::size_t size = 0;
   std::array<std::uint16_t, kMost> places, contexts;
   std::array<Number, kMost> predicted, bound;
+  /// The points whose numbers are as predicted.
+  std::size_t segment_count = 0;
+  std::array<Segment, 192> segments;
+  /// What is predicted of them, by place.
+  typename Page<Number>::template Points<Number> sure;
+
+  void clear() { size = segment_count = 0; }
 };
 
 /// The points of a phase whose coordinates are odd along the same axes.
@@ -46,6 +60,11 @@ struct ValueKind {
     return count;
   }
 };
+
+/// The cubes whose numbers bound those of a row of points: the row of cubes that a coordinate has alone, or those
+/// before and after it.
+constexpr std::int32_t first_cube(std::int32_t x) { return (x + 1) / 2; }
+constexpr std::int32_t last_cube(std::int32_t x) { return x / 2 + 1; }
 
 /// How many kinds a phase has, and which.
 constexpr int value_kind_count(int phase) { return phase == 0 ? 1 : 3; }

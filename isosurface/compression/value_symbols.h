@@ -24,16 +24,15 @@ enum class RangeMode : std::uint8_t {
 /// What is to be found of a page's errors and ranges to know their modes.
 template <class Word>
 struct ValueSummary {
-  bool any_error = false, errors_differ = false;
-  std::uint8_t first_error = 0;
+  std::uint8_t any_error = 0;           ///< the bits that any of the codes has
+  std::uint8_t all_errors = 63;         ///< the bits that all have
   bool any_other = false;       ///< a word of a range that is not predicted
-  bool any_sure_other = false;  ///< among those that were sure
+  bool any_sure_other = false;  ///< among those of which all is known
   bool any_word = false;        ///< a range that is not empty
 
   void add_error(std::uint8_t code) {
-    if (!any_error) first_error = code;
-    any_error = true;
-    errors_differ |= code != first_error;
+    any_error |= code;
+    all_errors &= code;
   }
   void add_range(Word value, Word predicted, bool sure) {
     any_other |= value != predicted;
@@ -42,8 +41,8 @@ struct ValueSummary {
   }
 
   [[nodiscard]] ErrorMode error_mode() const {
-    if (errors_differ) return ErrorMode::kCoded;
-    return first_error == 0 ? ErrorMode::kZero : ErrorMode::kEqual;
+    if (any_error == 0) return ErrorMode::kZero;
+    return any_error == all_errors ? ErrorMode::kEqual : ErrorMode::kCoded;
   }
   [[nodiscard]] RangeMode range_mode() const {
     if (!any_other) return RangeMode::kPredicted;
@@ -80,6 +79,7 @@ class ValueSymbols {
              const typename Page<Word>::template Points<Word>& words);
 
  private:
+  void collect(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page, bool trust);
   void leave_out_what_modes_tell();
 
   ValueSummary<Word> summary_;

@@ -29,12 +29,6 @@ struct ValueContexts {
   }
 };
 
-/// The point at a place of a page.
-constexpr LatticePoint page_point(std::size_t place) {
-  const auto at = static_cast<std::int32_t>(place);
-  return {at & 15, at >> 4 & 15, at >> 8};
-}
-
 /// Of a word of a page's range, as it is seen on a side: see ValueFields.
 template <class Word>
 constexpr Word seen_from(std::size_t side, Word word) {
@@ -60,7 +54,8 @@ void fill_coarser_values(const PageShape& shape, const Surroundings<Word>& aroun
 /// port.errors(stage, codes) and port.range(stage, side, words): an encoder reads the stage's places of
 /// these, a decoder fills them.
 template <class Word, class PageType, class Port>
-void walk_values(const PageShape& shape, const Surroundings<Word>& around, PageType& page, Port& port) {
+void walk_values(const PageShape& shape, const Surroundings<Word>& around, PageType& page, bool trust,
+                 Port& port) {
   ValueFields<Word> fields;
   fields.load(shape, around, page);
   ValueStage<std::uint8_t> errors;
@@ -68,21 +63,27 @@ void walk_values(const PageShape& shape, const Surroundings<Word>& around, PageT
     ErrorStages<Word>::make(fields, shape, phase, errors);
     port.errors(errors, page.errors);
     for (std::size_t n = 0; n < errors.size; ++n) {
-      *fields.errors.at(page_point(errors.places[n])) = page.errors[errors.places[n]];
+      fields.errors.at_place(errors.places[n]) = page.errors[errors.places[n]];
     }
   }
   std::array<ValueStage<Word>, 2> sides;
   for (int phase = 3; phase-- > 0;) {
-    RangeStages<Word>::make(fields, shape, page.errors, phase, sides);
+    RangeStages<Word>::make(fields, shape, page.errors, phase, trust, sides);
     for (std::size_t side = 0; side < 2; ++side) {
       ValueStage<Word>& stage = sides[side];
       for (std::size_t n = 0; n < stage.size; ++n) stage.contexts[n] += ValueContexts<Word>::kRanges;
       auto& words = side == 0 ? page.low : page.high;
       port.range(stage, side, words);
+      // Nothing follows that would look at them.
       if (phase == 0) continue;
       for (std::size_t n = 0; n < stage.size; ++n) {
         const Word word = words[stage.places[n]];
-        *fields.values[side].at(page_point(stage.places[n])) = seen_from(side, word);
+        fields.values[side].at_place(stage.places[n]) = seen_from(side, word);
+      }
+      for (std::size_t n = 0; n < stage.segment_count; ++n) {
+        const auto [place, count] = stage.segments[n];
+        Word* values = &fields.values[side].at_place(place);
+        for (std::size_t m = 0; m < count; ++m) values[2 * m] = stage.sure[place + 2 * m];
       }
     }
   }
@@ -93,6 +94,8 @@ template <class Word, class PageType, class Port>
 void walk_complete_values(const PageShape& shape, PageType& page, Port& port) {
   ValueStage<std::uint8_t> errors;
   ValueStage<Word> range;
+  errors.clear();
+  range.clear();
   for (std::int32_t k = 0; k < shape.count.k; ++k) {
     errors.size = 0;
     for (std::int32_t j = 0; j < shape.count.j; ++j) {

@@ -1,10 +1,13 @@
 #include "tests/fuzz/replay.h"
 #include "tests/fuzz/residual_targets.h"
+#include "tests/fuzz/value_targets.h"
 
 namespace adamas {
 namespace {
 
 TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::residual_code), 4u); }
+
+TEST(FuzzCorpus, ValueCodec) { EXPECT_EQ(fuzz::replay("value_codec", fuzz::value_codec), 4u); }
 
 }  // namespace
 }  // namespace adamas
