@@ -116,7 +116,8 @@ void ContextDecoder::decode(std::span<const std::uint16_t> contexts, std::span<s
   }
 }
 
-/// Decodes four at a time until there is an escape among them or the stream is near its end. Returns how many.
+/// Decodes four at a time until there is an escape among them or the stream is near its end. Returns how
+/// many.
 std::size_t ContextDecoder::decode_most(std::span<const std::uint16_t> contexts,
                                         std::span<std::uint8_t> symbols) {
   // Copies that nothing points to stay in registers.
@@ -124,7 +125,8 @@ std::size_t ContextDecoder::decode_most(std::span<const std::uint16_t> contexts,
   std::array<std::uint32_t, kLanes> states = states_;
   const std::byte* next = next_;
   std::size_t n = 0;
-  for (; n + kLanes <= symbols.size() && end_ - next >= 2 * static_cast<std::ptrdiff_t>(kLanes); n += kLanes) {
+  for (; n + kLanes <= symbols.size() && end_ - next >= 2 * static_cast<std::ptrdiff_t>(kLanes);
+       n += kLanes) {
     std::array<std::uint32_t, kLanes> found{};
     std::array<std::uint32_t, kLanes> after = states;
     const std::byte* at = next;
@@ -140,7 +142,8 @@ std::size_t ContextDecoder::decode_most(std::span<const std::uint16_t> contexts,
     if (escaped) break;
     states = after;
     next = at;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) symbols[n + lane] = static_cast<std::uint8_t>(found[lane]);
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      symbols[n + lane] = static_cast<std::uint8_t>(found[lane]);
   }
   states_ = states;
   next_ = next;

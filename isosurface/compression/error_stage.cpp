@@ -20,11 +20,13 @@ constexpr auto kClassOfRoom = [] {
   return classes;
 }();
 
-/// The greatest code that goes with ValueFields::error_room: the scales of two levels differ by a factor of two.
+/// The greatest code that goes with ValueFields::error_room: the scales of two levels differ by a factor of
+/// two.
 constexpr auto kMostOfRoom = [] {
   std::array<std::uint8_t, kMostCode + 1> most{};
   for (int room = 0; room < kMostCode; ++room) {
-    most[static_cast<std::size_t>(room)] = static_cast<std::uint8_t>(std::min(kMostCode - room + 4, kMostCode));
+    most[static_cast<std::size_t>(room)] =
+        static_cast<std::uint8_t>(std::min(kMostCode - room + 4, kMostCode));
   }
   return most;
 }();
@@ -55,9 +57,8 @@ void ErrorStages<Word>::make(const ValueFields<Word>& fields, const PageShape& s
     const ValueKind kind = value_kind(phase, n);
     kind.rows(shape, [&](LatticePoint q) {
       const LatticePoint row{0, q.j, q.k};
-      const float* heights = fields.heights.at(row);
-      if (phase == 2) known_edge_errors(heights, n, known);
-      if (phase == 1) known_face_errors(heights, q, n, known);
+      if (phase == 2) known_edge_errors(fields.heights, q, n, known);
+      if (phase == 1) known_face_errors(fields.heights, q, n, known);
       if (phase < 2) greatest_child(fields.errors, row, kind.odd, children.data());
       add_row(kind, q, shape, phase, greatest_of_cubes(fields.error_room, q), known, children, stage);
     });
@@ -80,18 +81,18 @@ void ErrorStages<Word>::add_row(const ValueKind& kind, LatticePoint q, const Pag
   const std::size_t begin = stage.size, place = PageGrid::place(q, 0);
   for (int n = 0; n < count; ++n) {
     const auto i = static_cast<std::size_t>(q.i + 2 * n), to = begin + static_cast<std::size_t>(n);
-    const int predicted = std::max<int>(known[i], children[i]);
+    const int predicted = std::max<int>(known[static_cast<std::size_t>(n)], children[i]);
     const int room = kMostOfRoom[rooms[static_cast<std::size_t>(n)]] - predicted;
     stage.places[to] = static_cast<std::uint16_t>(place + 2 * static_cast<std::size_t>(n));
     stage.predicted[to] = static_cast<std::uint8_t>(predicted);
-    stage.contexts[to] =
-        static_cast<std::uint16_t>(inner + (predicted == 0 ? kRoomClassCount : 0) +
-                                   kClassOfRoom[static_cast<std::size_t>(room + kMostCode)]);
+    stage.contexts[to] = static_cast<std::uint16_t>(inner + (predicted == 0 ? kRoomClassCount : 0) +
+                                                    kClassOfRoom[static_cast<std::size_t>(room + kMostCode)]);
   }
   stage.size += static_cast<std::size_t>(count);
   stage.contexts[begin] = static_cast<std::uint16_t>(stage.contexts[begin] + first - inner);
   if (count > 1) {
-    stage.contexts[stage.size - 1] = static_cast<std::uint16_t>(stage.contexts[stage.size - 1] + last - inner);
+    stage.contexts[stage.size - 1] =
+        static_cast<std::uint16_t>(stage.contexts[stage.size - 1] + last - inner);
   }
 }
 

@@ -2,8 +2,6 @@
 
 #include <cstring>
 
-#include "isosurface/compression/padded_grid.h"
-
 namespace adamas {
 namespace {
 
@@ -41,14 +39,6 @@ void put_codes(Numbers squares, float most, std::int32_t* codes) {
   std::memcpy(codes, &code, sizeof code);
 }
 
-/// The steps along the axis, then along the two others.
-std::array<std::ptrdiff_t, 3> steps_of(int axis) {
-  constexpr std::ptrdiff_t kSide = PaddedGrid<float>::kSide;
-  constexpr std::array<std::ptrdiff_t, 5> kAll{1, kSide, kSide * kSide, 1, kSide};
-  const auto n = static_cast<std::size_t>(axis);
-  return {kAll[n], kAll[n + 1], kAll[n + 2]};
-}
-
 /// How far samples are from the mean of two others, squared, and these from each other.
 struct Side {
   Numbers deviation, length;
@@ -57,56 +47,64 @@ struct Side {
       : deviation(square(middle - mean_of(a, b))), length(square(a - b)) {}
 };
 
+Side select(Integers choice, Side a, const Side& b) {
+  a.deviation = choice ? a.deviation : b.deviation;
+  a.length = choice ? a.length : b.length;
+  return a;
+}
+
 /// Of one of the two halves of a face: the greatest deviation on its sides over the gradient.
 Numbers half_error(Numbers deviation, Numbers across, const Side& a, const Side& b) {
-  return greater(deviation, greater(a.deviation, b.deviation)) / (0.25f * (a.length + b.length) + across + kTiny);
+  return greater(deviation, greater(a.deviation, b.deviation)) /
+         (0.25f * (a.length + b.length) + across + kTiny);
 }
 
 }  // namespace
 
-void known_edge_errors(const float* heights, int own, ErrorRow& row) {
-  const auto [along, b, c] = steps_of(own);
-  for (std::size_t i = 0; i < row.size(); i += kLanes) {
-    const float* p = heights + i;
-    const Numbers before = load(p - along), after = load(p + along), mean = mean_of(before, after);
+void known_edge_errors(const HeightGrid& heights, LatticePoint q, int own, ErrorRow& row) {
+  const HeightGrid::Steps along = HeightGrid::steps(q, own), b = HeightGrid::steps(q, (own + 1) % 3),
+                          c = HeightGrid::steps(q, (own + 2) % 3);
+  for (std::size_t n = 0; n < row.size(); n += kLanes) {
+    const float* p = heights.at(q) + n;
+    const Numbers before = load(p + along.before), after = load(p + along.after),
+                  mean = mean_of(before, after);
     // The least gradient of the eight tetrahedra, each of which has a face's centre and a cube's.
     Numbers least = Numbers{} + 1e38f;
-    for (const std::ptrdiff_t u : {-b, b}) {
+    for (const std::ptrdiff_t u : {b.before, b.after}) {
       const Numbers first = load(p + u), first_height = square(first - mean);
-      for (const std::ptrdiff_t v : {-c, c}) {
+      for (const std::ptrdiff_t v : {c.before, c.after}) {
         const Numbers second = load(p + v), corner = load(p + u + v);
         least = lesser(least, first_height + square(corner - first));
         least = lesser(least, square(second - mean) + square(corner - second));
       }
     }
     const Numbers gradient = square(0.5f * (after - before)) + least + kTiny;
-    put_codes(square(load(p) - mean) / gradient, 4, row.data() + i);
+    put_codes(square(load(p) - mean) / gradient, 4, row.data() + n);
   }
 }
 
-void known_face_errors(const float* heights, LatticePoint q, int own, ErrorRow& row) {
-  const auto [across, a, b] = steps_of(own);
-  // The split edge runs along the diagonal whose ends have multiples of four or none of them; from one face to
-  // the next along i it turns.
+void known_face_errors(const HeightGrid& heights, LatticePoint q, int own, ErrorRow& row) {
+  const HeightGrid::Steps across = HeightGrid::steps(q, own), a = HeightGrid::steps(q, (own + 1) % 3),
+                          b = HeightGrid::steps(q, (own + 2) % 3);
+  // The split edge runs along the diagonal whose ends have multiples of four or none of them; from one face
+  // to the next along i it turns.
   const std::int32_t turned = own == 0 ? (q.j ^ q.k) & 2 : own == 1 ? q.k & 2 : q.j & 2;
-  const Integers turns = Integers{0, 0, 0, own == 0 ? 0 : 2} ^ turned;
-  for (std::size_t i = 0; i < row.size(); i += kLanes) {
-    const float* p = heights + i;
-    const Numbers v00 = load(p - a - b), v10 = load(p + a - b), v01 = load(p - a + b), v11 = load(p + a + b);
-    const Side before_b(load(p - b), v00, v10), after_b(load(p + b), v01, v11);
-    const Side before_a(load(p - a), v00, v01), after_a(load(p + a), v10, v11);
-    Side first = after_a, second = before_a;
-    const Integers turn = turns != 0;
-    first.deviation = turn ? before_a.deviation : after_a.deviation;
-    first.length = turn ? before_a.length : after_a.length;
-    second.deviation = turn ? after_a.deviation : before_a.deviation;
-    second.length = turn ? after_a.length : before_a.length;
+  const std::int32_t next = own == 0 ? turned : turned ^ 2;
+  const Integers turn = Integers{turned, next, turned, next} != 0;
+  for (std::size_t n = 0; n < row.size(); n += kLanes) {
+    const float* p = heights.at(q) + n;
+    const Numbers v00 = load(p + a.before + b.before), v10 = load(p + a.after + b.before);
+    const Numbers v01 = load(p + a.before + b.after), v11 = load(p + a.after + b.after);
+    const Side before_b(load(p + b.before), v00, v10), after_b(load(p + b.after), v01, v11);
+    const Side before_a(load(p + a.before), v00, v01), after_a(load(p + a.after), v10, v11);
+    const Side first = select(turn, before_a, after_a), second = select(turn, after_a, before_a);
     const Numbers mean = turn ? mean_of(v10, v01) : mean_of(v00, v11);
     const Numbers deviation = square(load(p) - mean);
-    const Numbers height = lesser(square(load(p - across) - mean), square(load(p + across) - mean));
-    const Numbers squares =
-        greater(half_error(deviation, height, before_b, first), half_error(deviation, height, after_b, second));
-    put_codes(squares, 8, row.data() + i);
+    const Numbers height =
+        lesser(square(load(p + across.before) - mean), square(load(p + across.after) - mean));
+    const Numbers squares = greater(half_error(deviation, height, before_b, first),
+                                    half_error(deviation, height, after_b, second));
+    put_codes(squares, 8, row.data() + n);
   }
 }
 

@@ -39,18 +39,16 @@ constexpr Neighbours neighbours(const ValueKind& kind, int phase) {
 template <int Phase, int Number>
 constexpr Neighbours kNeighbours = neighbours(value_kind(Phase, Number), Phase);
 
-/// Of the points of a row, those of other kinds too, whose numbers mean nothing. Unrolled: nearly all time goes
-/// here.
+/// Of the points of a row, those of other kinds too, whose numbers mean nothing. Unrolled: nearly all time
+/// goes here.
 template <int Phase, int Number, class Word>
 void known_least(const Word* samples, const Word* values, Word* row) {
   constexpr Neighbours kNear = kNeighbours<Phase, Number>;
   RowLanes<Word, PageGrid::kSide> least(samples);
-  [&]<std::size_t... N>(std::index_sequence<N...>) {
-    (least.take_least(samples + kNear.samples[N]), ...);
-  }(std::make_index_sequence<kNear.sample_count>());
-  [&]<std::size_t... N>(std::index_sequence<N...>) {
-    (least.take_least(values + kNear.children[N]), ...);
-  }(std::make_index_sequence<kNear.child_count>());
+  [&]<std::size_t... N>(std::index_sequence<N...>) { (least.take_least(samples + kNear.samples[N]), ...); }
+  (std::make_index_sequence<kNear.sample_count>());
+  [&]<std::size_t... N>(std::index_sequence<N...>) { (least.take_least(values + kNear.children[N]), ...); }
+  (std::make_index_sequence<kNear.child_count>());
   least.store(row);
 }
 
@@ -101,7 +99,9 @@ class RangeRows {
     const std::int32_t count = (shape_.count.i - q.i + 1) / 2;
     std::int32_t begin = 0, end = 0;
     if (Phase < 2 || shape_.level == 0) {
-      const auto sure = [&](std::int32_t n) { return kKind.missing({q.i + 2 * n, q.j, q.k}, shape_, Phase) == 0; };
+      const auto sure = [&](std::int32_t n) {
+        return kKind.missing({q.i + 2 * n, q.j, q.k}, shape_, Phase) == 0;
+      };
       begin = sure(0) ? 0 : 1;
       end = sure(count - 1) ? count : count - 1;
       // A neighbour along another axis is missing to all of them.
@@ -112,11 +112,13 @@ class RangeRows {
   }
 
   void add_sure(LatticePoint q, std::int32_t begin, std::int32_t end) {
-    const auto place = static_cast<std::uint16_t>(PageGrid::place(q, 0) + 2 * static_cast<std::size_t>(begin));
+    const auto place =
+        static_cast<std::uint16_t>(PageGrid::place(q, 0) + 2 * static_cast<std::size_t>(begin));
     for (std::size_t side = 0; side < 2; ++side) {
       ValueStage<Word>& stage = stages_[side];
       if (trust_) {
-        stage.segments[stage.segment_count++] = {place, static_cast<std::uint16_t>(end - begin)};
+        stage.segments[stage.segment_count++] = {place, static_cast<std::uint16_t>(end - begin),
+                                                 shape_.count.i == PageGrid::kSide};
         continue;
       }
       for (std::int32_t n = 0; n < end - begin; ++n) {
@@ -153,7 +155,8 @@ class RangeRows {
   void put(std::size_t side, std::uint16_t place, int context, Word known, Word bound) {
     ValueStage<Word>& stage = stages_[side];
     stage.places[stage.size] = place;
-    stage.contexts[stage.size] = static_cast<std::uint16_t>(side * Stages::kSideContexts + static_cast<std::size_t>(context));
+    stage.contexts[stage.size] =
+        static_cast<std::uint16_t>(side * Stages::kSideContexts + static_cast<std::size_t>(context));
     stage.predicted[stage.size] = known;
     stage.bound[stage.size++] = bound;
   }

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstring>
 
 namespace adamas {
 
-/// N numbers of a row, worked on together by the processor's instructions for 16 bytes: compilers unroll loops of
-/// so few steps before they see that.
+/// N numbers of a row, worked on together by the processor's instructions for 16 bytes: compilers unroll
+/// loops of so few steps before they see that.
 template <class T, std::size_t N>
 class RowLanes {
  public:
@@ -46,5 +47,21 @@ class RowLanes {
  private:
   Part parts_[kParts];
 };
+
+/// Copies every other number of a row of 16, from that at `first` (0 or 1) on, with the bits of `flipped`
+/// inverted; the numbers between them stay.
+template <class T>
+void copy_every_other(const T* from, T* to, std::size_t first, T flipped) {
+  using Lanes = RowLanes<T, 16>;
+  using Part = typename Lanes::Part;
+  constexpr T kAll = static_cast<T>(~T{0});
+  std::array<T, Lanes::kStep> pattern;
+  for (std::size_t n = 0; n < Lanes::kStep; ++n) pattern[n] = (n & 1) == first ? kAll : 0;
+  const Part taken = Lanes::load(pattern.data());
+  for (std::size_t n = 0; n < 16; n += Lanes::kStep) {
+    const Part result = (taken & (Lanes::load(from + n) ^ flipped)) | (~taken & Lanes::load(to + n));
+    std::memcpy(to + n, &result, Lanes::kPartBytes);
+  }
+}
 
 }  // namespace adamas

@@ -30,20 +30,13 @@ class ValueReader {
   using Words = typename Page<Word>::template Points<Word>;
 
   ValueReader(const ContextCoder& coder, std::span<const std::byte> symbols,
-              std::span<const std::byte> extras, ErrorMode error_mode, RangeMode range_mode,
-              std::uint8_t error)
-      : decoder_(coder, symbols),
-        extras_(extras),
-        error_mode_(error_mode),
-        range_mode_(range_mode),
-        error_(error) {}
+              std::span<const std::byte> extras, ErrorMode error_mode, RangeMode range_mode)
+      : decoder_(coder, symbols), extras_(extras), error_mode_(error_mode), range_mode_(range_mode) {}
+
+  [[nodiscard]] bool needs_errors() const { return error_mode_ == ErrorMode::kCoded; }
+  [[nodiscard]] bool needs_ranges() const { return range_mode_ != RangeMode::kEmpty; }
 
   void errors(const ValueStage<std::uint8_t>& stage, Codes& codes) {
-    if (error_mode_ != ErrorMode::kCoded) {
-      for (std::size_t n = 0; n < stage.size; ++n) codes[stage.places[n]] = error_;
-      if (stage.size > 0) summary_.add_error(error_);
-      return;
-    }
     decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
     std::uint8_t all = 0;
     ValueSummary<Word> summary = summary_;
@@ -58,43 +51,30 @@ class ValueReader {
   }
 
   void range(const ValueStage<Word>& stage, std::size_t side, Words& words) {
-    if (range_mode_ == RangeMode::kPredicted || range_mode_ == RangeMode::kEmpty) {
-      const bool empty = range_mode_ == RangeMode::kEmpty;
-      for (std::size_t n = 0; n < stage.size; ++n) {
-        put(stage, n, side, empty ? ValueFields<Word>::kUnknown : stage.predicted[n], words);
-      }
-      put_sure(stage, side, words);
+    copy_sure<Word>(
+        stage, [&words](std::size_t place) { return words.data() + place; }, seen_from(side, Word{0}));
+    summary_.add_sure(stage);
+    if (range_mode_ == RangeMode::kPredicted) {
+      for (std::size_t n = 0; n < stage.size; ++n) put(stage, n, side, stage.predicted[n], words);
       return;
     }
     decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
     for (std::size_t n = 0; n < stage.size; ++n) {
       put(stage, n, side, word(symbols_[n], stage.predicted[n], stage.bound[n]), words);
     }
-    put_sure(stage, side, words);
   }
 
   /// Whether the page is one that is coded so.
   [[nodiscard]] bool finish(bool coded) const {
     if (coded && (!decoder_.finish() || !extras_.at_end())) return false;
-    return good_ && summary_.error_mode() == error_mode_ && summary_.range_mode() == range_mode_;
+    const bool right_errors = !needs_errors() || summary_.error_mode() == error_mode_;
+    return good_ && right_errors && summary_.range_mode() == range_mode_;
   }
 
  private:
   void put(const ValueStage<Word>& stage, std::size_t n, std::size_t side, Word value, Words& words) {
     summary_.add_range(value, stage.predicted[n], ValueContexts<Word>::is_sure(stage.contexts[n]));
     words[stage.places[n]] = seen_from(side, value);
-  }
-
-  void put_sure(const ValueStage<Word>& stage, std::size_t side, Words& words) {
-    auto all = ValueFields<Word>::kUnknown;
-    for (std::size_t n = 0; n < stage.segment_count; ++n) {
-      const auto [place, count] = stage.segments[n];
-      for (std::size_t m = place; m < place + 2u * count; m += 2) {
-        words[m] = seen_from(side, stage.sure[m]);
-        all &= stage.sure[m];
-      }
-    }
-    summary_.any_word |= all != ValueFields<Word>::kUnknown;
   }
 
   Word word(std::uint8_t symbol, Word predicted, Word bound) {
@@ -120,7 +100,6 @@ class ValueReader {
   BitReader extras_;
   ErrorMode error_mode_;
   RangeMode range_mode_;
-  std::uint8_t error_;
   ValueSummary<Word> summary_;
   bool good_ = true;
   std::array<std::uint8_t, ValueStage<Word>::kMost> symbols_;
@@ -193,7 +172,8 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
   if (errors == ErrorMode::kEqual) {
     if (bytes.empty()) return false;
     error = std::to_integer<std::uint8_t>(bytes[0]);
-    if (error >= ValueContexts<Word>::kErrorSymbols) return false;
+    const bool any_point = shape.complete || shape.count != LatticePoint{1, 1, 1};
+    if (error == 0 || error >= ValueContexts<Word>::kErrorSymbols || !any_point) return false;
     bytes = bytes.subspan(1);
   }
   const bool coded = errors == ErrorMode::kCoded || is_coded(ranges);
@@ -206,7 +186,12 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
   } else if (!bytes.empty()) {
     return false;
   }
-  ValueReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), errors, ranges, error);
+  ValueReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), errors, ranges);
+  if (errors != ErrorMode::kCoded) page.errors.fill(error);
+  if (ranges == RangeMode::kEmpty) {
+    page.low.fill(ValueFields<Word>::kUnknown);
+    page.high.fill(0);
+  }
   if (shape.complete) {
     walk_complete_values<Word>(shape, page, reader);
   } else {

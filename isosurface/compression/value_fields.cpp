@@ -65,13 +65,15 @@ void ValueFields<Word>::load_points(const PageShape& shape, const Surroundings<W
       const Word* row = page.samples.data() + PageGrid::place({0, j, k}, 0);
       Word* low_side = samples[0].at({0, j, k});
       Word* high_side = samples[1].at({0, j, k});
-      float* numbers = heights.at({0, j, k});
       for (std::int32_t i = 0; i < shape.count.i; ++i) {
         const bool finite = is_finite(row[i]);
         low_side[i] = finite ? row[i] : kUnknown;
         high_side[i] = finite ? static_cast<Word>(~row[i]) : kUnknown;
-        numbers[i] = height(row[i]);
       }
+      float* even = heights.at({0, j, k});
+      for (std::int32_t i = 0; i < shape.count.i; i += 2) even[i / 2] = height(row[i]);
+      float* odd = heights.at({1, j, k});
+      for (std::int32_t i = 1; i < shape.count.i; i += 2) odd[i / 2] = height(row[i]);
     }
   }
   const LatticePoint last{last_even(shape.count.i), last_even(shape.count.j), last_even(shape.count.k)};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "isosurface/compression/height_grid.h"
 #include "isosurface/compression/padded_grid.h"
 #include "isosurface/compression/row_lanes.h"
 #include "isosurface/compression/value_stage.h"
@@ -18,17 +19,21 @@ constexpr std::size_t cube_place(std::int32_t i, std::int32_t j, std::int32_t k)
   return static_cast<std::size_t>(i + 10 * (j + 10 * k));
 }
 
-/// For the points of a row, whose first is q, in steps of two: the greatest number of the cubes that each is in.
+/// For the points of a row, whose first is q, in steps of two: the greatest number of the cubes that each is
+/// in.
 template <class T>
 std::array<T, 8> greatest_of_cubes(const CubeNumbers<T>& cubes, LatticePoint q) {
-  RowLanes<T, 8> lanes(cubes.data() + cube_place(first_cube(q.i), first_cube(q.j), first_cube(q.k)));
-  for (std::int32_t k = first_cube(q.k); k <= last_cube(q.k); ++k) {
-    for (std::int32_t j = first_cube(q.j); j <= last_cube(q.j); ++j) {
-      for (std::int32_t i = first_cube(q.i); i <= last_cube(q.i); ++i) {
-        lanes.take_greatest(cubes.data() + cube_place(i, j, k));
-      }
-    }
-  }
+  const T* first = cubes.data() + cube_place(first_cube(q.i), first_cube(q.j), first_cube(q.k));
+  const std::ptrdiff_t i = (q.i & 1) ^ 1, j = 10 * ((q.j & 1) ^ 1), k = 100 * ((q.k & 1) ^ 1);
+  RowLanes<T, 8> lanes(first);
+  const auto take = [&lanes, i](const T* from) {
+    lanes.take_greatest(from);
+    lanes.take_greatest(from + i);
+  };
+  take(first);
+  if (j != 0) take(first + j);
+  if (k != 0) take(first + k);
+  if (j != 0 && k != 0) take(first + j + k);
   std::array<T, 8> row;
   lanes.store(row.data());
   return row;
@@ -45,7 +50,7 @@ struct ValueFields {
 
   std::array<PaddedGrid<Word>, 2> samples;  ///< words of finite samples
   std::array<PaddedGrid<Word>, 2> values;   ///< the ranges found so far
-  PaddedGrid<float> heights;                ///< samples as numbers, finite; what is not known is mirrored
+  HeightGrid heights;                       ///< finite; what is not known is mirrored
   PaddedGrid<std::uint8_t> errors;          ///< codes found so far, 0 elsewhere
 
   /// What no diamond in the cube or on its faces falls below: the greatest of the least samples of the

@@ -18,6 +18,8 @@ struct ValueStage {
   struct Segment {
     std::uint16_t place;  ///< of the first
     std::uint16_t count;
+    /// Whether all points of the row may be given what is predicted, before those that are coded are known.
+    bool whole_row;
   };
 
   /// The points that are coded.
@@ -61,10 +63,9 @@ struct ValueKind {
   }
 };
 
-/// The cubes whose numbers bound those of a row of points: the row of cubes that a coordinate has alone, or those
-/// before and after it.
+/// Among the rows of cubes along an axis, the first of those that have a coordinate: it and the next one have
+/// an even one between them, and one alone has an odd one.
 constexpr std::int32_t first_cube(std::int32_t x) { return (x + 1) / 2; }
-constexpr std::int32_t last_cube(std::int32_t x) { return x / 2 + 1; }
 
 /// How many kinds a phase has, and which.
 constexpr int value_kind_count(int phase) { return phase == 0 ? 1 : 3; }

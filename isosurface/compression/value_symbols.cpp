@@ -57,7 +57,7 @@ void ValueSymbols<Word>::range(const ValueStage<Word>& stage, std::size_t side,
     if (count > 0) extras_.push_back({token.extra, count});
   }
   for (std::size_t n = 0; n < stage.segment_count; ++n) {
-    const auto [place, count] = stage.segments[n];
+    const auto& [place, count, whole_row] = stage.segments[n];
     for (std::size_t m = place; m < place + 2u * count; m += 2) {
       summary_.add_range(seen_from(side, words[m]), stage.sure[m], true);
     }

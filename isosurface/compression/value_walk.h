@@ -8,6 +8,7 @@
 #include "isosurface/compression/error_stage.h"
 #include "isosurface/compression/range_stage.h"
 #include "isosurface/compression/range_token.h"
+#include "isosurface/compression/row_lanes.h"
 #include "isosurface/compression/value_fields.h"
 #include "isosurface/compression/value_stage.h"
 
@@ -50,6 +51,22 @@ void fill_coarser_values(const PageShape& shape, const Surroundings<Word>& aroun
   }
 }
 
+/// Copies what is predicted of a stage's sure points to where `target` says that the numbers from a place on
+/// are.
+template <class Word, class Target>
+void copy_sure(const ValueStage<Word>& stage, Target target, Word flipped) {
+  for (std::size_t n = 0; n < stage.segment_count; ++n) {
+    const auto [place, count, whole_row] = stage.segments[n];
+    if (whole_row) {
+      const std::size_t row = place & ~std::size_t{15};
+      copy_every_other(stage.sure.data() + row, target(row), place & 1u, flipped);
+      continue;
+    }
+    Word* to = target(place);
+    for (std::size_t m = 0; m < 2u * count; m += 2) to[m] = stage.sure[place + m] ^ flipped;
+  }
+}
+
 /// The order in which the values of a page are coded: its errors, then its ranges, in stages of each. Calls
 /// port.errors(stage, codes) and port.range(stage, side, words): an encoder reads the stage's places of
 /// these, a decoder fills them.
@@ -59,7 +76,7 @@ void walk_values(const PageShape& shape, const Surroundings<Word>& around, PageT
   ValueFields<Word> fields;
   fields.load(shape, around, page);
   ValueStage<std::uint8_t> errors;
-  for (int phase = 3; phase-- > 0;) {
+  for (int phase = 3; port.needs_errors() && phase-- > 0;) {
     ErrorStages<Word>::make(fields, shape, phase, errors);
     port.errors(errors, page.errors);
     for (std::size_t n = 0; n < errors.size; ++n) {
@@ -67,23 +84,20 @@ void walk_values(const PageShape& shape, const Surroundings<Word>& around, PageT
     }
   }
   std::array<ValueStage<Word>, 2> sides;
-  for (int phase = 3; phase-- > 0;) {
+  for (int phase = 3; port.needs_ranges() && phase-- > 0;) {
     RangeStages<Word>::make(fields, shape, page.errors, phase, trust, sides);
     for (std::size_t side = 0; side < 2; ++side) {
       ValueStage<Word>& stage = sides[side];
       for (std::size_t n = 0; n < stage.size; ++n) stage.contexts[n] += ValueContexts<Word>::kRanges;
       auto& words = side == 0 ? page.low : page.high;
+      copy_sure<Word>(
+          stage, [&](std::size_t place) { return &fields.values[side].at_place(place); }, 0);
       port.range(stage, side, words);
       // Nothing follows that would look at them.
       if (phase == 0) continue;
       for (std::size_t n = 0; n < stage.size; ++n) {
         const Word word = words[stage.places[n]];
         fields.values[side].at_place(stage.places[n]) = seen_from(side, word);
-      }
-      for (std::size_t n = 0; n < stage.segment_count; ++n) {
-        const auto [place, count] = stage.segments[n];
-        Word* values = &fields.values[side].at_place(place);
-        for (std::size_t m = 0; m < count; ++m) values[2 * m] = stage.sure[place + 2 * m];
       }
     }
   }
@@ -105,8 +119,8 @@ void walk_complete_values(const PageShape& shape, PageType& page, Port& port) {
         errors.predicted[errors.size++] = 0;
       }
     }
-    port.errors(errors, page.errors);
-    for (std::size_t side = 0; side < 2; ++side) {
+    if (port.needs_errors()) port.errors(errors, page.errors);
+    for (std::size_t side = 0; port.needs_ranges() && side < 2; ++side) {
       range.size = errors.size;
       for (std::size_t n = 0; n < range.size; ++n) {
         range.places[n] = errors.places[n];

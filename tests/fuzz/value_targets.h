@@ -29,7 +29,8 @@ class SeededWords {
   std::uint32_t state_ = 1;
 };
 
-/// Tables and a page of it, whose samples and surroundings the seed tells. What is taken is written as it was read.
+/// Tables and a page of it, whose samples and surroundings the seed tells. What is taken is written as it was
+/// read.
 template <class Word>
 void value_page(std::span<const std::byte> tables, std::span<const std::byte> bytes, const PageShape& shape,
                 std::uint8_t seed) {
@@ -50,8 +51,8 @@ void value_page(std::span<const std::byte> tables, std::span<const std::byte> by
   require(std::ranges::equal(again, bytes), "another page");
 }
 
-/// A number of bits, the page's count per axis, its level with 128 where it is complete, a seed, the size of the
-/// tables in 2 bytes, the tables, and the page.
+/// A number of bits, the page's count per axis, its level with 128 where it is complete, a seed, the size of
+/// the tables in 2 bytes, the tables, and the page.
 inline void value_codec(std::string_view bytes) {
   constexpr std::size_t kHeader = 8;
   const auto given = std::as_bytes(std::span(bytes));
@@ -61,8 +62,8 @@ inline void value_codec(std::string_view bytes) {
   const auto side = [&number](std::size_t at) { return 1 + (number(at) & 15); };
   const PageShape shape{{side(1), side(2), side(3)}, (number(4) & 128) != 0, number(4) & 15};
   const auto seed = static_cast<std::uint8_t>(number(5));
-  const std::size_t size = std::min<std::size_t>(static_cast<std::size_t>(number(6) | number(7) << 8),
-                                                 given.size() - kHeader);
+  const std::size_t size =
+      std::min<std::size_t>(static_cast<std::size_t>(number(6) | number(7) << 8), given.size() - kHeader);
   const auto tables = given.subspan(kHeader, size), page = given.subspan(kHeader + size);
   if (bits == 8) return value_page<std::uint8_t>(tables, page, shape, seed);
   if (bits == 16) return value_page<std::uint16_t>(tables, page, shape, seed);
