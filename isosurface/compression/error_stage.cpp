@@ -59,6 +59,7 @@ void ErrorStages<Word>::make(const ValueFields<Word>& fields, const PageShape& s
       const LatticePoint row{0, q.j, q.k};
       if (phase == 2) known_edge_errors(fields.heights, q, n, known);
       if (phase == 1) known_face_errors(fields.heights, q, n, known);
+      if (phase == 0) known_centre_errors(fields.heights, q, known);
       if (phase < 2) greatest_child(fields.errors, row, kind.odd, children.data());
       add_row(kind, q, shape, phase, greatest_of_cubes(fields.error_room, q), known, children, stage);
     });

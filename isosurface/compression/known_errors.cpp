@@ -59,6 +59,42 @@ Numbers half_error(Numbers deviation, Numbers across, const Side& a, const Side&
          (0.25f * (a.length + b.length) + across + kTiny);
 }
 
+/// The samples of cubes round centres. Along each axis from 0 to 2, in the direction of the split edge.
+class CubeHeights {
+ public:
+  CubeHeights(const HeightGrid& heights, LatticePoint q, std::size_t n) {
+    const float* p = heights.at(q) + n;
+    const HeightGrid::Steps i = HeightGrid::steps(q, 0);
+    const auto towards = [q](int axis) {
+      const HeightGrid::Steps steps = HeightGrid::steps(q, axis);
+      const bool forth = (q[axis] & 3) == 1;
+      return std::array<std::ptrdiff_t, 3>{forth ? steps.before : steps.after, 0,
+                                           forth ? steps.after : steps.before};
+    };
+    const auto j = towards(1), k = towards(2);
+    const Integers turn{0, -1, 0, -1};
+    for (std::size_t z = 0; z < 3; ++z) {
+      for (std::size_t y = 0; y < 3; ++y) {
+        const float* at = p + j[y] + k[z];
+        const Numbers before = load(at + i.before), after = load(at + i.after);
+        heights_[0][y][z] = turn ? after : before;
+        heights_[1][y][z] = load(at);
+        heights_[2][y][z] = turn ? before : after;
+      }
+    }
+  }
+
+  /// Between two points, and the one in the middle.
+  [[nodiscard]] Side side(const std::array<int, 3>& a, const std::array<int, 3>& b) const {
+    const auto height = [this](int x, int y, int z) { return heights_[x][y][z]; };
+    return Side(height((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2), height(a[0], a[1], a[2]),
+                height(b[0], b[1], b[2]));
+  }
+
+ private:
+  Numbers heights_[3][3][3];
+};
+
 }  // namespace
 
 void known_edge_errors(const HeightGrid& heights, LatticePoint q, int own, ErrorRow& row) {
@@ -105,6 +141,30 @@ void known_face_errors(const HeightGrid& heights, LatticePoint q, int own, Error
     const Numbers squares = greater(half_error(deviation, height, before_b, first),
                                     half_error(deviation, height, after_b, second));
     put_codes(squares, 8, row.data() + n);
+  }
+}
+
+void known_centre_errors(const HeightGrid& heights, LatticePoint q, ErrorRow& row) {
+  for (std::size_t n = 0; n < row.size(); n += kLanes) {
+    const CubeHeights cube(heights, q, n);
+    const std::array<int, 3> low{0, 0, 0}, high{2, 2, 2};
+    const Numbers middle = cube.side(low, high).deviation;
+    Numbers squares{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      std::array<int, 3> first = low;
+      first[a] = 2;
+      const Side begin = cube.side(low, first), far_face = cube.side(first, high);
+      for (const std::size_t b : {(a + 1) % 3, (a + 2) % 3}) {
+        std::array<int, 3> second = first;
+        second[b] = 2;
+        const Side next = cube.side(first, second), end = cube.side(second, high);
+        const Numbers faces = greater(far_face.deviation, cube.side(low, second).deviation);
+        const Numbers edges = greater(begin.deviation, greater(next.deviation, end.deviation));
+        const Numbers gradient = 0.25f * (begin.length + next.length + end.length) + kTiny;
+        squares = greater(squares, greater(middle, greater(faces, edges)) / gradient);
+      }
+    }
+    put_codes(squares, 12, row.data() + n);
   }
 }
 

@@ -17,5 +17,6 @@ using ErrorRow = std::array<std::int32_t, PageGrid::kSide / 2>;
 /// axis `own`, and for faces across it.
 void known_edge_errors(const HeightGrid& heights, LatticePoint q, int own, ErrorRow& row);
 void known_face_errors(const HeightGrid& heights, LatticePoint q, int own, ErrorRow& row);
+void known_centre_errors(const HeightGrid& heights, LatticePoint q, ErrorRow& row);
 
 }  // namespace adamas

@@ -55,13 +55,22 @@ class ValueReader {
         stage, [&words](std::size_t place) { return words.data() + place; }, seen_from(side, Word{0}));
     summary_.add_sure(stage);
     if (range_mode_ == RangeMode::kPredicted) {
-      for (std::size_t n = 0; n < stage.size; ++n) put(stage, n, side, stage.predicted[n], words);
+      for (std::size_t n = 0; n < stage.size; ++n) {
+        const Word value = stage.predicted[n];
+        summary_.add_range(value, value, false);
+        words[stage.places[n]] = seen_from(side, value);
+      }
       return;
     }
     decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
+    ValueSummary<Word> summary = summary_;
     for (std::size_t n = 0; n < stage.size; ++n) {
-      put(stage, n, side, word(symbols_[n], stage.predicted[n], stage.bound[n]), words);
+      const Word predicted = stage.predicted[n];
+      const Word value = word(symbols_[n], predicted, stage.bound[n]);
+      summary.add_range(value, predicted, ValueContexts<Word>::is_sure(stage.contexts[n]));
+      words[stage.places[n]] = seen_from(side, value);
     }
+    summary_ = summary;
   }
 
   /// Whether the page is one that is coded so.
@@ -72,11 +81,6 @@ class ValueReader {
   }
 
  private:
-  void put(const ValueStage<Word>& stage, std::size_t n, std::size_t side, Word value, Words& words) {
-    summary_.add_range(value, stage.predicted[n], ValueContexts<Word>::is_sure(stage.contexts[n]));
-    words[stage.places[n]] = seen_from(side, value);
-  }
-
   Word word(std::uint8_t symbol, Word predicted, Word bound) {
     using Token = RangeToken<Word>;
     if (symbol == Token::kPredicted) return predicted;

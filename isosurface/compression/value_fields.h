@@ -62,6 +62,7 @@ struct ValueFields {
  private:
   void load_points(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
   void set_point(LatticePoint q, Word sample);
+  template <int Axis>
   void mirror(const PageShape& shape);
   void load_parents(const PageShape& shape, const Surroundings<Word>& around);
 };

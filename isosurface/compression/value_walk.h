@@ -26,7 +26,8 @@ struct ValueContexts {
 
   /// Whether nothing but the predicted word is expected.
   static constexpr bool is_sure(std::uint16_t context) {
-    return context >= kRanges && context < kComplete && RangeStages<Word>::is_sure(context - kRanges);
+    constexpr int kFirst = kRanges + RangeStages<Word>::kSure;
+    return context == kFirst || context == kFirst + RangeStages<Word>::kSideContexts;
   }
 };
 
