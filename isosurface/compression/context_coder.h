@@ -48,9 +48,15 @@ class ContextCoder {
     return ranges_[map_[context] * (symbols_ + 1) + symbol];
   }
   [[nodiscard]] Range escape(std::size_t context) const { return range(context, symbols_); }
-  [[nodiscard]] const Entry* entries(std::size_t context) const {
-    return entries_.data() + (std::size_t{map_[context]} << kScaleBits);
-  }
+  /// The tables as a decoder reads them.
+  struct View {
+    const std::uint8_t* map;
+    const Entry* all;
+    [[nodiscard]] const Entry* entries(std::size_t context) const {
+      return all + (std::size_t{map[context]} << kScaleBits);
+    }
+  };
+  [[nodiscard]] View tables_view() const { return {map_.data(), entries_.data()}; }
 
  private:
   /// A frequency for each symbol, then that of the escape; their sum is kScale.
@@ -100,6 +106,7 @@ class ContextDecoder {
  private:
   std::uint8_t decode_one(std::uint32_t& state, std::uint16_t context);
   void renormalise(std::uint32_t& state);
+  std::size_t decode_most(std::span<const std::uint16_t> contexts, std::span<std::uint8_t> symbols);
 
   const ContextCoder& coder_;
   const std::byte* next_;

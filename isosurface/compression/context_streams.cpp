@@ -90,7 +90,7 @@ void ContextDecoder::renormalise(std::uint32_t& state) {
 
 std::uint8_t ContextDecoder::decode_one(std::uint32_t& state, std::uint16_t context) {
   std::uint32_t symbol = 0;
-  state = step(coder_.entries(context), state, symbol);
+  state = step(coder_.tables_view().entries(context), state, symbol);
   renormalise(state);
   if (symbol == ContextCoder::kEscape) {
     symbol = state & ((1u << kEscapedBits) - 1);
@@ -106,37 +106,48 @@ std::uint8_t ContextDecoder::decode_one(std::uint32_t& state, std::uint16_t cont
 
 void ContextDecoder::decode(std::span<const std::uint16_t> contexts, std::span<std::uint8_t> symbols) {
   ADAMAS_ASSERT(contexts.size() == symbols.size());
-  std::size_t n = 0;
-  std::array<std::uint32_t, kLanes> states = states_;
-  while (symbols.size() - n >= kLanes) {
-    // Up to two words for each symbol.
-    if (end_ - next_ < 4 * static_cast<std::ptrdiff_t>(kLanes)) break;
-    std::array<std::uint32_t, kLanes> found{}, before = states;
-    const std::byte* next = next_;
-    std::uint32_t escaped = 0;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      std::uint32_t state = step(coder_.entries(contexts[n + lane]), states[lane], found[lane]);
-      const bool low = state < ContextCoder::kLeastState;
-      const std::uint32_t longer = state << kWordBits | load_word(next);
-      states[lane] = low ? longer : state;
-      next += low ? 2 : 0;
-      escaped |= found[lane] == ContextCoder::kEscape ? 1u : 0u;
+  std::size_t n = decode_most(contexts, symbols);
+  // After an escape, or near the end: one by one until four are done.
+  while (n < symbols.size()) {
+    for (std::size_t lane = 0; lane < kLanes && n < symbols.size(); ++lane, ++n) {
+      symbols[n] = decode_one(states_[lane], contexts[n]);
     }
-    if (escaped != 0) [[unlikely]] {
-      states = before;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        symbols[n + lane] = decode_one(states[lane], contexts[n + lane]);
-      }
-    } else {
-      next_ = next;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        symbols[n + lane] = static_cast<std::uint8_t>(found[lane]);
-      }
-    }
-    n += kLanes;
+    n += decode_most(contexts.subspan(n), symbols.subspan(n));
   }
-  for (; n < symbols.size(); ++n) symbols[n] = decode_one(states[n % kLanes], contexts[n]);
+}
+
+/// Decodes four at a time until there is an escape among them or the stream is near its end. Returns how
+/// many.
+std::size_t ContextDecoder::decode_most(std::span<const std::uint16_t> contexts,
+                                        std::span<std::uint8_t> symbols) {
+  // Copies that nothing points to stay in registers.
+  const auto tables = coder_.tables_view();
+  std::array<std::uint32_t, kLanes> states = states_;
+  const std::byte* next = next_;
+  std::size_t n = 0;
+  for (; n + kLanes <= symbols.size() && end_ - next >= 2 * static_cast<std::ptrdiff_t>(kLanes);
+       n += kLanes) {
+    std::array<std::uint32_t, kLanes> found{};
+    std::array<std::uint32_t, kLanes> after = states;
+    const std::byte* at = next;
+    bool escaped = false;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::uint32_t state = step(tables.entries(contexts[n + lane]), after[lane], found[lane]);
+      const bool low = state < ContextCoder::kLeastState;
+      const std::uint32_t longer = state << kWordBits | load_word(at);
+      after[lane] = low ? longer : state;
+      at += low ? 2 : 0;
+      escaped |= found[lane] == ContextCoder::kEscape;
+    }
+    if (escaped) break;
+    states = after;
+    next = at;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      symbols[n + lane] = static_cast<std::uint8_t>(found[lane]);
+  }
   states_ = states;
+  next_ = next;
+  return n;
 }
 
 bool ContextDecoder::finish() const {

@@ -1,87 +1,48 @@
 #include "isosurface/compression/error_stage.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
-#include "isosurface/preprocessing/error_scale.h"
+#include "isosurface/compression/row_lanes.h"
 
 namespace adamas {
 namespace {
 
-constexpr int kSide = PageGrid::kSide;
-using Row = std::array<float, kSide>;
-using Steps = std::array<std::ptrdiff_t, 3>;
+constexpr int kMostCode = 63;
 
-float square(float x) { return x * x; }
-
-/// The code of an error whose square is this many times that of the scale's greatest.
-std::uint8_t code_of(float ratio) {
-  if (!(ratio > 0)) return 0;
-  const auto bits = std::bit_cast<std::uint32_t>(std::min(ratio, 1.0f));
-  // Two codes for each power of two of the square.
-  constexpr std::uint32_t kRootTwo = 0x3504f3;
-  const std::uint32_t fraction = bits & 0x7fffff;
-  const int code =
-      2 * (static_cast<int>(bits >> 23) - 127) + (fraction > 0 ? 1 : 0) + (fraction > kRootTwo ? 1 : 0);
-  return static_cast<std::uint8_t>(std::max(code + ErrorScale::kCodes - 1, 1));
-}
-
-/// The steps along the axis of an edge, or across a face, then along the two others.
-Steps steps_of(int own) {
-  const Steps all{1, PaddedGrid<float>::kSide, PaddedGrid<float>::kSide * PaddedGrid<float>::kSide};
-  const auto n = static_cast<std::size_t>(own);
-  return {all[n], all[(n + 1) % 3], all[(n + 2) % 3]};
-}
-
-/// Squares of errors of edges: by how far the sample is from the mean of the ends, over the least gradient of
-/// the eight tetrahedra.
-void edge_errors(const float* p, const Steps& d, Row& row) {
-  for (int i = 0; i < kSide; ++i, ++p) {
-    const float before = p[-d[0]], after = p[d[0]], mean = 0.5f * (before + after);
-    float least = INFINITY;
-    for (const std::ptrdiff_t b : {-d[1], d[1]}) {
-      for (const std::ptrdiff_t c : {-d[2], d[2]}) {
-        const float corner = p[b + c];
-        least = std::min(least, square(p[b] - mean) + square(corner - p[b]));
-        least = std::min(least, square(p[c] - mean) + square(corner - p[c]));
-      }
-    }
-    const float gradient = square(0.5f * (after - before)) + least;
-    const float error = square(*p - mean);
-    row[static_cast<std::size_t>(i)] = error > 0 ? error / gradient : 0;
+/// How much more than predicted a code may be, from -63 to 63, in classes.
+constexpr auto kClassOfRoom = [] {
+  std::array<std::uint8_t, 2 * kMostCode + 1> classes{};
+  for (int room = -kMostCode; room <= kMostCode; ++room) {
+    int number = 0;
+    for (const int least : {0, 1, 2, 4, 7, 13, 25}) number += room >= least ? 1 : 0;
+    classes[static_cast<std::size_t>(room + kMostCode)] = static_cast<std::uint8_t>(number);
   }
-}
+  return classes;
+}();
 
-/// The least code of the parents of the cubes that have the point, on its own scale.
-int room_at(const CubeNumbers<std::uint8_t>& most, LatticePoint q) {
-  std::uint8_t room = 63;
-  const auto first = [](std::int32_t x) { return (x + 1) / 2; };
-  const auto last = [](std::int32_t x) { return x / 2 + 1; };
-  for (std::int32_t k = first(q.k); k <= last(q.k); ++k) {
-    for (std::int32_t j = first(q.j); j <= last(q.j); ++j) {
-      for (std::int32_t i = first(q.i); i <= last(q.i); ++i) room = std::min(room, most[cube_place(i, j, k)]);
-    }
+/// The greatest code that goes with ValueFields::error_room: the scales of two levels differ by a factor of
+/// two.
+constexpr auto kMostOfRoom = [] {
+  std::array<std::uint8_t, kMostCode + 1> most{};
+  for (int room = 0; room < kMostCode; ++room) {
+    most[static_cast<std::size_t>(room)] =
+        static_cast<std::uint8_t>(std::min(kMostCode - room + 4, kMostCode));
   }
-  // The scales of two levels differ by a factor of two.
-  return room == 0 ? 0 : std::min(room + 4, 63);
-}
+  return most;
+}();
 
-int room_class(int room) {
-  if (room <= 0) return room < 0 ? 0 : 1;
-  return room < 2 ? 2 : room < 4 ? 3 : room < 7 ? 4 : room < 13 ? 5 : room < 25 ? 6 : 7;
-}
-
-/// Of the children on the page.
-std::uint8_t greatest_child(const std::uint8_t* errors, const LatticePoint& odd, int phase) {
-  const Steps d = steps_of(0);
-  std::uint8_t greatest = 0;
+/// Of the children on the page, of all points of a row.
+void greatest_child(const PaddedGrid<std::uint8_t>& errors, LatticePoint row, const LatticePoint& odd,
+                    std::uint8_t* greatest) {
+  RowLanes<std::uint8_t, PageGrid::kSide> lanes(errors.at({-1, -1, -1}));
   for (int axis = 0; axis < 3; ++axis) {
-    if (phase == 1 && odd[axis] == 0) continue;
-    const std::ptrdiff_t step = d[static_cast<std::size_t>(axis)];
-    greatest = std::max({greatest, errors[step], errors[-step]});
+    if (odd[axis] == 0) continue;
+    LatticePoint step{};
+    step[axis] = 1;
+    lanes.take_greatest(errors.at(row - step));
+    lanes.take_greatest(errors.at(row + step));
   }
-  return greatest;
+  lanes.store(greatest);
 }
 
 }  // namespace
@@ -89,27 +50,50 @@ std::uint8_t greatest_child(const std::uint8_t* errors, const LatticePoint& odd,
 template <class Word>
 void ErrorStages<Word>::make(const ValueFields<Word>& fields, const PageShape& shape, int phase,
                              ValueStage<std::uint8_t>& stage) {
-  stage.size = 0;
-  Row row{};
+  stage.clear();
+  ErrorRow known{};
+  std::array<std::uint8_t, PageGrid::kSide> children{};
   for (int n = 0; n < value_kind_count(phase); ++n) {
     const ValueKind kind = value_kind(phase, n);
     kind.rows(shape, [&](LatticePoint q) {
-      if (phase == 2) edge_errors(fields.heights.at({0, q.j, q.k}), steps_of(n), row);
-      for (; q.i < shape.count.i; q.i += 2) {
-        constexpr float kGreatest = 1.0f / 12;
-        int predicted =
-            phase == 2 ? code_of(std::min(row[static_cast<std::size_t>(q.i)], 4.0f) * kGreatest) : 0;
-        if (phase < 2) predicted = greatest_child(fields.errors.at(q), kind.odd, phase);
-        const int room = room_at(fields.most_errors, q) - predicted;
-        const int missing = kind.missing(q, shape, phase) > 0 ? 1 : 0;
-        const int group =
-            (phase * 2 + (shape.level == 0 ? 0 : 1)) * 4 + missing * 2 + (predicted == 0 ? 1 : 0);
-        stage.places[stage.size] = static_cast<std::uint16_t>(PageGrid::place(q, 0));
-        stage.contexts[stage.size] = static_cast<std::uint16_t>(group * kRoomClasses + room_class(room));
-        stage.predicted[stage.size] = static_cast<std::uint8_t>(predicted);
-        ++stage.size;
-      }
+      const LatticePoint row{0, q.j, q.k};
+      if (phase == 2) known_edge_errors(fields.heights, q, n, known);
+      if (phase == 1) known_face_errors(fields.heights, q, n, known);
+      if (phase == 0) known_centre_errors(fields.heights, q, known);
+      if (phase < 2) greatest_child(fields.errors, row, kind.odd, children.data());
+      add_row(kind, q, shape, phase, greatest_of_cubes(fields.error_room, q), known, children, stage);
     });
+  }
+}
+
+template <class Word>
+void ErrorStages<Word>::add_row(const ValueKind& kind, LatticePoint q, const PageShape& shape, int phase,
+                                const std::array<std::uint8_t, 8>& rooms, const ErrorRow& known,
+                                const std::array<std::uint8_t, PageGrid::kSide>& children,
+                                ValueStage<std::uint8_t>& stage) {
+  constexpr int kMissing = 2 * kRoomClassCount;
+  const int count = (shape.count.i - q.i + 1) / 2;
+  const auto context = [&](int n) {
+    const int missing = kind.missing({q.i + 2 * n, q.j, q.k}, shape, phase) > 0 ? kMissing : 0;
+    return (phase * 2 + (shape.level == 0 ? 0 : 1)) * 2 * kMissing + missing;
+  };
+  // But for the points at its ends all of a row miss as much.
+  const int first = context(0), last = context(count - 1), inner = context(std::min(1, count - 1));
+  const std::size_t begin = stage.size, place = PageGrid::place(q, 0);
+  for (int n = 0; n < count; ++n) {
+    const auto i = static_cast<std::size_t>(q.i + 2 * n), to = begin + static_cast<std::size_t>(n);
+    const int predicted = std::max<int>(known[static_cast<std::size_t>(n)], children[i]);
+    const int room = kMostOfRoom[rooms[static_cast<std::size_t>(n)]] - predicted;
+    stage.places[to] = static_cast<std::uint16_t>(place + 2 * static_cast<std::size_t>(n));
+    stage.predicted[to] = static_cast<std::uint8_t>(predicted);
+    stage.contexts[to] = static_cast<std::uint16_t>(inner + (predicted == 0 ? kRoomClassCount : 0) +
+                                                    kClassOfRoom[static_cast<std::size_t>(room + kMostCode)]);
+  }
+  stage.size += static_cast<std::size_t>(count);
+  stage.contexts[begin] = static_cast<std::uint16_t>(stage.contexts[begin] + first - inner);
+  if (count > 1) {
+    stage.contexts[stage.size - 1] =
+        static_cast<std::uint16_t>(stage.contexts[stage.size - 1] + last - inner);
   }
 }
 

@@ -1,7 +1,9 @@
 #include "isosurface/compression/range_stage.h"
 
 #include <algorithm>
-#include <vector>
+#include <utility>
+
+#include "isosurface/compression/row_lanes.h"
 
 namespace adamas {
 namespace {
@@ -34,50 +36,20 @@ constexpr Neighbours neighbours(const ValueKind& kind, int phase) {
   return result;
 }
 
-constexpr std::array<std::array<Neighbours, 3>, 3> all_neighbours() {
-  std::array<std::array<Neighbours, 3>, 3> result{};
-  for (int phase = 0; phase < 3; ++phase) {
-    for (int n = 0; n < value_kind_count(phase); ++n) {
-      result[static_cast<std::size_t>(phase)][static_cast<std::size_t>(n)] =
-          neighbours(value_kind(phase, n), phase);
-    }
-  }
-  return result;
-}
-constexpr auto kNeighbours = all_neighbours();
+template <int Phase, int Number>
+constexpr Neighbours kNeighbours = neighbours(value_kind(Phase, Number), Phase);
 
-template <class Word>
-void take_least(Word* row, const Word* from) {
-  for (int i = 0; i < PageGrid::kSide; ++i) row[i] = std::min(row[i], from[i]);
-}
-
-/// Of all points of a row, those of other kinds too, whose numbers mean nothing.
-template <class Word>
-void known_least(const ValueFields<Word>& fields, std::size_t side, LatticePoint q, const Neighbours& near,
-                 Word* row) {
-  std::fill_n(row, PageGrid::kSide, ValueFields<Word>::kUnknown);
-  const Word* samples = fields.samples[side].at({0, q.j, q.k});
-  const Word* values = fields.values[side].at({0, q.j, q.k});
-  for (int n = 0; n < near.sample_count; ++n)
-    take_least(row, samples + near.samples[static_cast<std::size_t>(n)]);
-  for (int n = 0; n < near.child_count; ++n)
-    take_least(row, values + near.children[static_cast<std::size_t>(n)]);
-}
-
-/// The greatest bound of the cubes that have the point.
-template <class Word>
-Word bound_at(const CubeNumbers<Word>& least, LatticePoint q) {
-  Word bound = 0;
-  // A cube whose centre has the coordinate alone, or those before and after it.
-  const auto first = [](std::int32_t x) { return (x + 1) / 2; };
-  const auto last = [](std::int32_t x) { return x / 2 + 1; };
-  for (std::int32_t k = first(q.k); k <= last(q.k); ++k) {
-    for (std::int32_t j = first(q.j); j <= last(q.j); ++j) {
-      for (std::int32_t i = first(q.i); i <= last(q.i); ++i)
-        bound = std::max(bound, least[cube_place(i, j, k)]);
-    }
-  }
-  return bound;
+/// Of the points of a row, those of other kinds too, whose numbers mean nothing. Unrolled: nearly all time
+/// goes here.
+template <int Phase, int Number, class Word>
+void known_least(const Word* samples, const Word* values, Word* row) {
+  constexpr Neighbours kNear = kNeighbours<Phase, Number>;
+  RowLanes<Word, PageGrid::kSide> least(samples);
+  [&]<std::size_t... N>(std::index_sequence<N...>) { (least.take_least(samples + kNear.samples[N]), ...); }
+  (std::make_index_sequence<kNear.sample_count>());
+  [&]<std::size_t... N>(std::index_sequence<N...>) { (least.take_least(values + kNear.children[N]), ...); }
+  (std::make_index_sequence<kNear.child_count>());
+  least.store(row);
 }
 
 /// About four times the logarithm of a number to the base 2.
@@ -100,48 +72,119 @@ int bound_class(Word bound) {
   return (static_cast<int>(std::bit_width(bound)) + kStep - 1) / kStep;
 }
 
+/// Makes both stages of a kind, row by row.
+template <class Word, int Phase, int Number>
+class RangeRows {
+ public:
+  using Errors = typename Page<Word>::template Points<std::uint8_t>;
+  using Stages = RangeStages<Word>;
+
+  RangeRows(const ValueFields<Word>& fields, const PageShape& shape, const Errors& errors, bool trust,
+            std::array<ValueStage<Word>, 2>& stages)
+      : fields_(fields), shape_(shape), errors_(errors), trust_(trust), stages_(stages) {}
+
+  void make() {
+    kKind.rows(shape_, [this](LatticePoint q) { make(q); });
+  }
+
+ private:
+  static constexpr ValueKind kKind = value_kind(Phase, Number);
+
+  void make(LatticePoint q) {
+    const std::size_t row = PageGrid::place({0, q.j, q.k}, 0);
+    for (std::size_t side = 0; side < 2; ++side) {
+      known_least<Phase, Number>(fields_.samples[side].at({0, q.j, q.k}),
+                                 fields_.values[side].at({0, q.j, q.k}), stages_[side].sure.data() + row);
+    }
+    const std::int32_t count = (shape_.count.i - q.i + 1) / 2;
+    std::int32_t begin = 0, end = 0;
+    if (Phase < 2 || shape_.level == 0) {
+      const auto sure = [&](std::int32_t n) {
+        return kKind.missing({q.i + 2 * n, q.j, q.k}, shape_, Phase) == 0;
+      };
+      begin = sure(0) ? 0 : 1;
+      end = sure(count - 1) ? count : count - 1;
+      // A neighbour along another axis is missing to all of them.
+      if (begin >= end || !sure(begin)) begin = end = 0;
+    }
+    if (begin < end) add_sure(q, begin, end);
+    if (begin > 0 || end < count) add_open(q, count, begin, end);
+  }
+
+  void add_sure(LatticePoint q, std::int32_t begin, std::int32_t end) {
+    const auto place =
+        static_cast<std::uint16_t>(PageGrid::place(q, 0) + 2 * static_cast<std::size_t>(begin));
+    for (std::size_t side = 0; side < 2; ++side) {
+      ValueStage<Word>& stage = stages_[side];
+      if (trust_) {
+        stage.segments[stage.segment_count++] = {place, static_cast<std::uint16_t>(end - begin),
+                                                 shape_.count.i == PageGrid::kSide};
+        continue;
+      }
+      for (std::int32_t n = 0; n < end - begin; ++n) {
+        const auto at = static_cast<std::uint16_t>(place + 2 * n);
+        put(side, at, Stages::kSure, stage.sure[at], stage.sure[at]);
+      }
+    }
+  }
+
+  /// All but those from begin to end.
+  void add_open(LatticePoint q, std::int32_t count, std::int32_t begin, std::int32_t end) {
+    const std::array<std::array<Word, 8>, 2> bounds{greatest_of_cubes(fields_.least[0], q),
+                                                    greatest_of_cubes(fields_.least[1], q)};
+    for (std::int32_t n = 0; n < count; ++n) {
+      if (n >= begin && n < end) continue;
+      const auto place = static_cast<std::uint16_t>(PageGrid::place(q, 0) + 2 * static_cast<std::size_t>(n));
+      const Word low = stages_[0].sure[place], high = static_cast<Word>(~stages_[1].sure[place]);
+      const std::uint32_t spread = high > low ? static_cast<std::uint32_t>(high - low) : 0;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const Word known = stages_[side].sure[place];
+        const Word bound = std::min(bounds[side][static_cast<std::size_t>(n)], known);
+        put(side, place, context(errors_[place], spread, static_cast<Word>(known - bound)), known, bound);
+      }
+    }
+  }
+
+  [[nodiscard]] int context(std::uint8_t error, std::uint32_t spread, Word room) const {
+    const int group = Phase < 2 ? 2 : shape_.level == 0 ? 0 : 1;
+    const int bounds = bound_class(room);
+    const int errors = bounds == 0 ? 0 : error_class(error, spread, room);
+    return 1 + (group * Stages::kBoundClasses + bounds) * Stages::kErrorClasses + errors;
+  }
+
+  void put(std::size_t side, std::uint16_t place, int context, Word known, Word bound) {
+    ValueStage<Word>& stage = stages_[side];
+    stage.places[stage.size] = place;
+    stage.contexts[stage.size] =
+        static_cast<std::uint16_t>(side * Stages::kSideContexts + static_cast<std::size_t>(context));
+    stage.predicted[stage.size] = known;
+    stage.bound[stage.size++] = bound;
+  }
+
+  const ValueFields<Word>& fields_;
+  const PageShape& shape_;
+  const Errors& errors_;
+  bool trust_;
+  std::array<ValueStage<Word>, 2>& stages_;
+};
+
 }  // namespace
 
 template <class Word>
 void RangeStages<Word>::make(const ValueFields<Word>& fields, const PageShape& shape,
                              const typename Page<Word>::template Points<std::uint8_t>& errors, int phase,
-                             std::array<ValueStage<Word>, 2>& stages) {
-  for (auto& stage : stages) stage.size = 0;
-  std::array<std::array<Word, PageGrid::kSide>, 2> known;
-  for (int n = 0; n < value_kind_count(phase); ++n) {
-    const ValueKind kind = value_kind(phase, n);
-    const Neighbours& near = kNeighbours[static_cast<std::size_t>(phase)][static_cast<std::size_t>(n)];
-    kind.rows(shape, [&](LatticePoint q) {
-      for (std::size_t side = 0; side < 2; ++side) known_least(fields, side, q, near, known[side].data());
-      for (; q.i < shape.count.i; q.i += 2) {
-        const std::size_t place = PageGrid::place(q, 0);
-        const auto x = static_cast<std::size_t>(q.i);
-        const int missing = kind.missing(q, shape, phase);
-        const bool sure = missing == 0 && (phase < 2 || shape.level == 0);
-        const auto greatest = static_cast<Word>(~known[1][x]);
-        const std::uint32_t spread =
-            greatest > known[0][x] ? static_cast<std::uint32_t>(greatest - known[0][x]) : 0;
-        for (std::size_t side = 0; side < 2; ++side) {
-          ValueStage<Word>& stage = stages[side];
-          const Word predicted = known[side][x];
-          const Word least = std::min(bound_at(fields.least[side], q), predicted);
-          std::uint16_t context = kSure;
-          if (!sure) {
-            const auto room = static_cast<Word>(predicted - least);
-            const int group = phase < 2 ? 2 : shape.level == 0 ? 0 : 1;
-            const int bounds = bound_class(room);
-            const int error = bounds == 0 ? 0 : error_class(errors[place], spread, room);
-            context =
-                static_cast<std::uint16_t>(1 + (group * kBoundClasses + bounds) * kErrorClasses + error);
-          }
-          stage.places[stage.size] = static_cast<std::uint16_t>(place);
-          stage.contexts[stage.size] = static_cast<std::uint16_t>(side * kSideContexts + context);
-          stage.predicted[stage.size] = predicted;
-          stage.bound[stage.size] = least;
-          ++stage.size;
-        }
-      }
-    });
+                             bool trust, std::array<ValueStage<Word>, 2>& stages) {
+  for (auto& stage : stages) stage.clear();
+  if (phase == 0) {
+    RangeRows<Word, 0, 0>(fields, shape, errors, trust, stages).make();
+  } else if (phase == 1) {
+    RangeRows<Word, 1, 0>(fields, shape, errors, trust, stages).make();
+    RangeRows<Word, 1, 1>(fields, shape, errors, trust, stages).make();
+    RangeRows<Word, 1, 2>(fields, shape, errors, trust, stages).make();
+  } else {
+    RangeRows<Word, 2, 0>(fields, shape, errors, trust, stages).make();
+    RangeRows<Word, 2, 1>(fields, shape, errors, trust, stages).make();
+    RangeRows<Word, 2, 2>(fields, shape, errors, trust, stages).make();
   }
 }
 

@@ -22,11 +22,9 @@ class RangeStages {
   static constexpr std::uint16_t kSideContexts = 1 + kGroups * kBoundClasses * kErrorClasses;
   static constexpr std::uint16_t kContexts = 2 * kSideContexts;
 
-  static bool is_sure(std::uint16_t context) { return context % kSideContexts == kSure; }
-
-  /// Both sides of a phase. `errors`: the page's, all known.
+  /// Both sides of a phase. `errors`: the page's, all known. `trust`: whether sure points are not coded.
   static void make(const ValueFields<Word>& fields, const PageShape& shape,
-                   const typename Page<Word>::template Points<std::uint8_t>& errors, int phase,
+                   const typename Page<Word>::template Points<std::uint8_t>& errors, int phase, bool trust,
                    std::array<ValueStage<Word>, 2>& stages);
 };
 

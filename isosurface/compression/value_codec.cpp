@@ -30,69 +30,57 @@ class ValueReader {
   using Words = typename Page<Word>::template Points<Word>;
 
   ValueReader(const ContextCoder& coder, std::span<const std::byte> symbols,
-              std::span<const std::byte> extras, ErrorMode error_mode, RangeMode range_mode,
-              std::uint8_t error)
-      : decoder_(coder, symbols),
-        extras_(extras),
-        error_mode_(error_mode),
-        range_mode_(range_mode),
-        error_(error) {}
+              std::span<const std::byte> extras, ErrorMode error_mode, RangeMode range_mode)
+      : decoder_(coder, symbols), extras_(extras), error_mode_(error_mode), range_mode_(range_mode) {}
+
+  [[nodiscard]] bool needs_errors() const { return error_mode_ == ErrorMode::kCoded; }
+  [[nodiscard]] bool needs_ranges() const { return range_mode_ != RangeMode::kEmpty; }
 
   void errors(const ValueStage<std::uint8_t>& stage, Codes& codes) {
-    if (error_mode_ != ErrorMode::kCoded) {
-      for (std::size_t n = 0; n < stage.size; ++n) codes[stage.places[n]] = error_;
-      if (stage.size > 0) summary_.add_error(error_);
-      return;
-    }
     decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
     std::uint8_t all = 0;
+    ValueSummary<Word> summary = summary_;
     for (std::size_t n = 0; n < stage.size; ++n) {
       all |= symbols_[n];
       const auto code = static_cast<std::uint8_t>((symbols_[n] + stage.predicted[n]) & 63);
       codes[stage.places[n]] = code;
-      summary_.add_error(code);
+      summary.add_error(code);
     }
+    summary_ = summary;
     good_ = good_ && all < ValueContexts<Word>::kErrorSymbols;
   }
 
   void range(const ValueStage<Word>& stage, std::size_t side, Words& words) {
-    if (range_mode_ == RangeMode::kPredicted || range_mode_ == RangeMode::kEmpty) {
-      const bool empty = range_mode_ == RangeMode::kEmpty;
+    copy_sure<Word>(
+        stage, [&words](std::size_t place) { return words.data() + place; }, seen_from(side, Word{0}));
+    summary_.add_sure(stage);
+    if (range_mode_ == RangeMode::kPredicted) {
       for (std::size_t n = 0; n < stage.size; ++n) {
-        put(stage, n, side, empty ? ValueFields<Word>::kUnknown : stage.predicted[n], words);
+        const Word value = stage.predicted[n];
+        summary_.add_range(value, value, false);
+        words[stage.places[n]] = seen_from(side, value);
       }
       return;
     }
-    // Those that are coded, and the others at once.
-    std::size_t count = 0;
+    decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
+    ValueSummary<Word> summary = summary_;
     for (std::size_t n = 0; n < stage.size; ++n) {
-      const bool told =
-          range_mode_ == RangeMode::kCodedButSure && ValueContexts<Word>::is_sure(stage.contexts[n]);
-      contexts_[count] = stage.contexts[n];
-      which_[count] = static_cast<std::uint16_t>(n);
-      count += told ? 0 : 1;
-      words[stage.places[n]] = seen_from(side, stage.predicted[n]);
+      const Word predicted = stage.predicted[n];
+      const Word value = word(symbols_[n], predicted, stage.bound[n]);
+      summary.add_range(value, predicted, ValueContexts<Word>::is_sure(stage.contexts[n]));
+      words[stage.places[n]] = seen_from(side, value);
     }
-    summary_.any_word |= count < stage.size;
-    decoder_.decode({contexts_.data(), count}, {symbols_.data(), count});
-    for (std::size_t m = 0; m < count; ++m) {
-      const std::size_t n = which_[m];
-      put(stage, n, side, word(symbols_[m], stage.predicted[n], stage.bound[n]), words);
-    }
+    summary_ = summary;
   }
 
   /// Whether the page is one that is coded so.
   [[nodiscard]] bool finish(bool coded) const {
     if (coded && (!decoder_.finish() || !extras_.at_end())) return false;
-    return good_ && summary_.error_mode() == error_mode_ && summary_.range_mode() == range_mode_;
+    const bool right_errors = !needs_errors() || summary_.error_mode() == error_mode_;
+    return good_ && right_errors && summary_.range_mode() == range_mode_;
   }
 
  private:
-  void put(const ValueStage<Word>& stage, std::size_t n, std::size_t side, Word value, Words& words) {
-    summary_.add_range(value, stage.predicted[n], ValueContexts<Word>::is_sure(stage.contexts[n]));
-    words[stage.places[n]] = seen_from(side, value);
-  }
-
   Word word(std::uint8_t symbol, Word predicted, Word bound) {
     using Token = RangeToken<Word>;
     if (symbol == Token::kPredicted) return predicted;
@@ -116,10 +104,8 @@ class ValueReader {
   BitReader extras_;
   ErrorMode error_mode_;
   RangeMode range_mode_;
-  std::uint8_t error_;
   ValueSummary<Word> summary_;
   bool good_ = true;
-  std::array<std::uint16_t, ValueStage<Word>::kMost> contexts_, which_;
   std::array<std::uint8_t, ValueStage<Word>::kMost> symbols_;
 };
 
@@ -162,7 +148,7 @@ void ValueCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& 
   const ErrorMode errors = symbols.summary().error_mode();
   const RangeMode ranges = symbols.summary().range_mode();
   out.push_back(head(errors, ranges));
-  if (errors == ErrorMode::kEqual) out.push_back(static_cast<std::byte>(symbols.summary().first_error));
+  if (errors == ErrorMode::kEqual) out.push_back(static_cast<std::byte>(symbols.summary().any_error));
   if (errors != ErrorMode::kCoded && !is_coded(ranges)) return;
   ContextEncoder encoder(coder_);
   for (const auto& stage : symbols.stages()) encoder.put(stage.contexts, stage.symbols);
@@ -190,7 +176,8 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
   if (errors == ErrorMode::kEqual) {
     if (bytes.empty()) return false;
     error = std::to_integer<std::uint8_t>(bytes[0]);
-    if (error >= ValueContexts<Word>::kErrorSymbols) return false;
+    const bool any_point = shape.complete || shape.count != LatticePoint{1, 1, 1};
+    if (error == 0 || error >= ValueContexts<Word>::kErrorSymbols || !any_point) return false;
     bytes = bytes.subspan(1);
   }
   const bool coded = errors == ErrorMode::kCoded || is_coded(ranges);
@@ -203,12 +190,18 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
   } else if (!bytes.empty()) {
     return false;
   }
-  ValueReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), errors, ranges, error);
+  ValueReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), errors, ranges);
+  if (errors != ErrorMode::kCoded) page.errors.fill(error);
+  if (ranges == RangeMode::kEmpty) {
+    page.low.fill(ValueFields<Word>::kUnknown);
+    page.high.fill(0);
+  }
   if (shape.complete) {
     walk_complete_values<Word>(shape, page, reader);
   } else {
     fill_coarser_values(shape, around, page);
-    walk_values<Word>(shape, around, page, reader);
+    const bool trust = ranges == RangeMode::kCodedButSure || ranges == RangeMode::kPredicted;
+    walk_values<Word>(shape, around, page, trust, reader);
   }
   return reader.finish(coded);
 }

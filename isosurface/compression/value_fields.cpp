@@ -45,7 +45,9 @@ void ValueFields<Word>::load(const PageShape& shape, const Surroundings<Word>& a
   heights.fill(0);
   errors.fill(0);
   load_points(shape, around, page);
-  mirror(shape);
+  mirror<0>(shape);
+  mirror<1>(shape);
+  mirror<2>(shape);
   load_parents(shape, around);
 }
 
@@ -65,13 +67,15 @@ void ValueFields<Word>::load_points(const PageShape& shape, const Surroundings<W
       const Word* row = page.samples.data() + PageGrid::place({0, j, k}, 0);
       Word* low_side = samples[0].at({0, j, k});
       Word* high_side = samples[1].at({0, j, k});
-      float* numbers = heights.at({0, j, k});
       for (std::int32_t i = 0; i < shape.count.i; ++i) {
         const bool finite = is_finite(row[i]);
         low_side[i] = finite ? row[i] : kUnknown;
         high_side[i] = finite ? static_cast<Word>(~row[i]) : kUnknown;
-        numbers[i] = height(row[i]);
       }
+      float* even = heights.at({0, j, k});
+      for (std::int32_t i = 0; i < shape.count.i; i += 2) even[i / 2] = height(row[i]);
+      float* odd = heights.at({1, j, k});
+      for (std::int32_t i = 1; i < shape.count.i; i += 2) odd[i / 2] = height(row[i]);
     }
   }
   const LatticePoint last{last_even(shape.count.i), last_even(shape.count.j), last_even(shape.count.k)};
@@ -89,31 +93,29 @@ void ValueFields<Word>::load_points(const PageShape& shape, const Surroundings<W
 /// Before the page, and behind it, where a neighbour's height is not known, stands that of the other
 /// neighbour; between two points that are known behind the page, their mean.
 template <class Word>
+template <int Axis>
 void ValueFields<Word>::mirror(const PageShape& shape) {
-  for (int axis = 0; axis < 3; ++axis) {
-    LatticePoint step{};
-    step[axis] = 1;
-    const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
-    const std::int32_t end = shape.count[axis];
-    const bool even = (end & 1) == 0;
-    for (std::int32_t y = -1; y <= shape.count[b] && y <= 16; ++y) {
-      for (std::int32_t x = -1; x <= shape.count[a] && x <= 16; ++x) {
-        LatticePoint q{};
-        q[a] = x, q[b] = y;
-        q[axis] = -1;
-        *heights.at(q) = *heights.at(q + 2 * step);
-        q[axis] = end;
-        if (even && ((x | y) & 1) == 0) continue;
-        const bool inside = x >= 0 && y >= 0 && x < shape.count[a] && y < shape.count[b];
-        if (!even || !inside) {
-          *heights.at(q) = *heights.at(q - (end >= 2 ? 2 : 1) * step);
-          continue;
-        }
-        LatticePoint d{};
-        d[a] = x & 1, d[b] = y & 1;
-        if (d[a] != 0 && d[b] != 0 && (((x >> 1) + (y >> 1)) & 1) != 0) d[a] = -1;
-        *heights.at(q) = 0.5f * (*heights.at(q - d) + *heights.at(q + d));
+  constexpr int kA = Axis == 0 ? 1 : 0, kB = Axis == 2 ? 1 : 2;
+  LatticePoint step{};
+  step[Axis] = 1;
+  const std::int32_t end = shape.count[Axis];
+  const bool even = (end & 1) == 0;
+  for (std::int32_t y = -1; y <= shape.count[kB] && y <= 16; ++y) {
+    for (std::int32_t x = -1; x <= shape.count[kA] && x <= 16; ++x) {
+      LatticePoint q{};
+      q[kA] = x, q[kB] = y, q[Axis] = -1;
+      *heights.at(q) = *heights.at(q + 2 * step);
+      q[Axis] = end;
+      if (even && ((x | y) & 1) == 0) continue;
+      const bool inside = x >= 0 && y >= 0 && x < shape.count[kA] && y < shape.count[kB];
+      if (!even || !inside) {
+        *heights.at(q) = *heights.at(q - (end >= 2 ? 2 : 1) * step);
+        continue;
       }
+      LatticePoint d{};
+      d[kA] = x & 1, d[kB] = y & 1;
+      if (d[kA] != 0 && d[kB] != 0 && (((x ^ y) & 2) != 0)) d[kA] = -1;
+      *heights.at(q) = 0.5f * (*heights.at(q - d) + *heights.at(q + d));
     }
   }
 }
@@ -121,7 +123,7 @@ void ValueFields<Word>::mirror(const PageShape& shape) {
 template <class Word>
 void ValueFields<Word>::load_parents(const PageShape& shape, const Surroundings<Word>& around) {
   for (auto& side : least) side.fill(0);
-  most_errors.fill(63);
+  error_room.fill(0);
   for (std::int32_t k = 1; k < shape.count.k; k += 2) {
     for (std::int32_t j = 1; j < shape.count.j; j += 2) {
       for (std::int32_t i = 1; i < shape.count.i; i += 2) {
@@ -136,7 +138,8 @@ void ValueFields<Word>::load_parents(const PageShape& shape, const Surroundings<
           const std::size_t place = surrounding_place(parent);
           least[0][cube] = std::max(least[0][cube], around.low[place]);
           least[1][cube] = std::max(least[1][cube], static_cast<Word>(~around.high[place]));
-          most_errors[cube] = std::min(most_errors[cube], around.errors[place]);
+          const int code = std::min<int>(around.errors[place], 63);
+          error_room[cube] = std::max(error_room[cube], static_cast<std::uint8_t>(63 - code));
         }
       }
     }

@@ -14,9 +14,25 @@ template <class Number>
 struct ValueStage {
   static constexpr std::size_t kMost = 1536;
 
+  /// Points that follow each other along i in steps of two.
+  struct Segment {
+    std::uint16_t place;  ///< of the first
+    std::uint16_t count;
+    /// Whether all points of the row may be given what is predicted, before those that are coded are known.
+    bool whole_row;
+  };
+
+  /// The points that are coded.
   std::size_t size = 0;
   std::array<std::uint16_t, kMost> places, contexts;
   std::array<Number, kMost> predicted, bound;
+  /// The points whose numbers are as predicted.
+  std::size_t segment_count = 0;
+  std::array<Segment, 192> segments;
+  /// What is predicted of them, by place.
+  typename Page<Number>::template Points<Number> sure;
+
+  void clear() { size = segment_count = 0; }
 };
 
 /// The points of a phase whose coordinates are odd along the same axes.
@@ -46,6 +62,10 @@ struct ValueKind {
     return count;
   }
 };
+
+/// Among the rows of cubes along an axis, the first of those that have a coordinate: it and the next one have
+/// an even one between them, and one alone has an odd one.
+constexpr std::int32_t first_cube(std::int32_t x) { return (x + 1) / 2; }
 
 /// How many kinds a phase has, and which.
 constexpr int value_kind_count(int phase) { return phase == 0 ? 1 : 3; }

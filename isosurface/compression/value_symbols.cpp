@@ -7,12 +7,24 @@ namespace adamas {
 template <class Word>
 ValueSymbols<Word>::ValueSymbols(const PageShape& shape, const Surroundings<Word>& around,
                                  const Page<Word>& page) {
+  collect(shape, around, page, true);
+  // Of a page that is not what was foreseen all is coded.
+  if (summary_.range_mode() == RangeMode::kCoded) collect(shape, around, page, false);
+  leave_out_what_modes_tell();
+}
+
+template <class Word>
+void ValueSymbols<Word>::collect(const PageShape& shape, const Surroundings<Word>& around,
+                                 const Page<Word>& page, bool trust) {
+  summary_ = {};
+  stages_.clear();
+  range_stages_.clear();
+  extras_.clear();
   if (shape.complete) {
     walk_complete_values<Word>(shape, page, *this);
   } else {
-    walk_values<Word>(shape, around, page, *this);
+    walk_values<Word>(shape, around, page, trust, *this);
   }
-  leave_out_what_modes_tell();
 }
 
 template <class Word>
@@ -44,6 +56,12 @@ void ValueSymbols<Word>::range(const ValueStage<Word>& stage, std::size_t side,
     const int count = RangeToken<Word>::extra_bits(token.symbol);
     if (count > 0) extras_.push_back({token.extra, count});
   }
+  for (std::size_t n = 0; n < stage.segment_count; ++n) {
+    const auto& [place, count, whole_row] = stage.segments[n];
+    for (std::size_t m = place; m < place + 2u * count; m += 2) {
+      summary_.add_range(seen_from(side, words[m]), stage.sure[m], true);
+    }
+  }
 }
 
 template <class Word>
@@ -59,15 +77,6 @@ void ValueSymbols<Word>::leave_out_what_modes_tell() {
     if (is_range) ++next_range;
     if (is_range ? !coded : errors != ErrorMode::kCoded) {
       stage = {};
-    } else if (is_range && ranges == RangeMode::kCodedButSure) {
-      std::size_t kept = 0;
-      for (std::size_t m = 0; m < stage.symbols.size(); ++m) {
-        stage.contexts[kept] = stage.contexts[m];
-        stage.symbols[kept] = stage.symbols[m];
-        kept += ValueContexts<Word>::is_sure(stage.contexts[m]) ? 0 : 1;
-      }
-      stage.contexts.resize(kept);
-      stage.symbols.resize(kept);
     }
   }
 }

@@ -15,8 +15,8 @@ enum class ErrorMode : std::uint8_t {
   kCoded
 };
 enum class RangeMode : std::uint8_t {
-  kPredicted,     ///< all as predicted
   kEmpty,         ///< all have nothing in them
+  kPredicted,     ///< all as predicted
   kCodedButSure,  ///< those that were sure are as predicted, the others are coded
   kCoded
 };
@@ -24,16 +24,15 @@ enum class RangeMode : std::uint8_t {
 /// What is to be found of a page's errors and ranges to know their modes.
 template <class Word>
 struct ValueSummary {
-  bool any_error = false, errors_differ = false;
-  std::uint8_t first_error = 0;
-  bool any_other = false;       ///< a word of a range that is not predicted
-  bool any_sure_other = false;  ///< among those that were sure
-  bool any_word = false;        ///< a range that is not empty
+  std::uint8_t any_error = 0;    ///< the bits that any of the codes has
+  std::uint8_t all_errors = 63;  ///< the bits that all have
+  bool any_other = false;        ///< a word of a range that is not predicted
+  bool any_sure_other = false;   ///< among those of which all is known
+  bool any_word = false;         ///< a range that is not empty
 
   void add_error(std::uint8_t code) {
-    if (!any_error) first_error = code;
-    any_error = true;
-    errors_differ |= code != first_error;
+    any_error |= code;
+    all_errors &= code;
   }
   void add_range(Word value, Word predicted, bool sure) {
     any_other |= value != predicted;
@@ -41,13 +40,23 @@ struct ValueSummary {
     any_word |= value != ValueFields<Word>::kUnknown;
   }
 
+  /// Points whose ranges are as predicted.
+  void add_sure(const ValueStage<Word>& stage) {
+    for (std::size_t n = 0; n < stage.segment_count && !any_word; ++n) {
+      const auto& [place, count, whole_row] = stage.segments[n];
+      for (std::size_t m = place; m < place + 2u * count; m += 2) {
+        any_word |= stage.sure[m] != ValueFields<Word>::kUnknown;
+      }
+    }
+  }
+
   [[nodiscard]] ErrorMode error_mode() const {
-    if (errors_differ) return ErrorMode::kCoded;
-    return first_error == 0 ? ErrorMode::kZero : ErrorMode::kEqual;
+    if (any_error == 0) return ErrorMode::kZero;
+    return any_error == all_errors ? ErrorMode::kEqual : ErrorMode::kCoded;
   }
   [[nodiscard]] RangeMode range_mode() const {
-    if (!any_other) return RangeMode::kPredicted;
     if (!any_word) return RangeMode::kEmpty;
+    if (!any_other) return RangeMode::kPredicted;
     return any_sure_other ? RangeMode::kCoded : RangeMode::kCodedButSure;
   }
 };
@@ -74,12 +83,15 @@ class ValueSymbols {
   [[nodiscard]] const std::vector<Extra>& extras() const { return extras_; }
 
   // For walk_values.
+  [[nodiscard]] static bool needs_errors() { return true; }
+  [[nodiscard]] static bool needs_ranges() { return true; }
   void errors(const ValueStage<std::uint8_t>& stage,
               const typename Page<Word>::template Points<std::uint8_t>& codes);
   void range(const ValueStage<Word>& stage, std::size_t side,
              const typename Page<Word>::template Points<Word>& words);
 
  private:
+  void collect(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page, bool trust);
   void leave_out_what_modes_tell();
 
   ValueSummary<Word> summary_;

@@ -8,6 +8,7 @@
 #include "isosurface/compression/error_stage.h"
 #include "isosurface/compression/range_stage.h"
 #include "isosurface/compression/range_token.h"
+#include "isosurface/compression/row_lanes.h"
 #include "isosurface/compression/value_fields.h"
 #include "isosurface/compression/value_stage.h"
 
@@ -25,15 +26,10 @@ struct ValueContexts {
 
   /// Whether nothing but the predicted word is expected.
   static constexpr bool is_sure(std::uint16_t context) {
-    return context >= kRanges && context < kComplete && RangeStages<Word>::is_sure(context - kRanges);
+    constexpr int kFirst = kRanges + RangeStages<Word>::kSure;
+    return context == kFirst || context == kFirst + RangeStages<Word>::kSideContexts;
   }
 };
-
-/// The point at a place of a page.
-constexpr LatticePoint page_point(std::size_t place) {
-  const auto at = static_cast<std::int32_t>(place);
-  return {at & 15, at >> 4 & 15, at >> 8};
-}
 
 /// Of a word of a page's range, as it is seen on a side: see ValueFields.
 template <class Word>
@@ -56,33 +52,53 @@ void fill_coarser_values(const PageShape& shape, const Surroundings<Word>& aroun
   }
 }
 
+/// Copies what is predicted of a stage's sure points to where `target` says that the numbers from a place on
+/// are.
+template <class Word, class Target>
+void copy_sure(const ValueStage<Word>& stage, Target target, Word flipped) {
+  for (std::size_t n = 0; n < stage.segment_count; ++n) {
+    const auto [place, count, whole_row] = stage.segments[n];
+    if (whole_row) {
+      const std::size_t row = place & ~std::size_t{15};
+      copy_every_other(stage.sure.data() + row, target(row), place & 1u, flipped);
+      continue;
+    }
+    Word* to = target(place);
+    for (std::size_t m = 0; m < 2u * count; m += 2) to[m] = stage.sure[place + m] ^ flipped;
+  }
+}
+
 /// The order in which the values of a page are coded: its errors, then its ranges, in stages of each. Calls
 /// port.errors(stage, codes) and port.range(stage, side, words): an encoder reads the stage's places of
 /// these, a decoder fills them.
 template <class Word, class PageType, class Port>
-void walk_values(const PageShape& shape, const Surroundings<Word>& around, PageType& page, Port& port) {
+void walk_values(const PageShape& shape, const Surroundings<Word>& around, PageType& page, bool trust,
+                 Port& port) {
   ValueFields<Word> fields;
   fields.load(shape, around, page);
   ValueStage<std::uint8_t> errors;
-  for (int phase = 3; phase-- > 0;) {
+  for (int phase = 3; port.needs_errors() && phase-- > 0;) {
     ErrorStages<Word>::make(fields, shape, phase, errors);
     port.errors(errors, page.errors);
     for (std::size_t n = 0; n < errors.size; ++n) {
-      *fields.errors.at(page_point(errors.places[n])) = page.errors[errors.places[n]];
+      fields.errors.at_place(errors.places[n]) = page.errors[errors.places[n]];
     }
   }
   std::array<ValueStage<Word>, 2> sides;
-  for (int phase = 3; phase-- > 0;) {
-    RangeStages<Word>::make(fields, shape, page.errors, phase, sides);
+  for (int phase = 3; port.needs_ranges() && phase-- > 0;) {
+    RangeStages<Word>::make(fields, shape, page.errors, phase, trust, sides);
     for (std::size_t side = 0; side < 2; ++side) {
       ValueStage<Word>& stage = sides[side];
       for (std::size_t n = 0; n < stage.size; ++n) stage.contexts[n] += ValueContexts<Word>::kRanges;
       auto& words = side == 0 ? page.low : page.high;
+      copy_sure<Word>(
+          stage, [&](std::size_t place) { return &fields.values[side].at_place(place); }, 0);
       port.range(stage, side, words);
+      // Nothing follows that would look at them.
       if (phase == 0) continue;
       for (std::size_t n = 0; n < stage.size; ++n) {
         const Word word = words[stage.places[n]];
-        *fields.values[side].at(page_point(stage.places[n])) = seen_from(side, word);
+        fields.values[side].at_place(stage.places[n]) = seen_from(side, word);
       }
     }
   }
@@ -93,6 +109,8 @@ template <class Word, class PageType, class Port>
 void walk_complete_values(const PageShape& shape, PageType& page, Port& port) {
   ValueStage<std::uint8_t> errors;
   ValueStage<Word> range;
+  errors.clear();
+  range.clear();
   for (std::int32_t k = 0; k < shape.count.k; ++k) {
     errors.size = 0;
     for (std::int32_t j = 0; j < shape.count.j; ++j) {
@@ -102,8 +120,8 @@ void walk_complete_values(const PageShape& shape, PageType& page, Port& port) {
         errors.predicted[errors.size++] = 0;
       }
     }
-    port.errors(errors, page.errors);
-    for (std::size_t side = 0; side < 2; ++side) {
+    if (port.needs_errors()) port.errors(errors, page.errors);
+    for (std::size_t side = 0; port.needs_ranges() && side < 2; ++side) {
       range.size = errors.size;
       for (std::size_t n = 0; n < range.size; ++n) {
         range.places[n] = errors.places[n];

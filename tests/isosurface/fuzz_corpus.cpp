@@ -1,6 +1,7 @@
 #include "tests/fuzz/replay.h"
 #include "tests/fuzz/residual_targets.h"
 #include "tests/fuzz/sample_targets.h"
+#include "tests/fuzz/value_targets.h"
 
 namespace adamas {
 namespace {
@@ -8,6 +9,7 @@ namespace {
 TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::residual_code), 4u); }
 
 TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sample_codec), 8u); }
+TEST(FuzzCorpus, ValueCodec) { EXPECT_EQ(fuzz::replay("value_codec", fuzz::value_codec), 4u); }
 
 }  // namespace
 }  // namespace adamas
