@@ -1,6 +1,8 @@
 #include "isosurface/extraction/stored_diamonds.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "isosurface/preprocessing/preprocess.h"
 
@@ -38,34 +40,12 @@ int StoredDiamonds<Sample>::rank_within(double error) const {
 }
 
 template <class Sample>
-const Page<typename StoredDiamonds<Sample>::Word>& StoredDiamonds<Sample>::page(const PageId& id) {
-  if (generation_ != pages_.generation()) {
-    for (Recent& recent : recent_) recent.id.level = -1;
-    generation_ = pages_.generation();
-  }
-  Recent& recent = recent_[static_cast<std::size_t>(id.level)];
-  if (recent.id != id) {
-    const Page<Word>* found = pages_.page(id);
-    if (found == nullptr) throw PageLost{id};
-    recent.id = id;
-    recent.page = found;
-    if (generation_ != pages_.generation()) {
-      for (Recent& other : recent_) {
-        if (&other != &recent) other.id.level = -1;
-      }
-      generation_ = pages_.generation();
-    }
-  }
-  return *recent.page;
-}
-
-template <class Sample>
 const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
-  Recent& recent = recent_[static_cast<std::size_t>(id.level)];
-  if (recent.entry_id != id) {
+  RecentEntry& recent = recent_[static_cast<std::size_t>(id.level)];
+  if (recent.id != id) {
     const std::optional<PageEntry> found = pages_.entry(id);
     if (!found) throw PageLost{id};
-    recent.entry_id = id;
+    recent.id = id;
     recent.entry = *found;
   }
   return recent.entry;
@@ -87,15 +67,44 @@ double StoredDiamonds<Sample>::sample(LatticePoint p) {
 }
 
 template <class Sample>
-int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p, double isovalue) {
+void StoredDiamonds<Sample>::set_isovalue(double isovalue) {
+  // Ordered words are in the order of their values: the first that is not below, by halving. NaN lie at both
+  // ends, where they answer as the infinities next to them.
+  std::uint64_t begin = 0, end = std::uint64_t{std::numeric_limits<Word>::max()} + 1;
+  while (begin < end) {
+    const std::uint64_t middle = (begin + end) / 2;
+    const double found = value(static_cast<Word>(middle));
+    const bool below = std::isnan(found) ? middle < (std::uint64_t{std::numeric_limits<Word>::max()} + 1) / 2 : found < isovalue;
+    (below ? begin : end) = below ? middle + 1 : middle;
+  }
+  least_above_ = begin;
+}
+
+template <class Sample>
+void StoredDiamonds<Sample>::mark(const HeldPage<Word>& page) const {
+  page.marked = least_above_ + 1;
+  if (least_above_ > std::numeric_limits<Word>::max()) {
+    page.marks.fill(0);
+    return;
+  }
+  const auto least = static_cast<Word>(least_above_);
+  for (std::size_t n = 0; n < PageGrid::kPoints; ++n)
+    page.marks[n] = page.low[n] < least && least <= page.high[n] ? page.errors[n] : std::uint8_t{0};
+}
+
+template <class Sample>
+int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
   const LatticePoint at = in_samples(p);
   const PageId id = grid_.page(at);
-  const PageEntry& known = entry(id);
-  if (!crosses(known.low, known.high, isovalue)) return 0;
-  const Page<Word>& from = page(id);
-  const std::size_t place = PageGrid::place(at, id.level);
-  const int code = from.errors[place];
-  return code == 0 || !crosses(from.low[place], from.high[place], isovalue) ? 0 : code + 4 * level(p);
+  const HeldPage<Word>* from = pages_.held(id);
+  if (from == nullptr) {
+    const PageEntry& known = entry(id);
+    if (!crosses(known.low, known.high)) return 0;
+    from = &page(id);
+  }
+  if (from->marked != least_above_ + 1) mark(*from);
+  const int code = from->marks[PageGrid::place(at, id.level)];
+  return code == 0 ? 0 : code + 4 * level(p);
 }
 
 template <class Sample>

@@ -55,27 +55,33 @@ class StoredDiamonds {
   /// The greatest rank whose error is not greater.
   [[nodiscard]] int rank_within(double error) const;
 
+  /// Which contour the ranks are for.
+  void set_isovalue(double isovalue);
   /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Throws
   /// PageLost.
-  int rank_if_crossed(LatticePoint p, double isovalue);
+  int rank_if_crossed(LatticePoint p);
 
   /// Bounds of all samples. Throws PageLost.
   std::array<double, 2> range();
 
  private:
-  const Page<Word>& page(const PageId& id);
+  const HeldPage<Word>& page(const PageId& id) {
+    const HeldPage<Word>* found = pages_.page(id);
+    if (found == nullptr) throw PageLost{id};
+    return *found;
+  }
   const PageEntry& entry(const PageId& id);
+  /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others.
+  void mark(const HeldPage<Word>& page) const;
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
-  [[nodiscard]] static bool crosses(std::uint32_t low, std::uint32_t high, double isovalue) {
-    return low <= high && value(static_cast<Word>(low)) < isovalue &&
-           isovalue <= value(static_cast<Word>(high));
+  /// The contour crosses what has a range with low < least_above_ <= high, as ordered words.
+  [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {
+    return low <= high && low < least_above_ && least_above_ <= high;
   }
 
-  /// The page of a level that was asked for last.
-  struct Recent {
+  /// The entry of a level that was asked for last.
+  struct RecentEntry {
     PageId id{-1, {}};
-    const Page<Word>* page = nullptr;
-    PageId entry_id{-1, {}};
     PageEntry entry;
   };
 
@@ -83,8 +89,8 @@ class StoredDiamonds {
   PageGrid grid_;
   int shift_;
   Domain domain_;
-  std::vector<Recent> recent_;  ///< by level
-  std::uint64_t generation_ = 0;
+  std::vector<RecentEntry> recent_;  ///< by level
+  std::uint64_t least_above_ = 0;    ///< the least ordered word of a value not below the isovalue
   std::array<double, kRanks> errors_{};
 };
 

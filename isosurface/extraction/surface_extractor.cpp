@@ -42,7 +42,7 @@ int SurfaceExtractor<Sample>::rank(LatticePoint p) {
     if (region_ && !reaches_region(p, level, phase)) return 0;
     if (lost_.blocks(diamonds_.in_samples(p), level, phase)) return 0;
   }
-  return diamonds_.rank_if_crossed(p, request_.isovalue);
+  return diamonds_.rank_if_crossed(p);
 }
 
 template <class Sample>
@@ -266,6 +266,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request, Progress& progress) {
   request_ = request;
+  diamonds_.set_isovalue(request.isovalue);
   region_.reset();
   if (request.region) {
     const Vec3 spacing = std::ldexp(1.0, -diamonds_.levels()) * diamonds_.domain().box().size();
