@@ -145,6 +145,26 @@ TEST(Hdf5Volume, MoreSamplesThanAFileCanHold) {
       "a.h5: expected 1125899906842624 bytes for 1024 x 1048576 x 1048576 samples of uint8, found a file"));
 }
 
+/// Stops the work after some reports.
+class Impatient final : public Progress {
+ public:
+  void report(std::string_view, double) override { ++reports_; }
+  [[nodiscard]] bool cancelled() const override { return reports_ >= 3; }
+
+ private:
+  int reports_ = 0;
+};
+
+TEST(Hdf5Volume, CanBeCancelled) {
+  const test::Scratch scratch, unpacked;
+  const std::vector<std::uint8_t> values(64'000'000);
+  Hdf5File(scratch / "a.h5").add("v", {400, 400, 400}, H5T_STD_U8LE, H5T_NATIVE_UINT8, values.data(), 100);
+  Impatient progress;
+  EXPECT_THROW(open_volume(scratch / "a.h5", {{}, unpacked.folder()}, progress), Cancelled);
+  EXPECT_EQ(unpacked.entries(), 0);
+  EXPECT_EQ(open_volume(scratch / "a.h5").grid().samples(), values.size());
+}
+
 TEST(Hdf5Volume, TruncationAndOtherBytesAreErrors) {
   const test::Scratch scratch;
   const auto values = test::typical_values<std::uint16_t>();
