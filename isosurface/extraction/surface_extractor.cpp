@@ -83,7 +83,10 @@ typename SurfaceExtractor<Sample>::Vertices SurfaceExtractor<Sample>::vertices(c
     if ((used >> r & 1) != 0) result.ring[static_cast<std::size_t>(r)] = diamonds_.sample(diamond.ring(r));
   }
   result.ring[static_cast<std::size_t>(count)] = result.ring[0];
-  const auto above = [this](double value) { return unsigned{value >= request_.isovalue}; };
+  const auto above = [&](double value) {
+    result.finite = result.finite && std::isfinite(value);
+    return unsigned{value >= request_.isovalue};
+  };
   result.above = above(result.begin) | above(result.end) << 1 | above(result.middle) << 2;
   for (int r = 0; r <= count; ++r) result.above |= above(result.ring[static_cast<std::size_t>(r)]) << (3 + r);
   return result;
@@ -144,16 +147,27 @@ template <class Sample>
 std::int64_t SurfaceExtractor<Sample>::added_triangles(LatticePoint p) {
   const Diamond diamond(p);
   const Vertices v = vertices(diamond, true);
+  // With subtrees a tetrahedron may be crossed though all of its vertices are on one side.
+  const bool by_sides = subtree_bisections_ == 0 && v.finite;
+  const auto triangles = [](unsigned above) {
+    return std::int64_t{kTetrahedronContours[above].triangle_count};
+  };
   std::int64_t added = 0;
   for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
     if ((v.slots >> slot & 1) == 0) continue;
-    const std::array<double, 4> values = v.tetrahedron(slot);
-    added -= count_triangles(p, slot, values);
+    if (by_sides) {
+      added -= triangles(v.above_of(slot, {0, 1, 2, 3}));
+    } else {
+      added -= count_triangles(p, slot, v.tetrahedron(slot));
+    }
     for (const int end : {0, 1}) {
       const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
-      // With subtrees a tetrahedron may be crossed though all of its vertices are on one side.
-      if (subtree_bisections_ == 0 && is_uncrossed(v.above_of(slot, half.vertices))) continue;
-      added += count_triangles(diamond.child(half.child), half.slot, half_values(half, values, v.middle));
+      if (by_sides) {
+        added += triangles(v.above_of(slot, half.vertices));
+      } else {
+        added += count_triangles(diamond.child(half.child), half.slot,
+                                 half_values(half, v.tetrahedron(slot), v.middle));
+      }
     }
   }
   return added;

@@ -45,6 +45,7 @@ class SurfaceExtractor {
     std::array<double, 9> ring{};
     /// Which of them are above the isovalue, as bits in the order of the members.
     unsigned above = 0;
+    bool finite = true;  ///< all of them
 
     [[nodiscard]] std::array<double, 4> tetrahedron(int slot) const {
       const auto s = static_cast<std::size_t>(slot);
