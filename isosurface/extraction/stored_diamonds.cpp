@@ -74,13 +74,8 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
 template <class Sample>
 double StoredDiamonds<Sample>::sample(LatticePoint p) {
   LatticePoint at = in_samples(p);
-  const LatticePoint end = grid_.extent(grid_.level(at));
-  for (int axis = 0; axis < 3; ++axis) {
-    // The few points farther out than a level's virtual ones are those of cubes much larger than the data.
-    if (at[axis] >> grid_.level(at) > end[axis]) {
-      for (int a = 0; a < 3; ++a) at[a] = std::min(at[a], grid_.last()[a]);
-      break;
-    }
+  if (!has_place(at, grid_.level(at))) {
+    for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], grid_.last()[axis]);
   }
   const PageId id = grid_.page(at);
   return value(page(id).samples[PageGrid::place(at, id.level)]);
@@ -90,12 +85,24 @@ template <class Sample>
 int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p, double isovalue) {
   const LatticePoint at = in_samples(p);
   const PageId id = grid_.page(at);
+  if (!has_place(at, id.level)) return rank_by_parents(p, isovalue);
   const PageEntry& known = entry(id);
   if (!crosses(known.low, known.high, isovalue)) return 0;
   const Page<Word>& from = page(id);
   const std::size_t place = PageGrid::place(at, id.level);
   const int code = from.errors[place];
   return code == 0 || !crosses(from.low[place], from.high[place], isovalue) ? 0 : code + 4 * level(p);
+}
+
+template <class Sample>
+int StoredDiamonds<Sample>::rank_by_parents(LatticePoint p, double isovalue) {
+  const PageEntry& all = entry({grid_.top(), {0, 0, 0}});
+  if (!crosses(all.low, all.high, isovalue)) return 0;
+  int rank = ErrorScale::kCodes - 1 + 4 * level(p);
+  for (const LatticePoint parent : Diamond(p).parents(domain_)) {
+    if (is_stored(parent)) rank = std::min(rank, rank_if_crossed(parent, isovalue));
+  }
+  return rank;
 }
 
 template <class Sample>

@@ -37,7 +37,8 @@ class StoredDiamonds {
   [[nodiscard]] LatticePoint in_samples(LatticePoint p) const {
     return {p.i >> shift_, p.j >> shift_, p.k >> shift_};
   }
-  /// Whether pages know of the diamond: its point is no corner of the cube, and it reaches into the data.
+  /// Whether something is known of the diamond: its point is no corner of the cube, and it reaches into the
+  /// data.
   [[nodiscard]] bool is_stored(LatticePoint p) const {
     const int l = level(p);
     if (l < 0 || l >= grid_.depth()) return false;
@@ -63,6 +64,16 @@ class StoredDiamonds {
   std::array<double, 2> range();
 
  private:
+  /// Whether the pages of the level have a place for the point. The few points that have none are those of
+  /// diamonds that are much larger than the data along some axis.
+  [[nodiscard]] bool has_place(LatticePoint in_samples, int page_level) const {
+    const LatticePoint e = grid_.extent(page_level);
+    return in_samples.i >> page_level <= e.i && in_samples.j >> page_level <= e.j &&
+           in_samples.k >> page_level <= e.k;
+  }
+  /// Of a diamond whose point has no place in pages: an upper bound by what its parents have, which cover it.
+  int rank_by_parents(LatticePoint p, double isovalue);
+
   const Page<Word>& page(const PageId& id);
   const PageEntry& entry(const PageId& id);
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
