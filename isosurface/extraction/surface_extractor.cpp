@@ -156,7 +156,8 @@ std::int64_t SurfaceExtractor<Sample>::count_triangles(LatticePoint diamond, int
   for_each_crossed(diamond, slot, values, subtree_bisections_, [&](const CrossedTetrahedron& t) {
     const bool finite =
         std::all_of(t.values.begin(), t.values.end(), [](double value) { return std::isfinite(value); });
-    count += finite ? kTetrahedronContours[t.above].triangle_count : 0;
+    if (finite && !is_beyond(Diamond(t.diamond).tetrahedron(t.slot), diamonds_.last_sample()))
+      count += kTetrahedronContours[t.above].triangle_count;
   });
   return count;
 }
