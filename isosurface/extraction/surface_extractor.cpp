@@ -166,8 +166,12 @@ template <class Sample>
 std::int64_t SurfaceExtractor<Sample>::added_triangles(LatticePoint p) {
   const Diamond diamond(p);
   const Vertices v = vertices(diamond, true);
-  // With subtrees a tetrahedron may be crossed though all of its vertices are on one side.
-  const bool by_sides = subtree_bisections_ == 0 && v.finite;
+  // With subtrees a tetrahedron may be crossed though all of its vertices are on one side; at the data's end
+  // it may lie beyond.
+  const LatticePoint last = diamonds_.last_sample();
+  const std::int32_t s = diamond.scale();
+  const bool is_inside = p.i + s <= last.i && p.j + s <= last.j && p.k + s <= last.k;
+  const bool by_sides = subtree_bisections_ == 0 && v.finite && is_inside;
   const auto triangles = [](unsigned above) {
     return std::int64_t{kTetrahedronContours[above].triangle_count};
   };
@@ -298,12 +302,13 @@ template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   if (!request_.max_triangles) return contour_of(cut_by_error(), progress);
   // The data's border and the region's cut triangles into several, which the first choice does not know.
-  for (std::uint64_t budget = *request_.max_triangles;;) {
+  for (std::uint64_t budget = *request_.max_triangles; budget > 0;) {
     ExtractedSurface surface = contour_of(cut_by_triangles(budget, progress), progress);
     const std::uint64_t found = surface.contour.triangles.size();
-    if (found <= *request_.max_triangles || surface.diamonds == 0) return surface;
-    budget -= std::min(budget, std::max<std::uint64_t>(1, found - *request_.max_triangles));
+    if (found <= *request_.max_triangles) return surface;
+    budget -= std::min(budget, std::max(found - *request_.max_triangles, budget / 64));
   }
+  return contour_of({StoredDiamonds<Sample>::kRanks, 0, {}}, progress);
 }
 
 template <class Sample>
