@@ -60,14 +60,14 @@ bool is_volume(hid_t file, const char* name) {
   return space.good() && type.good() && H5Sget_simple_extent_ndims(space.id()) == 3 && find_type(type.id());
 }
 
-/// The names of all such, of a file of any size no more than are worth listing.
+/// The names of all such, no more than are worth listing.
+constexpr std::size_t kMostListed = 8;
 std::vector<std::string> find_volumes(hid_t file) {
   std::vector<std::string> names;
   const auto add = [](hid_t root, const char* name, const H5O_info_t* info, void* found) -> herr_t {
-    constexpr std::size_t kMost = 8;
     auto& list = *static_cast<std::vector<std::string>*>(found);
     if (info->type == H5O_TYPE_DATASET && is_volume(root, name)) list.emplace_back(name);
-    return list.size() < kMost ? 0 : 1;
+    return list.size() < kMostListed ? 0 : 1;
   };
   H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, add, &names);
   return names;
@@ -171,6 +171,7 @@ std::string chosen_set(const std::string& name, hid_t file, const std::string& w
          names.empty() ? "none of three axes" : names);
   }
   if (found.empty()) fail("{}: expected a data set of numbers along three axes, found none", name);
+  if (found.size() == kMostListed) names += ", ...";
   if (found.size() > 1) fail("{}: expected the name of a data set, found {}", name, names);
   return found.front();
 }

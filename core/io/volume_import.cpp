@@ -12,9 +12,29 @@ namespace {
 /// No compression that these libraries know makes more of a byte.
 constexpr std::uint64_t kGreatestExpansion = 10'000;
 
+/// The volume as a source without its samples; a file of so many bytes has to be able to hold it.
+VolumeSource checked_source(const std::string& name, std::uint64_t input_bytes,
+                            const ImportedVolume& volume) {
+  VolumeSource source;
+  source.name = name;
+  if (volume.stored > StoredType::kFloat64) fail("{}: expected a type of numbers, found none", name);
+  source.set_stored(volume.stored);
+  source.grid.dimensions = volume.dimensions;
+  source.grid.spacing = volume.spacing;
+  source.grid.origin = volume.origin;
+  source.grid.check(name);
+  const auto& n = volume.dimensions;
+  if (source.sample_file_bytes() / kGreatestExpansion > input_bytes) {
+    fail("{}: expected {} bytes for {} x {} x {} samples of {}, found a file of {}", name,
+         source.sample_file_bytes(), n[0], n[1], n[2], stored_name(volume.stored), input_bytes);
+  }
+  return source;
+}
+
 }  // namespace
 
 void ImportSink::begin(const ImportedVolume& volume, const std::string& remark) {
+  checked_source(name_, input_bytes_, volume);
   bytes_.put(volume);
   bytes_.put(remark);
 }
@@ -24,21 +44,8 @@ VolumeSource import_volume(const std::string& name, std::uint64_t input_bytes, c
   constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
   VolumeSource result;
   const auto receive = [&](ByteSource& bytes) {
-    const auto volume = bytes.get<ImportedVolume>();
-    VolumeSource source;
-    source.name = name;
+    VolumeSource source = checked_source(name, input_bytes, bytes.get<ImportedVolume>());
     source.remark = bytes.get_string();
-    if (volume.stored > StoredType::kFloat64) fail("{}: expected a type of numbers, found none", name);
-    source.set_stored(volume.stored);
-    source.grid.dimensions = volume.dimensions;
-    source.grid.spacing = volume.spacing;
-    source.grid.origin = volume.origin;
-    source.grid.check(name);
-    const auto& n = volume.dimensions;
-    if (source.sample_file_bytes() / kGreatestExpansion > input_bytes) {
-      fail("{}: expected {} bytes for {} x {} x {} samples of {}, found a file of {}", name,
-           source.sample_file_bytes(), n[0], n[1], n[2], stored_name(volume.stored), input_bytes);
-    }
     SampleSink sink(source, options.scratch_folder, progress);
     std::vector<std::byte> piece;
     while (sink.found() < sink.expected()) {
@@ -51,7 +58,7 @@ VolumeSource import_volume(const std::string& name, std::uint64_t input_bytes, c
   read_in_child(
       name, static_cast<std::size_t>(input_bytes),
       [&](ByteSink& bytes) {
-        ImportSink sink(bytes);
+        ImportSink sink(bytes, name, input_bytes);
         produce(sink);
       },
       receive);

@@ -25,13 +25,18 @@ struct ImportedVolume {
 /// The end of an import in the child: the volume first, then its samples in order.
 class ImportSink {
  public:
-  explicit ImportSink(ByteSink& bytes) : bytes_(bytes) {}
+  /// `name` and `input_bytes` as of import_volume.
+  ImportSink(ByteSink& bytes, const std::string& name, std::uint64_t input_bytes)
+      : bytes_(bytes), name_(name), input_bytes_(input_bytes) {}
 
+  /// Throws Error where files of that size cannot hold such a volume.
   void begin(const ImportedVolume& volume, const std::string& remark = {});
   void samples(std::span<const std::byte> bytes) { bytes_.write(bytes.data(), bytes.size()); }
 
  private:
   ByteSink& bytes_;
+  const std::string& name_;
+  std::uint64_t input_bytes_;
 };
 
 /// Runs `produce`, which calls a library, in a child process (read_in_child) and returns a source of what it

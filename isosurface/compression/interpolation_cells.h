@@ -7,9 +7,9 @@
 
 #include "isosurface/storage/page.h"
 
-/// Before a loop that reads nothing that it writes, which compilers do not see where there are many arrays.
+/// Before a loop that reads nothing that it writes, which g++ does not see where there are many arrays.
 #if defined(__clang__)
-#define ADAMAS_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#define ADAMAS_INDEPENDENT
 #else
 #define ADAMAS_INDEPENDENT _Pragma("GCC ivdep")
 #endif

@@ -29,10 +29,9 @@ class ValueSurvey {
   ContextCounts counts_;
 };
 
-/// Makes the error codes and the ranges of a page's own points into bytes and back, lossless, whatever they
-/// are, but for ranges with low > high, of which all come back as low = the greatest word, high = 0. What is
-/// known of coarser levels and of the page's samples is made use of. May be used by several threads at once.
-/// Word: see Page.
+/// Makes the error codes (below 64) and the ranges (any words) of a page's own points into bytes and back,
+/// lossless. What is known of coarser levels and of the page's samples is made use of. May be used by several
+/// threads at once. Word: see Page.
 template <class Word>
 class ValueCodec {
  public:

@@ -1,6 +1,8 @@
 #include "isosurface/extraction/stored_diamonds.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "isosurface/preprocessing/preprocess.h"
 
@@ -22,6 +24,9 @@ StoredDiamonds<Sample>::StoredDiamonds(StoredPages<Word>& pages)
       shift_(kRootBits - grid_.depth()),
       domain_(domain_of(pages.file().header().grid, grid_.depth())),
       recent_(static_cast<std::size_t>(grid_.top() + 1)) {
+  for (int level = 0; level < static_cast<int>(ends_.size()); ++level)
+    ends_[static_cast<std::size_t>(level)] =
+        (1 << std::min(level, grid_.top())) * grid_.extent(std::min(level, grid_.top()));
   const Vec3 spacing = pages.file().header().grid.spacing;
   for (int level = 0; level < std::max(1, grid_.depth()); ++level) {
     const ErrorScale scale = level_error_scale(spacing, level);
@@ -38,71 +43,64 @@ int StoredDiamonds<Sample>::rank_within(double error) const {
 }
 
 template <class Sample>
-const Page<typename StoredDiamonds<Sample>::Word>& StoredDiamonds<Sample>::page(const PageId& id) {
-  if (generation_ != pages_.generation()) {
-    for (Recent& recent : recent_) recent.id.level = -1;
-    generation_ = pages_.generation();
-  }
-  Recent& recent = recent_[static_cast<std::size_t>(id.level)];
-  if (recent.id != id) {
-    const Page<Word>* found = pages_.page(id);
-    if (found == nullptr) throw PageLost{id};
-    recent.id = id;
-    recent.page = found;
-    if (generation_ != pages_.generation()) {
-      for (Recent& other : recent_) {
-        if (&other != &recent) other.id.level = -1;
-      }
-      generation_ = pages_.generation();
-    }
-  }
-  return *recent.page;
-}
-
-template <class Sample>
 const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
-  Recent& recent = recent_[static_cast<std::size_t>(id.level)];
-  if (recent.entry_id != id) {
+  RecentEntry& recent = recent_[static_cast<std::size_t>(id.level)];
+  if (recent.id != id) {
     const std::optional<PageEntry> found = pages_.entry(id);
     if (!found) throw PageLost{id};
-    recent.entry_id = id;
+    recent.id = id;
     recent.entry = *found;
   }
   return recent.entry;
 }
 
 template <class Sample>
-double StoredDiamonds<Sample>::sample(LatticePoint p) {
-  LatticePoint at = in_samples(p);
-  if (!has_place(at, grid_.level(at))) {
-    for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], grid_.last()[axis]);
+void StoredDiamonds<Sample>::set_contour(double isovalue, int least_rank) {
+  // Ordered words are in the order of their values: the first that is not below, by halving. NaN lie at both
+  // ends, where they answer as the infinities next to them.
+  std::uint64_t begin = 0, end = std::uint64_t{std::numeric_limits<Word>::max()} + 1;
+  while (begin < end) {
+    const std::uint64_t middle = (begin + end) / 2;
+    const double found = value(static_cast<Word>(middle));
+    const bool below = std::isnan(found) ? middle < (std::uint64_t{std::numeric_limits<Word>::max()} + 1) / 2
+                                         : found < isovalue;
+    (below ? begin : end) = below ? middle + 1 : middle;
   }
-  const PageId id = grid_.page(at);
-  return value(page(id).samples[PageGrid::place(at, id.level)]);
+  least_above_ = begin;
+  least_rank_ = least_rank;
+  ++contour_;
 }
 
 template <class Sample>
-int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p, double isovalue) {
+void StoredDiamonds<Sample>::mark(const PageId& id, const HeldPage<Word>& page) {
+  page.marked = contour_;
+  const PageEntry& known = entry(id);
+  if (!crosses(known.low, known.high)) {
+    page.marks.fill(0);
+  } else if (known.error + 4 * id.level < least_rank_) {
+    page.marks.fill(known.error);
+  } else {
+    const auto least = static_cast<Word>(least_above_);
+    for (std::size_t n = 0; n < PageGrid::kPoints; ++n)
+      page.marks[n] = page.low[n] < least && least <= page.high[n] ? page.errors[n] : std::uint8_t{0};
+  }
+}
+
+template <class Sample>
+int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
   const LatticePoint at = in_samples(p);
   const PageId id = grid_.page(at);
-  if (!has_place(at, id.level)) return rank_by_parents(p, isovalue);
-  const PageEntry& known = entry(id);
-  if (!crosses(known.low, known.high, isovalue)) return 0;
-  const Page<Word>& from = page(id);
-  const std::size_t place = PageGrid::place(at, id.level);
-  const int code = from.errors[place];
-  return code == 0 || !crosses(from.low[place], from.high[place], isovalue) ? 0 : code + 4 * level(p);
-}
-
-template <class Sample>
-int StoredDiamonds<Sample>::rank_by_parents(LatticePoint p, double isovalue) {
-  const PageEntry& all = entry({grid_.top(), {0, 0, 0}});
-  if (!crosses(all.low, all.high, isovalue)) return 0;
-  int rank = ErrorScale::kCodes - 1 + 4 * level(p);
-  for (const LatticePoint parent : Diamond(p).parents(domain_)) {
-    if (is_stored(parent)) rank = std::min(rank, rank_if_crossed(parent, isovalue));
+  const HeldPage<Word>* from = pages_.held(id);
+  if (from == nullptr) {
+    const PageEntry& known = entry(id);
+    if (!crosses(known.low, known.high)) return 0;
+    const int greatest = known.error + 4 * id.level;
+    if (greatest < least_rank_) return known.error == 0 ? 0 : greatest;
+    from = &page(id);
   }
-  return rank;
+  if (from->marked != contour_) mark(id, *from);
+  const int code = from->marks[PageGrid::place(at, id.level)];
+  return code == 0 ? 0 : code + 4 * level(p);
 }
 
 template <class Sample>

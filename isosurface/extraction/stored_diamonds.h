@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -37,17 +38,22 @@ class StoredDiamonds {
   [[nodiscard]] LatticePoint in_samples(LatticePoint p) const {
     return {p.i >> shift_, p.j >> shift_, p.k >> shift_};
   }
-  /// Whether something is known of the diamond: its point is no corner of the cube, and it reaches into the
-  /// data.
+  /// Whether pages know of the diamond: its point is no corner of the cube, and it reaches into the data.
   [[nodiscard]] bool is_stored(LatticePoint p) const {
     const int l = level(p);
-    if (l < 0 || l >= grid_.depth()) return false;
-    const LatticePoint e = grid_.extent(l), s = in_samples(p);
-    return s.i >> l <= e.i && s.j >> l <= e.j && s.k >> l <= e.k;
+    return l >= 0 && l < grid_.depth() && reaches(in_samples(p), l);
   }
 
   /// The sample at a point of the lattice of samples; beyond the data the nearest one. Throws PageLost.
-  double sample(LatticePoint p);
+  double sample(LatticePoint p) {
+    LatticePoint at = in_samples(p);
+    // The few points farther out than a level's virtual ones are those of cubes much larger than the data.
+    if (!reaches(at, trailing_zeros(at))) {
+      for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], grid_.last()[axis]);
+    }
+    const PageId id = grid_.page(at);
+    return value(page(id).samples[PageGrid::place(at, id.level)]);
+  }
 
   /// Errors by rank: 0 is none, and each rank is an error 2^(1/4) times that of the one before.
   static constexpr int kRanks = ErrorScale::kCodes + 4 * PageGrid::kMaxDepth;
@@ -56,37 +62,41 @@ class StoredDiamonds {
   /// The greatest rank whose error is not greater.
   [[nodiscard]] int rank_within(double error) const;
 
-  /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Throws
-  /// PageLost.
-  int rank_if_crossed(LatticePoint p, double isovalue);
+  /// Which contour the ranks are for, and from which rank on they matter.
+  void set_contour(double isovalue, int least_rank);
+  /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Where no
+  /// diamond of its page has a rank that matters, the greatest of theirs, without a look into the page.
+  /// Throws PageLost.
+  int rank_if_crossed(LatticePoint p);
 
   /// Bounds of all samples. Throws PageLost.
   std::array<double, 2> range();
 
  private:
-  /// Whether the pages of the level have a place for the point. The few points that have none are those of
-  /// diamonds that are much larger than the data along some axis.
-  [[nodiscard]] bool has_place(LatticePoint in_samples, int page_level) const {
-    const LatticePoint e = grid_.extent(page_level);
-    return in_samples.i >> page_level <= e.i && in_samples.j >> page_level <= e.j &&
-           in_samples.k >> page_level <= e.k;
+  const HeldPage<Word>& page(const PageId& id) {
+    const HeldPage<Word>* found = pages_.page(id);
+    if (found == nullptr) throw PageLost{id};
+    return *found;
   }
-  /// Of a diamond whose point has no place in pages: an upper bound by what its parents have, which cover it.
-  int rank_by_parents(LatticePoint p, double isovalue);
-
-  const Page<Word>& page(const PageId& id);
   const PageEntry& entry(const PageId& id);
+  /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others; all of
+  /// them the greatest of the page where none matters.
+  void mark(const PageId& id, const HeldPage<Word>& page);
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
-  [[nodiscard]] static bool crosses(std::uint32_t low, std::uint32_t high, double isovalue) {
-    return low <= high && value(static_cast<Word>(low)) < isovalue &&
-           isovalue <= value(static_cast<Word>(high));
+  /// Whether a point whose coordinates, in samples, are multiples of 2^level is among the points of that
+  /// level.
+  [[nodiscard]] bool reaches(LatticePoint at, int level) const {
+    const LatticePoint e = ends_[static_cast<std::size_t>(std::min(level, PageGrid::kMaxDepth + 1))];
+    return at.i <= e.i && at.j <= e.j && at.k <= e.k;
+  }
+  /// The contour crosses what has a range with low < least_above_ <= high, as ordered words.
+  [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {
+    return low <= high && low < least_above_ && least_above_ <= high;
   }
 
-  /// The page of a level that was asked for last.
-  struct Recent {
+  /// The entry of a level that was asked for last.
+  struct RecentEntry {
     PageId id{-1, {}};
-    const Page<Word>* page = nullptr;
-    PageId entry_id{-1, {}};
     PageEntry entry;
   };
 
@@ -94,8 +104,11 @@ class StoredDiamonds {
   PageGrid grid_;
   int shift_;
   Domain domain_;
-  std::vector<Recent> recent_;  ///< by level
-  std::uint64_t generation_ = 0;
+  std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by level: the last point, in samples
+  std::vector<RecentEntry> recent_;                           ///< by level
+  std::uint64_t least_above_ = 0;  ///< the least ordered word of a value not below the isovalue
+  int least_rank_ = 0;
+  std::uint64_t contour_ = 0;  ///< which one the marks of pages are for
   std::array<double, kRanks> errors_{};
 };
 

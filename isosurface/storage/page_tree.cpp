@@ -34,20 +34,13 @@ PageTree<Word>::PageTree(const PageGrid& grid, std::size_t capacity, Loader load
     : grid_(grid), capacity_(std::max(capacity, kLeast)), loader_(std::move(loader)) {
   for (int level = 0; level <= grid_.top(); ++level) {
     const LatticePoint n = grid_.blocks(level);
-    places_.emplace_back(
-        static_cast<std::size_t>(n.i) * static_cast<std::size_t>(n.j) * static_cast<std::size_t>(n.k), kNone);
+    const auto row = static_cast<std::size_t>(n.i), plane = row * static_cast<std::size_t>(n.j);
+    levels_.push_back({row, plane, std::vector<std::uint32_t>(plane * static_cast<std::size_t>(n.k), kNone)});
   }
 }
 
 template <class Word>
-std::uint32_t& PageTree<Word>::slot_of(const PageId& id) {
-  const LatticePoint n = grid_.blocks(id.level), b = id.block;
-  const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
-  return places_[at(id.level)][at(b.i) + at(n.i) * (at(b.j) + at(n.j) * at(b.k))];
-}
-
-template <class Word>
-const Page<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
+const HeldPage<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
   const std::uint32_t found = slot_of(id);
   if (found != kNone) {
     Slot& slot = slots_[found];
@@ -55,10 +48,7 @@ const Page<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
       slot.wanted = true;
       --predictors_;
     }
-    if (newest_ != found) {
-      unlink(found);
-      make_newest(found);
-    }
+    slot.used = true;
     return slot.page.get();
   }
   Surroundings<Word> around;
@@ -80,9 +70,10 @@ const Page<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
     wanted = true;
   }
   slot.id = id;
+  slot.held = slot.used = true;
   slot.wanted = wanted;
+  slot.page->marked = 0;
   slot_of(id) = fresh;
-  make_newest(fresh);
   return slot.page.get();
 }
 
@@ -142,37 +133,26 @@ void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Wor
 
 template <class Word>
 std::uint32_t PageTree<Word>::free_slot() {
-  ++generation_;
   if (!free_.empty()) {
     const std::uint32_t slot = free_.back();
     free_.pop_back();
     return slot;
   }
   if (slots_.size() < capacity_) {
-    slots_.push_back({{}, std::make_unique<Page<Word>>()});
+    slots_.push_back({{}, std::make_unique_for_overwrite<HeldPage<Word>>()});
     return static_cast<std::uint32_t>(slots_.size() - 1);
   }
-  const std::uint32_t slot = oldest_;
-  ADAMAS_ASSERT(slot != kNone);
-  slot_of(slots_[slot].id) = kNone;
-  unlink(slot);
-  return slot;
-}
-
-template <class Word>
-void PageTree<Word>::unlink(std::uint32_t slot) {
-  const Slot& s = slots_[slot];
-  (s.newer == kNone ? newest_ : slots_[s.newer].older) = s.older;
-  (s.older == kNone ? oldest_ : slots_[s.older].newer) = s.newer;
-}
-
-template <class Word>
-void PageTree<Word>::make_newest(std::uint32_t slot) {
-  Slot& s = slots_[slot];
-  s.newer = kNone;
-  s.older = newest_;
-  (newest_ == kNone ? oldest_ : slots_[newest_].newer) = slot;
-  newest_ = slot;
+  for (;; considered_ = considered_ + 1 == slots_.size() ? 0 : considered_ + 1) {
+    Slot& slot = slots_[considered_];
+    if (!slot.held) continue;  // being loaded
+    if (slot.used) {
+      slot.used = false;
+      continue;
+    }
+    slot.held = false;
+    slot_of(slot.id) = kNone;
+    return static_cast<std::uint32_t>(considered_);
+  }
 }
 
 template class PageTree<std::uint8_t>;

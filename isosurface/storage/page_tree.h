@@ -10,8 +10,18 @@
 
 namespace adamas {
 
-/// Pages of one volume in memory, least recently used ones leaving first. A page needs those of the next
-/// coarser level round it, which are got in the same way.
+/// A page in memory.
+template <class Word>
+struct HeldPage : Page<Word> {
+  /// For who uses the page: a byte for each place, which goes with the page, and a number that says what the
+  /// bytes are; 0 when the page comes.
+  mutable typename Page<Word>::template Points<std::uint8_t> marks;
+  mutable std::uint64_t marked = 0;
+};
+
+/// Pages of one volume in memory. Those leave first that nobody asked for since they were last considered
+/// (second chance, an approximation of least recently used). A page needs those of the next coarser level
+/// round it, which are got in the same way.
 template <class Word>
 class PageTree {
  public:
@@ -27,7 +37,14 @@ class PageTree {
 
   /// The page, or null where it or one that it is predicted from cannot be had. Valid until the next call.
   /// `wanted`: the page is asked for itself, not to predict another.
-  const Page<Word>* page(const PageId& id, bool wanted = true);
+  const HeldPage<Word>* page(const PageId& id, bool wanted = true);
+  /// The same for a page that is in memory; null for others.
+  const HeldPage<Word>* find(const PageId& id) {
+    const std::uint32_t found = slot_of(id);
+    if (found == kNone || !slots_[found].wanted) return nullptr;
+    slots_[found].used = true;
+    return slots_[found].page.get();
+  }
 
   /// What is known round a page of the next coarser level. Returns false where something cannot be had. Does
   /// nothing for a complete page.
@@ -36,8 +53,6 @@ class PageTree {
   /// Copies the points of coarser levels into a page.
   static void fill_coarser(const PageShape& shape, const Surroundings<Word>& around, Page<Word>& page);
 
-  /// Changes whenever a page that page() gave may have gone.
-  [[nodiscard]] std::uint64_t generation() const { return generation_; }
   /// Number of pages that were loaded, again where they had left; and of those that only predicted others.
   [[nodiscard]] std::uint64_t loaded() const { return loaded_; }
   [[nodiscard]] std::uint64_t loaded_as_predictors() const { return predictors_; }
@@ -46,24 +61,30 @@ class PageTree {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Slot {
     PageId id;
-    std::unique_ptr<Page<Word>> page;
-    std::uint32_t newer = kNone, older = kNone;
-    bool wanted = false;
+    std::unique_ptr<HeldPage<Word>> page;
+    bool held = false, used = false, wanted = false;
+  };
+  /// Slots of the pages of a level, i running fastest.
+  struct Level {
+    std::size_t row, plane;
+    std::vector<std::uint32_t> slots;
   };
 
-  [[nodiscard]] std::uint32_t& slot_of(const PageId& id);
+  [[nodiscard]] std::uint32_t& slot_of(const PageId& id) {
+    Level& level = levels_[static_cast<std::size_t>(id.level)];
+    const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
+    return level.slots[at(id.block.i) + level.row * at(id.block.j) + level.plane * at(id.block.k)];
+  }
   std::uint32_t free_slot();
-  void unlink(std::uint32_t slot);
-  void make_newest(std::uint32_t slot);
 
   PageGrid grid_;
   std::size_t capacity_;
   Loader loader_;
-  std::vector<std::vector<std::uint32_t>> places_;  ///< by level and block: the slot
+  std::vector<Level> levels_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;
-  std::uint32_t newest_ = kNone, oldest_ = kNone;
-  std::uint64_t generation_ = 0, loaded_ = 0, predictors_ = 0;
+  std::size_t considered_ = 0;  ///< the slot whose page is the next that may leave
+  std::uint64_t loaded_ = 0, predictors_ = 0;
 };
 
 extern template class PageTree<std::uint8_t>;

@@ -47,14 +47,16 @@ class StoredPages {
   [[nodiscard]] const PageGrid& grid() const { return file_.grid(); }
 
   /// The page, or null where it is damaged or predicted from one that is. Valid until the next call.
-  const Page<Word>* page(const PageId& id) { return tree_.page(id); }
+  const HeldPage<Word>* page(const PageId& id) {
+    const HeldPage<Word>* found = tree_.find(id);
+    return found != nullptr ? found : tree_.page(id);
+  }
+  /// The same for a page that is in memory; null for others.
+  const HeldPage<Word>* held(const PageId& id) { return tree_.find(id); }
   /// What is known round a page; false where something cannot be had.
   bool surroundings(const PageId& id, Surroundings<Word>& around) { return tree_.surroundings(id, around); }
   /// What the directory says of it; nothing where that is damaged.
   std::optional<PageEntry> entry(const PageId& id) { return file_.entry(step_, id); }
-  /// Changes whenever a page that page() gave may have gone.
-  [[nodiscard]] std::uint64_t generation() const { return tree_.generation(); }
-
   /// Pages that were found damaged, in the order in which they were met.
   [[nodiscard]] const std::vector<PageId>& damaged() const { return damaged_; }
   [[nodiscard]] PageCounts counts() const;

@@ -102,13 +102,14 @@ inline std::string message_of_volume(const std::filesystem::path& path, const Vo
   });
 }
 
-/// Every truncation of a file from `least` to `end` bytes is an error of one line that names it.
+/// Every truncation of a file to `least`, `least` + `step`, ... bytes below `end` is an error of one line
+/// that names it.
 inline void expect_every_truncation_is_an_error(const std::filesystem::path& opened,
                                                 const std::filesystem::path& cut, std::size_t end,
-                                                std::size_t step = 1) {
+                                                std::size_t step = 1, std::size_t least = 0) {
   const std::string whole = bytes_of(cut);
   ASSERT_LE(end, whole.size());
-  for (std::size_t length = 0; length < end; length += step) {
+  for (std::size_t length = least; length < end; length += step) {
     put_bytes(cut, whole.substr(0, length));
     const std::string message = message_of_volume(opened);
     EXPECT_TRUE(says(message, "expected")) << length;

@@ -1,0 +1,248 @@
+// Volumes that libraries read in a child process: HDF5 and legacy VTK.
+
+#define H5_USE_110_API
+#include <hdf5.h>
+
+#include "tests/io/volume_files.h"
+
+namespace adamas {
+namespace {
+
+using test::bytes_of_values;
+using test::message_of_volume;
+using test::put_bytes;
+using test::read_numbers;
+using test::says;
+
+struct Hdf5Type {
+  StoredType type;
+  hid_t memory, little, big;
+};
+
+std::vector<Hdf5Type> hdf5_types() {
+  return {{StoredType::kInt8, H5T_NATIVE_INT8, H5T_STD_I8LE, H5T_STD_I8BE},
+          {StoredType::kUint8, H5T_NATIVE_UINT8, H5T_STD_U8LE, H5T_STD_U8BE},
+          {StoredType::kInt16, H5T_NATIVE_INT16, H5T_STD_I16LE, H5T_STD_I16BE},
+          {StoredType::kUint16, H5T_NATIVE_UINT16, H5T_STD_U16LE, H5T_STD_U16BE},
+          {StoredType::kInt32, H5T_NATIVE_INT32, H5T_STD_I32LE, H5T_STD_I32BE},
+          {StoredType::kUint32, H5T_NATIVE_UINT32, H5T_STD_U32LE, H5T_STD_U32BE},
+          {StoredType::kInt64, H5T_NATIVE_INT64, H5T_STD_I64LE, H5T_STD_I64BE},
+          {StoredType::kUint64, H5T_NATIVE_UINT64, H5T_STD_U64LE, H5T_STD_U64BE},
+          {StoredType::kFloat32, H5T_NATIVE_FLOAT, H5T_IEEE_F32LE, H5T_IEEE_F32BE},
+          {StoredType::kFloat64, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, H5T_IEEE_F64BE}};
+}
+
+/// An HDF5 file that is being written.
+class Hdf5File {
+ public:
+  explicit Hdf5File(const std::filesystem::path& path)
+      : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)) {}
+  ~Hdf5File() { H5Fclose(file_); }
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
+
+  /// Nothing is written where there are no values; `chunk` of 0: contiguous.
+  void add(const std::string& name, const std::vector<hsize_t>& size, hid_t stored, hid_t memory,
+           const void* values, hsize_t chunk = 0, const std::vector<double>& element = {}) {
+    const hid_t links = H5Pcreate(H5P_LINK_CREATE), how = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_create_intermediate_group(links, 1);
+    if (chunk > 0) {
+      const std::vector<hsize_t> chunks(size.size(), chunk);
+      H5Pset_chunk(how, static_cast<int>(size.size()), chunks.data());
+      H5Pset_deflate(how, 6);
+    }
+    const hid_t space = H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr);
+    const hid_t set = H5Dcreate2(file_, name.c_str(), stored, space, links, how, H5P_DEFAULT);
+    if (values != nullptr) H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    if (!element.empty()) {
+      const hsize_t three = element.size();
+      const hid_t line = H5Screate_simple(1, &three, nullptr);
+      const hid_t attribute =
+          H5Acreate2(set, "element_size_um", H5T_IEEE_F64LE, line, H5P_DEFAULT, H5P_DEFAULT);
+      H5Awrite(attribute, H5T_NATIVE_DOUBLE, element.data());
+      H5Aclose(attribute);
+      H5Sclose(line);
+    }
+    H5Dclose(set);
+    H5Sclose(space);
+    H5Pclose(how);
+    H5Pclose(links);
+  }
+
+ private:
+  hid_t file_;
+};
+
+TEST(Hdf5Volume, EveryTypeInEitherByteOrderAndInChunks) {
+  const test::Scratch scratch;
+  for (const Hdf5Type& t : hdf5_types()) {
+    visit_stored_type(t.type, [&]<class T>(T) {
+      const auto values = test::typical_values<T>();
+      for (const hid_t stored : {t.little, t.big}) {
+        for (const hsize_t chunk : {0, 1, 2}) {
+          Hdf5File(scratch / "a.h5")
+              .add("group/samples", {2, 2, 3}, stored, t.memory, values.data(), chunk, {3, 2, 0.5});
+          VolumeReader reader = open_volume(scratch / "a.h5");
+          EXPECT_EQ(reader.grid().dimensions, (std::array<std::uint64_t, 3>{3, 2, 2}));
+          EXPECT_EQ(reader.grid().spacing, (Vec3{0.5, 2, 3}));
+          EXPECT_EQ(reader.grid().type, sample_type_for(t.type));
+          EXPECT_EQ(read_numbers(reader), test::as_doubles(values)) << stored_name(t.type) << chunk;
+        }
+      }
+    });
+  }
+}
+
+TEST(Hdf5Volume, ChosenByName) {
+  const test::Scratch scratch;
+  const auto first = test::typical_values<std::uint8_t>();
+  const std::vector<std::uint8_t> second(12, 7);
+  {
+    Hdf5File file(scratch / "a");
+    file.add("first", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, first.data());
+    file.add("deep/second", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, second.data());
+    file.add("flat", {4, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, second.data());
+    file.add("empty", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, nullptr);
+    file.add("endless", {1u << 20, 1u << 20, 1u << 10}, H5T_STD_U8LE, H5T_NATIVE_UINT8, nullptr, 16);
+  }
+  VolumeReader reader = open_volume(scratch / "a", {"deep/second", {}});
+  EXPECT_EQ(read_numbers(reader), std::vector<double>(12, 7));
+  const auto message = [&](const std::string& name) { return message_of_volume(scratch / "a", {name, {}}); };
+  EXPECT_TRUE(says(message(""),
+                   "a: expected the name of a data set, found 'deep/second', 'empty', 'endless', 'first'"));
+  EXPECT_TRUE(says(message("third"), "expected a data set 'third', found 'deep/second'"));
+  EXPECT_TRUE(says(message("flat"), "flat: expected samples along three axes, found 2"));
+  EXPECT_TRUE(says(message("deep"), "deep: expected a data set, found none"));
+  EXPECT_TRUE(says(message("empty"), "empty: expected samples, found a data set without any"));
+  EXPECT_TRUE(says(message("endless"), "endless: expected samples, found a data set without any"));
+}
+
+TEST(Hdf5Volume, MoreSamplesThanAFileCanHold) {
+  const test::Scratch scratch;
+  {
+    // One chunk of very many is there.
+    Hdf5File file(scratch / "a.h5");
+    const std::uint8_t value = 1;
+    file.add("small", {1, 1, 1}, H5T_STD_U8LE, H5T_NATIVE_UINT8, &value);
+  }
+  const hid_t file = H5Fopen((scratch / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hsize_t size[] = {1u << 20, 1u << 20, 1u << 10}, chunk[] = {4, 4, 4}, one[] = {1, 1, 1},
+                at[] = {0, 0, 0};
+  const hid_t space = H5Screate_simple(3, size, nullptr), memory = H5Screate_simple(3, one, nullptr);
+  const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(how, 3, chunk);
+  const hid_t set = H5Dcreate2(file, "large", H5T_STD_U8LE, space, H5P_DEFAULT, how, H5P_DEFAULT);
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, at, nullptr, one, nullptr);
+  const std::uint8_t value = 1;
+  H5Dwrite(set, H5T_NATIVE_UINT8, memory, space, H5P_DEFAULT, &value);
+  H5Dclose(set);
+  H5Pclose(how);
+  H5Sclose(memory);
+  H5Sclose(space);
+  H5Fclose(file);
+  EXPECT_TRUE(says(
+      message_of_volume(scratch / "a.h5", {"large", {}}),
+      "a.h5: expected 1125899906842624 bytes for 1024 x 1048576 x 1048576 samples of uint8, found a file"));
+}
+
+/// Stops the work after some reports.
+class Impatient final : public Progress {
+ public:
+  void report(std::string_view, double) override { ++reports_; }
+  [[nodiscard]] bool cancelled() const override { return reports_ >= 3; }
+
+ private:
+  int reports_ = 0;
+};
+
+TEST(Hdf5Volume, CanBeCancelled) {
+  const test::Scratch scratch, unpacked;
+  const std::vector<std::uint8_t> values(64'000'000);
+  Hdf5File(scratch / "a.h5").add("v", {400, 400, 400}, H5T_STD_U8LE, H5T_NATIVE_UINT8, values.data(), 100);
+  Impatient progress;
+  EXPECT_THROW(open_volume(scratch / "a.h5", {{}, unpacked.folder()}, progress), Cancelled);
+  EXPECT_EQ(unpacked.entries(), 0);
+  EXPECT_EQ(open_volume(scratch / "a.h5").grid().samples(), values.size());
+}
+
+TEST(Hdf5Volume, TruncationAndOtherBytesAreErrors) {
+  const test::Scratch scratch;
+  const auto values = test::typical_values<std::uint16_t>();
+  Hdf5File(scratch / "a.h5").add("v", {2, 2, 3}, H5T_STD_U16LE, H5T_NATIVE_UINT16, values.data(), 2);
+  const auto size = std::filesystem::file_size(scratch / "a.h5");
+  test::expect_every_truncation_is_an_error(scratch / "a.h5", scratch / "a.h5", size, 29);
+  const std::string whole = test::bytes_of(scratch / "a.h5");
+  for (std::size_t at = 8; at < whole.size(); at += 31) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 0xff);
+    put_bytes(scratch / "a.h5", changed);
+    try {
+      VolumeReader reader = open_volume(scratch / "a.h5");
+      test::read_all(reader);
+    } catch (const Error& error) {
+      EXPECT_TRUE(says(error.what(), "a.h5")) << at;
+    }
+  }
+}
+
+std::string legacy(const std::string& grid, const std::string& data) {
+  return "# vtk DataFile Version 3.0\nmade here\nBINARY\nDATASET " + grid + "POINT_DATA 12\n" + data;
+}
+const std::string kPoints = "STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nSPACING 1 2 3\nORIGIN 4 5 6\n";
+
+TEST(LegacyVtkVolume, TypesThatItHas) {
+  const test::Scratch scratch;
+  const auto expect_type = [&]<class T>(const char* name, StoredType becomes, T) {
+    const auto values = test::typical_values<T>();
+    put_bytes(scratch / "a.vtk",
+              legacy(kPoints, std::string("SCALARS v ") + name + "\nLOOKUP_TABLE default\n" +
+                                  bytes_of_values(values, true) + "\n"));
+    VolumeReader reader = open_volume(scratch / "a.vtk");
+    EXPECT_EQ(reader.source().stored, becomes) << name;
+    EXPECT_EQ(reader.grid().spacing, (Vec3{1, 2, 3}));
+    EXPECT_EQ(reader.grid().origin, (Vec3{4, 5, 6}));
+    EXPECT_EQ(read_numbers(reader), test::as_doubles(values)) << name;
+    return reader.note();
+  };
+  expect_type("unsigned_char", StoredType::kUint8, std::uint8_t{});
+  expect_type("short", StoredType::kInt16, std::int16_t{});
+  expect_type("unsigned_short", StoredType::kUint16, std::uint16_t{});
+  expect_type("int", StoredType::kInt32, std::int32_t{});
+  EXPECT_EQ(expect_type("float", StoredType::kFloat32, float{}), "");
+  EXPECT_TRUE(
+      says(expect_type("double", StoredType::kFloat32, double{}), "float64 samples are read as float32"));
+}
+
+TEST(LegacyVtkVolume, ArraysAndGridsOfOtherKinds) {
+  const test::Scratch scratch;
+  const std::string bytes = "abcdefghijkl", table = "\nLOOKUP_TABLE default\n";
+  const std::string scalars = "SCALARS v unsigned_char" + table + bytes + "\n";
+  const std::string vectors = "VECTORS w unsigned_char\n" + bytes + bytes + bytes + "\n";
+  put_bytes(scratch / "a.vtk", legacy(kPoints, scalars + vectors));
+  EXPECT_EQ(open_volume(scratch / "a.vtk").grid().samples(), 12u) << "the only one of one value";
+  EXPECT_TRUE(says(message_of_volume(scratch / "a.vtk", {"w", {}}),
+                   "array 'w': expected one value per sample, found 3"));
+  EXPECT_TRUE(says(message_of_volume(scratch / "a.vtk", {"x", {}}),
+                   "expected an array 'x' on points, found 'v', 'w'"));
+  const std::string axes = "Y_COORDINATES 2 float\n" + bytes_of_values(std::vector<float>{0, 1}, true) +
+                           "\nZ_COORDINATES 2 float\n" + bytes_of_values(std::vector<float>{0, 1}, true) +
+                           "\n";
+  const auto rectilinear = [&](std::vector<float> x) {
+    put_bytes(scratch / "b.vtk", legacy("RECTILINEAR_GRID\nDIMENSIONS 3 2 2\nX_COORDINATES 3 float\n" +
+                                            bytes_of_values(x, true) + "\n" + axes,
+                                        scalars));
+  };
+  rectilinear({1, 3, 5});
+  EXPECT_EQ(open_volume(scratch / "b.vtk").grid().spacing, (Vec3{2, 1, 1}));
+  rectilinear({1, 2, 5});
+  EXPECT_TRUE(says(message_of_volume(scratch / "b.vtk"),
+                   "expected even spacing along x, found a sample at 2 instead of 3"));
+  const std::string whole = legacy(kPoints, scalars);
+  for (std::size_t length = 0; length < whole.size() - 1; length += 5) {
+    put_bytes(scratch / "a.vtk", whole.substr(0, length));
+    EXPECT_TRUE(says(message_of_volume(scratch / "a.vtk"), "a.vtk: ")) << length;
+  }
+}
+
+}  // namespace
+}  // namespace adamas
