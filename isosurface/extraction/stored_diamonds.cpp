@@ -27,6 +27,8 @@ StoredDiamonds<Sample>::StoredDiamonds(StoredPages<Word>& pages)
   for (int level = 0; level < static_cast<int>(ends_.size()); ++level)
     ends_[static_cast<std::size_t>(level)] =
         (1 << std::min(level, grid_.top())) * grid_.extent(std::min(level, grid_.top()));
+  for (int level = 0; level < grid_.depth(); ++level)
+    reaches_[static_cast<std::size_t>(level)] = (1 << level) * grid_.reach(level);
   const Vec3 spacing = pages.file().header().grid.spacing;
   for (int level = 0; level < std::max(1, grid_.depth()); ++level) {
     const ErrorScale scale = level_error_scale(spacing, level);

@@ -41,14 +41,17 @@ class StoredDiamonds {
   /// Whether pages know of the diamond: its point is no corner of the cube, and it reaches into the data.
   [[nodiscard]] bool is_stored(LatticePoint p) const {
     const int l = level(p);
-    return l >= 0 && l < grid_.depth() && reaches(in_samples(p), l);
+    if (l < 0 || l >= grid_.depth()) return false;
+    // The coarsest page has points of its level whose diamonds lie wholly outside.
+    const LatticePoint e = reaches_[static_cast<std::size_t>(l)], s = in_samples(p);
+    return s.i <= e.i && s.j <= e.j && s.k <= e.k;
   }
 
   /// The sample at a point of the lattice of samples; beyond the data the nearest one. Throws PageLost.
   double sample(LatticePoint p) {
     LatticePoint at = in_samples(p);
     // The few points farther out than a level's virtual ones are those of cubes much larger than the data.
-    if (!reaches(at, trailing_zeros(at))) {
+    if (!has_place(at, trailing_zeros(at))) {
       for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], grid_.last()[axis]);
     }
     const PageId id = grid_.page(at);
@@ -83,9 +86,9 @@ class StoredDiamonds {
   /// them the greatest of the page where none matters.
   void mark(const PageId& id, const HeldPage<Word>& page);
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
-  /// Whether a point whose coordinates, in samples, are multiples of 2^level is among the points of that
+  /// Whether a point whose coordinates, in samples, are multiples of 2^level is among those of that
   /// level.
-  [[nodiscard]] bool reaches(LatticePoint at, int level) const {
+  [[nodiscard]] bool has_place(LatticePoint at, int level) const {
     const LatticePoint e = ends_[static_cast<std::size_t>(std::min(level, PageGrid::kMaxDepth + 1))];
     return at.i <= e.i && at.j <= e.j && at.k <= e.k;
   }
@@ -105,8 +108,10 @@ class StoredDiamonds {
   int shift_;
   Domain domain_;
   std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by level: the last point, in samples
-  std::vector<RecentEntry> recent_;                           ///< by level
-  std::uint64_t least_above_ = 0;  ///< the least ordered word of a value not below the isovalue
+  /// The same of those whose diamonds reach into the data.
+  std::array<LatticePoint, PageGrid::kMaxDepth + 2> reaches_{};
+  std::vector<RecentEntry> recent_;  ///< by level
+  std::uint64_t least_above_ = 0;    ///< the least ordered word of a value not below the isovalue
   int least_rank_ = 0;
   std::uint64_t contour_ = 0;  ///< which one the marks of pages are for
   std::array<double, kRanks> errors_{};
