@@ -110,6 +110,20 @@ void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRe
   }
 }
 
+/// A surface; errors name the store.
+template <class Sample>
+ExtractedSurface extract(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,
+                         const std::string& name, Console& console) {
+  try {
+    return extractor.extract(request, console);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {
+    if (std::string_view(e.what()).starts_with(name)) throw;
+    fail("{}: {}", name, e.what());
+  }
+}
+
 template <class Sample>
 void extract_all(const Options& options, StoreFile& file, Session& session) {
   Console& console = session.console;
@@ -125,7 +139,7 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   std::vector<std::size_t> ends;
   for (const double isovalue : isovalues) {
     request.isovalue = isovalue;
-    const ExtractedSurface found = extractor.extract(request, console);
+    const ExtractedSurface found = extract(extractor, request, options.input.path, console);
     std::vector<Vec3> normals;
     if (!options.no_normals && !options.output.empty())
       normals = surface_normals<Sample>(pages, found.contour, console);

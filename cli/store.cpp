@@ -105,8 +105,9 @@ void run(const Options& options, Session& session) {
   });
   report(reader, figures, session);
   if (planes.infinite() > 0)
-    session.console.note("{}: {} samples are no finite numbers: surfaces have holes there",
-                         options.input.path, planes.infinite());
+    session.console.note(
+        "{}: {} not finite: surfaces have holes there", options.input.path,
+        planes.infinite() == 1 ? "1 sample is" : fmt::format("{} samples are", planes.infinite()));
   session.outputs.commit();
 }
 
