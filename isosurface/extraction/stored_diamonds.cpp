@@ -24,6 +24,9 @@ StoredDiamonds<Sample>::StoredDiamonds(StoredPages<Word>& pages)
       shift_(kRootBits - grid_.depth()),
       domain_(domain_of(pages.file().header().grid, grid_.depth())),
       recent_(static_cast<std::size_t>(grid_.top() + 1)) {
+  for (int level = 0; level < static_cast<int>(ends_.size()); ++level)
+    ends_[static_cast<std::size_t>(level)] =
+        (1 << std::min(level, grid_.top())) * grid_.extent(std::min(level, grid_.top()));
   const Vec3 spacing = pages.file().header().grid.spacing;
   for (int level = 0; level < std::max(1, grid_.depth()); ++level) {
     const ErrorScale scale = level_error_scale(spacing, level);
@@ -52,21 +55,6 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
 }
 
 template <class Sample>
-double StoredDiamonds<Sample>::sample(LatticePoint p) {
-  LatticePoint at = in_samples(p);
-  const LatticePoint end = grid_.extent(grid_.level(at));
-  for (int axis = 0; axis < 3; ++axis) {
-    // The few points farther out than a level's virtual ones are those of cubes much larger than the data.
-    if (at[axis] >> grid_.level(at) > end[axis]) {
-      for (int a = 0; a < 3; ++a) at[a] = std::min(at[a], grid_.last()[a]);
-      break;
-    }
-  }
-  const PageId id = grid_.page(at);
-  return value(page(id).samples[PageGrid::place(at, id.level)]);
-}
-
-template <class Sample>
 void StoredDiamonds<Sample>::set_isovalue(double isovalue) {
   // Ordered words are in the order of their values: the first that is not below, by halving. NaN lie at both
   // ends, where they answer as the infinities next to them.
@@ -74,7 +62,8 @@ void StoredDiamonds<Sample>::set_isovalue(double isovalue) {
   while (begin < end) {
     const std::uint64_t middle = (begin + end) / 2;
     const double found = value(static_cast<Word>(middle));
-    const bool below = std::isnan(found) ? middle < (std::uint64_t{std::numeric_limits<Word>::max()} + 1) / 2 : found < isovalue;
+    const bool below = std::isnan(found) ? middle < (std::uint64_t{std::numeric_limits<Word>::max()} + 1) / 2
+                                         : found < isovalue;
     (below ? begin : end) = below ? middle + 1 : middle;
   }
   least_above_ = begin;

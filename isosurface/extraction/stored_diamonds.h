@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -40,13 +41,19 @@ class StoredDiamonds {
   /// Whether pages know of the diamond: its point is no corner of the cube, and it reaches into the data.
   [[nodiscard]] bool is_stored(LatticePoint p) const {
     const int l = level(p);
-    if (l < 0 || l >= grid_.depth()) return false;
-    const LatticePoint e = grid_.extent(l), s = in_samples(p);
-    return s.i >> l <= e.i && s.j >> l <= e.j && s.k >> l <= e.k;
+    return l >= 0 && l < grid_.depth() && reaches(in_samples(p), l);
   }
 
   /// The sample at a point of the lattice of samples; beyond the data the nearest one. Throws PageLost.
-  double sample(LatticePoint p);
+  double sample(LatticePoint p) {
+    LatticePoint at = in_samples(p);
+    // The few points farther out than a level's virtual ones are those of cubes much larger than the data.
+    if (!reaches(at, trailing_zeros(at))) {
+      for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], grid_.last()[axis]);
+    }
+    const PageId id = grid_.page(at);
+    return value(page(id).samples[PageGrid::place(at, id.level)]);
+  }
 
   /// Errors by rank: 0 is none, and each rank is an error 2^(1/4) times that of the one before.
   static constexpr int kRanks = ErrorScale::kCodes + 4 * PageGrid::kMaxDepth;
@@ -74,6 +81,12 @@ class StoredDiamonds {
   /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others.
   void mark(const HeldPage<Word>& page) const;
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
+  /// Whether a point whose coordinates, in samples, are multiples of 2^level is among the points of that
+  /// level.
+  [[nodiscard]] bool reaches(LatticePoint at, int level) const {
+    const LatticePoint e = ends_[static_cast<std::size_t>(std::min(level, PageGrid::kMaxDepth + 1))];
+    return at.i <= e.i && at.j <= e.j && at.k <= e.k;
+  }
   /// The contour crosses what has a range with low < least_above_ <= high, as ordered words.
   [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {
     return low <= high && low < least_above_ && least_above_ <= high;
@@ -89,8 +102,9 @@ class StoredDiamonds {
   PageGrid grid_;
   int shift_;
   Domain domain_;
-  std::vector<RecentEntry> recent_;  ///< by level
-  std::uint64_t least_above_ = 0;    ///< the least ordered word of a value not below the isovalue
+  std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by level: the last point, in samples
+  std::vector<RecentEntry> recent_;                           ///< by level
+  std::uint64_t least_above_ = 0;  ///< the least ordered word of a value not below the isovalue
   std::array<double, kRanks> errors_{};
 };
 
