@@ -11,7 +11,7 @@
 namespace adamas {
 
 void add_store_input(CLI::App& command, StoreInput& input) {
-  command.add_option("input", input.path, "A store, from adamas store")->required()->type_name("STORE.adm");
+  command.add_option("input", input.path, "A store, from adamas store")->required()->type_name("FILE");
   command.add_option("--memory", input.memory, "What decoded pages may take: bytes, or with K, M or G")
       ->type_name("SIZE")
       ->capture_default_str()

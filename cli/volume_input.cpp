@@ -88,8 +88,10 @@ void add_volume_input(CLI::App& command, VolumeInput& input) {
           "The volume: .nrrd, .nhdr, .mha, .mhd, .vti, .vtr, .vtk, .nii, .nii.gz, .hdr, .h5, .tif, .png "
           "or .slc; with --dimensions a raw file, with --stack a pattern")
       ->required()
-      ->type_name("VOLUME");
-  command.add_flag("--stack", input.stack, "VOLUME is a pattern of slices, as \"ct_*.tif\" or ct_%04d.png")
+      ->type_name("FILE");
+  command
+      .add_flag("--stack", input.stack,
+                "INPUT is a pattern of slices, as \"ct_*.tif\" (in quotes) or ct_%04d.png")
       ->group("Input");
   command.add_option("--array", input.array, "Which array or data set of a file with several")
       ->type_name("NAME")
