@@ -62,10 +62,11 @@ class StoredDiamonds {
   /// The greatest rank whose error is not greater.
   [[nodiscard]] int rank_within(double error) const;
 
-  /// Which contour the ranks are for.
-  void set_isovalue(double isovalue);
-  /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Throws
-  /// PageLost.
+  /// Which contour the ranks are for, and from which rank on they matter.
+  void set_contour(double isovalue, int least_rank);
+  /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Where no
+  /// diamond of its page has a rank that matters, the greatest of theirs, without a look into the page.
+  /// Throws PageLost.
   int rank_if_crossed(LatticePoint p);
 
   /// Bounds of all samples. Throws PageLost.
@@ -78,8 +79,9 @@ class StoredDiamonds {
     return *found;
   }
   const PageEntry& entry(const PageId& id);
-  /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others.
-  void mark(const HeldPage<Word>& page) const;
+  /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others; all of
+  /// them the greatest of the page where none matters.
+  void mark(const PageId& id, const HeldPage<Word>& page);
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
   /// Whether a point whose coordinates, in samples, are multiples of 2^level is among the points of that
   /// level.
@@ -105,6 +107,8 @@ class StoredDiamonds {
   std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by level: the last point, in samples
   std::vector<RecentEntry> recent_;                           ///< by level
   std::uint64_t least_above_ = 0;  ///< the least ordered word of a value not below the isovalue
+  int least_rank_ = 0;
+  std::uint64_t contour_ = 0;  ///< which one the marks of pages are for
   std::array<double, kRanks> errors_{};
 };
 
