@@ -102,8 +102,13 @@ void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRe
   for (const std::uint64_t n : grid.dimensions) {
     if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
   }
-  if (!request.region) return;
   const Box3 box = grid.box();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min[axis] < box.max[axis]) continue;
+    fail("{}: expected samples at places that differ, found all at {} along {}", name, box.min[axis],
+         "xyz"[axis]);
+  }
+  if (!request.region) return;
   for (int axis = 0; axis < 3; ++axis) {
     if (request.region->min[axis] < box.max[axis] && request.region->max[axis] > box.min[axis]) continue;
     fail("{}: expected a region in {}, found {}", name, box_text(box), box_text(*request.region));

@@ -6,6 +6,7 @@
 
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
@@ -28,7 +29,13 @@ std::size_t store_memory(const StoreInput& input) { return parse_size("--memory"
 
 std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session) {
   session.outputs.protect(input.path);
-  return std::make_unique<StoreFile>(input.path, input.paging == "map" ? Paging::kMap : Paging::kRead);
+  try {
+    return std::make_unique<StoreFile>(input.path, input.paging == "map" ? Paging::kMap : Paging::kRead);
+  } catch (const Error& e) {
+    std::error_code code;
+    if (is_store(input.path) || !std::filesystem::is_regular_file(input.path, code)) throw;
+    fail("{}: adamas store makes one of a volume", e.what());
+  }
 }
 
 bool is_store(const std::string& path) { return file_extension(path) == ".adm"; }
