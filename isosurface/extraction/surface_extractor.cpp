@@ -9,6 +9,7 @@
 #include "core/geometry/tetrahedron_contour.h"
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/extraction/diamond_halves.h"
+#include "isosurface/storage/z_order.h"
 
 namespace adamas {
 
@@ -23,6 +24,23 @@ template <class Sample>
 int SurfaceExtractor<Sample>::generation(LatticePoint p) const {
   const Diamond diamond(p);
   return 3 * diamond.level() + diamond.phase();
+}
+
+template <class Sample>
+void SurfaceExtractor<Sample>::sort_by_page(Points& points) const {
+  if (points.size() < 2) return;
+  const int bits = trailing_zeros(points[0]) + 4;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(points.size());
+  for (const LatticePoint p : points) {
+    order.emplace_back(ZOrder::interleave({p.i >> bits, p.j >> bits, p.k >> bits}),
+                       static_cast<std::uint32_t>(order.size()));
+  }
+  std::sort(order.begin(), order.end());
+  Points sorted;
+  sorted.reserve(points.size());
+  for (const auto& [page, index] : order) sorted.push_back(points[index]);
+  points.swap(sorted);
 }
 
 template <class Sample>
@@ -138,7 +156,8 @@ std::int64_t SurfaceExtractor<Sample>::count_triangles(LatticePoint diamond, int
   for_each_crossed(diamond, slot, values, subtree_bisections_, [&](const CrossedTetrahedron& t) {
     const bool finite =
         std::all_of(t.values.begin(), t.values.end(), [](double value) { return std::isfinite(value); });
-    count += finite ? kTetrahedronContours[t.above].triangle_count : 0;
+    if (finite && !is_beyond(Diamond(t.diamond).tetrahedron(t.slot), diamonds_.last_sample()))
+      count += kTetrahedronContours[t.above].triangle_count;
   });
   return count;
 }
@@ -195,8 +214,9 @@ typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangle
   for (int r = StoredDiamonds<Sample>::kRanks - 1; r >= least; --r) {
     auto& generations = waiting[static_cast<std::size_t>(r)];
     while (!generations.empty()) {
-      const auto [g, points] = *generations.begin();
+      auto [g, points] = std::move(*generations.begin());
       generations.erase(generations.begin());
+      sort_by_page(points);
       progress.step("choosing", static_cast<double>(triangles) / static_cast<double>(budget));
       for (std::size_t n = 0; n < points.size(); ++n) {
         const std::int64_t added = added_triangles(points[n]);
@@ -243,6 +263,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
   for (int g = 0; !current.empty(); ++g) {
     progress.step("extracting", g / (3.0 * diamonds_.levels()));
     next.clear();
+    sort_by_page(current);
     for (const LatticePoint p : current) {
       const Diamond diamond(p);
       const Vertices v = vertices(diamond, true);

@@ -74,6 +74,9 @@ class SurfaceExtractor {
   /// Whether `parent` is that of its parents through which `child` is come to.
   [[nodiscard]] bool leads_to(LatticePoint parent, LatticePoint child) const;
   [[nodiscard]] int generation(LatticePoint p) const;
+  /// Brings diamonds of one generation into the order of their pages in the file: each page is looked at
+  /// once.
+  void sort_by_page(Points& points) const;
   Vertices vertices(const Diamond& diamond, bool with_middle);
 
   /// Calls fn(tetrahedron) for those of the fine tetrahedra of a tetrahedron that the contour crosses.
