@@ -12,6 +12,7 @@
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/store_input.h"
+#include "cli/store_summary.h"
 #include "cli/usage_error.h"
 #include "core/io/array_names.h"
 #include "core/io/file_summary.h"
@@ -20,8 +21,6 @@
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/check.h"
-#include "isosurface/compression/split_edge_prediction.h"
-#include "isosurface/storage/sample_dispatch.h"
 
 namespace adamas {
 
@@ -231,53 +230,9 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
   }
 }
 
-void print_store(const std::string& path, Session& session, Figures& figures) {
-  StoreInput input;
-  input.path = path;
-  const std::unique_ptr<StoreFile> file = open_store(input, session);
-  const StoreHeader& header = file->header();
-  const VolumeGrid& grid = header.grid;
-  const auto [nx, ny, nz] = grid.dimensions;
-  Console& console = session.console;
-  const std::uint64_t before = grid.bytes() * header.steps;
-  console.print("  {} x {} x {} samples, {}, in {} levels of {} pages\n", nx, ny, nz, sample_name(grid.type),
-                file->grid().top() + 1, file->grid().page_count());
-  console.print("  {}, spacing {:.6g}, {:.6g}, {:.6g}\n", box_text(grid.box()), grid.spacing.x,
-                grid.spacing.y, grid.spacing.z);
-  const char* coding = header.coding == SampleCoding::kSplitEdge ? "split-edge" : "interpolation";
-  const auto row = [](const char* name, std::uint64_t bytes) {
-    return std::vector<std::string>{name, bytes_text(static_cast<double>(bytes))};
-  };
-  console.table({row("uncompressed", before), row("samples", header.bytes.samples),
-                 row("errors and ranges", header.bytes.values), row("file", file->size())});
-  console.print("  coding {}, subtrees of depth {}\n", coding, header.subtree_depth);
-  figures["dimensions"] = grid.dimensions;
-  figures["type"] = sample_name(grid.type);
-  figures["box"] = box_figures(grid.box());
-  figures["steps"] = header.steps;
-  figures["levels"] = file->grid().top() + 1;
-  figures["pages"] = file->grid().page_count();
-  figures["coding"] = coding;
-  figures["subtree_depth"] = header.subtree_depth;
-  figures["bytes_input"] = before;
-  figures["bytes_data"] = header.bytes.samples;
-  figures["bytes_errors"] = header.bytes.values;
-  figures["bytes_gradients"] = header.bytes.gradients;
-  figures["bytes_file"] = file->size();
-  const auto entry = file->entry(0, {file->grid().top(), {0, 0, 0}});
-  if (!entry || entry->low > entry->high) return;
-  with_sample_type(grid.type, [&](auto sample) {
-    using Sample = decltype(sample);
-    const double low = from_ordered<Sample>(entry->low), high = from_ordered<Sample>(entry->high);
-    console.print("  values from {:.6g} to {:.6g}\n", low, high);
-    figures["min"] = low;
-    figures["max"] = high;
-  });
-}
-
 void check_options(const InputOptions& options) {
   const InputKind kind = input_kind(options.path);
-  if (kind != InputKind::kGrid && !options.material_option().empty()) {
+  if ((kind != InputKind::kGrid || is_store(options.path)) && !options.material_option().empty()) {
     wrong_usage("{}: expected data on a grid as INPUT", options.material_option());
   }
   if (kind != InputKind::kNetwork && !options.region_names.empty()) {
@@ -290,9 +245,7 @@ void run(const InputOptions& options, Session& session) {
   check_options(options);
   check_input_file(options.path);
   if (is_store(options.path)) {
-    Figures figures{{"file", options.path}, {"kind", "store"}};
-    session.console.print("{}: stored volume\n", options.path);
-    print_store(options.path, session, figures);
+    const Figures figures = print_store(options.path, session);
     session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
     return session.outputs.commit();
   }

@@ -1,6 +1,8 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -8,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/isosurface_figures.h"
+#include "cli/isosurface_picture.h"
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/store_input.h"
@@ -25,24 +28,42 @@ namespace {
 struct Options {
   StoreInput input;
   std::vector<std::string> isovalues;
-  std::string error, max_triangles, region, output;
+  std::string error, max_triangles, region, output, picture, direction = "-0.62,0.72,-0.42";
   bool no_normals = false, strict = false;
 };
 
-/// "0.7", "0.7 voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
+/// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
 /// diagonal.
 double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
-  const double least = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  for (const char* unit : {"voxels", "voxel", "v"}) {
-    const std::string_view name(unit);
-    if (!text.ends_with(name)) continue;
-    std::string number = text.substr(0, text.size() - name.size());
-    while (!number.empty() && number.back() == ' ') number.pop_back();
-    if (number == "0") return 0;
-    return least * parse_positive("--error", number);
+  std::string_view number = text;
+  double unit = 1;
+  for (const char* name : {"voxels", "voxel", "v"}) {
+    if (!number.ends_with(name)) continue;
+    number.remove_suffix(std::string_view(name).size());
+    unit = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
+    break;
   }
-  if (text == "0") return 0;
-  return parse_error_target("--error", text).of(grid.box().diagonal());
+  if (number.size() == text.size() && number.ends_with('%')) {
+    number.remove_suffix(1);
+    unit = grid.box().diagonal() / 100;
+  }
+  while (number.ends_with(' ')) number.remove_suffix(1);
+  double value = 0;
+  const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (code != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || value < 0)
+    wrong_usage("--error: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", text);
+  return unit * value;
+}
+
+std::vector<double> parse_isovalues(const std::vector<std::string>& texts) {
+  std::vector<double> values;
+  for (const std::string& text : texts) {
+    const double value = parse_numbers("--isovalue", text, 1)[0];
+    if (std::find(values.begin(), values.end(), value) != values.end())
+      wrong_usage("--isovalue: expected another value each time, found {} twice", text);
+    values.push_back(value);
+  }
+  return values;
 }
 
 SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
@@ -53,6 +74,12 @@ SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
     request.max_triangles = parse_count("--max-triangles", options.max_triangles);
   if (!options.region.empty()) request.region = to_box(parse_bounds("--region", options.region));
   return request;
+}
+
+Vec3 parse_direction(const Options& options) {
+  const Vec3 direction = parse_vector("--direction", options.direction);
+  if (!(squared_norm(direction) > 0)) wrong_usage("--direction: expected a vector with a length, found 0");
+  return direction;
 }
 
 /// Adds a surface for one isovalue to those before.
@@ -70,31 +97,77 @@ void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isov
   if (several) surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
 
+/// Throws where a surface cannot be: in a region outside of the data, or without cells.
+void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRequest& request) {
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
+  }
+  const Box3 box = grid.box();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min[axis] < box.max[axis]) continue;
+    fail("{}: expected samples at places that differ, found all at {} along {}", name, box.min[axis],
+         "xyz"[axis]);
+  }
+  if (!request.region) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (request.region->min[axis] < box.max[axis] && request.region->max[axis] > box.min[axis]) continue;
+    fail("{}: expected a region in {}, found {}", name, box_text(box), box_text(*request.region));
+  }
+}
+
+/// A surface; errors name the store.
+template <class Sample>
+ExtractedSurface extract(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,
+                         const std::string& name, Console& console) {
+  try {
+    return extractor.extract(request, console);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {
+    if (std::string_view(e.what()).starts_with(name)) throw;
+    fail("{}: {}", name, e.what());
+  }
+}
+
 template <class Sample>
 void extract_all(const Options& options, StoreFile& file, Session& session) {
   Console& console = session.console;
-  const SurfaceRequest wanted = request_of(options, file.header().grid);
+  const VolumeGrid& grid = file.header().grid;
+  SurfaceRequest request = request_of(options, grid);
+  check_data(options.input.path, grid, request);
   StoredPages<OrderedWord<Sample>> pages(file, 0, store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;
   surface.value_name = "isovalue";
   IsosurfaceFigures figures(session);
-  for (const std::string& text : options.isovalues) {
-    SurfaceRequest request = wanted;
-    request.isovalue = parse_numbers("--isovalue", text, 1)[0];
-    const ExtractedSurface found = extractor.extract(request, console);
+  const std::vector<double> isovalues = parse_isovalues(options.isovalues);
+  std::vector<std::size_t> ends;
+  for (const double isovalue : isovalues) {
+    request.isovalue = isovalue;
+    const ExtractedSurface found = extract(extractor, request, options.input.path, console);
     std::vector<Vec3> normals;
-    if (!options.no_normals) normals = surface_normals<Sample>(pages, found.contour, console);
+    if (!options.no_normals && !options.output.empty())
+      normals = surface_normals<Sample>(pages, found.contour, console);
     figures.add(request, found, extractor.range());
-    append(found, std::move(normals), request.isovalue, options.isovalues.size() > 1, surface);
+    append(found, std::move(normals), isovalue, isovalues.size() > 1, surface);
+    ends.push_back(surface.triangles.size());
   }
   session.outputs.write(options.output, [&](const auto& path) { write_surface(path, surface, console); });
+  if (!options.picture.empty()) console.step("drawing", -1);
+  session.outputs.write(options.picture, [&](const auto& path) {
+    write_isosurface_picture(path, surface, ends, isovalues, request.region.value_or(grid.box()),
+                             parse_direction(options));
+  });
   figures.report(surface, pages.counts());
 }
 
 void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".ply", ".stl", ".obj", ".vtp", ".glb", ".gltf"});
-  for (const std::string& text : options.isovalues) parse_numbers("--isovalue", text, 1);
+  session.outputs.declare("--picture", options.picture, {".png", ".svg", ".pdf"});
+  if (options.output.empty() && options.picture.empty() && session.json.empty())
+    wrong_usage("expected -o, --picture or --json, found no output");
+  parse_isovalues(options.isovalues);
+  parse_direction(options);
   store_memory(options.input);
   request_of(options, {{1, 1, 1}, {}, {}, {}});
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
@@ -111,26 +184,33 @@ void add_isosurface(CLI::App& app, Session& session) {
                                   "adamas isosurface head.adm --isovalue 1150 --error 0.7voxels -o skull.ply",
                                   [options, &session] { run(*options, session); });
   add_store_input(*command, options->input);
-  command->add_option("--isovalue", options->isovalues, "The value; repeatable")
+  command
+      ->add_option("--isovalue", options->isovalues,
+                   "The value; repeatable, for several surfaces in one file")
       ->required()
       ->type_name("V")
       ->allow_extra_args(false);
   command
       ->add_option("--error", options->error,
-                   "The isosurface error wanted: in units of length, of voxels (0.7voxels) or of the data's "
-                   "diagonal (0.1%); default 0: all that the samples say")
+                   "The greatest isosurface error: in units of length, of voxels (the least spacing) or of "
+                   "the data's diagonal; default 0: all that the samples say")
       ->type_name("E|Evoxels|E%");
   command
       ->add_option("--max-triangles", options->max_triangles,
-                   "Never more triangles; greatest errors go first")
+                   "Never more triangles for an isovalue, whatever the error: the greatest errors are "
+                   "refined first")
       ->type_name("N");
   command->add_option("--region", options->region, "Only the surface in a box")
       ->type_name("x0,x1,y0,y1,z0,z1");
   command->add_flag("--no-normals", options->no_normals, "Points without the normals of gradients");
   command->add_flag("--strict", options->strict, "Stop at damaged pages, instead of going on coarser there");
   command->add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")
-      ->required()
       ->type_name("FILE");
+  command->add_option("--picture", options->picture, "A picture of it: .png, .svg or .pdf")
+      ->type_name("FILE");
+  command->add_option("--direction", options->direction, "The way that the picture's camera looks")
+      ->type_name("x,y,z")
+      ->capture_default_str();
 }
 
 }  // namespace adamas

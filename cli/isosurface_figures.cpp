@@ -7,6 +7,21 @@
 
 namespace adamas {
 
+namespace {
+
+/// Why there is no triangle. `range`: least and greatest sample; none are known where the first is greater.
+std::string reason_for_none(const SurfaceRequest& request, const std::array<double, 2>& range) {
+  if (range[0] > range[1]) return "no sample is a finite number";
+  if (request.isovalue <= range[0] || request.isovalue > range[1])
+    return fmt::format("samples are from {:.6g} to {:.6g}", range[0], range[1]);
+  if (request.max_triangles) return "so few triangles do not show it";
+  const std::string where = request.region ? "nothing of it is in the region" : "";
+  if (request.error == 0) return where;
+  return (where.empty() ? "" : where + ", or ") + "it is smaller than the error";
+}
+
+}  // namespace
+
 void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurface& surface,
                             const std::array<double, 2>& range) {
   Console& console = session_.console;
@@ -14,15 +29,16 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
   diamonds_ += surface.diamonds;
   max_error_ = std::max(max_error_, surface.max_error);
   if (surface.contour.triangles.empty()) {
-    console.note("no surface at isovalue {:.6g}: samples are from {:.6g} to {:.6g}", request.isovalue,
-                 range[0], range[1]);
-  } else if (surface.max_error > request.error && !request.max_triangles && surface.lost.empty()) {
-    console.note("the error wanted was not reached: {:.4g} instead of {:.4g}", surface.max_error,
-                 request.error);
+    const std::string reason = reason_for_none(request, range);
+    console.note("no surface at isovalue {:.6g}{}{}", request.isovalue, reason.empty() ? "" : ": ", reason);
+  } else if (surface.max_error > request.error && surface.lost.empty() &&
+             (!request.max_triangles || request.error > 0)) {
+    console.note("the error wanted was not reached{}: {:.4g} instead of {:.4g}",
+                 request.max_triangles ? " with so few triangles" : "", surface.max_error, request.error);
   }
   if (!surface.lost.empty()) {
-    console.note("{} damaged pages: the surface at isovalue {:.6g} is coarser round them",
-                 surface.lost.size(), request.isovalue);
+    console.note("{} damaged page{}: the surface at isovalue {:.6g} is coarser there", surface.lost.size(),
+                 surface.lost.size() == 1 ? "" : "s", request.isovalue);
   }
 }
 
@@ -33,7 +49,7 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
                  {"vertices", std::to_string(surface.points.size())},
                  {"tetrahedra", std::to_string(tetrahedra_)},
                  {"isosurface error", fmt::format("{:.4g}", max_error_)},
-                 {"pages read", fmt::format("{} and {} to predict them", counts.pages, counts.predictors)},
+                 {"pages read", fmt::format("{}, and {} to predict them", counts.pages, counts.predictors)},
                  {"bytes read", bytes_text(static_cast<double>(counts.bytes))},
                  {"seconds", fmt::format("{:.2f}", seconds)}});
   Figures figures{{"triangles", surface.triangles.size()},

@@ -68,6 +68,7 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
     if (const auto value = to_number(part)) values.push_back(*value);
   }
   if (values.size() != count || split(text).size() != count) {
+    if (count == 1) wrong_usage("{}: expected a finite number, found '{}'", option, text);
     wrong_usage("{}: expected {} finite numbers with commas between them, found '{}'", option, count, text);
   }
   return values;

@@ -98,10 +98,13 @@ SlicePicture make_picture(const Options& options, const SliceInput& input, const
   return picture;
 }
 
-/// Areas of the last section: the one with the materials, where there are several.
-void report_areas(const SliceInput& input, const CrossSection& section, Session& session, Figures& figures) {
+/// Areas of the last section: the one with the materials, where there are several. The samples of a store
+/// have none.
+void report_areas(const SliceInput& input, const CrossSection& section, bool stored, Session& session,
+                  Figures& figures) {
   figures["area"] = section.area;
   figures["materials"] = Figures::array();
+  if (stored) return session.console.table({{"area", volume_text(section.area)}});
   std::vector<std::vector<std::string>> rows{{"material", "area", "part"}};
   for (MaterialId m(0); m.value < input.materials().size(); ++m.value) {
     const double area = m.value < section.material_area.size() ? section.material_area[m] : 0;
@@ -185,7 +188,7 @@ void run(const Options& options, Session& session) {
     sections.push_back(cut(input, mode, style));
   }
   Figures figures{{"area", nullptr}, {"materials", nullptr}, {"plane", to_string(style.plane)}};
-  report_areas(input, sections.back(), session, figures);
+  report_areas(input, sections.back(), stored, session, figures);
   figures["pieces"] = sections.back().pieces.size();
   console.step("drawing", -1);
   session.outputs.write(options.output, [&](const auto& path) {
@@ -227,7 +230,7 @@ void add_drawing_options(CLI::App& command, Options& options) {
 void add_slice(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = add_command(
-      app, session, "slice", "A cross section of data or of a resampled mesh",
+      app, session, "slice", "A cross section of data, of a resampled mesh or of a stored volume",
       "adamas slice mesh.vtu --plane z=0 --field Pressure --mode all --original cth.vtr -o slice.png",
       [options, &session] { run(*options, session); });
   command

@@ -1,6 +1,8 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cmath>
+#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -8,7 +10,9 @@
 #include "cli/figures.h"
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
+#include "cli/store_summary.h"
 #include "cli/volume_input.h"
+#include "core/base/error.h"
 #include "isosurface/storage/store_builder.h"
 
 namespace adamas {
@@ -18,6 +22,30 @@ namespace {
 struct Options {
   VolumeInput input;
   std::string coding = "interpolation", subtrees = "0", output;
+};
+
+/// Reads planes for the builder, which asks for some of them twice, and counts the samples that are no finite
+/// numbers.
+class PlaneReader {
+ public:
+  explicit PlaneReader(VolumeReader& reader) : reader_(reader), counted_(reader.grid().dimensions[2]) {}
+
+  void read(std::uint64_t k, std::span<std::byte> samples) {
+    reader_.read_plane(k, samples);
+    if (reader_.grid().type != SampleType::kFloat32 || counted_[k]) return;
+    counted_[k] = true;
+    for (std::size_t at = 0; at < samples.size(); at += sizeof(float)) {
+      float value = 0;
+      std::memcpy(&value, samples.data() + at, sizeof(value));
+      infinite_ += std::isfinite(value) ? 0 : 1;
+    }
+  }
+  [[nodiscard]] std::uint64_t infinite() const { return infinite_; }
+
+ private:
+  VolumeReader& reader_;
+  std::vector<bool> counted_;
+  std::uint64_t infinite_ = 0;
 };
 
 double ratio(std::uint64_t before, std::uint64_t after) {
@@ -30,16 +58,8 @@ void report(const VolumeReader& reader, const StoreFigures& store, Session& sess
   const auto [nx, ny, nz] = grid.dimensions;
   const std::uint64_t input = grid.bytes();
   const double seconds = console.seconds();
-  const auto bytes = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
-  const auto ratio_text = [&](std::uint64_t n) {
-    return n > 0 ? fmt::format("{:.2f}", ratio(input, n)) : "-";
-  };
   console.print("{} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
-  console.table({{"", "bytes", "ratio"},
-                 {"input", bytes(input), ""},
-                 {"samples", bytes(store.bytes.samples), ratio_text(store.bytes.samples)},
-                 {"errors and ranges", bytes(store.bytes.values), ratio_text(store.bytes.values)},
-                 {"file", bytes(store.file_bytes), ratio_text(store.file_bytes)}});
+  print_store_bytes(input, store.bytes, store.file_bytes, console);
   console.print("{} pages in {:.1f} s, {:.1f} M samples/s\n", store.pages, seconds,
                 static_cast<double>(grid.samples()) / seconds / 1e6);
   if (const std::string note = reader.note(); !note.empty()) console.note("{}", note);
@@ -59,9 +79,19 @@ void report(const VolumeReader& reader, const StoreFigures& store, Session& sess
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
 }
 
+/// Throws Error where a volume has more samples along an axis than a store may.
+void check_dimensions(const std::string& name, const VolumeGrid& grid) {
+  constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n > kMost) fail("{}: expected at most {} samples along each axis, found {}", name, kMost, n);
+  }
+}
+
 void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".adm"});
   VolumeReader reader = open_volume_input(options.input, session);
+  check_dimensions(options.input.path, reader.grid());
+  PlaneReader planes(reader);
   StoreOptions store;
   store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
   store.subtree_depth = options.subtrees[0] - '0';
@@ -70,10 +100,14 @@ void run(const Options& options, Session& session) {
   session.outputs.write(options.output, [&](const auto& path) {
     figures = build_store(
         path, options.output, reader.grid(),
-        [&reader](std::uint64_t k, std::span<std::byte> samples) { reader.read_plane(k, samples); }, store,
+        [&planes](std::uint64_t k, std::span<std::byte> samples) { planes.read(k, samples); }, store,
         session.console);
   });
   report(reader, figures, session);
+  if (planes.infinite() > 0)
+    session.console.note(
+        "{}: {} not finite: surfaces have holes there", options.input.path,
+        planes.infinite() == 1 ? "1 sample is" : fmt::format("{} samples are", planes.infinite()));
   session.outputs.commit();
 }
 
@@ -87,16 +121,15 @@ void add_store(CLI::App& app, Session& session) {
                   [options, &session] { run(*options, session); });
   add_volume_input(*command, options->input);
   command
-      ->add_option(
-          "--coding", options->coding,
-          "How samples are predicted: from their neighbours, or as in the dissertation from the ends of "
-          "the split edge")
+      ->add_option("--coding", options->coding,
+                   "How samples are predicted: from all neighbours that are known, or only from the two ends "
+                   "of the edge whose middle they are")
       ->check(one_of({"interpolation", "split-edge"}))
       ->capture_default_str();
   command
-      ->add_option(
-          "--subtrees", options->subtrees,
-          "Levels of tetrahedra below those that surfaces are refined by: less to store, coarser steps")
+      ->add_option("--subtrees", options->subtrees,
+                   "Errors and ranges for every 2^N-th sample along each axis only: a smaller file, from "
+                   "which surfaces are refined in greater steps")
       ->check(one_of({"0", "1", "2"}))
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "The store (.adm)")->required()->type_name("FILE");

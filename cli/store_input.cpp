@@ -6,12 +6,13 @@
 
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
 
 void add_store_input(CLI::App& command, StoreInput& input) {
-  command.add_option("input", input.path, "A store, from adamas store")->required()->type_name("STORE.adm");
+  command.add_option("input", input.path, "A store, from adamas store")->required()->type_name("FILE");
   command.add_option("--memory", input.memory, "What decoded pages may take: bytes, or with K, M or G")
       ->type_name("SIZE")
       ->capture_default_str()
@@ -28,7 +29,13 @@ std::size_t store_memory(const StoreInput& input) { return parse_size("--memory"
 
 std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session) {
   session.outputs.protect(input.path);
-  return std::make_unique<StoreFile>(input.path, input.paging == "map" ? Paging::kMap : Paging::kRead);
+  try {
+    return std::make_unique<StoreFile>(input.path, input.paging == "map" ? Paging::kMap : Paging::kRead);
+  } catch (const Error& e) {
+    std::error_code code;
+    if (is_store(input.path) || !std::filesystem::is_regular_file(input.path, code)) throw;
+    fail("{}: adamas store makes one of a volume", e.what());
+  }
 }
 
 bool is_store(const std::string& path) { return file_extension(path) == ".adm"; }

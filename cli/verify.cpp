@@ -35,7 +35,8 @@ void run(const StoreInput& options, Session& session) {
         "is "
         "damaged",
         options.path, found.pages, found.bad_pages, found.bad_copies);
-  session.console.print("{} pages, all sound\n", found.pages);
+  session.console.print("{}\n",
+                        found.pages == 1 ? "1 page, sound" : fmt::format("{} pages, all sound", found.pages));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
+#include "core/io/volume_format.h"
 #include "core/io/volume_stack.h"
 
 namespace adamas {
@@ -40,6 +41,15 @@ RawVolume raw_volume(const VolumeInput& input) {
   return raw;
 }
 
+/// Throws UsageError where the array of a file is named that has only one.
+void check_array(const VolumeInput& input) {
+  if (input.array.empty()) return;
+  const VolumeFormat format = find_volume_format(input.path);
+  if (format == VolumeFormat::kVti || format == VolumeFormat::kHdf5 || format == VolumeFormat::kOtherGrid)
+    return;
+  wrong_usage("--array: expected a file that may have several arrays, found {}", input.path);
+}
+
 }  // namespace
 
 VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
@@ -56,6 +66,8 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
     if (!input.spacing.empty()) wrong_usage("--spacing: expected --dimensions or --stack as well");
     if (!input.origin.empty()) wrong_usage("--origin: expected --dimensions or --stack as well");
   }
+  if ((raw || input.stack) && !input.array.empty())
+    wrong_usage("--array: expected a file with several arrays, not {}", raw ? "--dimensions" : "--stack");
   if (raw && input.stack) wrong_usage("--stack and --dimensions: expected one of them");
   session.outputs.protect(input.path);
   if (raw) {
@@ -65,17 +77,21 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
     return open_raw_volume(input.path, volume);
   }
   if (input.stack) return open_volume_stack(match_stack(input.path), spacing, origin);
+  check_array(input);
   return open_volume(input.path, {input.array, input.scratch}, session.console);
 }
 
 void add_volume_input(CLI::App& command, VolumeInput& input) {
   command
-      .add_option("input", input.path,
-                  "The volume: .nrrd, .nhdr, .mha, .mhd, .vti, .nii, .nii.gz, .h5, .tif, .vtk; with "
-                  "--dimensions a raw file")
+      .add_option(
+          "input", input.path,
+          "The volume: .nrrd, .nhdr, .mha, .mhd, .vti, .vtr, .vtk, .nii, .nii.gz, .hdr, .h5, .tif, .png "
+          "or .slc; with --dimensions a raw file, with --stack a pattern")
       ->required()
-      ->type_name("VOLUME");
-  command.add_flag("--stack", input.stack, "VOLUME is a pattern of slices, as \"ct_*.tif\" or ct_%04d.png")
+      ->type_name("FILE");
+  command
+      .add_flag("--stack", input.stack,
+                "INPUT is a pattern of slices, as \"ct_*.tif\" (in quotes) or ct_%04d.png")
       ->group("Input");
   command.add_option("--array", input.array, "Which array or data set of a file with several")
       ->type_name("NAME")
@@ -102,7 +118,8 @@ void add_volume_input(CLI::App& command, VolumeInput& input) {
       ->group("Input");
   command
       .add_option("--scratch", input.scratch,
-                  "Folder for scratch data, up to four times the volume's samples")
+                  "Folder for scratch data, up to four times the volume's samples (default: that "
+                  "of the system, $TMPDIR or /tmp)")
       ->type_name("FOLDER");
 }
 

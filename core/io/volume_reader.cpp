@@ -140,7 +140,11 @@ void VolumeReader::read_plane(std::uint64_t k, std::span<std::byte> samples) {
   ADAMAS_ASSERT(k < volume.dimensions[2] && samples.size() == volume.plane_bytes());
   const std::uint64_t plane = source_.reversed[2] ? volume.dimensions[2] - 1 - k : k;
   const std::uint64_t at = begin_ + plane * volume.plane_samples() * stored_bytes(source_.stored);
+  const std::uint64_t changed_before = changed_;
   visit_stored_type(source_.stored, [&]<class Stored>(Stored) { read_plane_of<Stored>(at, samples); });
+  was_read_.resize(volume.dimensions[2]);
+  if (was_read_[k]) changed_ = changed_before;
+  was_read_[k] = true;
   const auto [nx, ny, nz] = volume.dimensions;
   const auto [along_x, along_y, along_z] = source_.reversed;
   if (sample_bytes(volume.type) == 1) return turn<std::uint8_t>(samples.data(), nx, ny, along_x, along_y);

@@ -60,6 +60,7 @@ class VolumeReader {
   std::uint64_t begin_ = 0;  ///< of the samples in the file
   std::shared_ptr<const FileHandle> file_;
   std::vector<std::byte> buffer_;
+  std::vector<bool> was_read_;  ///< of each plane; those read again change nothing more
   std::uint64_t changed_ = 0;
   double greatest_change_ = 0;
 };

@@ -66,6 +66,10 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
   }
   if (!in.good()) fail("{}: expected a header, found its end too soon", name);
   header.grid.check(std::string(name));
+  for (const std::uint64_t n : header.grid.dimensions) {
+    constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
+    if (n > kMost) fail("{}: expected at most {} samples along every axis, found {}", name, kMost, n);
+  }
   if (header.steps == 0) fail("{}: expected a step or more, found none", name);
   return header;
 }

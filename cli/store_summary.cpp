@@ -1,0 +1,82 @@
+#include "cli/store_summary.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/store_input.h"
+#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/storage/sample_dispatch.h"
+
+namespace adamas {
+
+namespace {
+
+/// Least and greatest sample, as the directory has them of the coarsest page.
+void print_range(StoreFile& file, Console& console, Figures& figures) {
+  const auto entry = file.entry(0, {file.grid().top(), {0, 0, 0}});
+  if (!entry || entry->low > entry->high) return;
+  with_sample_type(file.header().grid.type, [&](auto sample) {
+    using Sample = decltype(sample);
+    const double low = from_ordered<Sample>(entry->low), high = from_ordered<Sample>(entry->high);
+    console.print("  values from {:.6g} to {:.6g}\n", low, high);
+    figures["min"] = low;
+    figures["max"] = high;
+  });
+}
+
+}  // namespace
+
+void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,
+                       Console& console) {
+  const auto text = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
+  const auto ratio = [uncompressed](std::uint64_t n) {
+    return n > 0 ? fmt::format("{:.2f}", static_cast<double>(uncompressed) / static_cast<double>(n)) : "-";
+  };
+  const std::uint64_t parts = bytes.samples + bytes.values + bytes.gradients;
+  const std::uint64_t others = file_bytes - std::min(parts, file_bytes);
+  console.table({{"", "bytes", "ratio"},
+                 {"uncompressed", text(uncompressed), ""},
+                 {"samples", text(bytes.samples), ratio(bytes.samples)},
+                 {"errors and ranges", text(bytes.values), ""},
+                 {"directory and copies", text(others), ""},
+                 {"file", text(file_bytes), ratio(file_bytes)}});
+}
+
+Figures print_store(const std::string& path, Session& session) {
+  StoreInput input;
+  input.path = path;
+  const std::unique_ptr<StoreFile> file = open_store(input, session);
+  const StoreHeader& header = file->header();
+  const VolumeGrid& grid = header.grid;
+  const auto [nx, ny, nz] = grid.dimensions;
+  Console& console = session.console;
+  const std::uint64_t before = grid.bytes() * header.steps;
+  const int levels = file->grid().top() + 1;
+  const char* coding = header.coding == SampleCoding::kSplitEdge ? "split-edge" : "interpolation";
+  console.print("{}: stored volume\n", path);
+  console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
+  console.print("  {}, spacing {:.6g}, {:.6g}, {:.6g}\n", box_text(grid.box()), grid.spacing.x,
+                grid.spacing.y, grid.spacing.z);
+  Figures figures{{"file", path},
+                  {"kind", "store"},
+                  {"dimensions", grid.dimensions},
+                  {"type", sample_name(grid.type)},
+                  {"box", box_figures(grid.box())},
+                  {"steps", header.steps},
+                  {"levels", levels},
+                  {"pages", file->grid().page_count()},
+                  {"coding", coding},
+                  {"subtree_depth", header.subtree_depth},
+                  {"bytes_input", before},
+                  {"bytes_data", header.bytes.samples},
+                  {"bytes_errors", header.bytes.values},
+                  {"bytes_gradients", header.bytes.gradients},
+                  {"bytes_file", file->size()}};
+  print_range(*file, console, figures);
+  console.print("  levels 0 to {}, {} pages, coding {}, subtrees {}\n\n", levels - 1,
+                file->grid().page_count(), coding, header.subtree_depth);
+  print_store_bytes(before, header.bytes, file->size(), console);
+  return figures;
+}
+
+}  // namespace adamas
