@@ -54,12 +54,17 @@ bool SurfaceExtractor<Sample>::reaches_region(LatticePoint p, int level, int pha
 }
 
 template <class Sample>
+bool SurfaceExtractor<Sample>::is_lost(LatticePoint p) const {
+  const int level = diamonds_.level(p);
+  return level >= 0 && lost_.blocks(diamonds_.in_samples(p), level, Diamond(p).phase());
+}
+
+template <class Sample>
 int SurfaceExtractor<Sample>::rank(LatticePoint p) {
   if (!diamonds_.is_stored(p)) return 0;
   if (region_ || !lost_.empty()) {
-    const int level = diamonds_.level(p), phase = Diamond(p).phase();
-    if (region_ && !reaches_region(p, level, phase)) return 0;
-    if (lost_.blocks(diamonds_.in_samples(p), level, phase)) return 0;
+    if (region_ && !reaches_region(p, diamonds_.level(p), Diamond(p).phase())) return 0;
+    if (is_lost(p)) return 0;
   }
   return diamonds_.rank_if_crossed(p);
 }
@@ -150,14 +155,36 @@ void SurfaceExtractor<Sample>::for_each_crossed(LatticePoint diamond, int slot,
 }
 
 template <class Sample>
+bool SurfaceExtractor<Sample>::is_inside(const Diamond& diamond) const {
+  const LatticePoint p = diamond.point(), last = diamonds_.last_sample();
+  const std::int32_t s = diamond.scale();
+  if (p.i + s > last.i || p.j + s > last.j || p.k + s > last.k) return false;
+  if (!request_.region) return true;
+  const Vec3 low = domain().position(p - LatticePoint{s, s, s}),
+             high = domain().position(p + LatticePoint{s, s, s});
+  return request_.region->contains(low) && request_.region->contains(high);
+}
+
+template <class Sample>
+std::int64_t SurfaceExtractor<Sample>::count_clipped(const CrossedTetrahedron& tetrahedron) const {
+  ContourBuilder builder(domain(), request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
+  builder.add(tetrahedron);
+  Contour contour = builder.finish();
+  if (request_.region) clip_contour(contour, *request_.region);
+  return static_cast<std::int64_t>(contour.triangles.size());
+}
+
+template <class Sample>
 std::int64_t SurfaceExtractor<Sample>::count_triangles(LatticePoint diamond, int slot,
                                                        const std::array<double, 4>& values) {
   std::int64_t count = 0;
   for_each_crossed(diamond, slot, values, subtree_bisections_, [&](const CrossedTetrahedron& t) {
-    const bool finite =
-        std::all_of(t.values.begin(), t.values.end(), [](double value) { return std::isfinite(value); });
-    if (finite && !is_beyond(Diamond(t.diamond).tetrahedron(t.slot), diamonds_.last_sample()))
+    if (!is_inside(Diamond(t.diamond))) {
+      count += count_clipped(t);
+    } else if (std::all_of(t.values.begin(), t.values.end(),
+                           [](double value) { return std::isfinite(value); })) {
       count += kTetrahedronContours[t.above].triangle_count;
+    }
   });
   return count;
 }
@@ -166,12 +193,8 @@ template <class Sample>
 std::int64_t SurfaceExtractor<Sample>::added_triangles(LatticePoint p) {
   const Diamond diamond(p);
   const Vertices v = vertices(diamond, true);
-  // With subtrees a tetrahedron may be crossed though all of its vertices are on one side; at the data's end
-  // it may lie beyond.
-  const LatticePoint last = diamonds_.last_sample();
-  const std::int32_t s = diamond.scale();
-  const bool is_inside = p.i + s <= last.i && p.j + s <= last.j && p.k + s <= last.k;
-  const bool by_sides = subtree_bisections_ == 0 && v.finite && is_inside;
+  // With subtrees a tetrahedron may be crossed though all of its vertices are on one side.
+  const bool by_sides = subtree_bisections_ == 0 && v.finite && is_inside(diamond);
   const auto triangles = [](unsigned above) {
     return std::int64_t{kTetrahedronContours[above].triangle_count};
   };
@@ -281,7 +304,8 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
           if (leads_to(p, child)) next.push_back(child);
           continue;
         }
-        note_error(r);
+        // What cannot be had has no greater error than what it comes from.
+        note_error(lost_.empty() || !is_lost(child) ? r : rank(p));
         for (const auto& half : diamond.type().child_tetrahedra[static_cast<std::size_t>(c)]) {
           if ((v.slots >> half.slot & 1) == 0) continue;
           if (subtree_bisections_ == 0 && is_uncrossed(v.above_of(half.slot, half.vertices))) continue;
@@ -301,14 +325,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   if (!request_.max_triangles) return contour_of(cut_by_error(), progress);
-  // The data's border and the region's cut triangles into several, which the first choice does not know.
-  for (std::uint64_t budget = *request_.max_triangles; budget > 0;) {
-    ExtractedSurface surface = contour_of(cut_by_triangles(budget, progress), progress);
-    const std::uint64_t found = surface.contour.triangles.size();
-    if (found <= *request_.max_triangles) return surface;
-    budget -= std::min(budget, std::max(found - *request_.max_triangles, budget / 64));
-  }
-  return contour_of({StoredDiamonds<Sample>::kRanks, 0, {}}, progress);
+  return contour_of(cut_by_triangles(*request_.max_triangles, progress), progress);
 }
 
 template <class Sample>

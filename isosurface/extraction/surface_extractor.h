@@ -70,6 +70,8 @@ class SurfaceExtractor {
   int rank(LatticePoint p);
   /// Whether the cut splits the diamond, whose rank is `rank`.
   [[nodiscard]] bool is_split(LatticePoint p, int rank, const Cut& cut) const;
+  /// Whether pages that cannot be had keep the diamond from being split.
+  [[nodiscard]] bool is_lost(LatticePoint p) const;
   [[nodiscard]] bool reaches_region(LatticePoint p, int level, int phase) const;
   /// Whether `parent` is that of its parents through which `child` is come to.
   [[nodiscard]] bool leads_to(LatticePoint parent, LatticePoint child) const;
@@ -84,6 +86,10 @@ class SurfaceExtractor {
   void for_each_crossed(LatticePoint diamond, int slot, const std::array<double, 4>& values, int bisections,
                         Fn&& fn);
   std::int64_t count_triangles(LatticePoint diamond, int slot, const std::array<double, 4>& values);
+  /// How many triangles a tetrahedron has when the surface is clipped.
+  std::int64_t count_clipped(const CrossedTetrahedron& tetrahedron) const;
+  /// Whether the surface in a diamond is not clipped.
+  [[nodiscard]] bool is_inside(const Diamond& diamond) const;
   /// How many more triangles there are once a diamond is split.
   std::int64_t added_triangles(LatticePoint p);
 

@@ -83,12 +83,22 @@ class Verifier {
           const DiamondType& type = kDiamondTypes[static_cast<std::size_t>(diamond_type(at, zeros))];
           for (int c = 0; c < type.parent_count; ++c) {
             const LatticePoint parent = q + (1 << zeros) * type.parent_offsets[static_cast<std::size_t>(c)];
-            if (is_in(parent, shape) && !is_within(page, q, parent, zeros, id)) return false;
+            if (is_in(parent, shape) && reaches_data(PageGrid::kSide * id.block + parent, id.level) &&
+                !is_within(page, q, parent, zeros, id))
+              return false;
           }
         }
       }
     }
     return true;
+  }
+
+  /// Whether the diamond of a point of a level, in units of the level, reaches into the data: those of the
+  /// coarsest page that do not have no values that could cover others.
+  [[nodiscard]] bool reaches_data(LatticePoint at, int level) const {
+    const int zeros = trailing_zeros(at);
+    const LatticePoint end = pages_.grid().reach(level + zeros);
+    return at.i >> zeros <= end.i && at.j >> zeros <= end.j && at.k >> zeros <= end.k;
   }
 
   static bool is_in(LatticePoint q, const PageShape& shape) {
