@@ -41,7 +41,10 @@ class StoredDiamonds {
   /// Whether pages know of the diamond: its point is no corner of the cube, and it reaches into the data.
   [[nodiscard]] bool is_stored(LatticePoint p) const {
     const int l = level(p);
-    return l >= 0 && l < grid_.depth() && reaches(in_samples(p), l);
+    if (l < 0 || l >= grid_.depth()) return false;
+    // The coarsest page has points of its level whose diamonds lie wholly outside.
+    const LatticePoint e = grid_.reach(l), s = in_samples(p);
+    return s.i >> l <= e.i && s.j >> l <= e.j && s.k >> l <= e.k;
   }
 
   /// The sample at a point of the lattice of samples; beyond the data the nearest one. Throws PageLost.

@@ -313,6 +313,8 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request, Progress& progress) {
   request_ = request;
+  // What was lost to another surface is met with and told again.
+  lost_ = {};
   region_.reset();
   if (request.region) {
     const Vec3 spacing = std::ldexp(1.0, -diamonds_.levels()) * diamonds_.domain().box().size();
