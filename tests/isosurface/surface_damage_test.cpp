@@ -86,10 +86,13 @@ class DamagedSurface : public testing::TestWithParam<int> {
   std::vector<PageEntry> entries_;
 };
 
+/// Of the finest level some.
 TEST_P(DamagedSurface, EveryPageInTurn) {
-  std::size_t named = 0;
+  std::size_t named = 0, tried = 0;
   for (std::size_t n = 0; n < pages_.size(); ++n) {
+    if (pages_[n].level == 0 && n % 7 != 0) continue;
     SCOPED_TRACE(name_of(pages_[n]));
+    ++tried;
     damage({n});
     if (pages_[n].level == store_.pages().grid().top()) {
       EXPECT_TRUE(test::says(test::error_of([&] { store_.extract(request_of(false)); }), name_of(pages_[n])));
@@ -102,7 +105,7 @@ TEST_P(DamagedSurface, EveryPageInTurn) {
     expect_coarser();
     if (HasFailure()) return;
   }
-  EXPECT_GT(named, pages_.size() / 2);
+  EXPECT_GT(named, tried / 2);
 }
 
 TEST_P(DamagedSurface, SeveralPages) {
@@ -138,7 +141,7 @@ TEST_P(DamagedSurface, IsToldEveryTime) {
 }
 
 /// A damaged part of the directory loses the pages that it tells of.
-TEST_P(DamagedSurface, DISABLED_PartsOfTheDirectory) {
+TEST_P(DamagedSurface, PartsOfTheDirectory) {
   const auto all = std::as_bytes(std::span(bytes_));
   const StorePrologue prologue = StorePrologue::parse(all.first(StorePrologue::kBytes), "store");
   const StoreRoot root = StoreRoot::parse(all.subspan(prologue.root_offset), prologue.root_offset, "store");
