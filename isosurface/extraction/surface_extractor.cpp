@@ -306,6 +306,8 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
     ExtractedSurface surface = contour_of(cut_by_triangles(budget, progress), progress);
     const std::uint64_t found = surface.contour.triangles.size();
     if (found <= *request_.max_triangles || surface.diamonds == 0) return surface;
+    // The first splits may be of no more triangles, and yet of more than asked: the coarsest mesh is left.
+    if (budget == 0) return contour_of({StoredDiamonds<Sample>::kRanks, 0, {}}, progress);
     budget -= std::min(budget, std::max<std::uint64_t>(1, found - *request_.max_triangles));
   }
 }
