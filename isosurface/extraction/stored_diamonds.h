@@ -50,10 +50,11 @@ class StoredDiamonds {
   /// The sample at a point of the lattice of samples; beyond the data the nearest one. Throws PageLost.
   double sample(LatticePoint p) {
     LatticePoint at = in_samples(p);
-    // The few points farther out than a level's virtual ones are those of cubes much larger than the data.
-    if (!has_place(at, trailing_zeros(at))) {
-      for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], grid_.last()[axis]);
-    }
+    // Points farther out than the virtual ones of their level have the values of those: no finer page than
+    // theirs is needed.
+    const int l = std::min(trailing_zeros(at), PageGrid::kMaxDepth + 1);
+    const LatticePoint end = ends_[static_cast<std::size_t>(l)];
+    for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], end[axis]);
     const PageId id = grid_.page(at);
     return value(page(id).samples[PageGrid::place(at, id.level)]);
   }
@@ -86,12 +87,6 @@ class StoredDiamonds {
   /// them the greatest of the page where none matters.
   void mark(const PageId& id, const HeldPage<Word>& page);
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
-  /// Whether a point whose coordinates, in samples, are multiples of 2^level is among those of that
-  /// level.
-  [[nodiscard]] bool has_place(LatticePoint at, int level) const {
-    const LatticePoint e = ends_[static_cast<std::size_t>(std::min(level, PageGrid::kMaxDepth + 1))];
-    return at.i <= e.i && at.j <= e.j && at.k <= e.k;
-  }
   /// The contour crosses what has a range with low < least_above_ <= high, as ordered words.
   [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {
     return low <= high && low < least_above_ && least_above_ <= high;

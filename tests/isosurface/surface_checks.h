@@ -69,6 +69,7 @@ class DiamondTable {
           for (std::int32_t i = 0; i <= end.i; ++i) {
             if (((i | j | k) & 1) == 0) continue;
             const LatticePoint p = (1 << level) * LatticePoint{i, j, k};
+            if (!reaches_data(p)) continue;
             const PageId id = grid.page(p);
             const LatticePoint q{p.i >> id.level, p.j >> id.level, p.k >> id.level};
             if (PageShape{grid.count(id), true, id.level}.owns(q - PageGrid::kSide * id.block)) {
