@@ -249,8 +249,10 @@ void print_store(const std::string& path, Session& session, Figures& figures) {
     return std::vector<std::string>{name, bytes_text(static_cast<double>(bytes))};
   };
   console.table({row("uncompressed", before), row("samples", header.bytes.samples),
-                 row("errors and ranges", header.bytes.values), row("file", file->size())});
-  console.print("  coding {}, subtrees of depth {}\n", coding, header.subtree_depth);
+                 row("errors and ranges", header.bytes.values), row("gradients", header.bytes.gradients),
+                 row("file", file->size())});
+  console.print("  coding {}, subtrees of depth {}, {} gradients\n", coding, header.subtree_depth,
+                header.gradients ? "with" : "without");
   figures["dimensions"] = grid.dimensions;
   figures["type"] = sample_name(grid.type);
   figures["box"] = box_figures(grid.box());
@@ -259,6 +261,7 @@ void print_store(const std::string& path, Session& session, Figures& figures) {
   figures["pages"] = file->grid().page_count();
   figures["coding"] = coding;
   figures["subtree_depth"] = header.subtree_depth;
+  figures["gradients"] = header.gradients;
   figures["bytes_input"] = before;
   figures["bytes_data"] = header.bytes.samples;
   figures["bytes_errors"] = header.bytes.values;

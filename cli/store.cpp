@@ -18,6 +18,7 @@ namespace {
 struct Options {
   VolumeInput input;
   std::string coding = "interpolation", subtrees = "0", output;
+  bool gradients = false;
 };
 
 double ratio(std::uint64_t before, std::uint64_t after) {
@@ -39,6 +40,7 @@ void report(const VolumeReader& reader, const StoreFigures& store, Session& sess
                  {"input", bytes(input), ""},
                  {"samples", bytes(store.bytes.samples), ratio_text(store.bytes.samples)},
                  {"errors and ranges", bytes(store.bytes.values), ratio_text(store.bytes.values)},
+                 {"gradients", bytes(store.bytes.gradients), ratio_text(store.bytes.gradients)},
                  {"file", bytes(store.file_bytes), ratio_text(store.file_bytes)}});
   console.print("{} pages in {:.1f} s, {:.1f} M samples/s\n", store.pages, seconds,
                 static_cast<double>(grid.samples()) / seconds / 1e6);
@@ -65,6 +67,7 @@ void run(const Options& options, Session& session) {
   StoreOptions store;
   store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
   store.subtree_depth = options.subtrees[0] - '0';
+  store.gradients = options.gradients;
   if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
   StoreFigures figures;
   session.outputs.write(options.output, [&](const auto& path) {
@@ -99,6 +102,8 @@ void add_store(CLI::App& app, Session& session) {
           "Levels of tetrahedra below those that surfaces are refined by: less to store, coarser steps")
       ->check(one_of({"0", "1", "2"}))
       ->capture_default_str();
+  command->add_flag("--gradients", options->gradients,
+                    "Keep the directions of the samples' gradients too, for the normals of surfaces");
   command->add_option("-o,--output", options->output, "The store (.adm)")->required()->type_name("FILE");
 }
 
