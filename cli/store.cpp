@@ -22,6 +22,7 @@ namespace {
 struct Options {
   VolumeInput input;
   std::string coding = "interpolation", subtrees = "0", output;
+  bool gradients = false;
 };
 
 /// Reads planes for the builder, which asks for some of them twice, and counts the samples that are no finite
@@ -95,6 +96,7 @@ void run(const Options& options, Session& session) {
   StoreOptions store;
   store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
   store.subtree_depth = options.subtrees[0] - '0';
+  store.gradients = options.gradients;
   if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
   StoreFigures figures;
   session.outputs.write(options.output, [&](const auto& path) {
@@ -132,6 +134,8 @@ void add_store(CLI::App& app, Session& session) {
                    "which surfaces are refined in greater steps")
       ->check(one_of({"0", "1", "2"}))
       ->capture_default_str();
+  command->add_flag("--gradients", options->gradients,
+                    "Keep the directions of the samples' gradients too, for the normals of surfaces");
   command->add_option("-o,--output", options->output, "The store (.adm)")->required()->type_name("FILE");
 }
 

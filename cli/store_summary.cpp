@@ -38,6 +38,7 @@ void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std:
                  {"uncompressed", text(uncompressed), ""},
                  {"samples", text(bytes.samples), ratio(bytes.samples)},
                  {"errors and ranges", text(bytes.values), ""},
+                 {"gradients", text(bytes.gradients), ""},
                  {"directory and copies", text(others), ""},
                  {"file", text(file_bytes), ratio(file_bytes)}});
 }

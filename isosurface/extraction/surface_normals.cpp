@@ -2,26 +2,39 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "core/lattice/lattice_map.h"
 #include "isosurface/gradients/gradient_estimator.h"
+#include "isosurface/storage/stored_gradients.h"
 
 namespace adamas {
 
 namespace {
 
-/// Gradients at lattice points, each worked out once.
+/// Bytes of stored directions that are held.
+constexpr std::size_t kStoredMemory = std::size_t{64} << 20;
+
+/// The unit vector to lesser values, or zero.
+Vec3 downwards(const Vec3& gradient) {
+  const double length = norm(gradient);
+  return length > 0 && std::isfinite(length) ? -1 / length * gradient : Vec3{};
+}
+
+/// Gradients at lattice points, each worked out once: directions alone where the store has them.
 template <class Sample>
 class VertexGradients {
  public:
-  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages) : diamonds_(pages) {}
+  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages) : diamonds_(pages) {
+    if (pages.file().header().gradients) stored_.emplace(pages.file(), pages.step(), kStoredMemory);
+  }
 
-  /// From neighbours `step` away.
+  /// The stored one, or from neighbours `step` away.
   Vec3 at(LatticePoint p, std::int32_t step) {
     // Vertices of a finer mesh than this one have a gradient of their own.
     const auto [index, is_new] = indices_.insert(p);
     if (is_new || steps_[*index] != step) {
-      const Vec3 gradient = estimate(p, step);
+      const Vec3 gradient = stored_ ? stored(p, step) : estimate(p, step);
       if (!is_new) return gradient;
       *index = static_cast<std::uint32_t>(gradients_.size());
       gradients_.push_back(gradient);
@@ -37,6 +50,11 @@ class VertexGradients {
   }
 
  private:
+  Vec3 stored(LatticePoint p, std::int32_t step) {
+    const std::optional<Vec3> direction = stored_->direction(diamonds_.in_samples(p));
+    return direction ? *direction : -downwards(estimate(p, step));
+  }
+
   Vec3 estimate(LatticePoint p, std::int32_t step) {
     Neighbourhood values;
     for (int dk = -1; dk <= 1; ++dk) {
@@ -66,16 +84,12 @@ class VertexGradients {
   }
 
   StoredDiamonds<Sample> diamonds_;
+  std::optional<StoredGradients> stored_;
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
   LatticeMap<std::uint32_t> indices_;
   std::vector<Vec3> gradients_;
   std::vector<std::int32_t> steps_;
 };
-
-Vec3 direction(const Vec3& gradient) {
-  const double length = norm(gradient);
-  return length > 0 && std::isfinite(length) ? -1 / length * gradient : Vec3{};
-}
 
 }  // namespace
 
@@ -91,7 +105,7 @@ std::vector<Vec3> surface_normals(StoredPages<OrderedWord<Sample>>& pages, const
                     static_cast<double>(normals.size()) / static_cast<double>(contour.points.size()));
     const std::int32_t step = gradients.step(edge);
     const Vec3 a = gradients.at(edge.first, step), b = gradients.at(edge.second, step);
-    normals.push_back(direction((1 - edge.parameter) * a + edge.parameter * b));
+    normals.push_back(downwards((1 - edge.parameter) * a + edge.parameter * b));
   }
   for (const BorderPoint& point : contour.border_points) {
     std::int32_t step = std::int32_t{1} << kRootBits;
@@ -104,7 +118,7 @@ std::vector<Vec3> surface_normals(StoredPages<OrderedWord<Sample>>& pages, const
     for (std::size_t v = 0; v < 4; ++v) {
       if (point.weights[v] != 0) gradient += point.weights[v] * gradients.at(point.vertices[v], step);
     }
-    normals.push_back(direction(gradient));
+    normals.push_back(downwards(gradient));
   }
   return normals;
 }

@@ -16,6 +16,9 @@ template <class Sample>
 using OrderedWord = std::conditional_t<sizeof(Sample) == 1, std::uint8_t,
                                        std::conditional_t<sizeof(Sample) == 2, std::uint16_t, std::uint32_t>>;
 
+/// What of pages is there: samples alone leave errors and ranges undefined.
+enum class PageParts : std::uint8_t { kAll, kSamples };
+
 /// What is known of a page's points: of all 16^3 of its cube, those of coarser levels too, by place (i
 /// running fastest). Places beyond PageGrid::count hold anything. Word: OrderedWord of the samples' type.
 template <class Word>

@@ -43,8 +43,8 @@ int nameless_file(const std::filesystem::path& folder) {
 }  // namespace
 
 template <class Word>
-ScratchPages<Word>::ScratchPages(const std::filesystem::path& folder, const PageGrid& grid)
-    : grid_(grid), folder_(folder), file_(nameless_file(folder)) {
+ScratchPages<Word>::ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, PageParts parts)
+    : grid_(grid), parts_(parts), folder_(folder), file_(nameless_file(folder)) {
   for (int level = 0; level <= grid_.top(); ++level) {
     const LatticePoint n = grid_.blocks(level);
     offsets_.emplace_back(static_cast<std::size_t>(n.i) * static_cast<std::size_t>(n.j) *
@@ -78,9 +78,11 @@ void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
     });
   };
   append(page.samples);
-  append(page.low);
-  append(page.high);
-  append(page.errors);
+  if (parts_ == PageParts::kAll) {
+    append(page.low);
+    append(page.high);
+    append(page.errors);
+  }
   offset(id) = size_;
   for (std::size_t done = 0; done < buffer_.size();) {
     const ssize_t put =
@@ -99,7 +101,7 @@ void ScratchPages<Word>::get(const PageId& id, Page<Word>& page) {
   const PageShape shape{grid_.count(id), grid_.is_complete(id), id.level};
   std::size_t points = 0;
   for_each_own_row(shape, [&](std::size_t, std::size_t count, std::size_t) { points += count; });
-  buffer_.resize(points * kPointBytes);
+  buffer_.resize(points * point_bytes());
   for (std::size_t done = 0; done < buffer_.size();) {
     const ssize_t got =
         pread(file_, buffer_.data() + done, buffer_.size() - done, static_cast<off_t>(offset(id) + done));
@@ -118,9 +120,11 @@ void ScratchPages<Word>::get(const PageId& id, Page<Word>& page) {
     });
   };
   take(page.samples);
-  take(page.low);
-  take(page.high);
-  take(page.errors);
+  if (parts_ == PageParts::kAll) {
+    take(page.low);
+    take(page.high);
+    take(page.errors);
+  }
 }
 
 template class ScratchPages<std::uint8_t>;

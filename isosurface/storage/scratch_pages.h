@@ -13,8 +13,8 @@ namespace adamas {
 template <class Word>
 class ScratchPages {
  public:
-  /// Throws Error where the folder cannot hold a file.
-  ScratchPages(const std::filesystem::path& folder, const PageGrid& grid);
+  /// Keeps these parts of pages. Throws Error where the folder cannot hold a file.
+  ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, PageParts parts = PageParts::kAll);
   ~ScratchPages();
   ScratchPages(const ScratchPages&) = delete;
   ScratchPages& operator=(const ScratchPages&) = delete;
@@ -25,11 +25,14 @@ class ScratchPages {
   void get(const PageId& id, Page<Word>& page);
 
  private:
-  static constexpr std::size_t kPointBytes = 3 * sizeof(Word) + 1;
-
   std::uint64_t& offset(const PageId& id);
 
+  [[nodiscard]] std::size_t point_bytes() const {
+    return parts_ == PageParts::kAll ? 3 * sizeof(Word) + 1 : sizeof(Word);
+  }
+
   PageGrid grid_;
+  PageParts parts_;
   std::filesystem::path folder_;
   int file_ = -1;
   std::uint64_t size_ = 0;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/compression/value_codec.h"
+#include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/storage/page_summary.h"
 #include "isosurface/storage/page_tree.h"
 #include "isosurface/storage/sample_dispatch.h"
@@ -53,6 +56,81 @@ struct Job {
   PageShape shape{};
   Page<Word> page;
   Surroundings<Word> around;
+  GradientCodes gradients;  ///< undefined, with those round it, where none are kept
+  GradientCodesAround gradients_around;
+};
+
+/// What the tables are made from.
+template <class Word>
+struct Surveys {
+  std::unique_ptr<SampleSurvey<Word>> samples;
+  ValueSurvey<Word> values;
+  std::optional<GradientSurvey> gradients;
+
+  explicit Surveys(const StoreOptions& options) : samples(sample_survey<Word>(options.coding)) {
+    if (options.gradients) gradients.emplace(options.coding);
+  }
+
+  void add(const Job<Word>& job) {
+    samples->add(job.shape, job.around.samples, job.page.samples);
+    values.add(job.shape, job.around, job.page);
+    if (gradients) gradients->add(job.shape, job.gradients_around, job.gradients);
+  }
+  void merge(const Surveys& other) {
+    samples->merge(*other.samples);
+    values.merge(other.values);
+    if (gradients) gradients->merge(*other.gradients);
+  }
+};
+
+/// The bytes of a page.
+struct CodedPage {
+  std::vector<std::byte> samples, values, gradients;
+};
+
+template <class Word>
+struct Codecs {
+  std::unique_ptr<SampleCodec<Word>> samples;
+  ValueCodec<Word> values;
+  std::optional<GradientCodec> gradients;
+
+  explicit Codecs(const Surveys<Word>& surveys) : samples(surveys.samples->codec()), values(surveys.values) {
+    if (surveys.gradients) gradients.emplace(surveys.gradients->codec());
+  }
+
+  void encode(const Job<Word>& job, CodedPage& coded) const {
+    coded.samples.clear();
+    coded.values.clear();
+    coded.gradients.clear();
+    samples->encode(job.shape, job.around.samples, job.page.samples, coded.samples);
+    values.encode(job.shape, job.around, job.page, coded.values);
+    if (gradients) gradients->encode(job.shape, job.gradients_around, job.gradients, coded.gradients);
+  }
+};
+
+/// Directions of gradients on their way to the file.
+class GradientScratch {
+ public:
+  GradientScratch(const std::filesystem::path& folder, const PageGrid& grid)
+      : scratch_(folder, grid, PageParts::kSamples),
+        tree_(grid, kMemory / sizeof(Page<std::uint16_t>),
+              [this](const PageId& id, const PageShape&, const Surroundings<std::uint16_t>&,
+                     Page<std::uint16_t>& page) {
+                scratch_.get(id, page);
+                return true;
+              }) {}
+
+  void put(const PageId& id, const Page<std::uint16_t>& page) { scratch_.put(id, page); }
+  void get(const PageId& id, GradientCodes& codes, GradientCodesAround& around) {
+    tree_.surroundings(id, around_);
+    around = around_.samples;
+    codes = tree_.page(id)->samples;
+  }
+
+ private:
+  ScratchPages<std::uint16_t> scratch_;
+  PageTree<std::uint16_t> tree_;
+  Surroundings<std::uint16_t> around_;
 };
 
 template <class Sample>
@@ -70,7 +148,9 @@ class StoreBuilder {
               [this](const PageId& id, const PageShape&, const Surroundings<Word>&, Page<Word>& page) {
                 scratch_.get(id, page);
                 return true;
-              }) {}
+              }) {
+    if (options.gradients) gradients_ = std::make_unique<GradientScratch>(options.scratch, grid_);
+  }
 
   StoreFigures build(const std::filesystem::path& path, const std::string& shown, const PlaneSource& planes) {
     PreprocessOptions preprocessing;
@@ -78,9 +158,14 @@ class StoreBuilder {
     preprocess<Sample>(
         volume_, planes, [this](const PageId& id, const Page<Word>& page) { scratch_.put(id, page); },
         preprocessing, progress_);
+    if (gradients_ != nullptr) {
+      gradient_pages<Sample>(
+          volume_, planes,
+          [this](const PageId& id, const Page<std::uint16_t>& page) { gradients_->put(id, page); },
+          progress_);
+    }
     const std::vector<std::uint64_t> numbers = page_numbers(grid_);
-    survey(numbers);
-    return write(numbers, path, shown);
+    return write(numbers, survey(numbers), path, shown);
   }
 
  private:
@@ -98,69 +183,58 @@ class StoreBuilder {
         job.shape = {grid_.count(id), grid_.is_complete(id), id.level};
         tree_.surroundings(id, job.around);
         job.page = *tree_.page(id);
+        if (gradients_ != nullptr) gradients_->get(id, job.gradients, job.gradients_around);
       }
       fn(std::span<const Job<Word>>(jobs_).first(count));
     }
   }
 
-  void survey(const std::vector<std::uint64_t>& numbers) {
+  Codecs<Word> survey(const std::vector<std::uint64_t>& numbers) {
     std::vector<std::uint64_t> some;
     std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(some), [&](std::uint64_t number) {
       constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15ull;
       return numbers.size() <= kSurveyed || grid_.page(number).level > 0 || number * kScatter >> 61 == 0;
     });
-    samples_ = sample_survey<Word>(options_.coding);
-    for_each_batch(some, "surveying", [this](std::span<const Job<Word>> jobs) {
-      const std::size_t parts = (jobs.size() + kBatch / 4 - 1) / (kBatch / 4);
-      std::vector<std::unique_ptr<SampleSurvey<Word>>> samples(parts);
-      std::vector<std::unique_ptr<ValueSurvey<Word>>> values(parts);
-      parallel_chunks(jobs.size(), kBatch / 4, [&](std::size_t begin, std::size_t end) {
-        const std::size_t part = begin / (kBatch / 4);
-        samples[part] = sample_survey<Word>(options_.coding);
-        values[part] = std::make_unique<ValueSurvey<Word>>();
-        for (const Job<Word>& job : jobs.subspan(begin, end - begin)) {
-          samples[part]->add(job.shape, job.around.samples, job.page.samples);
-          values[part]->add(job.shape, job.around, job.page);
-        }
+    Surveys<Word> surveys(options_);
+    for_each_batch(some, "surveying", [&](std::span<const Job<Word>> jobs) {
+      constexpr std::size_t kPart = kBatch / 4;
+      std::vector<std::unique_ptr<Surveys<Word>>> parts((jobs.size() + kPart - 1) / kPart);
+      parallel_chunks(jobs.size(), kPart, [&](std::size_t begin, std::size_t end) {
+        auto& part = parts[begin / kPart];
+        part = std::make_unique<Surveys<Word>>(options_);
+        for (const Job<Word>& job : jobs.subspan(begin, end - begin)) part->add(job);
       });
-      for (std::size_t part = 0; part < parts; ++part) {
-        samples_->merge(*samples[part]);
-        values_.merge(*values[part]);
-      }
+      for (const auto& part : parts) surveys.merge(*part);
     });
+    return Codecs<Word>(surveys);
   }
 
-  StoreFigures write(const std::vector<std::uint64_t>& numbers, const std::filesystem::path& path,
-                     const std::string& shown) {
+  StoreFigures write(const std::vector<std::uint64_t>& numbers, const Codecs<Word>& codecs,
+                     const std::filesystem::path& path, const std::string& shown) {
     StoreHeader header;
     header.grid = volume_;
     header.coding = options_.coding;
     header.subtree_depth = static_cast<std::uint8_t>(options_.subtree_depth);
-    const std::unique_ptr<SampleCodec<Word>> samples = samples_->codec();
-    const ValueCodec<Word> values(values_);
+    header.gradients = options_.gradients;
     StoreFileWriter writer(path, shown, header);
-    struct Coded {
-      std::vector<std::byte> samples, values;
-    };
-    std::vector<Coded> coded(kBatch);
+    std::vector<CodedPage> coded(kBatch);
     for_each_batch(numbers, "compressing", [&](std::span<const Job<Word>> jobs) {
-      parallel_for(jobs.size(), kGrain, [&](std::size_t n) {
-        coded[n].samples.clear();
-        coded[n].values.clear();
-        samples->encode(jobs[n].shape, jobs[n].around.samples, jobs[n].page.samples, coded[n].samples);
-        values.encode(jobs[n].shape, jobs[n].around, jobs[n].page, coded[n].values);
-      });
+      parallel_for(jobs.size(), kGrain, [&](std::size_t n) { codecs.encode(jobs[n], coded[n]); });
       for (std::size_t n = 0; n < jobs.size(); ++n) {
-        header.bytes.samples += coded[n].samples.size();
-        header.bytes.values += coded[n].values.size();
-        writer.add_page(0, jobs[n].number, join_payload({coded[n].samples, coded[n].values, {}}),
+        const CodedPage& page = coded[n];
+        header.bytes.samples += page.samples.size();
+        header.bytes.values += page.values.size();
+        header.bytes.gradients += page.gradients.size();
+        writer.add_page(0, jobs[n].number, join_payload({page.samples, page.values, page.gradients}),
                         summary(jobs[n].shape, jobs[n].page));
       }
     });
-    header.sample_tables = samples->tables();
-    header.value_tables = values.tables();
+    header.sample_tables = codecs.samples->tables();
+    header.value_tables = codecs.values.tables();
+    if (codecs.gradients) header.gradient_tables = codecs.gradients->tables();
     header.bytes.samples += header.sample_tables.size();
     header.bytes.values += header.value_tables.size();
+    header.bytes.gradients += header.gradient_tables.size();
     const StoreBytes bytes = header.bytes;
     return {bytes, writer.finish(std::move(header)), numbers.size()};
   }
@@ -171,9 +245,8 @@ class StoreBuilder {
   Progress& progress_;
   ScratchPages<Word> scratch_;
   PageTree<Word> tree_;
+  std::unique_ptr<GradientScratch> gradients_;  ///< null where none are kept
   std::vector<Job<Word>> jobs_;
-  std::unique_ptr<SampleSurvey<Word>> samples_;
-  ValueSurvey<Word> values_;
 };
 
 }  // namespace

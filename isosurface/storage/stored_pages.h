@@ -32,18 +32,16 @@ std::vector<std::byte> join_payload(const PagePayload& parts);
 /// False where the bytes are not those of three parts.
 [[nodiscard]] bool split_payload(std::span<const std::byte> bytes, PagePayload& parts);
 
-/// What of pages is decoded: samples alone leave errors and ranges undefined.
-enum class PageParts : std::uint8_t { kAll, kSamples };
-
 /// The decoded pages of one step of a store. Word: OrderedWord of the store's samples.
 template <class Word>
 class StoredPages {
  public:
-  /// `memory`: bytes that decoded pages may take. Throws Error where the tables are damaged. The file must
-  /// outlive this.
+  /// `memory`: bytes that decoded pages may take; `parts`: what of them is decoded. Throws Error where the
+  /// tables are damaged. The file must outlive this.
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory, PageParts parts = PageParts::kAll);
 
   [[nodiscard]] StoreFile& file() { return file_; }
+  [[nodiscard]] std::uint32_t step() const { return step_; }
   [[nodiscard]] const PageGrid& grid() const { return file_.grid(); }
 
   /// The page, or null where it is damaged or predicted from one that is. Valid until the next call.

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "core/lattice/diamond.h"
 #include "isosurface/storage/page_summary.h"
 #include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/storage/stored_gradients.h"
 #include "isosurface/storage/stored_pages.h"
 
 namespace adamas {
@@ -19,7 +22,9 @@ class Verifier {
   using Word = OrderedWord<Sample>;
 
   Verifier(StoreFile& file, std::uint32_t step, std::size_t memory, VerifiedStore& result)
-      : file_(file), step_(step), pages_(file, step, memory), result_(result) {}
+      : file_(file), step_(step), pages_(file, step, memory), result_(result) {
+    if (file.header().gradients) gradients_.emplace(file, step, memory / 4);
+  }
 
   void run(Progress& progress) {
     const PageGrid& grid = pages_.grid();
@@ -44,6 +49,8 @@ class Verifier {
   void check(const PageId& id) {
     ++result_.pages;
     const StoreFile::Payload payload = file_.read(step_, id);
+    PagePayload parts;
+    const bool has_gradients = split_payload(payload.bytes, parts) && !parts.gradients.empty();
     const std::optional<PageEntry> entry = file_.entry(step_, id);
     if (payload.state == PageState::kCopied ||
         (payload.state == PageState::kWhole && entry && !file_.copy_is_whole(*entry))) {
@@ -54,13 +61,20 @@ class Verifier {
     if (page == nullptr) {
       ++result_.bad_pages;
       problem(id, payload.state == PageState::kDamaged ? "is damaged" : "is predicted from a damaged one");
-    } else if (entry && !is_summary(id, *page, *entry)) {
+    } else if (const char* what = fault(id, *page, entry, has_gradients)) {
       ++result_.bad_pages;
-      problem(id, "is not what the directory says of it");
-    } else if (!is_lawful(id, *page)) {
-      ++result_.bad_pages;
-      problem(id, "has errors or ranges greater than those of the diamonds they come from");
+      problem(id, what);
     }
+  }
+
+  /// What is wrong with a page that can be decoded, its gradients apart; null where nothing is.
+  const char* fault(const PageId& id, const Page<Word>& page, const std::optional<PageEntry>& entry,
+                    bool has_gradients) {
+    if (entry && !is_summary(id, page, *entry)) return "is not what the directory says of it";
+    if (!is_lawful(id, page)) return "has errors or ranges greater than those of the diamonds they come from";
+    if (!gradients_ && has_gradients) return "has gradients, which the store does not have";
+    if (gradients_ && gradients_->page(id) == nullptr) return "has gradients that are damaged";
+    return nullptr;
   }
 
   bool is_summary(const PageId& id, const Page<Word>& page, const PageSummary& said) const {
@@ -125,6 +139,7 @@ class Verifier {
   StoreFile& file_;
   std::uint32_t step_;
   StoredPages<Word> pages_;
+  std::optional<StoredGradients> gradients_;
   VerifiedStore& result_;
 };
 

@@ -1,3 +1,4 @@
+#include "tests/fuzz/gradient_targets.h"
 #include "tests/fuzz/replay.h"
 #include "tests/fuzz/residual_targets.h"
 #include "tests/fuzz/sample_targets.h"
@@ -10,6 +11,7 @@ TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::r
 
 TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sample_codec), 8u); }
 TEST(FuzzCorpus, ValueCodec) { EXPECT_EQ(fuzz::replay("value_codec", fuzz::value_codec), 4u); }
+TEST(FuzzCorpus, GradientCodec) { EXPECT_EQ(fuzz::replay("gradient_codec", fuzz::gradient_codec), 5u); }
 
 }  // namespace
 }  // namespace adamas

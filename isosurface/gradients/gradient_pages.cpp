@@ -1,0 +1,121 @@
+#include "isosurface/gradients/gradient_pages.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "isosurface/gradients/plane_gradients.h"
+
+namespace adamas {
+
+namespace {
+
+/// Planes of codes of one level, until they are as many as pages are thick.
+class LevelCodes {
+ public:
+  LevelCodes(const PageGrid& grid, int level)
+      : grid_(grid),
+        level_(level),
+        extent_(grid.extent(level)),
+        row_(static_cast<std::size_t>(extent_.i) + 1),
+        plane_(row_ * (static_cast<std::size_t>(extent_.j) + 1)),
+        codes_(plane_ * static_cast<std::size_t>(std::min(extent_.k + 1, PageGrid::kSide))) {}
+
+  /// Takes what the level has of plane k of the samples, and hands over the pages that are whole then. The
+  /// last plane stands for all behind it.
+  void add(std::int32_t k, const std::vector<OctahedralCode>& codes, Page<std::uint16_t>& page,
+           const GradientPageSink& sink) {
+    for (; next_ <= extent_.k && std::min(next_ << level_, grid_.last().k) == k; ++next_) {
+      take(codes);
+      if (next_ % PageGrid::kSide == PageGrid::kSide - 1 || next_ == extent_.k) {
+        for_each_page([&](const PageId& id) {
+          fill(id, page);
+          sink(id, page);
+        });
+      }
+    }
+  }
+
+ private:
+  void take(const std::vector<OctahedralCode>& codes) {
+    const auto width = static_cast<std::size_t>(grid_.last().i) + 1;
+    std::uint16_t* to = codes_.data() + plane_ * static_cast<std::size_t>(next_ % PageGrid::kSide);
+    for (std::int32_t j = 0; j <= extent_.j; ++j) {
+      const auto y = static_cast<std::size_t>(std::min(j << level_, grid_.last().j));
+      for (std::int32_t i = 0; i <= extent_.i; ++i) {
+        const auto [first, second] =
+            codes[y * width + static_cast<std::size_t>(std::min(i << level_, grid_.last().i))];
+        *to++ = static_cast<std::uint16_t>(first | second << 8);
+      }
+    }
+  }
+
+  template <class Fn>
+  void for_each_page(Fn&& fn) const {
+    const LatticePoint blocks = grid_.blocks(level_);
+    for (std::int32_t j = 0; j < blocks.j; ++j) {
+      for (std::int32_t i = 0; i < blocks.i; ++i) {
+        const PageId id{level_, {i, j, next_ / PageGrid::kSide}};
+        if (grid_.contains(id)) fn(id);
+      }
+    }
+  }
+
+  void fill(const PageId& id, Page<std::uint16_t>& page) const {
+    const LatticePoint count = grid_.count(id);
+    for (std::int32_t k = 0; k < count.k; ++k) {
+      for (std::int32_t j = 0; j < count.j; ++j) {
+        const std::size_t from = static_cast<std::size_t>(PageGrid::kSide * id.block.i) +
+                                 row_ * static_cast<std::size_t>(PageGrid::kSide * id.block.j + j) +
+                                 plane_ * static_cast<std::size_t>(k);
+        std::copy_n(codes_.data() + from, count.i, page.samples.data() + PageGrid::place({0, j, k}, 0));
+      }
+    }
+  }
+
+  const PageGrid& grid_;
+  int level_;
+  LatticePoint extent_;
+  std::size_t row_, plane_;
+  std::vector<std::uint16_t> codes_;
+  std::int32_t next_ = 0;  ///< the level's plane that is taken next
+};
+
+}  // namespace
+
+template <class Sample>
+void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageSink& sink,
+                    Progress& progress) {
+  const PageGrid pages(grid.dimensions);
+  const auto [nx, ny, nz] = grid.dimensions;
+  const PlaneGradients gradients(grid.spacing, nx, ny);
+  std::vector<LevelCodes> levels;
+  for (int level = 0; level <= pages.top(); ++level) levels.emplace_back(pages, level);
+  // Plane k lies at k % 3.
+  std::array<std::vector<Sample>, 3> samples;
+  for (auto& plane : samples) plane.resize(grid.plane_samples());
+  const auto read = [&](std::uint64_t k) { planes(k, std::as_writable_bytes(std::span(samples[k % 3]))); };
+  std::vector<OctahedralCode> codes(grid.plane_samples());
+  const auto page = std::make_unique<Page<std::uint16_t>>();
+  read(0);
+  for (std::uint64_t k = 0; k < nz; ++k) {
+    progress.step("gradients", static_cast<double>(k) / static_cast<double>(nz));
+    if (k + 1 < nz) read(k + 1);
+    const Sample* below = k > 0 ? samples[(k + 2) % 3].data() : nullptr;
+    const Sample* above = k + 1 < nz ? samples[(k + 1) % 3].data() : nullptr;
+    gradients(std::array<const Sample*, 3>{below, samples[k % 3].data(), above}, std::span(codes));
+    for (LevelCodes& level : levels) level.add(static_cast<std::int32_t>(k), codes, *page, sink);
+  }
+}
+
+template void gradient_pages<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
+                                           Progress&);
+template void gradient_pages<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
+                                            Progress&);
+template void gradient_pages<std::int16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
+                                           Progress&);
+template void gradient_pages<float>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
+                                    Progress&);
+
+}  // namespace adamas

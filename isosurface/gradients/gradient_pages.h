@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/base/progress.h"
+#include "core/data/volume.h"
+#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/storage/page.h"
+
+namespace adamas {
+
+/// Takes one page, of which only `samples` are set: the OctahedralCode of each point, the first byte lowest.
+using GradientPageSink = std::function<void(const PageId&, const Page<std::uint16_t>&)>;
+
+/// Gives every page of the volume's PageGrid once, with the directions of the gradients of the samples at the
+/// points of the page, those of coarser levels too: PlaneGradients of the finest samples (D 4.3.2), on every
+/// level. Points beyond the data have those of the nearest sample. The order of pages depends on the
+/// volume's dimensions alone.
+///
+/// Planes are read once, in ascending order. Memory: 50 bytes and three samples for each sample of a plane of
+/// k. Sample: uint8, uint16, int16 or float, as grid.type says. Throws Error for a grid that cannot be,
+/// Cancelled when `progress` says so, and what `planes` and `sink` throw.
+template <class Sample>
+void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageSink& sink,
+                    Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas

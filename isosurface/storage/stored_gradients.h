@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "core/geometry/vec3.h"
+#include "isosurface/compression/gradient_codec.h"
+#include "isosurface/storage/page_tree.h"
+#include "isosurface/storage/store_file.h"
+
+namespace adamas {
+
+/// The directions of gradients that one step of a store keeps, page by page as they are asked for.
+class StoredGradients {
+ public:
+  /// `memory`: bytes that decoded pages may take. Throws Error where the store has no gradients or their
+  /// tables are damaged. The file must outlive this.
+  StoredGradients(StoreFile& file, std::uint32_t step, std::size_t memory);
+
+  /// The page, with OctahedralCodes as samples, the first byte lowest, and nothing else; null where it is
+  /// damaged or predicted from one that is. Valid until the next call.
+  const Page<std::uint16_t>* page(const PageId& id) { return tree_.page(id); }
+  /// At a point, whose coordinates count samples and are not negative: a unit vector, or zero where nothing
+  /// changes. Beyond the data it is that of the nearest sample. Nothing where the page cannot be had.
+  std::optional<Vec3> direction(LatticePoint p);
+
+ private:
+  bool load(const PageId& id, const PageShape& shape, const GradientCodesAround& around,
+            GradientCodes& codes);
+
+  StoreFile& file_;
+  std::uint32_t step_;
+  GradientCodec codec_;
+  PageTree<std::uint16_t> tree_;
+};
+
+}  // namespace adamas
