@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 
 #include "core/base/parallel.h"
 #include "isosurface/storage/restore.h"
@@ -209,8 +210,17 @@ void measure(const VolumeInMemory& volume) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// Volumes, as load_volume names them.
+/// Volumes, as load_volume names them. `--look`: only says of each whether there is one.
 int main(int argc, char** argv) {
   adamas::set_thread_limit(1);
-  for (int n = 1; n < argc; ++n) adamas::bench::measure(adamas::bench::load_volume(argv[n]));
+  const bool look = argc > 1 && std::string_view(argv[1]) == "--look";
+  try {
+    for (int n = look ? 2 : 1; n < argc; ++n) {
+      const adamas::bench::VolumeInMemory volume = adamas::bench::load_volume(argv[n]);
+      if (!look) adamas::bench::measure(volume);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }
