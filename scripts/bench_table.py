@@ -181,7 +181,7 @@ def main():
     parser.add_argument("parts", nargs="*", metavar="PART", help="only these: " + ", ".join(PARTS))
     parser.add_argument("--quick", action="store_true", help="smaller grids, shorter runs")
     parser.add_argument("--large", action="store_true", help="only: a volume of more than 2^31 samples")
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
     unknown = [name for name in arguments.parts if name not in PARTS]
     if unknown:
         parser.error(f"expected some of {', '.join(PARTS)}, found {unknown[0]}")
