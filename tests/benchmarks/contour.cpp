@@ -41,20 +41,21 @@ class LatticeVolume {
   std::vector<std::uint8_t> samples_;
 };
 
-/// Splits all diamonds of which `wanted` says so, until there are `count` tetrahedra.
+/// Splits all diamonds of which `wanted` says so, until there are `count` tetrahedra or none is left that can
+/// be split.
 template <class Wanted>
 IndexedHierarchy make_mesh(int levels, std::size_t count, Wanted&& wanted) {
   const double side = std::ldexp(1, levels);
   IndexedHierarchy mesh({{{0, 0, 0}, {side, side, side}}, {1, 1, 1}}, levels);
   std::vector<LatticePoint> points, done;
-  while (mesh.tetrahedron_count() < count) {
+  do {
     points.clear();
+    done.clear();
     mesh.for_each_diamond([&](const Diamond& diamond, std::uint8_t) {
       if (wanted(diamond)) points.push_back(diamond.point());
     });
-    if (points.empty()) break;
     for (const LatticePoint p : points) mesh.split(p, done);
-  }
+  } while (!done.empty() && mesh.tetrahedron_count() < count);
   return mesh;
 }
 
