@@ -16,7 +16,15 @@ namespace adamas {
 
 namespace {
 
-/// Whether the tetrahedron has at most a face in the data's box.
+/// Parameter of the isovalue between two finite values, one of them below it and one not.
+double crossing(double first, double second, double isovalue) {
+  // Differences of halves cannot overflow; those of small values lose no bits.
+  const double scale = std::max(std::abs(first), std::abs(second)) > 1 ? 0.5 : 1;
+  return (scale * isovalue - scale * first) / (scale * second - scale * first);
+}
+
+}  // namespace
+
 bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample) {
   for (int axis = 0; axis < 3; ++axis) {
     if (std::all_of(vertices.begin(), vertices.end(),
@@ -26,15 +34,6 @@ bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sa
   }
   return false;
 }
-
-/// Parameter of the isovalue between two finite values, one of them below it and one not.
-double crossing(double first, double second, double isovalue) {
-  // Differences of halves cannot overflow; those of small values lose no bits.
-  const double scale = std::max(std::abs(first), std::abs(second)) > 1 ? 0.5 : 1;
-  return (scale * isovalue - scale * first) / (scale * second - scale * first);
-}
-
-}  // namespace
 
 ContourBuilder::ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options)
     : domain_(domain), isovalue_(isovalue), options_(options) {

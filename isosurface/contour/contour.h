@@ -60,6 +60,9 @@ struct CrossedTetrahedron {
   std::array<double, 4> values;
 };
 
+/// Whether the tetrahedron has at most a face in the data's box.
+bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample);
+
 /// A contour that grows by a tetrahedron at a time. Points are numbered as they are first met.
 class ContourBuilder {
  public:

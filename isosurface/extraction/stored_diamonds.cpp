@@ -24,6 +24,9 @@ StoredDiamonds<Sample>::StoredDiamonds(StoredPages<Word>& pages)
       shift_(kRootBits - grid_.depth()),
       domain_(domain_of(pages.file().header().grid, grid_.depth())),
       recent_(static_cast<std::size_t>(grid_.top() + 1)) {
+  for (int level = 0; level < static_cast<int>(ends_.size()); ++level)
+    ends_[static_cast<std::size_t>(level)] =
+        (1 << std::min(level, grid_.top())) * grid_.extent(std::min(level, grid_.top()));
   const Vec3 spacing = pages.file().header().grid.spacing;
   for (int level = 0; level < std::max(1, grid_.depth()); ++level) {
     const ErrorScale scale = level_error_scale(spacing, level);
@@ -52,44 +55,35 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
 }
 
 template <class Sample>
-double StoredDiamonds<Sample>::sample(LatticePoint p) {
-  LatticePoint at = in_samples(p);
-  const LatticePoint end = grid_.extent(grid_.level(at));
-  for (int axis = 0; axis < 3; ++axis) {
-    // The few points farther out than a level's virtual ones are those of cubes much larger than the data.
-    if (at[axis] >> grid_.level(at) > end[axis]) {
-      for (int a = 0; a < 3; ++a) at[a] = std::min(at[a], grid_.last()[a]);
-      break;
-    }
-  }
-  const PageId id = grid_.page(at);
-  return value(page(id).samples[PageGrid::place(at, id.level)]);
-}
-
-template <class Sample>
-void StoredDiamonds<Sample>::set_isovalue(double isovalue) {
+void StoredDiamonds<Sample>::set_contour(double isovalue, int least_rank) {
   // Ordered words are in the order of their values: the first that is not below, by halving. NaN lie at both
   // ends, where they answer as the infinities next to them.
   std::uint64_t begin = 0, end = std::uint64_t{std::numeric_limits<Word>::max()} + 1;
   while (begin < end) {
     const std::uint64_t middle = (begin + end) / 2;
     const double found = value(static_cast<Word>(middle));
-    const bool below = std::isnan(found) ? middle < (std::uint64_t{std::numeric_limits<Word>::max()} + 1) / 2 : found < isovalue;
+    const bool below = std::isnan(found) ? middle < (std::uint64_t{std::numeric_limits<Word>::max()} + 1) / 2
+                                         : found < isovalue;
     (below ? begin : end) = below ? middle + 1 : middle;
   }
   least_above_ = begin;
+  least_rank_ = least_rank;
+  ++contour_;
 }
 
 template <class Sample>
-void StoredDiamonds<Sample>::mark(const HeldPage<Word>& page) const {
-  page.marked = least_above_ + 1;
-  if (least_above_ > std::numeric_limits<Word>::max()) {
+void StoredDiamonds<Sample>::mark(const PageId& id, const HeldPage<Word>& page) {
+  page.marked = contour_;
+  const PageEntry& known = entry(id);
+  if (!crosses(known.low, known.high)) {
     page.marks.fill(0);
-    return;
+  } else if (known.error + 4 * id.level < least_rank_) {
+    page.marks.fill(known.error);
+  } else {
+    const auto least = static_cast<Word>(least_above_);
+    for (std::size_t n = 0; n < PageGrid::kPoints; ++n)
+      page.marks[n] = page.low[n] < least && least <= page.high[n] ? page.errors[n] : std::uint8_t{0};
   }
-  const auto least = static_cast<Word>(least_above_);
-  for (std::size_t n = 0; n < PageGrid::kPoints; ++n)
-    page.marks[n] = page.low[n] < least && least <= page.high[n] ? page.errors[n] : std::uint8_t{0};
 }
 
 template <class Sample>
@@ -100,9 +94,11 @@ int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
   if (from == nullptr) {
     const PageEntry& known = entry(id);
     if (!crosses(known.low, known.high)) return 0;
+    const int greatest = known.error + 4 * id.level;
+    if (greatest < least_rank_) return known.error == 0 ? 0 : greatest;
     from = &page(id);
   }
-  if (from->marked != least_above_ + 1) mark(*from);
+  if (from->marked != contour_) mark(id, *from);
   const int code = from->marks[PageGrid::place(at, id.level)];
   return code == 0 ? 0 : code + 4 * level(p);
 }

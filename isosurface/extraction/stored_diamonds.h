@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -40,13 +41,19 @@ class StoredDiamonds {
   /// Whether pages know of the diamond: its point is no corner of the cube, and it reaches into the data.
   [[nodiscard]] bool is_stored(LatticePoint p) const {
     const int l = level(p);
-    if (l < 0 || l >= grid_.depth()) return false;
-    const LatticePoint e = grid_.extent(l), s = in_samples(p);
-    return s.i >> l <= e.i && s.j >> l <= e.j && s.k >> l <= e.k;
+    return l >= 0 && l < grid_.depth() && reaches(in_samples(p), l);
   }
 
   /// The sample at a point of the lattice of samples; beyond the data the nearest one. Throws PageLost.
-  double sample(LatticePoint p);
+  double sample(LatticePoint p) {
+    LatticePoint at = in_samples(p);
+    // The few points farther out than a level's virtual ones are those of cubes much larger than the data.
+    if (!reaches(at, trailing_zeros(at))) {
+      for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], grid_.last()[axis]);
+    }
+    const PageId id = grid_.page(at);
+    return value(page(id).samples[PageGrid::place(at, id.level)]);
+  }
 
   /// Errors by rank: 0 is none, and each rank is an error 2^(1/4) times that of the one before.
   static constexpr int kRanks = ErrorScale::kCodes + 4 * PageGrid::kMaxDepth;
@@ -55,10 +62,11 @@ class StoredDiamonds {
   /// The greatest rank whose error is not greater.
   [[nodiscard]] int rank_within(double error) const;
 
-  /// Which contour the ranks are for.
-  void set_isovalue(double isovalue);
-  /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Throws
-  /// PageLost.
+  /// Which contour the ranks are for, and from which rank on they matter.
+  void set_contour(double isovalue, int least_rank);
+  /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Where no
+  /// diamond of its page has a rank that matters, the greatest of theirs, without a look into the page.
+  /// Throws PageLost.
   int rank_if_crossed(LatticePoint p);
 
   /// Bounds of all samples. Throws PageLost.
@@ -71,9 +79,16 @@ class StoredDiamonds {
     return *found;
   }
   const PageEntry& entry(const PageId& id);
-  /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others.
-  void mark(const HeldPage<Word>& page) const;
+  /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others; all of
+  /// them the greatest of the page where none matters.
+  void mark(const PageId& id, const HeldPage<Word>& page);
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
+  /// Whether a point whose coordinates, in samples, are multiples of 2^level is among the points of that
+  /// level.
+  [[nodiscard]] bool reaches(LatticePoint at, int level) const {
+    const LatticePoint e = ends_[static_cast<std::size_t>(std::min(level, PageGrid::kMaxDepth + 1))];
+    return at.i <= e.i && at.j <= e.j && at.k <= e.k;
+  }
   /// The contour crosses what has a range with low < least_above_ <= high, as ordered words.
   [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {
     return low <= high && low < least_above_ && least_above_ <= high;
@@ -89,8 +104,11 @@ class StoredDiamonds {
   PageGrid grid_;
   int shift_;
   Domain domain_;
-  std::vector<RecentEntry> recent_;  ///< by level
-  std::uint64_t least_above_ = 0;    ///< the least ordered word of a value not below the isovalue
+  std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by level: the last point, in samples
+  std::vector<RecentEntry> recent_;                           ///< by level
+  std::uint64_t least_above_ = 0;  ///< the least ordered word of a value not below the isovalue
+  int least_rank_ = 0;
+  std::uint64_t contour_ = 0;  ///< which one the marks of pages are for
   std::array<double, kRanks> errors_{};
 };
 

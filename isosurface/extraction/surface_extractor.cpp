@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/base/error.h"
 #include "core/geometry/tetrahedron_contour.h"
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/extraction/diamond_halves.h"
+#include "isosurface/storage/z_order.h"
 
 namespace adamas {
 
@@ -22,6 +24,23 @@ template <class Sample>
 int SurfaceExtractor<Sample>::generation(LatticePoint p) const {
   const Diamond diamond(p);
   return 3 * diamond.level() + diamond.phase();
+}
+
+template <class Sample>
+void SurfaceExtractor<Sample>::sort_by_page(Points& points) const {
+  if (points.size() < 2) return;
+  const int bits = trailing_zeros(points[0]) + 4;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(points.size());
+  for (const LatticePoint p : points) {
+    order.emplace_back(ZOrder::interleave({p.i >> bits, p.j >> bits, p.k >> bits}),
+                       static_cast<std::uint32_t>(order.size()));
+  }
+  std::sort(order.begin(), order.end());
+  Points sorted;
+  sorted.reserve(points.size());
+  for (const auto& [page, index] : order) sorted.push_back(points[index]);
+  points.swap(sorted);
 }
 
 template <class Sample>
@@ -46,10 +65,9 @@ int SurfaceExtractor<Sample>::rank(LatticePoint p) {
 }
 
 template <class Sample>
-bool SurfaceExtractor<Sample>::is_split(LatticePoint p, const Cut& cut) {
-  const int r = rank(p);
-  if (r != cut.rank) return r > cut.rank;
-  if (r == 0) return false;
+bool SurfaceExtractor<Sample>::is_split(LatticePoint p, int rank, const Cut& cut) const {
+  if (rank != cut.rank) return rank > cut.rank;
+  if (rank == 0) return false;
   const int g = generation(p);
   if (g != cut.generation) return g < cut.generation;
   return std::binary_search(cut.last.begin(), cut.last.end(), p);
@@ -83,6 +101,12 @@ typename SurfaceExtractor<Sample>::Vertices SurfaceExtractor<Sample>::vertices(c
     if ((used >> r & 1) != 0) result.ring[static_cast<std::size_t>(r)] = diamonds_.sample(diamond.ring(r));
   }
   result.ring[static_cast<std::size_t>(count)] = result.ring[0];
+  const auto above = [&](double value) {
+    result.finite = result.finite && std::isfinite(value);
+    return unsigned{value >= request_.isovalue};
+  };
+  result.above = above(result.begin) | above(result.end) << 1 | above(result.middle) << 2;
+  for (int r = 0; r <= count; ++r) result.above |= above(result.ring[static_cast<std::size_t>(r)]) << (3 + r);
   return result;
 }
 
@@ -93,6 +117,8 @@ unsigned above(const std::array<double, 4>& values, double isovalue) {
   for (std::size_t v = 0; v < 4; ++v) bits |= unsigned{values[v] >= isovalue} << v;
   return bits;
 }
+
+bool is_uncrossed(unsigned above) { return above == 0 || above == 15; }
 
 std::array<double, 4> half_values(const TetrahedronHalf& half, const std::array<double, 4>& values,
                                   double middle) {
@@ -130,7 +156,8 @@ std::int64_t SurfaceExtractor<Sample>::count_triangles(LatticePoint diamond, int
   for_each_crossed(diamond, slot, values, subtree_bisections_, [&](const CrossedTetrahedron& t) {
     const bool finite =
         std::all_of(t.values.begin(), t.values.end(), [](double value) { return std::isfinite(value); });
-    count += finite ? kTetrahedronContours[t.above].triangle_count : 0;
+    if (finite && !is_beyond(Diamond(t.diamond).tetrahedron(t.slot), diamonds_.last_sample()))
+      count += kTetrahedronContours[t.above].triangle_count;
   });
   return count;
 }
@@ -139,14 +166,27 @@ template <class Sample>
 std::int64_t SurfaceExtractor<Sample>::added_triangles(LatticePoint p) {
   const Diamond diamond(p);
   const Vertices v = vertices(diamond, true);
+  // With subtrees a tetrahedron may be crossed though all of its vertices are on one side.
+  const bool by_sides = subtree_bisections_ == 0 && v.finite;
+  const auto triangles = [](unsigned above) {
+    return std::int64_t{kTetrahedronContours[above].triangle_count};
+  };
   std::int64_t added = 0;
   for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
     if ((v.slots >> slot & 1) == 0) continue;
-    const std::array<double, 4> values = v.tetrahedron(slot);
-    added -= count_triangles(p, slot, values);
+    if (by_sides) {
+      added -= triangles(v.above_of(slot, {0, 1, 2, 3}));
+    } else {
+      added -= count_triangles(p, slot, v.tetrahedron(slot));
+    }
     for (const int end : {0, 1}) {
       const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
-      added += count_triangles(diamond.child(half.child), half.slot, half_values(half, values, v.middle));
+      if (by_sides) {
+        added += triangles(v.above_of(slot, half.vertices));
+      } else {
+        added += count_triangles(diamond.child(half.child), half.slot,
+                                 half_values(half, v.tetrahedron(slot), v.middle));
+      }
     }
   }
   return added;
@@ -154,16 +194,14 @@ std::int64_t SurfaceExtractor<Sample>::added_triangles(LatticePoint p) {
 
 template <class Sample>
 typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_error() const {
-  Cut cut;
-  cut.rank = diamonds_.rank_within(request_.error);
-  // All of the next rank.
-  return cut;
+  return {least_rank(), std::numeric_limits<int>::max(), {}};
 }
 
 template <class Sample>
 typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangles(std::uint64_t budget,
                                                                                   Progress& progress) {
-  const int least = diamonds_.rank_within(request_.error);
+  const int least = least_rank();
+  diamonds_.set_contour(request_.isovalue, least);
   const Diamond root(root_);
   const Vertices v = vertices(root, false);
   std::int64_t triangles = 0;
@@ -172,12 +210,13 @@ typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangle
   // By rank, then by generation: no diamond has a greater rank, or with the same rank an earlier generation,
   // than its parents.
   std::vector<std::map<int, Points>> waiting(StoredDiamonds<Sample>::kRanks);
-  if (const int r = rank(root_); r > least) waiting[static_cast<std::size_t>(r)][0].push_back(root_);
-  for (int r = StoredDiamonds<Sample>::kRanks - 1; r > least; --r) {
+  if (const int r = rank(root_); r >= least) waiting[static_cast<std::size_t>(r)][0].push_back(root_);
+  for (int r = StoredDiamonds<Sample>::kRanks - 1; r >= least; --r) {
     auto& generations = waiting[static_cast<std::size_t>(r)];
     while (!generations.empty()) {
-      const auto [g, points] = *generations.begin();
+      auto [g, points] = std::move(*generations.begin());
       generations.erase(generations.begin());
+      sort_by_page(points);
       progress.step("choosing", static_cast<double>(triangles) / static_cast<double>(budget));
       for (std::size_t n = 0; n < points.size(); ++n) {
         const std::int64_t added = added_triangles(points[n]);
@@ -189,7 +228,7 @@ typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangle
         triangles += added;
         for (const LatticePoint child : Diamond(points[n]).children(diamonds_.domain())) {
           if (!leads_to(points[n], child)) continue;
-          if (const int c = rank(child); c > least)
+          if (const int c = rank(child); c >= least)
             waiting[static_cast<std::size_t>(c)][g + 1].push_back(child);
         }
       }
@@ -202,20 +241,21 @@ template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& progress) {
   ExtractedSurface surface;
   const Domain& domain = diamonds_.domain();
+  diamonds_.set_contour(request_.isovalue, cut.rank);
   ContourBuilder builder(domain, request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
   const auto emit = [&](LatticePoint diamond, int slot, const std::array<double, 4>& values) {
     for_each_crossed(diamond, slot, values, subtree_bisections_,
                      [&](const CrossedTetrahedron& t) { builder.add(t); });
   };
-  const auto note_error = [&](LatticePoint p) {
-    surface.max_error = std::max(surface.max_error, diamonds_.error(rank(p)));
+  const auto note_error = [&](int rank) {
+    surface.max_error = std::max(surface.max_error, diamonds_.error(rank));
   };
   Points current, next;
   surface.tetrahedra = static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count());
-  if (is_split(root_, cut)) {
+  if (const int r = rank(root_); is_split(root_, r, cut)) {
     current.push_back(root_);
   } else {
-    note_error(root_);
+    note_error(r);
     const Vertices v = vertices(Diamond(root_), false);
     for (int slot = 0; slot < Diamond(root_).tetrahedron_count(); ++slot)
       emit(root_, slot, v.tetrahedron(slot));
@@ -223,6 +263,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
   for (int g = 0; !current.empty(); ++g) {
     progress.step("extracting", g / (3.0 * diamonds_.levels()));
     next.clear();
+    sort_by_page(current);
     for (const LatticePoint p : current) {
       const Diamond diamond(p);
       const Vertices v = vertices(diamond, true);
@@ -231,13 +272,15 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
       for (int c = 0; c < diamond.child_count(); ++c) {
         const LatticePoint child = diamond.child(c);
         if (!domain.contains(child) || is_beyond(Diamond(child), diamonds_.last_sample())) continue;
-        if (is_split(child, cut)) {
+        const int r = rank(child);
+        if (is_split(child, r, cut)) {
           if (leads_to(p, child)) next.push_back(child);
           continue;
         }
-        note_error(child);
+        note_error(r);
         for (const auto& half : diamond.type().child_tetrahedra[static_cast<std::size_t>(c)]) {
           if ((v.slots >> half.slot & 1) == 0) continue;
+          if (subtree_bisections_ == 0 && is_uncrossed(v.above_of(half.slot, half.vertices))) continue;
           emit(child, half.child_slot,
                half_values({{}, half.child_slot, half.vertices}, v.tetrahedron(half.slot), v.middle));
         }
@@ -266,7 +309,6 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request, Progress& progress) {
   request_ = request;
-  diamonds_.set_isovalue(request.isovalue);
   region_.reset();
   if (request.region) {
     const Vec3 spacing = std::ldexp(1.0, -diamonds_.levels()) * diamonds_.domain().box().size();

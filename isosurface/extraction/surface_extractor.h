@@ -43,9 +43,19 @@ class SurfaceExtractor {
     unsigned slots = 0;
     double begin = 0, end = 0, middle = 0;
     std::array<double, 9> ring{};
+    /// Which of them are above the isovalue, as bits in the order of the members.
+    unsigned above = 0;
+    bool finite = true;  ///< all of them
+
     [[nodiscard]] std::array<double, 4> tetrahedron(int slot) const {
       const auto s = static_cast<std::size_t>(slot);
       return {begin, end, ring[s], ring[s + 1]};
+    }
+    /// The same bits of one half of a tetrahedron, in the half's order.
+    [[nodiscard]] unsigned above_of(int slot, const std::array<std::uint8_t, 4>& half) const {
+      const unsigned bits = (above & 3) | (above >> (3 + slot) & 3) << 2 | (above & 4) << 2;
+      return (bits >> half[0] & 1) | (bits >> half[1] & 1) << 1 | (bits >> half[2] & 1) << 2 |
+             (bits >> half[3] & 1) << 3;
     }
   };
 
@@ -54,13 +64,19 @@ class SurfaceExtractor {
   Cut cut_by_triangles(std::uint64_t budget, Progress& progress);
   ExtractedSurface contour_of(const Cut& cut, Progress& progress);
 
+  /// The least rank whose error is greater than the one wanted.
+  [[nodiscard]] int least_rank() const { return diamonds_.rank_within(request_.error) + 1; }
   /// The rank of a diamond that may be split, 0 of others.
   int rank(LatticePoint p);
-  bool is_split(LatticePoint p, const Cut& cut);
+  /// Whether the cut splits the diamond, whose rank is `rank`.
+  [[nodiscard]] bool is_split(LatticePoint p, int rank, const Cut& cut) const;
   [[nodiscard]] bool reaches_region(LatticePoint p, int level, int phase) const;
   /// Whether `parent` is that of its parents through which `child` is come to.
   [[nodiscard]] bool leads_to(LatticePoint parent, LatticePoint child) const;
   [[nodiscard]] int generation(LatticePoint p) const;
+  /// Brings diamonds of one generation into the order of their pages in the file: each page is looked at
+  /// once.
+  void sort_by_page(Points& points) const;
   Vertices vertices(const Diamond& diamond, bool with_middle);
 
   /// Calls fn(tetrahedron) for those of the fine tetrahedra of a tetrahedron that the contour crosses.

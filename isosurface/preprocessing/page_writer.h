@@ -69,7 +69,13 @@ class PageWriter {
     const LatticePoint p = PageGrid::kSide * id.block + LatticePoint{0, j, k};
     Word* to = page_->samples.data() + place({0, j, k});
     if (id.level < CoarseSamples<Word>::kBits) {
-      std::copy_n(levels_[static_cast<std::size_t>(id.level)].samples(p.j, p.k) + p.i, count, to);
+      const LevelValues<Word>& values = levels_[static_cast<std::size_t>(id.level)];
+      // Only the coarsest page reaches farther than its level; beyond lies what lies at the end.
+      const LatticePoint end = values.size() - LatticePoint{1, 1, 1};
+      const Word* from = values.samples(std::min(p.j, end.j), std::min(p.k, end.k));
+      const std::int32_t there = std::min(count, end.i + 1 - p.i);
+      std::copy_n(from + p.i, there, to);
+      std::fill(to + there, to + count, from[end.i]);
     } else {
       for (std::int32_t i = 0; i < count; ++i)
         to[i] = coarse_.at((std::int32_t{1} << id.level) * (p + LatticePoint{i, 0, 0}));
@@ -101,6 +107,12 @@ class PageWriter {
     const int shift = level - page_level;
     const LatticePoint p{q.i >> shift, q.j >> shift, q.k >> shift};
     LevelValues<Word>& values = levels_[static_cast<std::size_t>(level)];
+    // Other levels of the page may reach farther.
+    const LatticePoint size = values.size();
+    if (p.i >= size.i || p.j >= size.j || p.k >= size.k) {
+      fill_empty(at);
+      return;
+    }
     page_->low[at] = values.low(p.j, p.k)[p.i];
     page_->high[at] = values.high(p.j, p.k)[p.i];
     page_->errors[at] = values.codes(3 * subtree_depth_, p.j, p.k)[p.i];

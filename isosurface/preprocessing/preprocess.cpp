@@ -59,7 +59,7 @@ class Preprocessing {
   static Levels make_levels(const PageGrid& grid, int generations) {
     Levels levels;
     for (int level = 0; level < std::max(1, grid.depth()); ++level) {
-      LatticePoint size = grid.extent(level) + LatticePoint{1, 1, 1};
+      LatticePoint size = grid.reach(level) + LatticePoint{1, 1, 1};
       // Where an axis is but one sample the diamonds beside it stand between those on it.
       for (int axis = 0; axis < 3; ++axis) size[axis] = std::max(size[axis], 2);
       const bool is_whole = level >= kWholeLevel;

@@ -23,7 +23,7 @@ struct PageId {
 /// Along an axis whose last sample is `last`, level l has the points 0 to ceil(last / 2^l): where 2^l does
 /// not divide `last`, the last of them is virtual. It lies beyond the data, and its sample is the nearest
 /// one, so that what is known of a level needs no page of a finer one. The diamonds of all other points
-/// beyond the data lie wholly outside.
+/// beyond the data lie wholly outside. The coarsest page has what all coarser levels need.
 class PageGrid {
  public:
   static constexpr int kSide = 16;
@@ -42,6 +42,12 @@ class PageGrid {
 
   /// The greatest coordinates of the level's points, in units of 2^level.
   [[nodiscard]] LatticePoint extent(int level) const {
+    const LatticePoint e = reach(level);
+    return level == top() && depth_ > 0 ? (1 << (depth_ - 1 - level)) * reach(depth_ - 1) : e;
+  }
+  /// The greatest coordinates, in units of 2^level, of the points whose diamonds of that scale are not wholly
+  /// outside; not more than extent(level).
+  [[nodiscard]] LatticePoint reach(int level) const {
     const auto at = [level](std::int32_t x) { return (x + (1 << level) - 1) >> level; };
     return {at(last_.i), at(last_.j), at(last_.k)};
   }

@@ -139,7 +139,7 @@ std::uint32_t PageTree<Word>::free_slot() {
     return slot;
   }
   if (slots_.size() < capacity_) {
-    slots_.push_back({{}, std::make_unique<HeldPage<Word>>()});
+    slots_.push_back({{}, std::make_unique_for_overwrite<HeldPage<Word>>()});
     return static_cast<std::uint32_t>(slots_.size() - 1);
   }
   for (;; considered_ = considered_ + 1 == slots_.size() ? 0 : considered_ + 1) {

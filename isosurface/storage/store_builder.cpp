@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/compression/value_codec.h"
+#include "isosurface/storage/page_summary.h"
 #include "isosurface/storage/page_tree.h"
 #include "isosurface/storage/sample_dispatch.h"
 #include "isosurface/storage/scratch_pages.h"
@@ -152,8 +153,8 @@ class StoreBuilder {
       for (std::size_t n = 0; n < jobs.size(); ++n) {
         header.bytes.samples += coded[n].samples.size();
         header.bytes.values += coded[n].values.size();
-        const auto [low, high] = range(jobs[n]);
-        writer.add_page(0, jobs[n].number, join_payload({coded[n].samples, coded[n].values, {}}), low, high);
+        writer.add_page(0, jobs[n].number, join_payload({coded[n].samples, coded[n].values, {}}),
+                        summary(jobs[n].shape, jobs[n].page));
       }
     });
     header.sample_tables = samples->tables();
@@ -162,23 +163,6 @@ class StoreBuilder {
     header.bytes.values += header.value_tables.size();
     const StoreBytes bytes = header.bytes;
     return {bytes, writer.finish(std::move(header)), numbers.size()};
-  }
-
-  /// The union of the ranges of the page's own points.
-  static std::pair<Word, Word> range(const Job<Word>& job) {
-    Word low = static_cast<Word>(~Word{0}), high = 0;
-    LatticePoint q{};
-    for (q.k = 0; q.k < job.shape.count.k; ++q.k) {
-      for (q.j = 0; q.j < job.shape.count.j; ++q.j) {
-        for (q.i = 0; q.i < job.shape.count.i; ++q.i) {
-          if (!job.shape.owns(q)) continue;
-          const std::size_t place = PageGrid::place(q, 0);
-          low = std::min(low, job.page.low[place]);
-          high = std::max(high, job.page.high[place]);
-        }
-      }
-    }
-    return {low, high};
   }
 
   VolumeGrid volume_;

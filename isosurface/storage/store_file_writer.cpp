@@ -40,17 +40,15 @@ void StoreFileWriter::end_chunk() {
 }
 
 void StoreFileWriter::add_page(std::uint32_t step, std::uint64_t number, std::span<const std::byte> payload,
-                               std::uint32_t low, std::uint32_t high) {
+                               const PageSummary& summary) {
   const std::uint64_t first = number / DirectoryChunk::kPages * DirectoryChunk::kPages;
   if (chunks_.empty() || chunks_.back().step != step || chunks_.back().first != first) {
     if (!chunks_.empty()) end_chunk();
     begin_chunk(step, first);
   }
-  PageEntry entry;
+  PageEntry entry{summary};
   entry.size = static_cast<std::uint32_t>(payload.size());
   entry.checksum = crc32c(payload);
-  entry.low = low;
-  entry.high = high;
   entries_.push_back(entry);
   if (grid_.page(number).level >= kCopiedLevel) copies_.insert(copies_.end(), payload.begin(), payload.end());
   write(payload);

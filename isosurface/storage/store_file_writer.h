@@ -18,10 +18,9 @@ class StoreFileWriter {
   /// Throws Error where the file cannot be written; messages name `shown`, the file's final name.
   StoreFileWriter(const std::filesystem::path& path, std::string shown, const StoreHeader& header);
 
-  /// Pages that PageGrid::contains, every one, in ascending order of step and number. `low` and `high`: the
-  /// union of the ranges of the diamonds of the page's points.
+  /// Pages that PageGrid::contains, every one, in ascending order of step and number.
   void add_page(std::uint32_t step, std::uint64_t number, std::span<const std::byte> payload,
-                std::uint32_t low, std::uint32_t high);
+                const PageSummary& summary);
   /// With the bytes and tables that are known now. Returns the file's size.
   std::uint64_t finish(StoreHeader header);
 

@@ -177,6 +177,7 @@ std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std
     out.number(entry.checksum);
     for (const std::uint32_t word : {entry.low, entry.high})
       out.bytes(std::as_bytes(std::span(&word, 1)).first(word_bytes));
+    out.number(entry.error);
   }
   return bytes;
 }
@@ -201,6 +202,7 @@ std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const 
     entry.checksum = in.number<std::uint32_t>();
     entry.low = word();
     entry.high = word();
+    entry.error = in.number<std::uint8_t>();
     entry.offset = offset;
     offset += size;
     if (grid.page(number).level >= kCopiedLevel) {

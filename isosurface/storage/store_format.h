@@ -31,14 +31,21 @@ struct StoreHeader {
   std::vector<std::byte> sample_tables, value_tables, gradient_tables;
 };
 
+/// What is known of a page without reading it.
+struct PageSummary {
+  /// The union of the ranges of its points' diamonds, as ordered words; low > high where nothing is in them.
+  std::uint32_t low = 0, high = 0;
+  /// The greatest of their error codes, which are those of the page's level; of the coarsest page, which has
+  /// diamonds of several levels, the greatest code there is.
+  std::uint8_t error = 0;
+};
+
 /// What the directory says of a page.
-struct PageEntry {
+struct PageEntry : PageSummary {
   std::uint64_t offset = 0;  ///< in the file
   std::uint64_t copy = 0;    ///< of the second copy, 0 where there is none
   std::uint32_t size = 0;
   std::uint32_t checksum = 0;
-  /// The union of the ranges of its points' diamonds, as ordered words; low > high where nothing is in them.
-  std::uint32_t low = 0, high = 0;
 };
 
 /// Pages whose numbers agree but for the last nine bits have their directory entries in one piece. Pages, and

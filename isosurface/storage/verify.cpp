@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/lattice/diamond.h"
-#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/storage/page_summary.h"
 #include "isosurface/storage/sample_dispatch.h"
 #include "isosurface/storage/stored_pages.h"
 
@@ -54,10 +54,19 @@ class Verifier {
     if (page == nullptr) {
       ++result_.bad_pages;
       problem(id, payload.state == PageState::kDamaged ? "is damaged" : "is predicted from a damaged one");
+    } else if (entry && !is_summary(id, *page, *entry)) {
+      ++result_.bad_pages;
+      problem(id, "is not what the directory says of it");
     } else if (!is_lawful(id, *page)) {
       ++result_.bad_pages;
       problem(id, "has errors or ranges greater than those of the diamonds they come from");
     }
+  }
+
+  bool is_summary(const PageId& id, const Page<Word>& page, const PageSummary& said) const {
+    const PageGrid& grid = pages_.grid();
+    const PageSummary found = summary(PageShape{grid.count(id), grid.is_complete(id), id.level}, page);
+    return found.low == said.low && found.high == said.high && found.error == said.error;
   }
 
   /// Diamonds of a page and those that they come from, as far as the page has both.

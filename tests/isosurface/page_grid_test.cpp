@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -60,16 +61,25 @@ TEST_P(PageGridOf, EverySampleIsInOnePage) {
   }
 }
 
-TEST_P(PageGridOf, LevelsHaveThePointsWhoseDiamondsReachTheData) {
+TEST_P(PageGridOf, LevelsReachAsFarAsTheDiamondsThatReachTheData) {
   const PageGrid grid(GetParam());
   for (int level = 0; level < grid.depth(); ++level) {
     const std::int32_t s = 1 << level;
     for (int axis = 0; axis < 3; ++axis) {
-      const std::int32_t last = grid.last()[axis], end = grid.extent(level)[axis];
+      const std::int32_t last = grid.last()[axis], end = grid.reach(level)[axis];
       if (last == 0) continue;
       EXPECT_LT((end - 1) * s, last);      // the diamond of the last point begins before the data end,
       EXPECT_GE((end + 1 - 1) * s, last);  // that of the next one does not
     }
+  }
+}
+
+TEST_P(PageGridOf, PagesHaveThePointsWhoseDiamondsReachTheData) {
+  const PageGrid grid(GetParam());
+  for (int level = 0; level < grid.depth(); ++level) {
+    const int in_pages = std::min(level, grid.top());
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_LE(grid.reach(level)[axis] << (level - in_pages), grid.extent(in_pages)[axis]) << level;
   }
 }
 

@@ -69,10 +69,11 @@ class StoreOfRandomPages : public testing::Test {
       for (std::uint64_t number = 0; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
         if (number == 0 || (std::bit_width(number) - 1) % 3 != 0 || !grid.contains(grid.page(number)))
           continue;
-        Written page{step, grid.page(number), random_bytes(random_, random_() % 200), random_() & 0xffffu,
-                     random_() & 0xffffu};
-        writer.add_page(step, number, page.bytes, static_cast<std::uint32_t>(page.low),
-                        static_cast<std::uint32_t>(page.high));
+        Written page{step, grid.page(number), random_bytes(random_, random_() % 200), {}};
+        page.summary.low = static_cast<std::uint32_t>(random_() & 0xffffu);
+        page.summary.high = static_cast<std::uint32_t>(random_() & 0xffffu);
+        page.summary.error = static_cast<std::uint8_t>(random_() & 63u);
+        writer.add_page(step, number, page.bytes, page.summary);
         pages_.push_back(std::move(page));
       }
     }
@@ -83,7 +84,7 @@ class StoreOfRandomPages : public testing::Test {
     std::uint32_t step;
     PageId id;
     std::vector<std::byte> bytes;
-    std::uint64_t low, high;
+    PageSummary summary;
   };
 
   std::mt19937 random_{7};
@@ -113,8 +114,9 @@ TEST_F(StoreOfRandomPages, GivesThemBack) {
     for (const Written& page : pages_) {
       const auto entry = file.entry(page.step, page.id);
       ASSERT_TRUE(entry);
-      EXPECT_EQ(entry->low, page.low);
-      EXPECT_EQ(entry->high, page.high);
+      EXPECT_EQ(entry->low, page.summary.low);
+      EXPECT_EQ(entry->high, page.summary.high);
+      EXPECT_EQ(entry->error, page.summary.error);
       EXPECT_EQ(entry->copy != 0, page.id.level >= kCopiedLevel);
       EXPECT_TRUE(file.copy_is_whole(*entry));
       const StoreFile::Payload payload = file.read(page.step, page.id);
@@ -184,7 +186,7 @@ TEST(StoreFileWriter, TellsOfAFullDisk) {
   header.grid.dimensions = {1, 1, 1};
   StoreFileWriter writer("/dev/full", "out.adm", header);
   try {
-    writer.add_page(0, 1, std::vector<std::byte>(100000), 0, 0);
+    writer.add_page(0, 1, std::vector<std::byte>(100000), {});
     writer.finish(header);
     FAIL();
   } catch (const Error& e) {

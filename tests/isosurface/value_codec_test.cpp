@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "datasets/buckyball.h"
-#include "tests/support/value_reference.h"
+#include "tests/support/prepared_volume.h"
 
 namespace adamas {
 namespace {
@@ -84,7 +84,7 @@ std::size_t expect_all_there_and_back(const Cases<Word>& cases) {
 }
 
 template <class Sample>
-Cases<OrderedWord<Sample>> cases_of(const test::ValueReference<Sample>& reference) {
+Cases<OrderedWord<Sample>> cases_of(const test::PreparedVolume<Sample>& reference) {
   Cases<OrderedWord<Sample>> cases;
   const PageGrid& grid = reference.grid();
   for (std::uint64_t number = 1; cases.size() < grid.page_count(); ++number) {
@@ -142,7 +142,7 @@ TYPED_TEST_SUITE(ValueCodecOf, Words);
 
 template <class Sample>
 void expect_less_than(double bits, double scale, Vec3 spacing = {1, 1, 1}, int depth = 0) {
-  const test::ValueReference<Sample> reference(kDimensions, waves<Sample>(kDimensions, scale), spacing,
+  const test::PreparedVolume<Sample> reference(kDimensions, waves<Sample>(kDimensions, scale), spacing,
                                                depth);
   const auto cases = cases_of(reference);
   const std::size_t size = expect_all_there_and_back(cases);
@@ -159,7 +159,7 @@ TEST(ValueCodec, CodesWhatVolumesHold) {
 }
 
 TEST(ValueCodec, CodesLevelsWithoutValuesInAByteOrTwo) {
-  const test::ValueReference<std::uint8_t> reference(kDimensions, waves<std::uint8_t>(kDimensions, 90),
+  const test::PreparedVolume<std::uint8_t> reference(kDimensions, waves<std::uint8_t>(kDimensions, 90),
                                                      {1, 1, 1}, 1);
   const auto cases = cases_of(reference);
   const auto codec = codec_of(cases);
@@ -172,7 +172,7 @@ TEST(ValueCodec, CodesLevelsWithoutValuesInAByteOrTwo) {
 }
 
 TEST(ValueCodec, CodesAConstantInAByte) {
-  const test::ValueReference<std::uint16_t> reference(kDimensions,
+  const test::PreparedVolume<std::uint16_t> reference(kDimensions,
                                                       std::vector<std::uint16_t>(41 * 35 * 30, 9));
   const auto cases = cases_of(reference);
   const auto codec = codec_of(cases);
@@ -194,18 +194,18 @@ TEST(ValueCodec, CodesWhereNumbersAreNotFinite) {
                              -0.0f,    3e38f,     -3e38f,        1e-42f};
     samples[random() % samples.size()] = special[random() % 8];
   }
-  expect_all_there_and_back(cases_of(test::ValueReference<float>(kDimensions, samples)));
+  expect_all_there_and_back(cases_of(test::PreparedVolume<float>(kDimensions, samples)));
 }
 
 TEST(ValueCodec, CodesOneVolumeWithTheTablesOfAnother) {
   const auto cases =
-      cases_of(test::ValueReference<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
+      cases_of(test::PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
   const Buckyball ball({33, 33, 33}, SampleType::kUint8);
   std::vector<std::uint8_t> samples(33 * 33 * 33);
   for (std::uint64_t k = 0; k < 33; ++k) {
     ball.plane(k, std::as_writable_bytes(std::span(samples)).subspan(33 * 33 * k, 33 * 33));
   }
-  const auto others = cases_of(test::ValueReference<std::uint8_t>({33, 33, 33}, samples));
+  const auto others = cases_of(test::PreparedVolume<std::uint8_t>({33, 33, 33}, samples));
   const auto codec = codec_of(cases);
   for (const auto& c : others) expect_there_and_back(codec, c);
 }
@@ -251,7 +251,7 @@ TYPED_TEST(ValueCodecOf, CodesPagesThatAreAllAlike) {
 
 TEST(ValueCodec, IsTheSameForSurveysInAnyOrder) {
   const auto cases =
-      cases_of(test::ValueReference<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
+      cases_of(test::PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
   ValueSurvey<std::uint8_t> forth, back, parts;
   for (std::size_t n = 0; n < cases.size(); ++n) {
     const auto& a = cases[n];
@@ -297,7 +297,7 @@ TYPED_TEST(ValueCodecOf, AnswersToFlippedBits) {
 
 TEST(ValueCodec, AnswersToTablesThatAreCutOrCorrupt) {
   const auto cases =
-      cases_of(test::ValueReference<std::uint8_t>({20, 20, 20}, waves<std::uint8_t>({20, 20, 20}, 100)));
+      cases_of(test::PreparedVolume<std::uint8_t>({20, 20, 20}, waves<std::uint8_t>({20, 20, 20}, 100)));
   const auto codec = codec_of(cases);
   const Bytes tables = codec.tables();
   for (std::size_t length = 0; length < tables.size(); ++length) {

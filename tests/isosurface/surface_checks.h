@@ -1,0 +1,180 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "isosurface/contour/contour.h"
+#include "isosurface/hierarchy/indexed_hierarchy.h"
+#include "isosurface/preprocessing/preprocess.h"
+#include "tests/support/volume_store.h"
+
+namespace adamas::test {
+
+using Edge = std::pair<LatticePoint, LatticePoint>;
+/// Triangles by the edges of the mesh that their corners lie on, the least first, turning as they do.
+using TriangleSet = std::multiset<std::array<Edge, 3>>;
+/// Of a contour that nothing clipped.
+TriangleSet triangle_set(const Contour& contour);
+
+/// Values at points of the lattice.
+using Field = std::function<double(LatticePoint)>;
+
+/// What a mesh of tetrahedra of any origin is contoured from: for each the vertices in any order.
+using Corners = std::array<LatticePoint, 4>;
+/// The tetrahedron of the hierarchy with these corners, as a part of its diamond.
+std::pair<LatticePoint, std::uint8_t> slot_of(const Corners& corners);
+/// Calls fn(corners) for the tetrahedra that so many bisections of the longest edge make of one.
+void for_each_part(const Corners& corners, int bisections, const std::function<void(const Corners&)>& fn);
+/// The contour over all these parts of a mesh's tetrahedra.
+Contour contour_of_parts(const IndexedHierarchy& mesh, int bisections, const Field& values, double isovalue,
+                         const ContourOptions& options);
+
+/// Lattice units of one step between samples.
+inline std::int32_t lattice_step(int depth) { return std::int32_t{1} << (kRootBits - depth); }
+
+/// The domain's values: those of the nearest samples.
+template <class Sample>
+Field field_of(const MemoryVolume<Sample>& volume, int depth) {
+  return [&volume, shift = kRootBits - depth](LatticePoint p) {
+    return static_cast<double>(volume.at({p.i >> shift, p.j >> shift, p.k >> shift}));
+  };
+}
+
+/// What a store says of the diamonds that reach into the data, by points in samples.
+template <class Sample>
+class DiamondTable {
+ public:
+  struct Values {
+    double error = 0, low = 1, high = 0;  ///< low > high: of nothing
+    [[nodiscard]] bool is_crossed(double isovalue) const { return low < isovalue && isovalue <= high; }
+  };
+
+  explicit DiamondTable(OpenStore<Sample>& store)
+      : domain_(store.extractor().domain()),
+        depth_(store.pages().grid().depth()),
+        last_(store.pages().grid().last()) {
+    StoredPages<OrderedWord<Sample>>& pages = store.pages();
+    const PageGrid& grid = pages.grid();
+    std::vector<LatticePoint> beyond;
+    for (int level = 0; level < depth_; ++level) {
+      const LatticePoint end = grid.extent(level);
+      for (std::int32_t k = 0; k <= end.k; ++k)
+        for (std::int32_t j = 0; j <= end.j; ++j)
+          for (std::int32_t i = 0; i <= end.i; ++i) {
+            if (((i | j | k) & 1) == 0) continue;
+            const LatticePoint p = (1 << level) * LatticePoint{i, j, k};
+            const PageId id = grid.page(p);
+            const LatticePoint q{p.i >> id.level, p.j >> id.level, p.k >> id.level};
+            if (PageShape{grid.count(id), true, id.level}.owns(q - PageGrid::kSide * id.block)) {
+              diamonds_[p] = values_in(*pages.page(id), p, level, id.level);
+            } else {
+              beyond.push_back(p);
+            }
+          }
+    }
+    for (const LatticePoint p : beyond) bounds_[p] = bound(p);
+    diamonds_.merge(bounds_);
+  }
+
+  [[nodiscard]] const std::map<LatticePoint, Values>& diamonds() const { return diamonds_; }
+
+  /// The mesh in which the diamonds are split that the surface crosses with a greater error.
+  [[nodiscard]] IndexedHierarchy mesh(double isovalue, double error) const {
+    return mesh([&](const Values& values) { return values.error > error && values.is_crossed(isovalue); });
+  }
+  /// The mesh in which every diamond is split that reaches into the data.
+  [[nodiscard]] IndexedHierarchy full_mesh() const {
+    return mesh([](const Values&) { return true; });
+  }
+
+ private:
+  template <class Wanted>
+  [[nodiscard]] IndexedHierarchy mesh(const Wanted& wanted) const {
+    IndexedHierarchy result(domain_, depth_);
+    std::vector<LatticePoint> done;
+    for (const auto& [p, values] : diamonds_) {
+      if (wanted(values)) result.split(lattice_step(depth_) * p, done);
+    }
+    return result;
+  }
+
+  Values values_in(const Page<OrderedWord<Sample>>& page, LatticePoint p, int level, int page_level) {
+    const std::size_t at = PageGrid::place(p, page_level);
+    Values values{level_error_scale(spacing(), level).decode(page.errors[at])};
+    if (page.low[at] <= page.high[at]) {
+      values.low = from_ordered<Sample>(page.low[at]);
+      values.high = from_ordered<Sample>(page.high[at]);
+      all_.low = all_.low > all_.high ? values.low : std::min(all_.low, values.low);
+      all_.high = std::max(all_.high, values.high);
+    }
+    return values;
+  }
+  [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, kRootBits - depth_) * domain_.spacing(); }
+
+  /// Pages have no place for the points of some diamonds that reach far beyond the data. What their parents
+  /// have covers them.
+  [[nodiscard]] Values bound(LatticePoint p) const {
+    Values result{level_error_scale(spacing(), trailing_zeros(p)).greatest(), all_.low, all_.high};
+    const std::int32_t step = std::int32_t{1} << (kRootBits - depth_);
+    for (const LatticePoint parent : Diamond(step * p).parents(domain_)) {
+      const LatticePoint q{parent.i / step, parent.j / step, parent.k / step};
+      const auto known = diamonds_.find(q);
+      const bool is_beyond = known == diamonds_.end();
+      if (is_beyond && !reaches_data(q)) continue;
+      const Values values = is_beyond ? bound(q) : known->second;
+      result.error = std::min(result.error, values.error);
+      result.low = std::max(result.low, values.low);
+      result.high = std::min(result.high, values.high);
+    }
+    return result;
+  }
+  [[nodiscard]] bool reaches_data(LatticePoint p) const {
+    const std::int32_t s = std::int32_t{1} << trailing_zeros(p);
+    return trailing_zeros(p) < depth_ && p.i - s < last_.i && p.j - s < last_.j && p.k - s < last_.k;
+  }
+
+  Domain domain_;
+  int depth_;
+  LatticePoint last_;
+  Values all_{};
+  std::map<LatticePoint, Values> diamonds_, bounds_;
+};
+
+/// Where the contour's options end the data.
+template <class Sample>
+ContourOptions options_of(const MemoryVolume<Sample>& volume, int depth, double least_parameter) {
+  return {least_parameter, lattice_step(depth) * volume.last()};
+}
+
+/// Expects a surface as it is to be whatever the data, but where samples are no numbers: edges with one
+/// triangle in the sides of the box alone, all others with two that run along them in opposite directions,
+/// triangles with an area, points on edges of the mesh as their parameters say.
+void expect_sound(const Contour& contour, const Box3& box);
+
+/// Linear interpolation of values at the corners of the tetrahedron of the mesh that holds a point; found
+/// from the root by bisection, so the mesh may be anything that comes from it.
+class MeshFunction {
+ public:
+  MeshFunction(const IndexedHierarchy& mesh, Field values, int bisections = 0);
+  struct Place {
+    LatticePoint diamond;  ///< of the tetrahedron of the mesh
+    double value;
+  };
+  [[nodiscard]] Place at(const Vec3& point) const;
+
+ private:
+  const IndexedHierarchy& mesh_;
+  Field values_;
+  int bisections_;
+};
+
+/// Points all over a surface: corners, middles of sides, points inside.
+std::vector<Vec3> points_on(const Contour& contour);
+
+}  // namespace adamas::test
