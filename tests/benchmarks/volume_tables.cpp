@@ -191,8 +191,9 @@ void report(const VolumeInMemory& volume, const std::string& picture) {
 
   std::vector<Pages<std::uint8_t>> components;
   for (std::vector<std::uint8_t>& component : gradient_bytes(volume)) {
+    // Code 0 is that of samples without a direction.
     for (const std::uint8_t code : component)
-      ++raw_gradients[static_cast<std::uint64_t>(std::abs(code - 128))];
+      if (code != 0) ++raw_gradients[static_cast<std::uint64_t>(std::abs(code - 128))];
     components.emplace_back(volume.grid.dimensions, std::move(component));
   }
   const Transformed of_gradients = transform(components);
