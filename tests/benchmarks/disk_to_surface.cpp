@@ -24,7 +24,7 @@ namespace {
 struct Inputs {
   std::filesystem::path store;
   FlyingEdges raw;
-  std::size_t memory = std::size_t{32} << 20;
+  std::size_t memory = std::size_t{256} << 20;  ///< for decoded pages; what `adamas isosurface` takes
   int runs = 5;
 };
 
@@ -147,8 +147,8 @@ void run(const Inputs& inputs, std::uint64_t triangles) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE RAW ISOVALUE TRIANGLES [RUNS]: a store of uint8 samples with a spacing of 1, the same samples raw,
-/// and the surfaces wanted.
+/// STORE RAW ISOVALUE TRIANGLES [RUNS [MEMORY]]: a store of uint8 samples with a spacing of 1, the same
+/// samples raw, and the surfaces wanted.
 int main(int argc, char** argv) {
   if (argc < 5) return 2;
   adamas::set_thread_limit(1);
