@@ -276,9 +276,9 @@ def large_rows(build, _quick):
         figures = part + ".json"
         for command, options in (("restore", ["-o", part]),
                                  ("isosurface", ["--isovalue", "100.5", "--error", "0.2voxels", "-o", part + ".ply"])):
-            run_measured(adamas, command, path, "--region", region, "-q", "--json", figures, *options)
+            _, peak = run_measured(adamas, command, path, "--region", region, "-q", "--json", figures, *options)
             with open(figures, encoding="utf-8") as file:
-                values = json.load(file)
+                values = json.load(file) | {"peak_memory_bytes": peak}
             good = f"{values['triangles']:,} triangles" if "triangles" in values else ""
             if command == "restore":
                 if not same_samples(raw, part, box):
