@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the benchmarks of a build folder and prints one table: bench_table.py BUILD [--quick]."""
+"""Runs the benchmarks of a build folder and prints one table: bench_table.py BUILD [--quick] [--large] [PART ...]."""
 
 import argparse
 import json
@@ -10,6 +10,8 @@ import subprocess
 import sys
 import tempfile
 import time
+
+from bench_volumes import large_rows, volume_rows
 
 
 def note(text):
@@ -169,15 +171,24 @@ def print_table(rows):
         line(cells)
 
 
+PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "sphere": sphere_rows, "impact": impact_rows,
+         "cth": cth_rows, "volumes": volume_rows, "large": large_rows}
+
+
 def main():
     parser = argparse.ArgumentParser(prog="bench", description="Prints a table of what the project and its peers do.")
     parser.add_argument("build", help="folder of the release build")
+    parser.add_argument("parts", nargs="*", metavar="PART", help="only these: " + ", ".join(PARTS))
     parser.add_argument("--quick", action="store_true", help="smaller grids, shorter runs")
-    arguments = parser.parse_args()
+    parser.add_argument("--large", action="store_true", help="only: a volume of more than 2^31 samples")
+    arguments = parser.parse_intermixed_args()
+    unknown = [name for name in arguments.parts if name not in PARTS]
+    if unknown:
+        parser.error(f"expected some of {', '.join(PARTS)}, found {unknown[0]}")
     rows = []
-    for part in (hierarchy_rows, closest_point_rows, sphere_rows, impact_rows):
-        rows += some(part.__name__, part(arguments.build, arguments.quick))
-    rows += cth_rows(arguments.build, arguments.quick)
+    for name in ["large"] if arguments.large else arguments.parts or [p for p in PARTS if p != "large"]:
+        found = PARTS[name](arguments.build, arguments.quick)
+        rows += found if name == "cth" else some(name, found)
     print_table(rows)
 
 

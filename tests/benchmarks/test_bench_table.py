@@ -8,6 +8,7 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
 from bench_table import closest_point_table, hierarchy_table, some  # noqa: E402
+from bench_volumes import codec_table, contour_table, surface_table  # noqa: E402
 
 CLOSEST = """5041 triangles: build 0.001 s, CGAL 0.002 s; 90 bytes per triangle
   queries per second         adamas       CGAL    ratio
@@ -33,6 +34,34 @@ class BenchTableTest(unittest.TestCase):
             some("closest points", closest_point_table("nothing\n"))
         with self.assertRaisesRegex(SystemExit, "found other"):
             list(hierarchy_table("bench_hierarchy", {"benchmarks": [{"name": "other"}]}))
+
+    def test_lossless_coders(self):
+        coders = {"interpolation": 100, "split edge": 200, "JPEG-LS": 150, "Lorenzo + zstd -19": 250}
+        lines = [{"volume": name, "type": "uint8", "dimensions": [10, 10, 10], "coder": coder, "input": 1000,
+                  "bytes": factor * size, "decode": 6e8, "restore": 1.5e8}
+                 for name, factor in (("a", 1), ("b", 4)) for coder, size in coders.items()]
+        rows = {r[0] + r[2][:7]: r for r in codec_table(lines)}
+        self.assertEqual(rows["lossless, a: interpolationJPEG-LS"][1:4:2], ["10.00 at 600 M/s", "1.50"])
+        # The geometric mean of 10 and 2.5, beside that of 6.67 and 1.67.
+        self.assertEqual(rows["lossless, geometric mean: interpolationJPEG-LS"][1:4], ["5.00", "JPEG-LS 3.33", "1.50"])
+        self.assertEqual(rows["decode, interpolation, pages to values300 M/s"][3], "0.50")
+
+    def test_contours_must_be_equal(self):
+        line = {"mesh": "fine", "tetrahedra": 10, "triangles": 4, "peer_triangles": 4, "shared": True, "normals": False,
+                "adamas": 3e6, "peer": 2e6, "ratio": 1.5}
+        self.assertEqual([r[3:5] for r in contour_table([line])], [["1.50", ">= 1.5"]])
+        with self.assertRaisesRegex(SystemExit, "expected 5 triangles, found 4"):
+            list(contour_table([line | {"peer_triangles": 5}]))
+
+    def test_surfaces_from_disk(self):
+        ours = {"seconds": 1, "processor_seconds": 2, "peak_bytes": 2**20, "triangles": 10}
+        peer = {"seconds": 4, "processor_seconds": 4, "peak_bytes": 2**22, "triangles": 40}
+        line = {"row": "time", "wanted": "10 triangles", "cold": True, "normals": True, "adamas": ours, "peer": peer,
+                "error": 0.5}
+        rows = list(surface_table([line]))
+        self.assertEqual([r[3:5] for r in rows], [["0.25 (0.50)", "<= 0.25"], ["0.25", "<= 0.1"]])
+        with self.assertRaises(KeyError):
+            list(surface_table([{"row": "other"}]))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,92 @@
+#include "tests/benchmarks/peers/flying_edges.h"
+
+#include <vtkCellArray.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkIdList.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+#include <cstdio>
+#include <stdexcept>
+
+#include "tests/benchmarks/peers/one_thread.h"
+
+namespace adamas::bench {
+namespace {
+
+void set_grid(vtkImageData& image, const std::array<int, 3>& dimensions, int stride) {
+  const auto count = [stride](int n) { return (n - 1) / stride + 1; };
+  image.SetDimensions(count(dimensions[0]), count(dimensions[1]), count(dimensions[2]));
+  image.SetSpacing(stride, stride, stride);
+  image.AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+}
+
+void read_all(const FlyingEdges& peer, unsigned char* samples, std::size_t size) {
+  std::FILE* file = std::fopen(peer.raw.c_str(), "rb");
+  if (file == nullptr) throw std::runtime_error(peer.raw.string() + ": cannot be opened");
+  const std::size_t found = std::fread(samples, 1, size, file);
+  std::fclose(file);
+  if (found != size) throw std::runtime_error(peer.raw.string() + ": ends too soon");
+}
+
+void read_strided(const FlyingEdges& peer, unsigned char* to) {
+  const auto [nx, ny, nz] = peer.dimensions;
+  std::vector<unsigned char> all(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) *
+                                 static_cast<std::size_t>(nz));
+  read_all(peer, all.data(), all.size());
+  for (int k = 0; k < nz; k += peer.stride)
+    for (int j = 0; j < ny; j += peer.stride)
+      for (int i = 0; i < nx; i += peer.stride)
+        *to++ =
+            all[static_cast<std::size_t>(i) +
+                static_cast<std::size_t>(nx) * (static_cast<std::size_t>(j) +
+                                                static_cast<std::size_t>(ny) * static_cast<std::size_t>(k))];
+}
+
+void contour(const FlyingEdges& peer, vtkFlyingEdges3D& edges) {
+  keep_vtk_on_one_thread();
+  vtkNew<vtkImageData> image;
+  set_grid(*image, peer.dimensions, peer.stride);
+  auto* samples = static_cast<unsigned char*>(image->GetScalarPointer());
+  if (peer.stride == 1) {
+    read_all(peer, samples, static_cast<std::size_t>(image->GetNumberOfPoints()));
+  } else {
+    read_strided(peer, samples);
+  }
+  edges.SetInputData(image);
+  edges.SetValue(0, peer.isovalue);
+  edges.SetComputeNormals(peer.normals);
+  edges.ComputeGradientsOff();
+  edges.ComputeScalarsOff();
+  edges.Update();
+}
+
+}  // namespace
+
+std::uint64_t FlyingEdges::count() const {
+  vtkNew<vtkFlyingEdges3D> edges;
+  contour(*this, *edges);
+  return static_cast<std::uint64_t>(edges->GetOutput()->GetNumberOfPolys());
+}
+
+PeerSurface FlyingEdges::surface() const {
+  vtkNew<vtkFlyingEdges3D> edges;
+  contour(*this, *edges);
+  vtkPolyData& found = *edges->GetOutput();
+  PeerSurface result;
+  for (vtkIdType p = 0; p < found.GetNumberOfPoints(); ++p) {
+    const double* x = found.GetPoint(p);
+    result.points.push_back({x[0], x[1], x[2]});
+  }
+  vtkNew<vtkIdList> corners;
+  vtkCellArray& polygons = *found.GetPolys();
+  for (polygons.InitTraversal(); polygons.GetNextCell(corners) != 0;) {
+    const auto corner = [&](vtkIdType n) { return static_cast<std::uint32_t>(corners->GetId(n)); };
+    result.triangles.push_back({corner(0), corner(1), corner(2)});
+  }
+  return result;
+}
+
+}  // namespace adamas::bench

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas::bench {
+
+/// Triangles with shared points.
+struct PeerSurface {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// vtkFlyingEdges3D on one thread, from a file of uint8 samples alone, all of which is read.
+struct FlyingEdges {
+  std::filesystem::path raw;
+  std::array<int, 3> dimensions{};
+  double isovalue = 0;
+  bool normals = false;
+  int stride = 1;  ///< only every so many-th sample along each axis is contoured
+
+  /// Number of triangles; what is made is given up.
+  [[nodiscard]] std::uint64_t count() const;
+  /// With the first sample at the origin and a spacing of 1 between those of the file.
+  [[nodiscard]] PeerSurface surface() const;
+};
+
+}  // namespace adamas::bench

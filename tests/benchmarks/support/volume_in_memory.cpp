@@ -1,0 +1,84 @@
+#include "tests/benchmarks/support/volume_in_memory.h"
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/io/volume_reader.h"
+#include "core/io/volume_stack.h"
+#include "datasets/buckyball.h"
+#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/storage/page.h"
+#include "isosurface/storage/sample_dispatch.h"
+
+namespace adamas::bench {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
+  return parts;
+}
+
+template <class Source>
+VolumeInMemory read_planes(const std::string& name, const VolumeGrid& grid, Source&& source) {
+  VolumeInMemory volume{name, grid, std::vector<std::byte>(grid.bytes())};
+  for (std::uint64_t k = 0; k < grid.dimensions[2]; ++k)
+    source(k, std::span(volume.bytes).subspan(k * grid.plane_bytes(), grid.plane_bytes()));
+  return volume;
+}
+
+VolumeInMemory read_file(const std::string& name, VolumeReader reader) {
+  return read_planes(name, reader.grid(),
+                     [&](std::uint64_t k, std::span<std::byte> to) { reader.read_plane(k, to); });
+}
+
+VolumeInMemory make_buckyball(const std::vector<std::string>& parts) {
+  const std::uint64_t side = std::stoull(parts.at(1));
+  const std::string type = parts.size() > 2 ? parts[2] : "uint8";
+  const Buckyball ball({side, side, side}, type == "uint8"    ? SampleType::kUint8
+                                           : type == "uint16" ? SampleType::kUint16
+                                                              : SampleType::kFloat32);
+  return read_planes("buckyball " + parts[1] + "^3 " + type, ball.grid(),
+                     [&](std::uint64_t k, std::span<std::byte> to) { ball.plane(k, to); });
+}
+
+RawVolume raw_form(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  RawVolume raw;
+  for (std::size_t axis = 0; axis < 3; ++axis) raw.dimensions[axis] = std::stoull(parts.at(axis));
+  const std::string& type = parts.at(3);
+  raw.type = type == "uint8"   ? StoredType::kUint8
+             : type == "int16" ? StoredType::kInt16
+                               : StoredType::kUint16;
+  raw.header_bytes = std::stoull(parts.at(4));
+  return raw;
+}
+
+}  // namespace
+
+std::vector<std::byte> VolumeInMemory::ordered_words() const {
+  std::vector<std::byte> words(bytes.size());
+  with_sample_type(grid.type, [&](auto sample) {
+    for (std::size_t n = 0; n < bytes.size(); n += sizeof(sample)) {
+      std::memcpy(&sample, bytes.data() + n, sizeof(sample));
+      const auto word = static_cast<OrderedWord<decltype(sample)>>(ordered(sample));
+      std::memcpy(words.data() + n, &word, sizeof(sample));
+    }
+  });
+  return words;
+}
+
+VolumeInMemory load_volume(const std::string& what) {
+  const std::vector<std::string> parts = split(what, ':');
+  if (parts.at(0) == "buckyball") return make_buckyball(parts);
+  const std::filesystem::path path = parts.back();
+  if (parts[0] == "raw") return read_file(path.stem().string(), open_raw_volume(path, raw_form(parts.at(1))));
+  if (parts[0] == "stack")
+    return read_file(path.parent_path().filename().string(), open_volume_stack(match_stack(path)));
+  return read_file(path.stem().string(), open_volume(path));
+}
+
+}  // namespace adamas::bench

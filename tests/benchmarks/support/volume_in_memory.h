@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/data/volume.h"
+
+namespace adamas::bench {
+
+/// All samples of a volume.
+struct VolumeInMemory {
+  std::string name;
+  VolumeGrid grid;
+  std::vector<std::byte> bytes;
+
+  [[nodiscard]] std::vector<std::byte> ordered_words()
+      const;  ///< unsigned, in the order of the samples' values
+};
+
+/// `what`: buckyball:SIDE[:TYPE]; a raw file after its form, raw:X,Y,Z,TYPE,HEADER_BYTES:FILE; a pattern of
+/// slices, stack:PATTERN; else a file that open_volume reads.
+VolumeInMemory load_volume(const std::string& what);
+
+}  // namespace adamas::bench
