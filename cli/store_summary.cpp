@@ -68,14 +68,16 @@ Figures print_store(const std::string& path, Session& session) {
                   {"pages", file->grid().page_count()},
                   {"coding", coding},
                   {"subtree_depth", header.subtree_depth},
+                  {"gradients", header.gradients},
                   {"bytes_input", before},
                   {"bytes_data", header.bytes.samples},
                   {"bytes_errors", header.bytes.values},
                   {"bytes_gradients", header.bytes.gradients},
                   {"bytes_file", file->size()}};
   print_range(*file, console, figures);
-  console.print("  levels 0 to {}, {} pages, coding {}, subtrees {}\n\n", levels - 1,
-                file->grid().page_count(), coding, header.subtree_depth);
+  console.print("  levels 0 to {}, {} pages, coding {}, subtrees {}, {} gradients\n\n", levels - 1,
+                file->grid().page_count(), coding, header.subtree_depth,
+                header.gradients ? "with" : "without");
   print_store_bytes(before, header.bytes, file->size(), console);
   return figures;
 }

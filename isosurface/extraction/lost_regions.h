@@ -18,6 +18,9 @@ class LostRegions {
  public:
   [[nodiscard]] bool empty() const { return regions_.empty(); }
 
+  /// `subtree_depth`: that of the store. Tetrahedra that stand for finer ones need the samples of those.
+  explicit LostRegions(int subtree_depth = 0) : levels_more_(subtree_depth > 0 ? subtree_depth + 1 : 0) {}
+
   void add(const PageId& page) { regions_.push_back(page); }
 
   /// For the diamond of this phase and point, whose scale is 2^level samples.
@@ -27,9 +30,10 @@ class LostRegions {
   }
 
  private:
-  static bool blocks(const PageId& page, LatticePoint p, int level, int phase) {
-    if (level > page.level) return false;
-    const std::int32_t reach = (nested_reach(0) << page.level) - (nested_reach(phase) << level);
+  [[nodiscard]] bool blocks(const PageId& page, LatticePoint p, int level, int phase) const {
+    if (level > page.level + levels_more_) return false;
+    const std::int32_t reach =
+        (nested_reach(0) << (page.level + levels_more_)) - (nested_reach(phase) << level);
     for (int axis = 0; axis < 3; ++axis) {
       const std::int32_t begin = page.block[axis] * PageGrid::kSide << page.level;
       const std::int32_t end = begin + ((PageGrid::kSide - 1) << page.level);
@@ -38,6 +42,7 @@ class LostRegions {
     return true;
   }
 
+  int levels_more_;
   std::vector<PageId> regions_;
 };
 

@@ -79,7 +79,7 @@ void StoredDiamonds<Sample>::mark(const PageId& id, const HeldPage<Word>& page) 
   const PageEntry& known = entry(id);
   if (!crosses(known.low, known.high)) {
     page.marks.fill(0);
-  } else if (known.error + 4 * id.level < least_rank_) {
+  } else if (matters_not(id, known)) {
     page.marks.fill(known.error);
   } else {
     const auto least = static_cast<Word>(least_above_);
@@ -96,8 +96,7 @@ int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
   if (from == nullptr) {
     const PageEntry& known = entry(id);
     if (!crosses(known.low, known.high)) return 0;
-    const int greatest = known.error + 4 * id.level;
-    if (greatest < least_rank_) return known.error == 0 ? 0 : greatest;
+    if (matters_not(id, known)) return known.error == 0 ? 0 : known.error + 4 * id.level;
     from = &page(id);
   }
   if (from->marked != contour_) mark(id, *from);

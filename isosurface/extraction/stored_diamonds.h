@@ -83,6 +83,10 @@ class StoredDiamonds {
     return *found;
   }
   const PageEntry& entry(const PageId& id);
+  /// Whether no diamond of a page has a rank that matters. The coarsest page has diamonds of several levels.
+  [[nodiscard]] bool matters_not(const PageId& id, const PageEntry& known) const {
+    return id.level < grid_.top() && known.error + 4 * id.level < least_rank_;
+  }
   /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others; all of
   /// them the greatest of the page where none matters.
   void mark(const PageId& id, const HeldPage<Word>& page);

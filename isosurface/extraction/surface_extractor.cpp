@@ -135,11 +135,33 @@ std::array<double, 4> half_values(const TetrahedronHalf& half, const std::array<
 }  // namespace
 
 template <class Sample>
+bool SurfaceExtractor<Sample>::is_split_finely(LatticePoint p) {
+  // Diamonds below the samples are never split.
+  if (cut_ == nullptr || diamonds_.level(p) < 0) return false;
+  const auto [known, is_new] = finely_.insert(p);
+  if (!is_new) return *known != 0;
+  Points ancestors{p}, parents;
+  for (int g = 0; g < subtree_bisections_; ++g) {
+    parents.clear();
+    for (const LatticePoint a : ancestors) {
+      for (const LatticePoint parent : Diamond(a).parents(diamonds_.domain())) parents.push_back(parent);
+    }
+    std::sort(parents.begin(), parents.end());
+    parents.erase(std::unique(parents.begin(), parents.end()), parents.end());
+    ancestors.swap(parents);
+  }
+  const bool result = std::any_of(ancestors.begin(), ancestors.end(),
+                                  [this](LatticePoint a) { return is_split(a, rank(a), *cut_); });
+  *finely_.find(p) = result ? 1 : 0;
+  return result;
+}
+
+template <class Sample>
 template <class Fn>
 void SurfaceExtractor<Sample>::for_each_crossed(LatticePoint diamond, int slot,
                                                 const std::array<double, 4>& values, int bisections,
                                                 Fn&& fn) {
-  if (bisections == 0) {
+  if (bisections == 0 && !is_split_finely(diamond)) {
     const unsigned bits = above(values, request_.isovalue);
     if (kTetrahedronContours[bits].triangle_count != 0)
       fn(CrossedTetrahedron{diamond, static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(bits),
@@ -150,7 +172,8 @@ void SurfaceExtractor<Sample>::for_each_crossed(LatticePoint diamond, int slot,
   const double middle = diamonds_.sample(diamond);
   for (const int end : {0, 1}) {
     const TetrahedronHalf& half = DiamondHalves::of(d.type_index(), slot, end);
-    for_each_crossed(d.child(half.child), half.slot, half_values(half, values, middle), bisections - 1, fn);
+    for_each_crossed(d.child(half.child), half.slot, half_values(half, values, middle),
+                     std::max(0, bisections - 1), fn);
   }
 }
 
@@ -229,6 +252,7 @@ typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangle
                                                                                   Progress& progress) {
   const int least = least_rank();
   diamonds_.set_contour(request_.isovalue, least);
+  cut_ = nullptr;
   const Diamond root(root_);
   const Vertices v = vertices(root, false);
   std::int64_t triangles = 0;
@@ -269,6 +293,8 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
   ExtractedSurface surface;
   const Domain& domain = diamonds_.domain();
   diamonds_.set_contour(request_.isovalue, cut.rank);
+  cut_ = subtree_bisections_ > 0 ? &cut : nullptr;
+  finely_ = {};
   ContourBuilder builder(domain, request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
   const auto emit = [&](LatticePoint diamond, int slot, const std::array<double, 4>& values) {
     for_each_crossed(diamond, slot, values, subtree_bisections_,
@@ -316,6 +342,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
     }
     current.swap(next);
   }
+  cut_ = nullptr;
   surface.tetrahedra <<= subtree_bisections_;
   surface.contour = builder.finish();
   if (request_.region) clip_contour(surface.contour, *request_.region);
@@ -325,14 +352,21 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   if (!request_.max_triangles) return contour_of(cut_by_error(), progress);
-  return contour_of(cut_by_triangles(*request_.max_triangles, progress), progress);
+  // With subtrees a split adds triangles to its neighbours too, which the first choice does not know.
+  for (std::uint64_t budget = *request_.max_triangles; budget > 0;) {
+    ExtractedSurface surface = contour_of(cut_by_triangles(budget, progress), progress);
+    const std::uint64_t found = surface.contour.triangles.size();
+    if (found <= *request_.max_triangles) return surface;
+    budget -= std::min(budget, std::max(found - *request_.max_triangles, budget / 64));
+  }
+  return contour_of({StoredDiamonds<Sample>::kRanks, 0, {}}, progress);
 }
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request, Progress& progress) {
   request_ = request;
   // What was lost to another surface is met with and told again.
-  lost_ = {};
+  lost_ = LostRegions(subtree_bisections_ / 3);
   region_.reset();
   if (request.region) {
     const Vec3 spacing = std::ldexp(1.0, -diamonds_.levels()) * diamonds_.domain().box().size();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/lattice/lattice_map.h"
 #include "isosurface/extraction/lost_regions.h"
 #include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/extraction/surface_request.h"
@@ -85,6 +86,10 @@ class SurfaceExtractor {
   template <class Fn>
   void for_each_crossed(LatticePoint diamond, int slot, const std::array<double, 4>& values, int bisections,
                         Fn&& fn);
+  /// Whether a fine diamond, at which the bisections of some tetrahedron of the mesh end, is split since
+  /// those of a neighbouring one go further: one that came from splitting a diamond as many generations
+  /// before.
+  bool is_split_finely(LatticePoint p);
   std::int64_t count_triangles(LatticePoint diamond, int slot, const std::array<double, 4>& values);
   /// How many triangles a tetrahedron has when the surface is clipped.
   std::int64_t count_clipped(const CrossedTetrahedron& tetrahedron) const;
@@ -97,6 +102,8 @@ class SurfaceExtractor {
   int subtree_bisections_;
   LatticePoint root_;
   LostRegions lost_;
+  const Cut* cut_ = nullptr;         ///< of the mesh with subtrees that is gone through
+  LatticeMap<std::uint8_t> finely_;  ///< what is_split_finely has found
   SurfaceRequest request_;
   std::optional<std::array<Vec3, 2>> region_;  ///< in samples
 };

@@ -55,7 +55,18 @@ class VertexGradients {
     return direction ? *direction : -downwards(estimate(p, step));
   }
 
-  Vec3 estimate(LatticePoint p, std::int32_t step) {
+  /// Nearer, where along some axis there are no samples so far away.
+  [[nodiscard]] std::int32_t step_inside(LatticePoint p, std::int32_t step) const {
+    const LatticePoint last = diamonds_.last_sample();
+    for (int axis = 0; axis < 3; ++axis) {
+      while (diamonds_.level({step, step, step}) > 0 && p[axis] - step < 0 && p[axis] + step > last[axis])
+        step /= 2;
+    }
+    return step;
+  }
+
+  Vec3 estimate(LatticePoint p, std::int32_t wanted_step) {
+    const std::int32_t step = step_inside(p, wanted_step);
     Neighbourhood values;
     for (int dk = -1; dk <= 1; ++dk) {
       for (int dj = -1; dj <= 1; ++dj) {
