@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/geometry/tetrahedron_contour.h"
@@ -352,14 +353,24 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   if (!request_.max_triangles) return contour_of(cut_by_error(), progress);
-  // With subtrees a split adds triangles to its neighbours too, which the first choice does not know.
-  for (std::uint64_t budget = *request_.max_triangles; budget > 0;) {
+  // With subtrees a split adds triangles to its neighbours too, which the choice does not know: it is then
+  // repeated with other numbers, until it uses nearly all.
+  constexpr double kEnough = 0.97;
+  constexpr int kMostTurns = 12;
+  const std::uint64_t most = *request_.max_triangles;
+  std::uint64_t kept = 0, refused = most + 1;
+  std::optional<ExtractedSurface> best;
+  for (int turn = 0; turn < kMostTurns && refused - kept > 1; ++turn) {
+    const std::uint64_t budget = turn == 0 ? most : (kept + refused) / 2;
     ExtractedSurface surface = contour_of(cut_by_triangles(budget, progress), progress);
     const std::uint64_t found = surface.contour.triangles.size();
-    if (found <= *request_.max_triangles) return surface;
-    budget -= std::min(budget, std::max(found - *request_.max_triangles, budget / 64));
+    (found <= most ? kept : refused) = budget;
+    if (found > most) continue;
+    const bool is_enough = turn == 0 || static_cast<double>(found) >= kEnough * static_cast<double>(most);
+    if (!best || found > best->contour.triangles.size()) best = std::move(surface);
+    if (is_enough) break;
   }
-  return contour_of({StoredDiamonds<Sample>::kRanks, 0, {}}, progress);
+  return best ? std::move(*best) : contour_of({StoredDiamonds<Sample>::kRanks, 0, {}}, progress);
 }
 
 template <class Sample>

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/geometry/tetrahedron_contour.h"
 #include "tests/isosurface/contour_checks.h"
@@ -81,22 +82,32 @@ void for_each_part(const Corners& corners, int bisections, const std::function<v
   for (const Corners& half : halves(corners)) for_each_part(half, bisections - 1, fn);
 }
 
-Contour contour_of_parts(const IndexedHierarchy& mesh, int bisections, const Field& values, double isovalue,
-                         const ContourOptions& options) {
-  std::vector<CrossedTetrahedron> crossed;
-  mesh.for_each_tetrahedron([&](const Diamond& diamond, int slot) {
-    for_each_part(diamond.tetrahedron(slot), bisections, [&](const Corners& corners) {
-      const auto [point, part] = slot_of(corners);
-      const Corners vertices = Diamond(point).tetrahedron(part);
-      CrossedTetrahedron t{point, part, 0, {}};
-      for (std::size_t v = 0; v < 4; ++v) {
-        t.values[v] = values(vertices[v]);
-        t.above = static_cast<std::uint8_t>(t.above | (t.values[v] >= isovalue ? 1u << v : 0u));
+IndexedHierarchy finer_mesh(const IndexedHierarchy& mesh, int generations) {
+  IndexedHierarchy result(mesh.domain(), mesh.levels());
+  std::vector<LatticePoint> done;
+  const auto any_split = [&](LatticePoint p) {
+    std::set<LatticePoint> ancestors{p};
+    for (int g = 0; g < generations; ++g) {
+      std::set<LatticePoint> parents;
+      for (const LatticePoint a : ancestors) {
+        for (const LatticePoint parent : Diamond(a).parents(mesh.domain())) parents.insert(parent);
       }
-      if (kTetrahedronContours[t.above].triangle_count > 0) crossed.push_back(t);
-    });
-  });
-  return triangulate_crossed(mesh.domain(), std::move(crossed), isovalue, options);
+      ancestors = std::move(parents);
+    }
+    return std::any_of(ancestors.begin(), ancestors.end(), [&](LatticePoint a) { return mesh.is_split(a); });
+  };
+  const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
+  std::set<LatticePoint> generation{{middle, middle, middle}};
+  for (int g = 0; !generation.empty(); ++g) {
+    std::set<LatticePoint> next;
+    for (const LatticePoint p : generation) {
+      if (!mesh.can_split(p) || (g >= generations && !any_split(p))) continue;
+      result.split(p, done);
+      for (const LatticePoint child : Diamond(p).children(mesh.domain())) next.insert(child);
+    }
+    generation = std::move(next);
+  }
+  return result;
 }
 
 void expect_sound(const Contour& contour, const Box3& box) {

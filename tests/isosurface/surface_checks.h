@@ -31,9 +31,9 @@ using Corners = std::array<LatticePoint, 4>;
 std::pair<LatticePoint, std::uint8_t> slot_of(const Corners& corners);
 /// Calls fn(corners) for the tetrahedra that so many bisections of the longest edge make of one.
 void for_each_part(const Corners& corners, int bisections, const std::function<void(const Corners&)>& fn);
-/// The contour over all these parts of a mesh's tetrahedra.
-Contour contour_of_parts(const IndexedHierarchy& mesh, int bisections, const Field& values, double isovalue,
-                         const ContourOptions& options);
+/// The mesh in which each diamond is split that has a split one so many generations before it: tetrahedra
+/// stand for their parts, and parts meet where the mesh's tetrahedra do.
+IndexedHierarchy finer_mesh(const IndexedHierarchy& mesh, int generations);
 
 /// Lattice units of one step between samples.
 inline std::int32_t lattice_step(int depth) { return std::int32_t{1} << (kRootBits - depth); }

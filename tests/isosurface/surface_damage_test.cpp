@@ -70,8 +70,7 @@ class DamagedSurface : public testing::TestWithParam<int> {
       EXPECT_NO_THROW(store_.extract(request_of(true)));
       return;
     }
-    // With subtrees a surface is closed where all of its mesh is as fine.
-    if (GetParam() == 0) test::expect_sound(surface.contour, volume_.grid.box());
+    test::expect_sound(surface.contour, volume_.grid.box());
     EXPECT_LT(surface.contour.triangles.size(), whole_.contour.triangles.size());
     store_.open();
     const std::string error = test::error_of([&] { store_.extract(request_of(true)); });
@@ -159,9 +158,7 @@ TEST_P(DamagedSurface, PartsOfTheDirectory) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Subtrees, DamagedSurface, testing::Values(0));
-// Fine tetrahedra of diamonds that are not split need samples of lost pages too.
-INSTANTIATE_TEST_SUITE_P(DISABLED_Subtrees, DamagedSurface, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Subtrees, DamagedSurface, testing::Values(0, 1, 2));
 
 }  // namespace
 }  // namespace adamas
