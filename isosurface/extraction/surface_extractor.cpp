@@ -136,10 +136,20 @@ std::array<double, 4> half_values(const TetrahedronHalf& half, const std::array<
 }  // namespace
 
 template <class Sample>
-bool SurfaceExtractor<Sample>::is_split_finely(LatticePoint p) {
+bool SurfaceExtractor<Sample>::is_split_finely(LatticePoint p, int more) {
   // Diamonds below the samples are never split.
   if (cut_ == nullptr || diamonds_.level(p) < 0) return false;
-  const auto [known, is_new] = finely_.insert(p);
+  if (follows_split(p)) return true;
+  if (more == 0) return false;
+  for (const LatticePoint child : Diamond(p).children(diamonds_.domain())) {
+    if (is_split_finely(child, more - 1)) return true;
+  }
+  return false;
+}
+
+template <class Sample>
+bool SurfaceExtractor<Sample>::follows_split(LatticePoint p) {
+  const auto [known, is_new] = following_.insert(p);
   if (!is_new) return *known != 0;
   Points ancestors{p}, parents;
   for (int g = 0; g < subtree_bisections_; ++g) {
@@ -153,7 +163,7 @@ bool SurfaceExtractor<Sample>::is_split_finely(LatticePoint p) {
   }
   const bool result = std::any_of(ancestors.begin(), ancestors.end(),
                                   [this](LatticePoint a) { return is_split(a, rank(a), *cut_); });
-  *finely_.find(p) = result ? 1 : 0;
+  *following_.find(p) = result ? 1 : 0;
   return result;
 }
 
@@ -295,7 +305,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
   const Domain& domain = diamonds_.domain();
   diamonds_.set_contour(request_.isovalue, cut.rank);
   cut_ = subtree_bisections_ > 0 ? &cut : nullptr;
-  finely_ = {};
+  following_ = {};
   ContourBuilder builder(domain, request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
   const auto emit = [&](LatticePoint diamond, int slot, const std::array<double, 4>& values) {
     for_each_crossed(diamond, slot, values, subtree_bisections_,

@@ -87,9 +87,13 @@ class SurfaceExtractor {
   void for_each_crossed(LatticePoint diamond, int slot, const std::array<double, 4>& values, int bisections,
                         Fn&& fn);
   /// Whether a fine diamond, at which the bisections of some tetrahedron of the mesh end, is split since
-  /// those of a neighbouring one go further: one that came from splitting a diamond as many generations
-  /// before.
-  bool is_split_finely(LatticePoint p);
+  /// those of neighbouring ones go further: where it, or a diamond that cannot be split without it, follows a
+  /// split.
+  bool is_split_finely(LatticePoint p, int more = kMostFurther);
+  /// By how many generations neighbours along an edge may differ.
+  static constexpr int kMostFurther = 2;
+  /// Whether a diamond is split from which this one comes by as many bisections as tetrahedra stand for.
+  bool follows_split(LatticePoint p);
   std::int64_t count_triangles(LatticePoint diamond, int slot, const std::array<double, 4>& values);
   /// How many triangles a tetrahedron has when the surface is clipped.
   std::int64_t count_clipped(const CrossedTetrahedron& tetrahedron) const;
@@ -102,8 +106,8 @@ class SurfaceExtractor {
   int subtree_bisections_;
   LatticePoint root_;
   LostRegions lost_;
-  const Cut* cut_ = nullptr;         ///< of the mesh with subtrees that is gone through
-  LatticeMap<std::uint8_t> finely_;  ///< what is_split_finely has found
+  const Cut* cut_ = nullptr;            ///< of the mesh with subtrees that is gone through
+  LatticeMap<std::uint8_t> following_;  ///< what follows_split has found
   SurfaceRequest request_;
   std::optional<std::array<Vec3, 2>> region_;  ///< in samples
 };
