@@ -10,6 +10,8 @@
 #include "core/geometry/tetrahedron_contour.h"
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/extraction/diamond_halves.h"
+#include "isosurface/extraction/triangle_counter.h"
+#include "isosurface/hierarchy/indexed_hierarchy.h"
 #include "isosurface/storage/z_order.h"
 
 namespace adamas {
@@ -88,169 +90,9 @@ bool SurfaceExtractor<Sample>::leads_to(LatticePoint parent, LatticePoint child)
 }
 
 template <class Sample>
-typename SurfaceExtractor<Sample>::Vertices SurfaceExtractor<Sample>::vertices(const Diamond& diamond,
-                                                                               bool with_middle) {
-  Vertices result;
-  const int count = diamond.tetrahedron_count();
-  if (diamonds_.domain().boundary_count(diamond.point()) == 0) {
-    result.slots = (1u << count) - 1;
-  } else {
-    for (const int slot : diamond.tetrahedra(diamonds_.domain())) result.slots |= 1u << slot;
-  }
-  const auto [a, b] = diamond.split_edge();
-  result.begin = diamonds_.sample(a);
-  result.end = diamonds_.sample(b);
-  if (with_middle) result.middle = diamonds_.sample(diamond.point());
-  // Tetrahedron `slot` has the vertices `slot` and `slot` + 1 of the ring.
-  const unsigned used = result.slots | result.slots << 1 | result.slots >> (count - 1);
-  for (int r = 0; r < count; ++r) {
-    if ((used >> r & 1) != 0) result.ring[static_cast<std::size_t>(r)] = diamonds_.sample(diamond.ring(r));
-  }
-  result.ring[static_cast<std::size_t>(count)] = result.ring[0];
-  const auto above = [&](double value) {
-    result.finite = result.finite && std::isfinite(value);
-    return unsigned{value >= request_.isovalue};
-  };
-  result.above = above(result.begin) | above(result.end) << 1 | above(result.middle) << 2;
-  for (int r = 0; r <= count; ++r) result.above |= above(result.ring[static_cast<std::size_t>(r)]) << (3 + r);
-  return result;
-}
-
-namespace {
-
-unsigned above(const std::array<double, 4>& values, double isovalue) {
-  unsigned bits = 0;
-  for (std::size_t v = 0; v < 4; ++v) bits |= unsigned{values[v] >= isovalue} << v;
-  return bits;
-}
-
-bool is_uncrossed(unsigned above) { return above == 0 || above == 15; }
-
-std::array<double, 4> half_values(const TetrahedronHalf& half, const std::array<double, 4>& values,
-                                  double middle) {
-  std::array<double, 4> result;
-  for (std::size_t v = 0; v < 4; ++v) result[v] = half.vertices[v] < 4 ? values[half.vertices[v]] : middle;
-  return result;
-}
-
-}  // namespace
-
-template <class Sample>
-bool SurfaceExtractor<Sample>::is_split_finely(LatticePoint p, int more) {
-  // Diamonds below the samples are never split.
-  if (cut_ == nullptr || diamonds_.level(p) < 0) return false;
-  if (follows_split(p)) return true;
-  if (more == 0) return false;
-  for (const LatticePoint child : Diamond(p).children(diamonds_.domain())) {
-    if (is_split_finely(child, more - 1)) return true;
-  }
-  return false;
-}
-
-template <class Sample>
-bool SurfaceExtractor<Sample>::follows_split(LatticePoint p) {
-  const auto [known, is_new] = following_.insert(p);
-  if (!is_new) return *known != 0;
-  Points ancestors{p}, parents;
-  for (int g = 0; g < subtree_bisections_; ++g) {
-    parents.clear();
-    for (const LatticePoint a : ancestors) {
-      for (const LatticePoint parent : Diamond(a).parents(diamonds_.domain())) parents.push_back(parent);
-    }
-    std::sort(parents.begin(), parents.end());
-    parents.erase(std::unique(parents.begin(), parents.end()), parents.end());
-    ancestors.swap(parents);
-  }
-  const bool result = std::any_of(ancestors.begin(), ancestors.end(),
-                                  [this](LatticePoint a) { return is_split(a, rank(a), *cut_); });
-  *following_.find(p) = result ? 1 : 0;
-  return result;
-}
-
-template <class Sample>
-template <class Fn>
-void SurfaceExtractor<Sample>::for_each_crossed(LatticePoint diamond, int slot,
-                                                const std::array<double, 4>& values, int bisections,
-                                                Fn&& fn) {
-  if (bisections == 0 && !is_split_finely(diamond)) {
-    const unsigned bits = above(values, request_.isovalue);
-    if (kTetrahedronContours[bits].triangle_count != 0)
-      fn(CrossedTetrahedron{diamond, static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(bits),
-                            values});
-    return;
-  }
-  const Diamond d(diamond);
-  const double middle = diamonds_.sample(diamond);
-  for (const int end : {0, 1}) {
-    const TetrahedronHalf& half = DiamondHalves::of(d.type_index(), slot, end);
-    for_each_crossed(d.child(half.child), half.slot, half_values(half, values, middle),
-                     std::max(0, bisections - 1), fn);
-  }
-}
-
-template <class Sample>
-bool SurfaceExtractor<Sample>::is_inside(const Diamond& diamond) const {
-  const LatticePoint p = diamond.point(), last = diamonds_.last_sample();
-  const std::int32_t s = diamond.scale();
-  if (p.i + s > last.i || p.j + s > last.j || p.k + s > last.k) return false;
-  if (!request_.region) return true;
-  const Vec3 low = domain().position(p - LatticePoint{s, s, s}),
-             high = domain().position(p + LatticePoint{s, s, s});
-  return request_.region->contains(low) && request_.region->contains(high);
-}
-
-template <class Sample>
-std::int64_t SurfaceExtractor<Sample>::count_clipped(const CrossedTetrahedron& tetrahedron) const {
-  ContourBuilder builder(domain(), request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
-  builder.add(tetrahedron);
-  Contour contour = builder.finish();
-  if (request_.region) clip_contour(contour, *request_.region);
-  return static_cast<std::int64_t>(contour.triangles.size());
-}
-
-template <class Sample>
-std::int64_t SurfaceExtractor<Sample>::count_triangles(LatticePoint diamond, int slot,
-                                                       const std::array<double, 4>& values) {
-  std::int64_t count = 0;
-  for_each_crossed(diamond, slot, values, subtree_bisections_, [&](const CrossedTetrahedron& t) {
-    if (!is_inside(Diamond(t.diamond))) {
-      count += count_clipped(t);
-    } else if (std::all_of(t.values.begin(), t.values.end(),
-                           [](double value) { return std::isfinite(value); })) {
-      count += kTetrahedronContours[t.above].triangle_count;
-    }
-  });
-  return count;
-}
-
-template <class Sample>
-std::int64_t SurfaceExtractor<Sample>::added_triangles(LatticePoint p) {
-  const Diamond diamond(p);
-  const Vertices v = vertices(diamond, true);
-  // With subtrees a tetrahedron may be crossed though all of its vertices are on one side.
-  const bool by_sides = subtree_bisections_ == 0 && v.finite && is_inside(diamond);
-  const auto triangles = [](unsigned above) {
-    return std::int64_t{kTetrahedronContours[above].triangle_count};
-  };
-  std::int64_t added = 0;
-  for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
-    if ((v.slots >> slot & 1) == 0) continue;
-    if (by_sides) {
-      added -= triangles(v.above_of(slot, {0, 1, 2, 3}));
-    } else {
-      added -= count_triangles(p, slot, v.tetrahedron(slot));
-    }
-    for (const int end : {0, 1}) {
-      const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
-      if (by_sides) {
-        added += triangles(v.above_of(slot, half.vertices));
-      } else {
-        added += count_triangles(diamond.child(half.child), half.slot,
-                                 half_values(half, v.tetrahedron(slot), v.middle));
-      }
-    }
-  }
-  return added;
+DiamondVertices SurfaceExtractor<Sample>::vertices(const Diamond& diamond, bool with_middle) {
+  return {diamond, domain(), request_.isovalue, with_middle,
+          [this](LatticePoint p) { return diamonds_.sample(p); }};
 }
 
 template <class Sample>
@@ -263,12 +105,8 @@ typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangle
                                                                                   Progress& progress) {
   const int least = least_rank();
   diamonds_.set_contour(request_.isovalue, least);
-  cut_ = nullptr;
-  const Diamond root(root_);
-  const Vertices v = vertices(root, false);
-  std::int64_t triangles = 0;
-  for (int slot = 0; slot < root.tetrahedron_count(); ++slot)
-    triangles += count_triangles(root_, slot, v.tetrahedron(slot));
+  TriangleCounter<Sample> counter(diamonds_, request_, subtree_bisections_);
+  std::int64_t triangles = counter.triangles(Diamond(root_));
   // By rank, then by generation: no diamond has a greater rank, or with the same rank an earlier generation,
   // than its parents.
   std::vector<std::map<int, Points>> waiting(StoredDiamonds<Sample>::kRanks);
@@ -281,7 +119,7 @@ typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangle
       sort_by_page(points);
       progress.step("choosing", static_cast<double>(triangles) / static_cast<double>(budget));
       for (std::size_t n = 0; n < points.size(); ++n) {
-        const std::int64_t added = added_triangles(points[n]);
+        const std::int64_t added = counter.added_by_split(Diamond(points[n]));
         if (triangles + added > static_cast<std::int64_t>(budget)) {
           Cut cut{r, g, {points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n)}};
           std::sort(cut.last.begin(), cut.last.end());
@@ -300,29 +138,15 @@ typename SurfaceExtractor<Sample>::Cut SurfaceExtractor<Sample>::cut_by_triangle
 }
 
 template <class Sample>
-ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& progress) {
-  ExtractedSurface surface;
-  const Domain& domain = diamonds_.domain();
-  diamonds_.set_contour(request_.isovalue, cut.rank);
-  cut_ = subtree_bisections_ > 0 ? &cut : nullptr;
-  following_ = {};
-  ContourBuilder builder(domain, request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
-  const auto emit = [&](LatticePoint diamond, int slot, const std::array<double, 4>& values) {
-    for_each_crossed(diamond, slot, values, subtree_bisections_,
-                     [&](const CrossedTetrahedron& t) { builder.add(t); });
-  };
-  const auto note_error = [&](int rank) {
-    surface.max_error = std::max(surface.max_error, diamonds_.error(rank));
-  };
+template <class Split, class Leaf>
+void SurfaceExtractor<Sample>::walk(const Cut& cut, Progress& progress, Split&& split, Leaf&& leaf) {
+  // With subtrees it matters of every diamond whether it is crossed.
+  diamonds_.set_contour(request_.isovalue, subtree_bisections_ > 0 ? 0 : cut.rank);
   Points current, next;
-  surface.tetrahedra = static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count());
   if (const int r = rank(root_); is_split(root_, r, cut)) {
     current.push_back(root_);
   } else {
-    note_error(r);
-    const Vertices v = vertices(Diamond(root_), false);
-    for (int slot = 0; slot < Diamond(root_).tetrahedron_count(); ++slot)
-      emit(root_, slot, v.tetrahedron(slot));
+    leaf(nullptr, Diamond(root_), r);
   }
   for (int g = 0; !current.empty(); ++g) {
     progress.step("extracting", g / (3.0 * diamonds_.levels()));
@@ -330,33 +154,105 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& 
     sort_by_page(current);
     for (const LatticePoint p : current) {
       const Diamond diamond(p);
-      const Vertices v = vertices(diamond, true);
-      ++surface.diamonds;
-      surface.tetrahedra += static_cast<std::uint64_t>(diamond.tetrahedron_count(domain));
+      split(diamond);
       for (int c = 0; c < diamond.child_count(); ++c) {
         const LatticePoint child = diamond.child(c);
-        if (!domain.contains(child) || is_beyond(Diamond(child), diamonds_.last_sample())) continue;
+        if (!domain().contains(child) || is_beyond(Diamond(child), diamonds_.last_sample())) continue;
         const int r = rank(child);
-        if (is_split(child, r, cut)) {
-          if (leads_to(p, child)) next.push_back(child);
-          continue;
-        }
-        // What cannot be had has no greater error than what it comes from.
-        note_error(lost_.empty() || !is_lost(child) ? r : rank(p));
-        for (const auto& half : diamond.type().child_tetrahedra[static_cast<std::size_t>(c)]) {
-          if ((v.slots >> half.slot & 1) == 0) continue;
-          if (subtree_bisections_ == 0 && is_uncrossed(v.above_of(half.slot, half.vertices))) continue;
-          emit(child, half.child_slot,
-               half_values({{}, half.child_slot, half.vertices}, v.tetrahedron(half.slot), v.middle));
+        if (!is_split(child, r, cut)) {
+          leaf(&diamond.type().child_tetrahedra[static_cast<std::size_t>(c)], Diamond(child),
+               // What cannot be had has no greater error than what it comes from.
+               lost_.empty() || !is_lost(child) ? r : rank(p));
+        } else if (leads_to(p, child)) {
+          next.push_back(child);
         }
       }
     }
     current.swap(next);
   }
-  cut_ = nullptr;
-  surface.tetrahedra <<= subtree_bisections_;
-  surface.contour = builder.finish();
+}
+
+template <class Sample>
+ExtractedSurface SurfaceExtractor<Sample>::contour_of(const Cut& cut, Progress& progress) {
+  ExtractedSurface surface =
+      subtree_bisections_ > 0 ? contour_of_subtrees(cut, progress) : contour_of_mesh(cut, progress);
   if (request_.region) clip_contour(surface.contour, *request_.region);
+  return surface;
+}
+
+template <class Sample>
+ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(const Cut& cut, Progress& progress) {
+  ExtractedSurface surface;
+  ContourBuilder builder(domain(), request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
+  const auto emit = [&](const Diamond& diamond, int slot, unsigned above, const auto& values) {
+    if (kTetrahedronContours[above].triangle_count == 0) return;
+    builder.add(
+        {diamond.point(), static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(above), values()});
+  };
+  std::optional<DiamondVertices> v;
+  surface.tetrahedra = static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count());
+  walk(
+      cut, progress,
+      [&](const Diamond& diamond) {
+        v = vertices(diamond, true);
+        ++surface.diamonds;
+        surface.tetrahedra += static_cast<std::uint64_t>(diamond.tetrahedron_count(domain()));
+      },
+      [&](const ChildTetrahedra* halves, const Diamond& diamond, int rank) {
+        surface.max_error = std::max(surface.max_error, diamonds_.error(rank));
+        if (halves == nullptr) {
+          v = vertices(diamond, false);
+          for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot)
+            emit(diamond, slot, v->above_of(slot, {0, 1, 2, 3}), [&] { return v->tetrahedron(slot); });
+          return;
+        }
+        for (const auto& half : *halves) {
+          if ((v->slots >> half.slot & 1) != 0)
+            emit(diamond, half.child_slot, v->above_of(half.slot, half.vertices),
+                 [&] { return v->half(half.slot, half.vertices); });
+        }
+      });
+  surface.contour = builder.finish();
+  return surface;
+}
+
+template <class Sample>
+ExtractedSurface SurfaceExtractor<Sample>::contour_of_subtrees(const Cut& cut, Progress& progress) {
+  ExtractedSurface surface;
+  // Bisections of neighbours of different generations do not meet by themselves: a table of the fine mesh
+  // splits what one needs of the other.
+  IndexedHierarchy mesh(domain(), diamonds_.levels());
+  Points done;
+  const auto refine = [&](auto&& self, const Diamond& diamond, int slot, int bisections) -> void {
+    if (bisections == 0 || diamonds_.level(diamond.point()) < 0) return;
+    mesh.split(diamond.point(), done);
+    for (const int end : {0, 1}) {
+      const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
+      if (bisections > 1) self(self, Diamond(diamond.child(half.child)), half.slot, bisections - 1);
+    }
+  };
+  walk(
+      cut, progress,
+      [&](const Diamond& diamond) {
+        ++surface.diamonds;
+        mesh.split(diamond.point(), done);
+        done.clear();
+      },
+      [&](const ChildTetrahedra* halves, const Diamond& diamond, int rank) {
+        surface.max_error = std::max(surface.max_error, diamonds_.error(rank));
+        // What is exactly linear, or not crossed, or lost, stays as it is.
+        const bool has_values = 3 * diamonds_.level(diamond.point()) >= subtree_bisections_;
+        if (has_values && (rank == 0 || (!lost_.empty() && is_lost(diamond.point())))) return;
+        if (halves == nullptr) {
+          for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot)
+            refine(refine, diamond, slot, subtree_bisections_);
+          return;
+        }
+        for (const auto& half : *halves) refine(refine, diamond, half.child_slot, subtree_bisections_);
+      });
+  surface.tetrahedra = mesh.tetrahedron_count();
+  surface.contour = extract_contour(mesh, [this](LatticePoint p) { return diamonds_.sample(p); },
+                                    request_.isovalue, {request_.least_parameter, diamonds_.last_sample()});
   return surface;
 }
 

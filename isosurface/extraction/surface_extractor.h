@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/lattice/lattice_map.h"
+#include "isosurface/extraction/diamond_vertices.h"
 #include "isosurface/extraction/lost_regions.h"
 #include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/extraction/surface_request.h"
@@ -39,31 +39,18 @@ class SurfaceExtractor {
     int generation = 0;
     Points last;  ///< in ascending order
   };
-  /// The values at the vertices of a diamond's tetrahedra in the domain, whose slots are `slots`.
-  struct Vertices {
-    unsigned slots = 0;
-    double begin = 0, end = 0, middle = 0;
-    std::array<double, 9> ring{};
-    /// Which of them are above the isovalue, as bits in the order of the members.
-    unsigned above = 0;
-    bool finite = true;  ///< all of them
-
-    [[nodiscard]] std::array<double, 4> tetrahedron(int slot) const {
-      const auto s = static_cast<std::size_t>(slot);
-      return {begin, end, ring[s], ring[s + 1]};
-    }
-    /// The same bits of one half of a tetrahedron, in the half's order.
-    [[nodiscard]] unsigned above_of(int slot, const std::array<std::uint8_t, 4>& half) const {
-      const unsigned bits = (above & 3) | (above >> (3 + slot) & 3) << 2 | (above & 4) << 2;
-      return (bits >> half[0] & 1) | (bits >> half[1] & 1) << 1 | (bits >> half[2] & 1) << 2 |
-             (bits >> half[3] & 1) << 3;
-    }
-  };
-
   ExtractedSurface extract_once(Progress& progress);
   Cut cut_by_error() const;
   Cut cut_by_triangles(std::uint64_t budget, Progress& progress);
+  using ChildTetrahedra = std::array<DiamondType::ChildTetrahedron, 2>;
+  /// Goes through the mesh of a cut: split(diamond) for the diamonds that are split, parents first, each
+  /// followed by leaf(halves, child, rank) for those of its children that are not, with which of its
+  /// tetrahedra's halves they have; leaf(null, root, rank) where nothing is split.
+  template <class Split, class Leaf>
+  void walk(const Cut& cut, Progress& progress, Split&& split, Leaf&& leaf);
   ExtractedSurface contour_of(const Cut& cut, Progress& progress);
+  ExtractedSurface contour_of_mesh(const Cut& cut, Progress& progress);
+  ExtractedSurface contour_of_subtrees(const Cut& cut, Progress& progress);
 
   /// The least rank whose error is greater than the one wanted.
   [[nodiscard]] int least_rank() const { return diamonds_.rank_within(request_.error) + 1; }
@@ -80,34 +67,12 @@ class SurfaceExtractor {
   /// Brings diamonds of one generation into the order of their pages in the file: each page is looked at
   /// once.
   void sort_by_page(Points& points) const;
-  Vertices vertices(const Diamond& diamond, bool with_middle);
-
-  /// Calls fn(tetrahedron) for those of the fine tetrahedra of a tetrahedron that the contour crosses.
-  template <class Fn>
-  void for_each_crossed(LatticePoint diamond, int slot, const std::array<double, 4>& values, int bisections,
-                        Fn&& fn);
-  /// Whether a fine diamond, at which the bisections of some tetrahedron of the mesh end, is split since
-  /// those of neighbouring ones go further: where it, or a diamond that cannot be split without it, follows a
-  /// split.
-  bool is_split_finely(LatticePoint p, int more = kMostFurther);
-  /// By how many generations neighbours along an edge may differ.
-  static constexpr int kMostFurther = 2;
-  /// Whether a diamond is split from which this one comes by as many bisections as tetrahedra stand for.
-  bool follows_split(LatticePoint p);
-  std::int64_t count_triangles(LatticePoint diamond, int slot, const std::array<double, 4>& values);
-  /// How many triangles a tetrahedron has when the surface is clipped.
-  std::int64_t count_clipped(const CrossedTetrahedron& tetrahedron) const;
-  /// Whether the surface in a diamond is not clipped.
-  [[nodiscard]] bool is_inside(const Diamond& diamond) const;
-  /// How many more triangles there are once a diamond is split.
-  std::int64_t added_triangles(LatticePoint p);
+  DiamondVertices vertices(const Diamond& diamond, bool with_middle);
 
   StoredDiamonds<Sample> diamonds_;
   int subtree_bisections_;
   LatticePoint root_;
   LostRegions lost_;
-  const Cut* cut_ = nullptr;            ///< of the mesh with subtrees that is gone through
-  LatticeMap<std::uint8_t> following_;  ///< what follows_split has found
   SurfaceRequest request_;
   std::optional<std::array<Vec3, 2>> region_;  ///< in samples
 };

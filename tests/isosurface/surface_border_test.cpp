@@ -178,8 +178,8 @@ TEST(SurfaceBorder, HolesWhereSamplesAreNotFinite) {
         const auto field = test::field_of(volume, depth);
         for (const EdgePoint& p : contour.edge_points)
           ASSERT_TRUE(std::isfinite(field(p.first)) && std::isfinite(field(p.second)));
-        const Contour wanted = extract_contour(test::finer_mesh(table.mesh(isovalue, 0), 3 * subtrees), field,
-                                               isovalue, test::options_of(volume, depth, 1.0 / 1024));
+        const Contour wanted = extract_contour(table.mesh_of_subtrees(isovalue, 0, subtrees), field, isovalue,
+                                               test::options_of(volume, depth, 1.0 / 1024));
         EXPECT_FALSE(wanted.triangles.empty());
         test::expect_near(test::measure(contour), test::measure(wanted), 1e-7 * test::measure(wanted).area);
       }

@@ -82,31 +82,20 @@ void for_each_part(const Corners& corners, int bisections, const std::function<v
   for (const Corners& half : halves(corners)) for_each_part(half, bisections - 1, fn);
 }
 
-IndexedHierarchy finer_mesh(const IndexedHierarchy& mesh, int generations) {
-  IndexedHierarchy result(mesh.domain(), mesh.levels());
+IndexedHierarchy finer_mesh(const IndexedHierarchy& mesh, int bisections,
+                            const std::function<bool(LatticePoint)>& wanted) {
+  IndexedHierarchy result = mesh;
   std::vector<LatticePoint> done;
-  const auto any_split = [&](LatticePoint p) {
-    std::set<LatticePoint> ancestors{p};
-    for (int g = 0; g < generations; ++g) {
-      std::set<LatticePoint> parents;
-      for (const LatticePoint a : ancestors) {
-        for (const LatticePoint parent : Diamond(a).parents(mesh.domain())) parents.insert(parent);
-      }
-      ancestors = std::move(parents);
-    }
-    return std::any_of(ancestors.begin(), ancestors.end(), [&](LatticePoint a) { return mesh.is_split(a); });
+  const std::function<void(const Corners&, int)> split_parts = [&](const Corners& corners, int more) {
+    const auto [a, b] = longest_edge(corners);
+    const LatticePoint middle = middle_of(corners[a], corners[b]);
+    if (more == 0 || !result.can_split(middle)) return;
+    result.split(middle, done);
+    for (const Corners& half : halves(corners)) split_parts(half, more - 1);
   };
-  const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
-  std::set<LatticePoint> generation{{middle, middle, middle}};
-  for (int g = 0; !generation.empty(); ++g) {
-    std::set<LatticePoint> next;
-    for (const LatticePoint p : generation) {
-      if (!mesh.can_split(p) || (g >= generations && !any_split(p))) continue;
-      result.split(p, done);
-      for (const LatticePoint child : Diamond(p).children(mesh.domain())) next.insert(child);
-    }
-    generation = std::move(next);
-  }
+  mesh.for_each_tetrahedron([&](const Diamond& diamond, int slot) {
+    if (wanted(diamond.point())) split_parts(diamond.tetrahedron(slot), bisections);
+  });
   return result;
 }
 

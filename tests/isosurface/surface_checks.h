@@ -31,9 +31,10 @@ using Corners = std::array<LatticePoint, 4>;
 std::pair<LatticePoint, std::uint8_t> slot_of(const Corners& corners);
 /// Calls fn(corners) for the tetrahedra that so many bisections of the longest edge make of one.
 void for_each_part(const Corners& corners, int bisections, const std::function<void(const Corners&)>& fn);
-/// The mesh in which each diamond is split that has a split one so many generations before it: tetrahedra
-/// stand for their parts, and parts meet where the mesh's tetrahedra do.
-IndexedHierarchy finer_mesh(const IndexedHierarchy& mesh, int generations);
+/// The mesh after so many bisections of the longest edge in each tetrahedron of the diamonds that are wanted,
+/// and what others need to be split with them.
+IndexedHierarchy finer_mesh(const IndexedHierarchy& mesh, int bisections,
+                            const std::function<bool(LatticePoint)>& wanted);
 
 /// Lattice units of one step between samples.
 inline std::int32_t lattice_step(int depth) { return std::int32_t{1} << (kRootBits - depth); }
@@ -90,6 +91,16 @@ class DiamondTable {
     return mesh([&](const Values& values) { return values.error > error && values.is_crossed(isovalue); });
   }
   /// The mesh in which every diamond is split that reaches into the data.
+  /// The mesh of an error, each tetrahedron of which stands for finer ones where the surface may cross it.
+  [[nodiscard]] IndexedHierarchy mesh_of_subtrees(double isovalue, double error, int subtree_depth) const {
+    return finer_mesh(mesh(isovalue, error), 3 * subtree_depth, [&](LatticePoint p) {
+      const LatticePoint at{p.i / lattice_step(depth_), p.j / lattice_step(depth_),
+                            p.k / lattice_step(depth_)};
+      if (p != lattice_step(depth_) * at || trailing_zeros(at) < subtree_depth) return true;
+      const auto found = diamonds_.find(at);
+      return found != diamonds_.end() && found->second.error > 0 && found->second.is_crossed(isovalue);
+    });
+  }
   [[nodiscard]] IndexedHierarchy full_mesh() const {
     return mesh([](const Values&) { return true; });
   }

@@ -158,7 +158,8 @@ TEST_P(DamagedSurface, PartsOfTheDirectory) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Subtrees, DamagedSurface, testing::Values(0, 1, 2));
+INSTANTIATE_TEST_SUITE_P(Plain, DamagedSurface, testing::Values(0));
+INSTANTIATE_TEST_SUITE_P(LongSubtrees, DamagedSurface, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace adamas

@@ -51,9 +51,10 @@ class SurfaceOf : public testing::Test {
         const IndexedHierarchy mesh = table.mesh(isovalue, error);
         const auto options = test::options_of(volume, depth, 1.0 / 1024);
         const auto field = test::field_of(volume, depth);
-        const Contour wanted = subtree_depth == 0 ? extract_contour(mesh, field, isovalue, options)
-                                                  : extract_contour(test::finer_mesh(mesh, 3 * subtree_depth),
-                                                                    field, isovalue, options);
+        const Contour wanted = subtree_depth == 0
+                                   ? extract_contour(mesh, field, isovalue, options)
+                                   : extract_contour(table.mesh_of_subtrees(isovalue, error, subtree_depth),
+                                                     field, isovalue, options);
         expect_equal(surface.contour, wanted);
         test::expect_sound(surface.contour, volume.grid.box());
         EXPECT_LE(surface.max_error, error);
