@@ -223,6 +223,10 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_subtrees(const Cut& cut, P
   // splits what one needs of the other.
   IndexedHierarchy mesh(domain(), diamonds_.levels());
   Points done;
+  const auto is_in_domain = [&](const Diamond& diamond, int slot) {
+    const int next = slot + 1 == diamond.tetrahedron_count() ? 0 : slot + 1;
+    return domain().contains(diamond.ring(slot)) && domain().contains(diamond.ring(next));
+  };
   const auto refine = [&](auto&& self, const Diamond& diamond, int slot, int bisections) -> void {
     if (bisections == 0 || diamonds_.level(diamond.point()) < 0) return;
     mesh.split(diamond.point(), done);
@@ -248,7 +252,10 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_subtrees(const Cut& cut, P
             refine(refine, diamond, slot, subtree_bisections_);
           return;
         }
-        for (const auto& half : *halves) refine(refine, diamond, half.child_slot, subtree_bisections_);
+        for (const auto& half : *halves) {
+          if (is_in_domain(diamond, half.child_slot))
+            refine(refine, diamond, half.child_slot, subtree_bisections_);
+        }
       });
   surface.tetrahedra = mesh.tetrahedron_count();
   surface.contour = extract_contour(mesh, [this](LatticePoint p) { return diamonds_.sample(p); },
