@@ -23,7 +23,7 @@ Counts sum(const Counts& a, const Counts& b) {
 /// Merges the two groups for which that saves most, until it saves nothing.
 class Grouping {
  public:
-  Grouping(const ContextCounts& counts, int escape_bits) : escape_bits_(escape_bits) {
+  Grouping(const ContextTallies& counts, int escape_bits) : escape_bits_(escape_bits) {
     for (std::size_t context = 0; context < counts.size(); ++context) {
       if (std::ranges::all_of(counts[context], [](std::uint64_t n) { return n == 0; })) continue;
       groups_.push_back({counts[context], bits(counts[context]), {context}, {}});
@@ -96,7 +96,7 @@ int group_bits(std::size_t groups) { return static_cast<int>(std::bit_width(grou
 
 }  // namespace
 
-ContextGroups::ContextGroups(const ContextCounts& counts, int escape_bits) {
+ContextGroups::ContextGroups(const ContextTallies& counts, int escape_bits) {
   ADAMAS_ASSERT(!counts.empty() && counts.size() < 256);
   const auto merged = Grouping(counts, escape_bits).merged();
   constexpr std::size_t kNone = 256;

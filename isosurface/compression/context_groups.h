@@ -11,14 +11,14 @@
 namespace adamas {
 
 /// How often each symbol came in each context: one row of counts per context.
-using ContextCounts = std::vector<std::vector<std::uint64_t>>;
+using ContextTallies = std::vector<std::vector<std::uint64_t>>;
 
 /// Contexts that share frequencies: as many groups as pay for the bytes that theirs take.
 class ContextGroups {
  public:
   /// Groups for sequences with these counts, of each symbol but the escape; a symbol that a group has no
   /// frequency for costs an escape and so many bits.
-  ContextGroups(const ContextCounts& counts, int escape_bits);
+  ContextGroups(const ContextTallies& counts, int escape_bits);
 
   [[nodiscard]] std::size_t contexts() const { return groups_.size(); }
   /// The group of each context. They are numbered in the order in which they come first.

@@ -70,7 +70,7 @@ class InterpolationSurvey final : public SampleSurvey<Word> {
   [[nodiscard]] std::unique_ptr<SampleCodec<Word>> codec() const override;
 
  private:
-  ContextCounts counts_;
+  ContextTallies counts_;
 };
 
 }  // namespace adamas

@@ -30,7 +30,7 @@ struct SurfaceRequest {
 struct ExtractedSurface {
   Contour contour;
   std::uint64_t diamonds = 0;    ///< that are split
-  std::uint64_t tetrahedra = 0;  ///< of the mesh, subtrees counted in full
+  std::uint64_t tetrahedra = 0;  ///< of the mesh; with subtrees of the fine one
   /// The greatest isosurface error among the diamonds that the surface crosses.
   double max_error = 0;
   std::vector<PageId> lost;  ///< pages that could not be had: round them the surface is coarser
