@@ -25,6 +25,9 @@ class InterpolationPage {
   static constexpr std::size_t kMostInSet = 3 * 512;
 
   InterpolationPage(LatticePoint count, const Around& around) : count_(count) {
+    // Loops run over cells without a point too, whose sums nobody uses: of 16 bits any fit, of more only
+    // those of small numbers.
+    if constexpr (sizeof(Value) > 2) cells_ = {};
     for (std::size_t n = 0; n < around.size(); ++n) cells_.values[0][n] = static_cast<Value>(around[n]);
     for (typename Cells::Cells& residuals : cells_.residuals) residuals.fill(0);
   }
