@@ -66,4 +66,8 @@ struct PageShape {
   }
 };
 
+inline PageShape page_shape(const PageGrid& grid, const PageId& page) {
+  return {grid.count(page), grid.is_complete(page), page.level};
+}
+
 }  // namespace adamas

@@ -56,7 +56,7 @@ const HeldPage<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
   // Not before: what predicts the page may have pushed others out.
   const std::uint32_t fresh = free_slot();
   Slot& slot = slots_[fresh];
-  const PageShape shape{grid_.count(id), grid_.is_complete(id), id.level};
+  const PageShape shape = page_shape(grid_, id);
   if (!shape.complete) fill_coarser(shape, around, *slot.page);
   // A cube whose only point is a coarser one has no page.
   if (grid_.contains(id)) {

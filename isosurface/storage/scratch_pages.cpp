@@ -66,7 +66,7 @@ std::uint64_t& ScratchPages<Word>::offset(const PageId& id) {
 
 template <class Word>
 void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
-  const PageShape shape{grid_.count(id), grid_.is_complete(id), id.level};
+  const PageShape shape = page_shape(grid_, id);
   buffer_.clear();
   const auto append = [&](const auto& values) {
     for_each_own_row(shape, [&](std::size_t first, std::size_t count, std::size_t step) {
@@ -98,7 +98,7 @@ void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
 
 template <class Word>
 void ScratchPages<Word>::get(const PageId& id, Page<Word>& page) {
-  const PageShape shape{grid_.count(id), grid_.is_complete(id), id.level};
+  const PageShape shape = page_shape(grid_, id);
   std::size_t points = 0;
   for_each_own_row(shape, [&](std::size_t, std::size_t count, std::size_t) { points += count; });
   buffer_.resize(points * point_bytes());

@@ -180,7 +180,7 @@ class StoreBuilder {
         Job<Word>& job = jobs_[n];
         job.number = numbers[begin + n];
         const PageId id = grid_.page(job.number);
-        job.shape = {grid_.count(id), grid_.is_complete(id), id.level};
+        job.shape = page_shape(grid_, id);
         tree_.surroundings(id, job.around);
         job.page = *tree_.page(id);
         if (gradients_ != nullptr) gradients_->get(id, job.gradients, job.gradients_around);

@@ -79,14 +79,14 @@ class Verifier {
 
   bool is_summary(const PageId& id, const Page<Word>& page, const PageSummary& said) const {
     const PageGrid& grid = pages_.grid();
-    const PageSummary found = summary(PageShape{grid.count(id), grid.is_complete(id), id.level}, page);
+    const PageSummary found = summary(page_shape(grid, id), page);
     return found.low == said.low && found.high == said.high && found.error == said.error;
   }
 
   /// Diamonds of a page and those that they come from, as far as the page has both.
   bool is_lawful(const PageId& id, const Page<Word>& page) const {
     const PageGrid& grid = pages_.grid();
-    const PageShape shape{grid.count(id), grid.is_complete(id), id.level};
+    const PageShape shape = page_shape(grid, id);
     LatticePoint q{};
     for (q.k = 0; q.k < shape.count.k; ++q.k) {
       for (q.j = 0; q.j < shape.count.j; ++q.j) {
