@@ -70,12 +70,15 @@ class ContourBuilder {
 
   /// Throws Error where the surface has more points than 32 bits can number.
   void add(const CrossedTetrahedron& tetrahedron);
+  /// The number of the point on an edge of the mesh between two finite values, one of them below the isovalue
+  /// and one not. Throws as `add` does.
+  std::uint32_t edge_point(LatticePoint a, LatticePoint b, double value_a, double value_b);
+  /// By the numbers of its points.
+  void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }
   /// The contour, clipped; the builder is not to be used then.
   [[nodiscard]] Contour finish();
 
  private:
-  [[nodiscard]] std::uint32_t edge_point(LatticePoint a, LatticePoint b, double value_a, double value_b);
-
   Domain domain_;
   double isovalue_;
   ContourOptions options_;

@@ -57,7 +57,7 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
 }
 
 template <class Sample>
-void StoredDiamonds<Sample>::set_contour(double isovalue, int least_rank) {
+void StoredDiamonds<Sample>::set_contour(double isovalue) {
   // Ordered words are in the order of their values: the first that is not below, by halving. NaN lie at both
   // ends, where they answer as the infinities next to them.
   std::uint64_t begin = 0, end = std::uint64_t{std::numeric_limits<Word>::max()} + 1;
@@ -69,7 +69,6 @@ void StoredDiamonds<Sample>::set_contour(double isovalue, int least_rank) {
     (below ? begin : end) = below ? middle + 1 : middle;
   }
   least_above_ = begin;
-  least_rank_ = least_rank;
   ++contour_;
 }
 
@@ -79,28 +78,32 @@ void StoredDiamonds<Sample>::mark(const PageId& id, const HeldPage<Word>& page) 
   const PageEntry& known = entry(id);
   if (!crosses(known.low, known.high)) {
     page.marks.fill(0);
-  } else if (matters_not(id, known)) {
-    page.marks.fill(known.error);
-  } else {
-    const auto least = static_cast<Word>(least_above_);
-    for (std::size_t n = 0; n < PageGrid::kPoints; ++n)
-      page.marks[n] = page.low[n] < least && least <= page.high[n] ? page.errors[n] : std::uint8_t{0};
+    return;
   }
+  const auto least = static_cast<Word>(least_above_);
+  for (std::size_t n = 0; n < PageGrid::kPoints; ++n)
+    page.marks[n] = page.low[n] < least && least <= page.high[n] ? page.errors[n] : std::uint8_t{0};
+}
+
+template <class Sample>
+const HeldPage<typename StoredDiamonds<Sample>::Word>& StoredDiamonds<Sample>::marked_page(const PageId& id) {
+  const HeldPage<Word>& found = page(id);
+  if (found.marked != contour_) mark(id, found);
+  return found;
+}
+
+template <class Sample>
+int StoredDiamonds<Sample>::greatest_rank(const PageId& id) {
+  const PageEntry& known = entry(id);
+  return known.error == 0 || !crosses(known.low, known.high) ? 0 : known.error + 4 * id.level;
 }
 
 template <class Sample>
 int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
   const LatticePoint at = in_samples(p);
   const PageId id = grid_.page(at);
-  const HeldPage<Word>* from = pages_.held(id);
-  if (from == nullptr) {
-    const PageEntry& known = entry(id);
-    if (!crosses(known.low, known.high)) return 0;
-    if (matters_not(id, known)) return known.error == 0 ? 0 : known.error + 4 * id.level;
-    from = &page(id);
-  }
-  if (from->marked != contour_) mark(id, *from);
-  const int code = from->marks[PageGrid::place(at, id.level)];
+  if (pages_.held(id) == nullptr && id.level < grid_.top() && greatest_rank(id) == 0) return 0;
+  const int code = marked_page(id).marks[PageGrid::place(at, id.level)];
   return code == 0 ? 0 : code + 4 * level(p);
 }
 

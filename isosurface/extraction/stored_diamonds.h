@@ -47,16 +47,17 @@ class StoredDiamonds {
     return s.i <= e.i && s.j <= e.j && s.k <= e.k;
   }
 
-  /// The sample at a point of the lattice of samples; beyond the data the nearest one. Throws PageLost.
-  double sample(LatticePoint p) {
-    LatticePoint at = in_samples(p);
+  /// The sample at a lattice point; beyond the data the nearest one. Throws PageLost.
+  double sample(LatticePoint p) { return value(word(in_samples(p))); }
+  /// The same at a point in samples.
+  Word word(LatticePoint at) {
     // Points farther out than the virtual ones of their level have the values of those: no finer page than
     // theirs is needed.
     const int l = std::min(trailing_zeros(at), PageGrid::kMaxDepth + 1);
     const LatticePoint end = ends_[static_cast<std::size_t>(l)];
     for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], end[axis]);
     const PageId id = grid_.page(at);
-    return value(page(id).samples[PageGrid::place(at, id.level)]);
+    return page(id).samples[PageGrid::place(at, id.level)];
   }
 
   /// Errors by rank: 0 is none, and each rank is an error 2^(1/4) times that of the one before.
@@ -66,12 +67,21 @@ class StoredDiamonds {
   /// The greatest rank whose error is not greater.
   [[nodiscard]] int rank_within(double error) const;
 
-  /// Which contour the ranks are for, and from which rank on they matter.
-  void set_contour(double isovalue, int least_rank);
-  /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Where no
-  /// diamond of its page has a rank that matters, the greatest of theirs, without a look into the page.
-  /// Throws PageLost.
+  /// Which contour what follows is for.
+  void set_contour(double isovalue);
+  /// Whether a sample is not below the isovalue.
+  [[nodiscard]] bool is_above(Word word) const { return word >= least_above_; }
+  /// Of a stored diamond: the rank of its error where the contour may cross it, 0 where it does not. Throws
+  /// PageLost.
   int rank_if_crossed(LatticePoint p);
+  /// No diamond of the page that the contour crosses has a greater rank; 0 where it crosses none. Not for the
+  /// coarsest page, which has diamonds of several levels. Throws PageLost.
+  int greatest_rank(const PageId& id);
+  /// A page whose marks are the error codes of the diamonds that the contour crosses, 0 of the others. Throws
+  /// PageLost.
+  const HeldPage<Word>& marked_page(const PageId& id);
+
+  [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
 
   /// Bounds of all samples. Throws PageLost.
   std::array<double, 2> range();
@@ -83,14 +93,7 @@ class StoredDiamonds {
     return *found;
   }
   const PageEntry& entry(const PageId& id);
-  /// Whether no diamond of a page has a rank that matters. The coarsest page has diamonds of several levels.
-  [[nodiscard]] bool matters_not(const PageId& id, const PageEntry& known) const {
-    return id.level < grid_.top() && known.error + 4 * id.level < least_rank_;
-  }
-  /// Makes a page's marks the error codes of the diamonds that the contour crosses, 0 of the others; all of
-  /// them the greatest of the page where none matters.
   void mark(const PageId& id, const HeldPage<Word>& page);
-  [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
   /// The contour crosses what has a range with low < least_above_ <= high, as ordered words.
   [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {
     return low <= high && low < least_above_ && least_above_ <= high;
@@ -111,8 +114,7 @@ class StoredDiamonds {
   std::array<LatticePoint, PageGrid::kMaxDepth + 2> reaches_{};
   std::vector<RecentEntry> recent_;  ///< by level
   std::uint64_t least_above_ = 0;    ///< the least ordered word of a value not below the isovalue
-  int least_rank_ = 0;
-  std::uint64_t contour_ = 0;  ///< which one the marks of pages are for
+  std::uint64_t contour_ = 0;        ///< which one the marks of pages are for
   std::array<double, kRanks> errors_{};
 };
 

@@ -73,21 +73,13 @@ std::int64_t TriangleCounter<Sample>::triangles(const Diamond& diamond) {
 template <class Sample>
 std::int64_t TriangleCounter<Sample>::added_by_split(const Diamond& diamond) {
   const DiamondVertices v = vertices(diamond, true);
-  // With subtrees a tetrahedron may be crossed though all of its vertices are on one side.
-  const bool by_sides = bisections_ == 0 && v.finite && is_inside(diamond);
-  const auto triangles = [](unsigned above) {
-    return std::int64_t{kTetrahedronContours[above].triangle_count};
-  };
   std::int64_t added = 0;
   for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
     if ((v.slots >> slot & 1) == 0) continue;
-    added -= by_sides ? triangles(v.above_of(slot, {0, 1, 2, 3}))
-                      : count(diamond, slot, v.tetrahedron(slot), bisections_);
+    added -= count(diamond, slot, v.tetrahedron(slot), bisections_);
     for (const int end : {0, 1}) {
       const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
-      added += by_sides ? triangles(v.above_of(slot, half.vertices))
-                        : count(Diamond(diamond.child(half.child)), half.slot, v.half(slot, half.vertices),
-                                bisections_);
+      added += count(Diamond(diamond.child(half.child)), half.slot, v.half(slot, half.vertices), bisections_);
     }
   }
   return added;

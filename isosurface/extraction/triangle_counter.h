@@ -22,13 +22,13 @@ class TriangleCounter {
   std::int64_t triangles(const Diamond& diamond);
   /// How many more there are once a diamond is split. Throws PageLost.
   std::int64_t added_by_split(const Diamond& diamond);
+  /// Whether the surface in a diamond is not clipped.
+  [[nodiscard]] bool is_inside(const Diamond& diamond) const;
 
  private:
   DiamondVertices vertices(const Diamond& diamond, bool with_middle);
   std::int64_t count(const Diamond& diamond, int slot, const std::array<double, 4>& values, int bisections);
   std::int64_t count_clipped(const CrossedTetrahedron& tetrahedron) const;
-  /// Whether the surface in a diamond is not clipped.
-  [[nodiscard]] bool is_inside(const Diamond& diamond) const;
 
   StoredDiamonds<Sample>& diamonds_;
   const SurfaceRequest& request_;

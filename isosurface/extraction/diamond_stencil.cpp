@@ -1,0 +1,66 @@
+#include "isosurface/extraction/diamond_stencil.h"
+
+namespace adamas {
+
+namespace {
+
+DiamondStencil stencil_of(const DiamondType& type) {
+  DiamondStencil stencil{};
+  stencil.phase = type.phase;
+  stencil.tetrahedron_count = static_cast<std::size_t>(type.tetrahedron_count);
+  stencil.count = DiamondStencil::kRing + stencil.tetrahedron_count;
+  stencil.offsets[DiamondStencil::kBegin] = -type.direction;
+  stencil.offsets[DiamondStencil::kEnd] = type.direction;
+  const auto corners = [&](std::size_t slot) {
+    const std::size_t next = slot + 1 == stencil.tetrahedron_count ? 0 : slot + 1;
+    // As DiamondType::ChildTetrahedron numbers them: the split vertex comes last.
+    return std::array<std::size_t, 5>{DiamondStencil::kBegin, DiamondStencil::kEnd,
+                                      DiamondStencil::kRing + slot, DiamondStencil::kRing + next,
+                                      DiamondStencil::kMiddle};
+  };
+  for (std::size_t slot = 0; slot < stencil.tetrahedron_count; ++slot) {
+    stencil.offsets[DiamondStencil::kRing + slot] = type.ring[slot];
+    for (std::size_t v = 0; v < 4; ++v) stencil.tetrahedra[slot] |= 1u << corners(slot)[v];
+  }
+  stencil.child_count = static_cast<std::size_t>(type.child_count);
+  for (std::size_t c = 0; c < stencil.child_count; ++c) {
+    const LatticePoint offset = type.child_offsets[c];
+    stencil.children[c] = type.phase == 2 ? offset : LatticePoint{offset.i / 2, offset.j / 2, offset.k / 2};
+    for (std::size_t h = 0; h < 2; ++h) {
+      const DiamondType::ChildTetrahedron& from = type.child_tetrahedra[c][h];
+      DiamondStencil::Half& half = stencil.halves[c][h];
+      half.slot = from.slot;
+      for (std::size_t v = 0; v < 4; ++v) {
+        half.vertices[v] = static_cast<std::uint8_t>(corners(from.slot)[from.vertices[v]]);
+        half.members |= 1u << half.vertices[v];
+      }
+    }
+  }
+  return stencil;
+}
+
+}  // namespace
+
+int DiamondStencil::triangles_added(unsigned slots, Members above) const {
+  int added = 0;
+  for (std::size_t slot = 0; slot < tetrahedron_count; ++slot) {
+    if ((slots >> slot & 1) != 0) added -= triangles(tetrahedra[slot], above);
+  }
+  for (std::size_t c = 0; c < child_count; ++c) {
+    for (const Half& half : halves[c]) {
+      if ((slots >> half.slot & 1) != 0) added += triangles(half.members, above);
+    }
+  }
+  return added;
+}
+
+const DiamondStencil& DiamondStencil::at(LatticePoint q) {
+  static const auto kAll = [] {
+    std::array<DiamondStencil, kDiamondTypeCount> all;
+    for (std::size_t type = 0; type < all.size(); ++type) all[type] = stencil_of(kDiamondTypes[type]);
+    return all;
+  }();
+  return kAll[static_cast<std::size_t>(diamond_type(q, 0))];
+}
+
+}  // namespace adamas

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/lattice/diamond_type.h"
+
+namespace adamas {
+
+/// A diamond that is split, as its members round the split vertex: the vertices of its tetrahedra and the
+/// split vertex. Sets of members are bits in the order of the members.
+struct DiamondStencil {
+  using Members = std::uint32_t;
+  static constexpr std::size_t kBegin = 0, kEnd = 1, kMiddle = 2, kRing = 3, kMost = kRing + 8;
+
+  /// A half of one of the tetrahedra.
+  struct Half {
+    std::uint8_t slot;                     ///< of the tetrahedron
+    std::array<std::uint8_t, 4> vertices;  ///< members, in the child diamond's order
+    Members members;                       ///< the same as a set
+  };
+
+  int phase;
+  std::size_t count;                        ///< of members
+  std::array<LatticePoint, kMost> offsets;  ///< in units of the diamond's scale
+  std::size_t tetrahedron_count;
+  std::array<Members, 8> tetrahedra;  ///< by slot
+  std::size_t child_count;
+  /// In phase 2 in units of half the scale: children belong to the next finer level there.
+  std::array<LatticePoint, 8> children;
+  std::array<std::array<Half, 2>, 8> halves;  ///< by child
+
+  /// How many triangles a contour has in a tetrahedron with these vertices, of which those of `above` are
+  /// above it.
+  static int triangles(Members vertices, Members above) {
+    const Members found = vertices & above;
+    if (found == 0 || found == vertices) return 0;
+    return std::popcount(found) == 2 ? 2 : 1;
+  }
+
+  /// How many more there are in the halves of these tetrahedra than in them.
+  [[nodiscard]] int triangles_added(unsigned slots, Members above) const;
+
+  /// Of the type that points have whose coordinates, in units of the diamond's scale, end in the two lowest
+  /// bits of those of q.
+  static const DiamondStencil& at(LatticePoint q);
+};
+
+}  // namespace adamas

@@ -1,0 +1,169 @@
+#include "isosurface/extraction/page_contour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace adamas {
+
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Which page along an axis a coordinate is on, from one page before to one behind: -1 to 1.
+std::int32_t page_of(std::int32_t x) { return x >> 4; }
+std::size_t neighbour(LatticePoint q) {
+  return static_cast<std::size_t>((page_of(q.i) + 1) + 3 * (page_of(q.j) + 1) + 9 * (page_of(q.k) + 1));
+}
+std::int32_t in_page(std::int32_t x) { return x & (PageGrid::kSide - 1); }
+
+}  // namespace
+
+template <class Sample>
+PageContour<Sample>::PageContour(StoredDiamonds<Sample>& diamonds, const SplitPages<Sample>& pages,
+                                 const SplitLimits& limits, ContourBuilder& builder)
+    : diamonds_(diamonds),
+      pages_(pages),
+      limits_(limits),
+      builder_(builder),
+      page_(diamonds),
+      edge_points_(std::size_t{kEdgeSide} * kEdgeSide * kEdgeSide, kNone) {}
+
+template <class Sample>
+typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int level,
+                                                                         LatticePoint block) const {
+  Neighbours found;
+  for (std::int32_t dk = -1; dk <= 1; ++dk) {
+    for (std::int32_t dj = -1; dj <= 1; ++dj) {
+      for (std::int32_t di = -1; di <= 1; ++di) {
+        const PageOfLevel* page = pages_.page(level, block + LatticePoint{di, dj, dk});
+        if (page == nullptr) continue;
+        Neighbour& at = found[neighbour(PageGrid::kSide * LatticePoint{di, dj, dk})];
+        at.unknown_rank = page->unknown_rank;
+        if (page->mask != SplitPages<Sample>::kNone) at.split = &pages_.mask(level, *page);
+      }
+    }
+  }
+  return found;
+}
+
+template <class Sample>
+void PageContour<Sample>::add(int level, const PageOfLevel& page) {
+  const PageMask& split = pages_.mask(level, page);
+  page_.load(level, page.block, split);
+  same_ = neighbours(level, page.block);
+  // A page's next finer ones are two along each axis; but the coarsest one has all coarser levels too.
+  const bool is_same_page = level > diamonds_.grid().top();
+  finer_ = neighbours(level - 1, (is_same_page ? 1 : 2) * page.block);
+  split.for_each([&](LatticePoint q) { add_diamond(DiamondStencil::at(q), q); });
+  forget_edge_points();
+}
+
+template <class Sample>
+void PageContour<Sample>::add_diamond(const DiamondStencil& stencil, LatticePoint q) {
+  const Members above = page_.above(stencil, q);
+  const unsigned slots = page_.slots(stencil, q);
+  ++split_diamonds_;
+  tetrahedra_ += static_cast<std::uint64_t>(std::popcount(slots));
+  // Children of phase 2 are points of the next finer level.
+  const bool finer = stencil.phase == 2;
+  const Neighbours& pages = finer ? finer_ : same_;
+  for (std::size_t c = 0; c < stencil.child_count; ++c) {
+    const LatticePoint child = (finer ? 2 : 1) * q + stencil.children[c];
+    const Neighbour& page = pages[neighbour(child)];
+    const LatticePoint place{in_page(child.i), in_page(child.j), in_page(child.k)};
+    if (page.split != nullptr && page.split->has(place)) continue;
+    const int child_level = page_.level() - (finer ? 1 : 0);
+    if (!page_.is_inside() && !is_in_data(q, child, child_level)) continue;
+    note_rank(page, q, child, child_level);
+    for (const DiamondStencil::Half& half : stencil.halves[c]) {
+      if ((slots >> half.slot & 1) != 0 && DiamondStencil::triangles(half.members, above) > 0)
+        add_half(stencil, q, half, above);
+    }
+  }
+}
+
+template <class Sample>
+LatticePoint PageContour<Sample>::child_in_lattice(LatticePoint q, LatticePoint child,
+                                                   int child_level) const {
+  const LatticePoint p = page_.in_lattice(q);
+  if (child_level == page_.level()) return page_.in_lattice(child);
+  const std::int32_t half = (page_.in_lattice({1, 0, 0}) - page_.in_lattice({0, 0, 0})).i / 2;
+  return p + half * (child - 2 * q);
+}
+
+template <class Sample>
+bool PageContour<Sample>::is_in_data(LatticePoint q, LatticePoint child, int child_level) const {
+  const LatticePoint p = child_in_lattice(q, child, child_level);
+  return diamonds_.domain().contains(p) && !is_beyond(Diamond(p), diamonds_.last_sample());
+}
+
+template <class Sample>
+void PageContour<Sample>::note_rank(const Neighbour& page, LatticePoint q, LatticePoint child,
+                                    int child_level) {
+  if (page.unknown_rank <= greatest_rank_ && limits_.lost.empty()) return;
+  if (child_level < 0) return;
+  const LatticePoint p = diamonds_.in_samples(child_in_lattice(q, child, child_level));
+  const int phase = 3 - (child.i & 1) - (child.j & 1) - (child.k & 1);
+  int rank = limits_.reaches_region(p, child_level, phase) ? page.unknown_rank : 0;
+  // What cannot be had has no greater error than what it comes from.
+  if (!limits_.lost.empty() && limits_.lost.blocks(p, child_level, phase))
+    rank = diamonds_.rank_if_crossed(page_.in_lattice(q));
+  greatest_rank_ = std::max(greatest_rank_, rank);
+}
+
+template <class Sample>
+void PageContour<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q,
+                                   const DiamondStencil::Half& half, Members above) {
+  std::array<LatticePoint, 4> vertices;
+  unsigned bits = 0;
+  for (std::size_t v = 0; v < 4; ++v) {
+    vertices[v] = q + stencil.offsets[half.vertices[v]];
+    bits |= (above >> half.vertices[v] & 1) << v;
+    if (std::is_floating_point_v<Sample> && !std::isfinite(page_.value(vertices[v]))) return;
+  }
+  if (!page_.is_inside()) {
+    std::array<LatticePoint, 4> in_lattice;
+    for (std::size_t v = 0; v < 4; ++v) in_lattice[v] = page_.in_lattice(vertices[v]);
+    if (is_beyond(in_lattice, diamonds_.last_sample())) return;
+  }
+  const TetrahedronContour& contour = kTetrahedronContours[bits];
+  std::array<std::uint32_t, 6> points;
+  points.fill(kNone);
+  for (std::size_t n = 0; n < contour.triangle_count; ++n) {
+    std::array<std::uint32_t, 3> triangle;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint8_t edge = contour.triangles[n][c];
+      if (points[edge] == kNone)
+        points[edge] = edge_point(vertices[kTetrahedronEdges[edge][0]], vertices[kTetrahedronEdges[edge][1]]);
+      triangle[c] = points[edge];
+    }
+    builder_.add_triangle(triangle);
+  }
+}
+
+template <class Sample>
+std::uint32_t PageContour<Sample>::edge_point(LatticePoint a, LatticePoint b) {
+  const LatticePoint sum = a + b + LatticePoint{2, 2, 2};
+  const auto at = static_cast<std::uint32_t>(sum.i + kEdgeSide * (sum.j + kEdgeSide * sum.k));
+  std::uint32_t& point = edge_points_[at];
+  if (point == kNone) {
+    point = builder_.edge_point(page_.in_lattice(a), page_.in_lattice(b), page_.value(a), page_.value(b));
+    used_.push_back(at);
+  }
+  return point;
+}
+
+template <class Sample>
+void PageContour<Sample>::forget_edge_points() {
+  for (const std::uint32_t at : used_) edge_points_[at] = kNone;
+  used_.clear();
+}
+
+template class PageContour<std::uint8_t>;
+template class PageContour<std::uint16_t>;
+template class PageContour<std::int16_t>;
+template class PageContour<float>;
+
+}  // namespace adamas

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "isosurface/contour/contour.h"
+#include "isosurface/extraction/page_diamonds.h"
+#include "isosurface/extraction/split_pages.h"
+
+namespace adamas {
+
+/// The contour of the mesh in which the diamonds of SplitPages are split, page by page.
+template <class Sample>
+class PageContour {
+ public:
+  /// All of them must outlive this. The builder gets the triangles.
+  PageContour(StoredDiamonds<Sample>& diamonds, const SplitPages<Sample>& pages, const SplitLimits& limits,
+              ContourBuilder& builder);
+
+  /// Adds what lies in the tetrahedra of the mesh that come from splitting a page's diamonds; `page` has
+  /// some. Throws PageLost.
+  void add(int level, const typename SplitPages<Sample>::PageOfLevel& page);
+
+  [[nodiscard]] std::uint64_t split_diamonds() const { return split_diamonds_; }
+  /// How many tetrahedra the mesh has more than the diamonds of its root.
+  [[nodiscard]] std::uint64_t tetrahedra_added() const { return tetrahedra_; }
+  /// No diamond of the mesh has a greater rank that is crossed and not split, but for those of pages that
+  /// were looked into.
+  [[nodiscard]] int greatest_rank() const { return greatest_rank_; }
+
+ private:
+  using PageOfLevel = typename SplitPages<Sample>::PageOfLevel;
+  using Members = DiamondStencil::Members;
+
+  /// The pages round one, and what of them is split; by steps from -1 to 1 along each axis.
+  struct Neighbour {
+    const PageMask* split = nullptr;
+    int unknown_rank = 0;
+  };
+  using Neighbours = std::array<Neighbour, 27>;
+  [[nodiscard]] Neighbours neighbours(int level, LatticePoint block) const;
+
+  void add_diamond(const DiamondStencil& stencil, LatticePoint q);
+  /// Of a child in units of its level, from the first point of its parent's page.
+  [[nodiscard]] LatticePoint child_in_lattice(LatticePoint q, LatticePoint child, int child_level) const;
+  /// Whether the child is not wholly outside.
+  [[nodiscard]] bool is_in_data(LatticePoint q, LatticePoint child, int child_level) const;
+  /// `child` is not split; `page` is the one it is on.
+  void note_rank(const Neighbour& page, LatticePoint q, LatticePoint child, int child_level);
+  void add_half(const DiamondStencil& stencil, LatticePoint q, const DiamondStencil::Half& half,
+                Members above);
+  std::uint32_t edge_point(LatticePoint a, LatticePoint b);
+  void forget_edge_points();
+
+  StoredDiamonds<Sample>& diamonds_;
+  const SplitPages<Sample>& pages_;
+  const SplitLimits& limits_;
+  ContourBuilder& builder_;
+  PageDiamonds<Sample> page_;
+  Neighbours same_{}, finer_{};  ///< of the page's level and the next finer one
+  /// Numbers of the points on edges with both ends on or round the page, by the sum of the ends; `used_` are
+  /// those that have one.
+  static constexpr std::int32_t kEdgeSide = 35;
+  std::vector<std::uint32_t> edge_points_;
+  std::vector<std::uint32_t> used_;
+  std::uint64_t split_diamonds_ = 0, tetrahedra_ = 0;
+  int greatest_rank_ = 0;
+};
+
+extern template class PageContour<std::uint8_t>;
+extern template class PageContour<std::uint16_t>;
+extern template class PageContour<std::int16_t>;
+extern template class PageContour<float>;
+
+}  // namespace adamas

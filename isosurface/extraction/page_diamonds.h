@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "isosurface/compression/padded_grid.h"
+#include "isosurface/extraction/diamond_stencil.h"
+#include "isosurface/extraction/split_pages.h"
+
+namespace adamas {
+
+/// The samples of a page's diamonds, which reach to the points one step round the page. Points are in units
+/// of the page's level, and from the page's first one.
+template <class Sample>
+class PageDiamonds {
+ public:
+  using Word = typename StoredDiamonds<Sample>::Word;
+
+  explicit PageDiamonds(StoredDiamonds<Sample>& diamonds) : diamonds_(diamonds) {}
+
+  /// Gets the samples that the diamonds of `split` have. Throws PageLost.
+  void load(int level, LatticePoint block, const PageMask& split);
+
+  [[nodiscard]] int level() const { return level_; }
+  [[nodiscard]] LatticePoint block() const { return block_; }
+  /// Whether all diamonds of the page lie inside the data, and none of them on its border.
+  [[nodiscard]] bool is_inside() const { return inside_; }
+  /// Whether all samples that were got are finite.
+  [[nodiscard]] bool all_finite() const { return finite_; }
+
+  /// In the lattice of samples; in that of the domain.
+  [[nodiscard]] LatticePoint in_samples(LatticePoint q) const { return (1 << level_) * (corner_ + q); }
+  [[nodiscard]] LatticePoint in_lattice(LatticePoint q) const { return lattice_step_ * (corner_ + q); }
+  [[nodiscard]] Diamond diamond(LatticePoint q) const { return Diamond(in_lattice(q)); }
+
+  [[nodiscard]] double value(LatticePoint q) const {
+    return static_cast<double>(from_ordered<Sample>(*words_.at(q)));
+  }
+  /// Of a diamond's members, those that are not below the isovalue.
+  [[nodiscard]] DiamondStencil::Members above(const DiamondStencil& stencil, LatticePoint q) const {
+    const Word* at = words_.at(q);
+    DiamondStencil::Members result = 0;
+    for (std::size_t m = 0; m < stencil.count; ++m) {
+      const Word word = at[PaddedGrid<Word>::offset(stencil.offsets[m])];
+      result |= DiamondStencil::Members{diamonds_.is_above(word)} << m;
+    }
+    return result;
+  }
+  /// The slots of a diamond's tetrahedra in the domain, as bits.
+  [[nodiscard]] unsigned slots(const DiamondStencil& stencil, LatticePoint q) const {
+    const unsigned all = (1u << stencil.tetrahedron_count) - 1;
+    if (inside_ || diamonds_.domain().boundary_count(in_lattice(q)) == 0) return all;
+    unsigned found = 0;
+    for (const int slot : diamond(q).tetrahedra(diamonds_.domain())) found |= 1u << slot;
+    return found;
+  }
+
+ private:
+  void get_outside(LatticePoint q);
+
+  StoredDiamonds<Sample>& diamonds_;
+  int level_ = 0;
+  LatticePoint block_{}, corner_{};
+  std::int32_t lattice_step_ = 1;
+  bool inside_ = false, finite_ = true;
+  PaddedGrid<Word> words_;
+};
+
+extern template class PageDiamonds<std::uint8_t>;
+extern template class PageDiamonds<std::uint16_t>;
+extern template class PageDiamonds<std::int16_t>;
+extern template class PageDiamonds<float>;
+
+}  // namespace adamas

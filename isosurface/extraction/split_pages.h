@@ -1,0 +1,159 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/lattice/lattice_map.h"
+#include "isosurface/extraction/split_limits.h"
+#include "isosurface/extraction/stored_diamonds.h"
+#include "isosurface/extraction/surface_cut.h"
+
+namespace adamas {
+
+/// Diamonds of a page: bit i of row j + 16 k.
+struct PageMask {
+  std::array<std::uint16_t, std::size_t{PageGrid::kSide} * PageGrid::kSide> rows{};
+
+  [[nodiscard]] bool has(LatticePoint q) const {
+    return (rows[static_cast<std::size_t>(q.j + PageGrid::kSide * q.k)] >> q.i & 1) != 0;
+  }
+  void add(LatticePoint q) {
+    rows[static_cast<std::size_t>(q.j + PageGrid::kSide * q.k)] |= static_cast<std::uint16_t>(1u << q.i);
+  }
+  /// Calls visit(q) for each of them, i running fastest.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      for (unsigned bits = rows[row]; bits != 0; bits &= bits - 1) {
+        visit(LatticePoint{std::countr_zero(bits), static_cast<std::int32_t>(row % PageGrid::kSide),
+                           static_cast<std::int32_t>(row / PageGrid::kSide)});
+      }
+    }
+  }
+};
+
+/// The diamonds that a cut splits, page by page. Points are in units of their level here. The coarsest page
+/// of a store counts as one page for each of its levels.
+template <class Sample>
+class SplitPages {
+ public:
+  using Word = typename StoredDiamonds<Sample>::Word;
+
+  struct PageOfLevel {
+    LatticePoint block;
+    /// No diamond of it that the surface crosses has a greater rank, where it was not looked into; else 0.
+    int unknown_rank = 0;
+    std::uint32_t mask = kNone;  ///< number of its PageMask
+  };
+
+  /// `limits` may change between calls of `find`. Both must outlive this.
+  SplitPages(StoredDiamonds<Sample>& diamonds, const SplitLimits& limits)
+      : diamonds_(diamonds), limits_(limits), levels_(static_cast<std::size_t>(diamonds.levels())) {}
+
+  /// Finds the split diamonds, from the coarsest level on, and calls visit(level, page, mask, codes) for each
+  /// page that has some: codes[place(level, q)] is that of a diamond's error. The cut may rise meanwhile: it
+  /// is looked at again for each page. Throws PageLost.
+  template <class Visit>
+  void find(const SurfaceCut& cut, Visit&& visit) {
+    greatest_left_ = 0;
+    for (int level = diamonds_.levels() - 1; level >= 0; --level) {
+      levels_[static_cast<std::size_t>(level)] = {};
+      for (const LatticePoint block : candidates(level)) {
+        const PageOfLevel found = look_into(level, block, cut);
+        if (found.mask != kNone) visit(level, found, mask(level, found), codes());
+      }
+    }
+  }
+
+  [[nodiscard]] int levels() const { return diamonds_.levels(); }
+  /// Pages of a level that were met, in z-order.
+  [[nodiscard]] const std::vector<PageOfLevel>& pages(int level) const {
+    return levels_[static_cast<std::size_t>(level)].pages;
+  }
+  /// Null where the page was not met.
+  [[nodiscard]] const PageOfLevel* page(int level, LatticePoint block) const {
+    if (level < 0) return nullptr;
+    const Level& of = levels_[static_cast<std::size_t>(level)];
+    const std::uint32_t* index = of.indices.find(block);
+    return index == nullptr ? nullptr : &of.pages[*index];
+  }
+  [[nodiscard]] const PageMask& mask(int level, const PageOfLevel& page) const {
+    return levels_[static_cast<std::size_t>(level)].masks[page.mask];
+  }
+  /// Whether any diamond is split.
+  [[nodiscard]] bool any() const;
+  /// Calls visit(level, page, part) for each page that has split diamonds, from the coarsest level on, in
+  /// z-order; part: of the way to the end.
+  template <class Visit>
+  void for_each_page(Visit&& visit) const {
+    for (int level = levels() - 1; level >= 0; --level) {
+      const auto& all = pages(level);
+      for (std::size_t n = 0; n < all.size(); ++n) {
+        if (all[n].mask == kNone) continue;
+        const double in_level = static_cast<double>(n) / static_cast<double>(all.size());
+        visit(level, all[n], (levels() - 1 - level + in_level) / levels());
+      }
+    }
+  }
+  /// The lattice point of a page's point.
+  [[nodiscard]] LatticePoint in_lattice(int level, LatticePoint block, LatticePoint q) const {
+    return (1 << (level - diamonds_.level({1, 1, 1}))) * (PageGrid::kSide * block + q);
+  }
+
+  /// Of the diamond of any lattice point: its rank where it may be split, else 0. Throws PageLost.
+  int rank(LatticePoint p);
+  [[nodiscard]] bool is_split(LatticePoint p) const;
+  /// Whether it is kept from being split by pages that cannot be had.
+  [[nodiscard]] bool is_lost(LatticePoint p) const;
+
+  /// The greatest rank of the diamonds that are crossed and not split, in the pages that were looked into: no
+  /// other than one that is a diamond of the mesh has it, since ranks do not grow from parents to children.
+  [[nodiscard]] int greatest_left() const { return greatest_left_; }
+
+  /// Place in the codes that `find` hands out of a point of a page.
+  [[nodiscard]] std::size_t place(int level, LatticePoint q) const {
+    return PageGrid::place((1 << levels_below(level)) * q, 0);
+  }
+
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+ private:
+  using Codes = typename Page<Word>::template Points<std::uint8_t>;
+  struct Level {
+    std::vector<PageOfLevel> pages;
+    std::vector<PageMask> masks;
+    LatticeMap<std::uint32_t> indices;  ///< into pages, by block
+  };
+
+  /// How many levels a level is coarser than that of the page that has it.
+  [[nodiscard]] int levels_below(int level) const {
+    return level > diamonds_.grid().top() ? level - diamonds_.grid().top() : 0;
+  }
+  [[nodiscard]] PageId id(int level, LatticePoint block) const {
+    return {level - levels_below(level), block};
+  }
+  [[nodiscard]] const Codes& codes() const { return *codes_; }
+
+  /// Where diamonds may be split, since coarser ones are.
+  std::vector<LatticePoint> candidates(int level);
+  PageOfLevel look_into(int level, LatticePoint block, const SurfaceCut& cut);
+  /// Those of a page, of level `level`, whose codes are at hand.
+  PageMask split_of(int level, LatticePoint block, const SurfaceCut& cut);
+  /// Takes out what the limits keep from being split.
+  void limit(int level, LatticePoint block, PageMask& mask) const;
+
+  StoredDiamonds<Sample>& diamonds_;
+  const SplitLimits& limits_;
+  std::vector<Level> levels_;
+  const Codes* codes_ = nullptr;
+  int greatest_left_ = 0;
+};
+
+extern template class SplitPages<std::uint8_t>;
+extern template class SplitPages<std::uint16_t>;
+extern template class SplitPages<std::int16_t>;
+extern template class SplitPages<float>;
+
+}  // namespace adamas

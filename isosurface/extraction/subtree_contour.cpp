@@ -1,0 +1,122 @@
+#include "isosurface/extraction/subtree_contour.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "isosurface/extraction/diamond_halves.h"
+#include "isosurface/hierarchy/indexed_hierarchy.h"
+
+namespace adamas {
+
+namespace {
+
+/// Bisections of neighbours of different generations do not meet by themselves: a table of the fine mesh
+/// splits what one needs of the other.
+template <class Sample>
+class SubtreeMesh {
+ public:
+  SubtreeMesh(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages, int bisections)
+      : diamonds_(diamonds),
+        pages_(pages),
+        bisections_(bisections),
+        mesh_(diamonds.domain(), diamonds.levels()) {}
+
+  [[nodiscard]] const IndexedHierarchy& mesh() const { return mesh_; }
+  [[nodiscard]] double greatest_error() const { return diamonds_.error(greatest_rank_); }
+
+  void add_root(const Diamond& root) {
+    const int rank = pages_.rank(root.point());
+    greatest_rank_ = std::max(greatest_rank_, rank);
+    if (!has_subtree(root, rank)) return;
+    for (int slot = 0; slot < root.tetrahedron_count(); ++slot) refine(root, slot, bisections_);
+  }
+
+  /// A diamond that is split, and what of its children is part of the mesh.
+  void add(const Diamond& diamond) {
+    split(diamond);
+    const Domain& domain = diamonds_.domain();
+    for (std::size_t c = 0; c < static_cast<std::size_t>(diamond.child_count()); ++c) {
+      const Diamond child(diamond.child(static_cast<int>(c)));
+      if (!domain.contains(child.point()) || is_beyond(child, diamonds_.last_sample())) continue;
+      if (pages_.is_split(child.point())) continue;
+      // What cannot be had has no greater error than what it comes from.
+      const int rank = pages_.rank(pages_.is_lost(child.point()) ? diamond.point() : child.point());
+      greatest_rank_ = std::max(greatest_rank_, rank);
+      if (!has_subtree(child, rank)) continue;
+      for (const auto& half : diamond.type().child_tetrahedra[c]) {
+        if (is_in_domain(child, half.child_slot)) refine(child, half.child_slot, bisections_);
+      }
+    }
+  }
+
+ private:
+  /// What is exactly linear, or not crossed, or lost, stays as it is.
+  [[nodiscard]] bool has_subtree(const Diamond& diamond, int rank) const {
+    const bool has_values = 3 * diamonds_.level(diamond.point()) >= bisections_;
+    return !has_values || (rank > 0 && !pages_.is_lost(diamond.point()));
+  }
+  [[nodiscard]] bool is_in_domain(const Diamond& diamond, int slot) const {
+    const int next = slot + 1 == diamond.tetrahedron_count() ? 0 : slot + 1;
+    return diamonds_.domain().contains(diamond.ring(slot)) && diamonds_.domain().contains(diamond.ring(next));
+  }
+  void split(const Diamond& diamond) {
+    mesh_.split(diamond.point(), done_);
+    done_.clear();
+  }
+  void refine(const Diamond& diamond, int slot, int bisections) {
+    if (bisections == 0 || diamonds_.level(diamond.point()) < 0) return;
+    split(diamond);
+    if (bisections == 1) return;
+    for (const int end : {0, 1}) {
+      const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
+      refine(Diamond(diamond.child(half.child)), half.slot, bisections - 1);
+    }
+  }
+
+  StoredDiamonds<Sample>& diamonds_;
+  SplitPages<Sample>& pages_;
+  int bisections_;
+  IndexedHierarchy mesh_;
+  std::vector<LatticePoint> done_;
+  int greatest_rank_ = 0;
+};
+
+}  // namespace
+
+template <class Sample>
+ExtractedSurface contour_of_subtrees(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages,
+                                     const SurfaceRequest& request, int bisections, Progress& progress) {
+  SubtreeMesh<Sample> subtrees(diamonds, pages, bisections);
+  ExtractedSurface surface;
+  if (!pages.any()) {
+    constexpr std::int32_t kMiddle = std::int32_t{1} << (kRootBits - 1);
+    subtrees.add_root(Diamond({kMiddle, kMiddle, kMiddle}));
+  }
+  pages.for_each_page([&](int level, const auto& page, double part) {
+    progress.step("extracting", part);
+    pages.mask(level, page).for_each([&](LatticePoint q) {
+      ++surface.diamonds;
+      subtrees.add(Diamond(pages.in_lattice(level, page.block, q)));
+    });
+  });
+  surface.max_error = subtrees.greatest_error();
+  surface.tetrahedra = subtrees.mesh().tetrahedron_count();
+  surface.contour =
+      extract_contour(subtrees.mesh(), [&diamonds](LatticePoint p) { return diamonds.sample(p); },
+                      request.isovalue, {request.least_parameter, diamonds.last_sample()});
+  return surface;
+}
+
+template ExtractedSurface contour_of_subtrees<std::uint8_t>(StoredDiamonds<std::uint8_t>&,
+                                                            SplitPages<std::uint8_t>&, const SurfaceRequest&,
+                                                            int, Progress&);
+template ExtractedSurface contour_of_subtrees<std::uint16_t>(StoredDiamonds<std::uint16_t>&,
+                                                             SplitPages<std::uint16_t>&,
+                                                             const SurfaceRequest&, int, Progress&);
+template ExtractedSurface contour_of_subtrees<std::int16_t>(StoredDiamonds<std::int16_t>&,
+                                                            SplitPages<std::int16_t>&, const SurfaceRequest&,
+                                                            int, Progress&);
+template ExtractedSurface contour_of_subtrees<float>(StoredDiamonds<float>&, SplitPages<float>&,
+                                                     const SurfaceRequest&, int, Progress&);
+
+}  // namespace adamas
