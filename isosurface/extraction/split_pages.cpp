@@ -104,7 +104,8 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int level) {
   };
   for (const PageOfLevel& parent : pages(level + 1)) {
     if (parent.mask == kNone) continue;
-    const std::array<unsigned, 9> rows = pages_of_children(mask(level + 1, parent));
+    const std::array<unsigned, 9> rows =
+        limits_.any() ? allowed_children(level + 1, parent) : pages_of_children(mask(level + 1, parent));
     for (std::int32_t n = 0; n < 27; ++n) {
       if ((rows[static_cast<std::size_t>(n / 3)] >> n % 3 & 1) != 0)
         add(2 * parent.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
@@ -116,7 +117,7 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int level) {
   for (std::size_t n = 0; n < found.size(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
       LatticePoint next = found[n].second;
-      if (kSide * ++next[axis] == last[axis]) add(next);
+      if (kSide * ++next[axis] == last[axis] && may_split(level, next)) add(next);
     }
   }
   std::sort(found.begin(), found.end());
@@ -124,6 +125,31 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int level) {
   in_order.reserve(found.size());
   for (const auto& [order, block] : found) in_order.push_back(block);
   return in_order;
+}
+
+template <class Sample>
+std::array<unsigned, 9> SplitPages<Sample>::allowed_children(int level, const PageOfLevel& parent) const {
+  std::array<unsigned, 9> found{};
+  mask(level, parent).for_each([&](LatticePoint q) {
+    const DiamondStencil& stencil = DiamondStencil::at(q);
+    if (stencil.phase != 2) return;
+    for (const LatticePoint offset : stencil.children) {
+      const LatticePoint child = 2 * q + offset;
+      if (!limits_.allow((1 << (level - 1)) * (2 * kSide * parent.block + child), level - 1, 0)) continue;
+      const LatticePoint page{(child.i >> 4) + 1, (child.j >> 4) + 1, (child.k >> 4) + 1};
+      found[static_cast<std::size_t>(page.j + 3 * page.k)] |= 1u << page.i;
+    }
+  });
+  return found;
+}
+
+template <class Sample>
+bool SplitPages<Sample>::may_split(int level, LatticePoint block) const {
+  if (!limits_.any()) return true;
+  PageMask all;
+  all.rows.fill(kOdd | kEven);
+  limit(level, block, all);
+  return std::any_of(all.rows.begin(), all.rows.end(), [](std::uint16_t row) { return row != 0; });
 }
 
 template <class Sample>

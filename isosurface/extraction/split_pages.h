@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/lattice/lattice_map.h"
+#include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/extraction/surface_cut.h"
@@ -138,6 +140,11 @@ class SplitPages {
 
   /// Where diamonds may be split, since coarser ones are.
   std::vector<LatticePoint> candidates(int level);
+  /// The pages of the next finer level that have children of a page's diamonds which the limits allow: along
+  /// i as three bits, for three rows along j of three planes along k, from one page before.
+  [[nodiscard]] std::array<unsigned, 9> allowed_children(int level, const PageOfLevel& parent) const;
+  /// Whether the limits allow any diamond of the page.
+  [[nodiscard]] bool may_split(int level, LatticePoint block) const;
   PageOfLevel look_into(int level, LatticePoint block, const SurfaceCut& cut);
   /// Those of a page, of level `level`, whose codes are at hand.
   PageMask split_of(int level, LatticePoint block, const SurfaceCut& cut);
