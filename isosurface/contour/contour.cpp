@@ -48,17 +48,17 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
   // No two edges of a mesh have the same midpoint, and midpoints are lattice points: those at which the
   // edges would be split.
   const LatticePoint way = b - a;
-  const auto [index, is_new] = indices_.insert(a + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
+  const auto [number, is_new] = numbers_.insert(a + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
   if (is_new) {
     if (contour_.points.size() >= std::numeric_limits<std::uint32_t>::max())
       fail("a contour has more than 2^32 - 1 points: choose another isovalue or a coarser mesh");
-    *index = static_cast<std::uint32_t>(contour_.points.size());
+    *number = static_cast<std::uint32_t>(contour_.points.size());
     const double t = std::clamp(crossing(value_a, value_b, isovalue_), options_.least_parameter,
                                 1 - options_.least_parameter);
     contour_.edge_points.push_back({a, b, t});
     contour_.points.push_back(point_between(domain_.position(a), domain_.position(b), t));
   }
-  return *index;
+  return *number;
 }
 
 void ContourBuilder::add(const CrossedTetrahedron& t) {

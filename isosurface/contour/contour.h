@@ -9,8 +9,8 @@
 #include "core/geometry/tetrahedron_contour.h"
 #include "core/geometry/vec3.h"
 #include "core/lattice/domain.h"
-#include "core/lattice/lattice_map.h"
 #include "core/lattice/lattice_point.h"
+#include "core/lattice/point_numbers.h"
 #include "isosurface/hierarchy/indexed_hierarchy.h"
 
 namespace adamas {
@@ -83,7 +83,7 @@ class ContourBuilder {
   double isovalue_;
   ContourOptions options_;
   Contour contour_;
-  LatticeMap<std::uint32_t> indices_;
+  PointNumbers numbers_;
 };
 
 /// Those that the contour crosses, in any order; see extract_contour.

@@ -1,6 +1,7 @@
 #include "isosurface/extraction/stored_diamonds.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -54,6 +55,31 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
     recent.entry = *found;
   }
   return recent.entry;
+}
+
+template <class Sample>
+bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
+                                           std::array<double, 27>& samples) {
+  constexpr std::int32_t kSide = PageGrid::kSide;
+  const int level = std::countr_zero(static_cast<std::uint32_t>(step)) - shift_;
+  if (level < 0 || level > grid_.top()) return false;
+  const LatticePoint at = in_samples(p), last = grid_.last();
+  PageId id{level, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int32_t u = at[axis] >> level;
+    if (u % kSide == 0 || u % kSide == kSide - 1 || u + 1 > last[axis] >> level) return false;
+    id.block[axis] = u / kSide;
+  }
+  const HeldPage<Word>* from = pages_.held(id);
+  if (from == nullptr) return false;
+  const Word* middle = from->samples.data() + PageGrid::place(at, level);
+  std::size_t n = 0;
+  for (const std::ptrdiff_t dk : {-kSide * kSide, 0, kSide * kSide}) {
+    for (const std::ptrdiff_t dj : {-kSide, 0, kSide}) {
+      for (const std::ptrdiff_t di : {-1, 0, 1}) samples[n++] = value(middle[di + dj + dk]);
+    }
+  }
+  return true;
 }
 
 template <class Sample>

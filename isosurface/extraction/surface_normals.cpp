@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/lattice/lattice_map.h"
+#include "core/lattice/point_numbers.h"
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/storage/stored_gradients.h"
 
@@ -32,15 +32,15 @@ class VertexGradients {
   /// The stored one, or from neighbours `step` away.
   Vec3 at(LatticePoint p, std::int32_t step) {
     // Vertices of a finer mesh than this one have a gradient of their own.
-    const auto [index, is_new] = indices_.insert(p);
-    if (is_new || steps_[*index] != step) {
+    const auto [number, is_new] = numbers_.insert(p);
+    if (is_new || steps_[*number] != step) {
       const Vec3 gradient = stored_ ? stored(p, step) : estimate(p, step);
       if (!is_new) return gradient;
-      *index = static_cast<std::uint32_t>(gradients_.size());
+      *number = static_cast<std::uint32_t>(gradients_.size());
       gradients_.push_back(gradient);
       steps_.push_back(step);
     }
-    return gradients_[*index];
+    return gradients_[*number];
   }
 
   /// How far away neighbours are in a mesh that has the edge.
@@ -68,10 +68,12 @@ class VertexGradients {
   Vec3 estimate(LatticePoint p, std::int32_t wanted_step) {
     const std::int32_t step = step_inside(p, wanted_step);
     Neighbourhood values;
-    for (int dk = -1; dk <= 1; ++dk) {
-      for (int dj = -1; dj <= 1; ++dj) {
-        for (int di = -1; di <= 1; ++di)
-          values[neighbour(di, dj, dk)] = sample(p + step * LatticePoint{di, dj, dk});
+    if (!diamonds_.samples_round(p, step, values)) {
+      for (int dk = -1; dk <= 1; ++dk) {
+        for (int dj = -1; dj <= 1; ++dj) {
+          for (int di = -1; di <= 1; ++di)
+            values[neighbour(di, dj, dk)] = sample(p + step * LatticePoint{di, dj, dk});
+        }
       }
     }
     return estimator(step)(values);
@@ -97,7 +99,7 @@ class VertexGradients {
   StoredDiamonds<Sample> diamonds_;
   std::optional<StoredGradients> stored_;
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
-  LatticeMap<std::uint32_t> indices_;
+  PointNumbers numbers_;
   std::vector<Vec3> gradients_;
   std::vector<std::int32_t> steps_;
 };

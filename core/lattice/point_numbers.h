@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/lattice/lattice_map.h"
+
+namespace adamas {
+
+/// Numbers of lattice points that lie near each other, as those of a surface do: a table of blocks of 4^3
+/// points of a level, so that what is asked for together lies together in memory. For scattered points a
+/// LatticeMap takes less memory.
+class PointNumbers {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  /// The number of p, to be changed at will, and whether it has none yet, being kNone then. Valid until the
+  /// next call.
+  std::pair<std::uint32_t*, bool> insert(LatticePoint p) {
+    // Points of a level have one odd coordinate at least in its units; blocks go by their centres, which tell
+    // their level.
+    const int level = std::min(trailing_zeros(p), kRootBits);
+    const LatticePoint q{p.i >> level, p.j >> level, p.k >> level};
+    const auto centre = [level](std::int32_t x) { return ((x & ~3) + 2) << level; };
+    const LatticePoint key{centre(q.i), centre(q.j), centre(q.k)};
+    if (key != last_key_) {
+      const auto [block, is_new] = blocks_.insert(key);
+      if (is_new) {
+        *block = static_cast<std::uint32_t>(numbers_.size());
+        numbers_.emplace_back().fill(kNone);
+      }
+      last_key_ = key;
+      last_block_ = *block;
+    }
+    std::uint32_t& number =
+        numbers_[last_block_][static_cast<std::size_t>((q.i & 3) + 4 * (q.j & 3) + 16 * (q.k & 3))];
+    return {&number, number == kNone};
+  }
+
+ private:
+  LatticeMap<std::uint32_t> blocks_;
+  std::vector<std::array<std::uint32_t, 64>> numbers_;
+  LatticePoint last_key_ = kNoKey<LatticePoint>;
+  std::uint32_t last_block_ = 0;
+};
+
+}  // namespace adamas
