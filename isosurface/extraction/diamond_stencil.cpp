@@ -1,5 +1,7 @@
 #include "isosurface/extraction/diamond_stencil.h"
 
+#include "isosurface/compression/padded_grid.h"
+
 namespace adamas {
 
 namespace {
@@ -28,7 +30,7 @@ DiamondStencil stencil_of(const DiamondType& type) {
     stencil.children[c] = type.phase == 2 ? offset : LatticePoint{offset.i / 2, offset.j / 2, offset.k / 2};
     for (std::size_t h = 0; h < 2; ++h) {
       const DiamondType::ChildTetrahedron& from = type.child_tetrahedra[c][h];
-      DiamondStencil::Half& half = stencil.halves[c][h];
+      DiamondStencil::Half& half = stencil.halves[2 * c + h];
       half.slot = from.slot;
       for (std::size_t v = 0; v < 4; ++v) {
         half.vertices[v] = static_cast<std::uint8_t>(corners(from.slot)[from.vertices[v]]);
@@ -36,22 +38,29 @@ DiamondStencil stencil_of(const DiamondType& type) {
       }
     }
   }
+  for (std::size_t m = 0; m < stencil.count; ++m)
+    stencil.places[m] = static_cast<std::int32_t>(PaddedGrid<int>::offset(stencil.offsets[m]));
+  for (DiamondStencil::Members above = 0; above < 1u << stencil.count; ++above) {
+    unsigned crossed = 0;
+    for (std::size_t n = 0; n < 2 * stencil.child_count; ++n)
+      crossed |= (DiamondStencil::triangles(stencil.halves[n].members, above) > 0 ? 1u : 0u) << n;
+    stencil.crossed.push_back(static_cast<std::uint16_t>(crossed));
+    stencil.added.push_back(static_cast<std::int8_t>(stencil.added_in(0xff, above)));
+  }
   return stencil;
 }
 
 }  // namespace
 
-int DiamondStencil::triangles_added(unsigned slots, Members above) const {
-  int added = 0;
+int DiamondStencil::added_in(unsigned slots, Members above) const {
+  int more = 0;
   for (std::size_t slot = 0; slot < tetrahedron_count; ++slot) {
-    if ((slots >> slot & 1) != 0) added -= triangles(tetrahedra[slot], above);
+    if ((slots >> slot & 1) != 0) more -= triangles(tetrahedra[slot], above);
   }
-  for (std::size_t c = 0; c < child_count; ++c) {
-    for (const Half& half : halves[c]) {
-      if ((slots >> half.slot & 1) != 0) added += triangles(half.members, above);
-    }
+  for (std::size_t n = 0; n < 2 * child_count; ++n) {
+    if ((slots >> halves[n].slot & 1) != 0) more += triangles(halves[n].members, above);
   }
-  return added;
+  return more;
 }
 
 const DiamondStencil& DiamondStencil::at(LatticePoint q) {

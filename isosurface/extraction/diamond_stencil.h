@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/lattice/diamond_type.h"
 
@@ -25,12 +26,17 @@ struct DiamondStencil {
   int phase;
   std::size_t count;                        ///< of members
   std::array<LatticePoint, kMost> offsets;  ///< in units of the diamond's scale
+  std::array<std::int32_t, kMost> places;   ///< the same in a PaddedGrid
   std::size_t tetrahedron_count;
   std::array<Members, 8> tetrahedra;  ///< by slot
   std::size_t child_count;
   /// In phase 2 in units of half the scale: children belong to the next finer level there.
   std::array<LatticePoint, 8> children;
-  std::array<std::array<Half, 2>, 8> halves;  ///< by child
+  std::array<Half, 16> halves;  ///< two for each child
+  /// By the members above a contour: the halves that it crosses, as bits; and how many triangles more it has
+  /// in all of them than in the tetrahedra.
+  std::vector<std::uint16_t> crossed;
+  std::vector<std::int8_t> added;
 
   /// How many triangles a contour has in a tetrahedron with these vertices, of which those of `above` are
   /// above it.
@@ -40,8 +46,8 @@ struct DiamondStencil {
     return std::popcount(found) == 2 ? 2 : 1;
   }
 
-  /// How many more there are in the halves of these tetrahedra than in them.
-  [[nodiscard]] int triangles_added(unsigned slots, Members above) const;
+  /// `added` in the halves of these tetrahedra alone.
+  [[nodiscard]] int added_in(unsigned slots, Members above) const;
 
   /// Of the type that points have whose coordinates, in units of the diamond's scale, end in the two lowest
   /// bits of those of q.

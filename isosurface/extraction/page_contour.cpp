@@ -1,6 +1,7 @@
 #include "isosurface/extraction/page_contour.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -33,15 +34,13 @@ PageContour<Sample>::PageContour(StoredDiamonds<Sample>& diamonds, const SplitPa
 template <class Sample>
 typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int level,
                                                                          LatticePoint block) const {
-  Neighbours found;
+  Neighbours found{};
   for (std::int32_t dk = -1; dk <= 1; ++dk) {
     for (std::int32_t dj = -1; dj <= 1; ++dj) {
       for (std::int32_t di = -1; di <= 1; ++di) {
         const PageOfLevel* page = pages_.page(level, block + LatticePoint{di, dj, dk});
-        if (page == nullptr) continue;
-        Neighbour& at = found[neighbour(PageGrid::kSide * LatticePoint{di, dj, dk})];
-        at.unknown_rank = page->unknown_rank;
-        if (page->mask != SplitPages<Sample>::kNone) at.split = &pages_.mask(level, *page);
+        if (page == nullptr || page->mask == SplitPages<Sample>::kNone) continue;
+        found[neighbour(PageGrid::kSide * LatticePoint{di, dj, dk})] = &pages_.mask(level, *page);
       }
     }
   }
@@ -66,21 +65,19 @@ void PageContour<Sample>::add_diamond(const DiamondStencil& stencil, LatticePoin
   const unsigned slots = page_.slots(stencil, q);
   ++split_diamonds_;
   tetrahedra_ += static_cast<std::uint64_t>(std::popcount(slots));
+  if (!limits_.lost.empty()) note_lost_children(stencil, q);
   // Children of phase 2 are points of the next finer level.
   const bool finer = stencil.phase == 2;
   const Neighbours& pages = finer ? finer_ : same_;
-  for (std::size_t c = 0; c < stencil.child_count; ++c) {
-    const LatticePoint child = (finer ? 2 : 1) * q + stencil.children[c];
-    const Neighbour& page = pages[neighbour(child)];
-    const LatticePoint place{in_page(child.i), in_page(child.j), in_page(child.k)};
-    if (page.split != nullptr && page.split->has(place)) continue;
-    const int child_level = page_.level() - (finer ? 1 : 0);
-    if (!page_.is_inside() && !is_in_data(q, child, child_level)) continue;
-    note_rank(page, q, child, child_level);
-    for (const DiamondStencil::Half& half : stencil.halves[c]) {
-      if ((slots >> half.slot & 1) != 0 && DiamondStencil::triangles(half.members, above) > 0)
-        add_half(stencil, q, half, above);
-    }
+  for (unsigned crossed = stencil.crossed[above]; crossed != 0; crossed &= crossed - 1) {
+    const auto n = static_cast<std::size_t>(std::countr_zero(crossed));
+    const DiamondStencil::Half& half = stencil.halves[n];
+    if ((slots >> half.slot & 1) == 0) continue;
+    const LatticePoint child = (finer ? 2 : 1) * q + stencil.children[n / 2];
+    const PageMask* split = pages[neighbour(child)];
+    if (split != nullptr && split->has({in_page(child.i), in_page(child.j), in_page(child.k)})) continue;
+    if (page_.is_inside() || is_in_data(q, child, page_.level() - (finer ? 1 : 0)))
+      add_half(stencil, q, half, above);
   }
 }
 
@@ -100,17 +97,17 @@ bool PageContour<Sample>::is_in_data(LatticePoint q, LatticePoint child, int chi
 }
 
 template <class Sample>
-void PageContour<Sample>::note_rank(const Neighbour& page, LatticePoint q, LatticePoint child,
-                                    int child_level) {
-  if (page.unknown_rank <= greatest_rank_ && limits_.lost.empty()) return;
-  if (child_level < 0) return;
-  const LatticePoint p = diamonds_.in_samples(child_in_lattice(q, child, child_level));
-  const int phase = 3 - (child.i & 1) - (child.j & 1) - (child.k & 1);
-  int rank = limits_.reaches_region(p, child_level, phase) ? page.unknown_rank : 0;
-  // What cannot be had has no greater error than what it comes from.
-  if (!limits_.lost.empty() && limits_.lost.blocks(p, child_level, phase))
-    rank = diamonds_.rank_if_crossed(page_.in_lattice(q));
-  greatest_rank_ = std::max(greatest_rank_, rank);
+void PageContour<Sample>::note_lost_children(const DiamondStencil& stencil, LatticePoint q) {
+  for (std::size_t c = 0; c < stencil.child_count; ++c) {
+    const bool finer = stencil.phase == 2;
+    const LatticePoint child = (finer ? 2 : 1) * q + stencil.children[c];
+    const int child_level = page_.level() - (finer ? 1 : 0);
+    if (!is_in_data(q, child, child_level)) continue;
+    // What cannot be had has no greater error than what it comes from.
+    if (pages_.is_lost(child_in_lattice(q, child, child_level)))
+      greatest_rank_at_lost_ =
+          std::max(greatest_rank_at_lost_, diamonds_.rank_if_crossed(page_.in_lattice(q)));
+  }
 }
 
 template <class Sample>

@@ -25,20 +25,15 @@ class PageContour {
   [[nodiscard]] std::uint64_t split_diamonds() const { return split_diamonds_; }
   /// How many tetrahedra the mesh has more than the diamonds of its root.
   [[nodiscard]] std::uint64_t tetrahedra_added() const { return tetrahedra_; }
-  /// No diamond of the mesh has a greater rank that is crossed and not split, but for those of pages that
-  /// were looked into.
-  [[nodiscard]] int greatest_rank() const { return greatest_rank_; }
+  /// Of the split diamonds of which a child is kept from being split by pages that cannot be had.
+  [[nodiscard]] int greatest_rank_at_lost() const { return greatest_rank_at_lost_; }
 
  private:
   using PageOfLevel = typename SplitPages<Sample>::PageOfLevel;
   using Members = DiamondStencil::Members;
 
-  /// The pages round one, and what of them is split; by steps from -1 to 1 along each axis.
-  struct Neighbour {
-    const PageMask* split = nullptr;
-    int unknown_rank = 0;
-  };
-  using Neighbours = std::array<Neighbour, 27>;
+  /// What is split of the pages round one, null where nothing is; by steps from -1 to 1 along each axis.
+  using Neighbours = std::array<const PageMask*, 27>;
   [[nodiscard]] Neighbours neighbours(int level, LatticePoint block) const;
 
   void add_diamond(const DiamondStencil& stencil, LatticePoint q);
@@ -46,8 +41,7 @@ class PageContour {
   [[nodiscard]] LatticePoint child_in_lattice(LatticePoint q, LatticePoint child, int child_level) const;
   /// Whether the child is not wholly outside.
   [[nodiscard]] bool is_in_data(LatticePoint q, LatticePoint child, int child_level) const;
-  /// `child` is not split; `page` is the one it is on.
-  void note_rank(const Neighbour& page, LatticePoint q, LatticePoint child, int child_level);
+  void note_lost_children(const DiamondStencil& stencil, LatticePoint q);
   void add_half(const DiamondStencil& stencil, LatticePoint q, const DiamondStencil::Half& half,
                 Members above);
   std::uint32_t edge_point(LatticePoint a, LatticePoint b);
@@ -65,7 +59,7 @@ class PageContour {
   std::vector<std::uint32_t> edge_points_;
   std::vector<std::uint32_t> used_;
   std::uint64_t split_diamonds_ = 0, tetrahedra_ = 0;
-  int greatest_rank_ = 0;
+  int greatest_rank_at_lost_ = 0;
 };
 
 extern template class PageContour<std::uint8_t>;

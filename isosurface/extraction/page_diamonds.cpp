@@ -35,6 +35,7 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
         std::copy_n(samples.data() + PageGrid::place({0, j, k}, 0), PageGrid::kSide, words_.at({0, j, k}));
     }
   }
+  known_neighbours_ = 0;
   finite_ = true;
   split.for_each([&](LatticePoint q) {
     // Of coarser levels than the coarsest page's own no page has the points side by side.
@@ -50,17 +51,35 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
 }
 
 template <class Sample>
+bool PageDiamonds<Sample>::get_from_neighbour(LatticePoint q) {
+  const LatticePoint step{q.i >> 4, q.j >> 4, q.k >> 4};
+  const auto n = static_cast<std::size_t>(step.i + 1 + 3 * (step.j + 1) + 9 * (step.k + 1));
+  if ((known_neighbours_ >> n & 1) == 0) {
+    neighbours_[n] = diamonds_.held_page({level_, block_ + step});
+    known_neighbours_ |= 1u << n;
+  }
+  if (neighbours_[n] == nullptr) return false;
+  *words_.at(q) = neighbours_[n]->samples[PageGrid::place(q, 0)];
+  return true;
+}
+
+template <class Sample>
 void PageDiamonds<Sample>::get_outside(LatticePoint q) {
   const DiamondStencil& stencil = DiamondStencil::at(q);
-  const LatticePoint reach = diamonds_.grid().extent(level_);
+  const LatticePoint extent = diamonds_.grid().extent(level_);
+  const bool has_page = level_ <= diamonds_.grid().top();
   for (std::size_t m = 0; m < stencil.count; ++m) {
     const LatticePoint at = q + stencil.offsets[m], u = corner_ + at;
-    const bool is_known = level_ <= diamonds_.grid().top() && is_in_page(at) && u.i <= reach.i &&
-                          u.j <= reach.j && u.k <= reach.k;
-    if (is_known) continue;
+    const bool is_on_page =
+        has_page && std::min({u.i, u.j, u.k}) >= 0 && u.i <= extent.i && u.j <= extent.j && u.k <= extent.k;
+    if (is_on_page && (is_in_page(at) || get_from_neighbour(at))) continue;
     // Vertices outside the domain are none of the mesh.
-    *words_.at(at) = diamonds_.domain().contains(in_lattice(at)) ? diamonds_.word(in_samples(at))
-                                                                 : static_cast<Word>(ordered(Sample{0}));
+    if (!diamonds_.domain().contains(in_lattice(at))) {
+      *words_.at(at) = static_cast<Word>(ordered(Sample{0}));
+      continue;
+    }
+    *words_.at(at) = diamonds_.word(in_samples(at));
+    known_neighbours_ = 0;
   }
 }
 

@@ -41,10 +41,14 @@ class PageDiamonds {
     const Word* at = words_.at(q);
     DiamondStencil::Members result = 0;
     for (std::size_t m = 0; m < stencil.count; ++m) {
-      const Word word = at[PaddedGrid<Word>::offset(stencil.offsets[m])];
-      result |= DiamondStencil::Members{diamonds_.is_above(word)} << m;
+      result |= DiamondStencil::Members{diamonds_.is_above(at[stencil.places[m]])} << m;
     }
     return result;
+  }
+  /// How many more triangles a contour has once the diamond is split.
+  [[nodiscard]] int triangles_added(const DiamondStencil& stencil, LatticePoint q) const {
+    const DiamondStencil::Members members = above(stencil, q);
+    return inside_ ? stencil.added[members] : stencil.added_in(slots(stencil, q), members);
   }
   /// The slots of a diamond's tetrahedra in the domain, as bits.
   [[nodiscard]] unsigned slots(const DiamondStencil& stencil, LatticePoint q) const {
@@ -57,6 +61,8 @@ class PageDiamonds {
 
  private:
   void get_outside(LatticePoint q);
+  /// The same for what a page that is in memory has: false where there is none.
+  bool get_from_neighbour(LatticePoint q);
 
   StoredDiamonds<Sample>& diamonds_;
   int level_ = 0;
@@ -64,6 +70,10 @@ class PageDiamonds {
   std::int32_t lattice_step_ = 1;
   bool inside_ = false, finite_ = true;
   PaddedGrid<Word> words_;
+  /// The pages round the page by steps from -1 to 1 along each axis, null where they are not in memory; as
+  /// far as they are known. Loading any page makes them unknown.
+  std::array<const HeldPage<Word>*, 27> neighbours_{};
+  std::uint32_t known_neighbours_ = 0;
 };
 
 extern template class PageDiamonds<std::uint8_t>;

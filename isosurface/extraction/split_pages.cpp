@@ -163,7 +163,7 @@ typename SplitPages<Sample>::PageOfLevel SplitPages<Sample>::look_into(int level
   if (level < diamonds_.grid().top()) {
     const int greatest = diamonds_.greatest_rank(where);
     if (greatest < cut.rank || greatest == 0) {
-      page.unknown_rank = greatest;
+      greatest_left_ = std::max(greatest_left_, greatest);
       return page;
     }
   }

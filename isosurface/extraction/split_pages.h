@@ -45,8 +45,6 @@ class SplitPages {
 
   struct PageOfLevel {
     LatticePoint block;
-    /// No diamond of it that the surface crosses has a greater rank, where it was not looked into; else 0.
-    int unknown_rank = 0;
     std::uint32_t mask = kNone;  ///< number of its PageMask
   };
 
@@ -110,8 +108,9 @@ class SplitPages {
   /// Whether it is kept from being split by pages that cannot be had.
   [[nodiscard]] bool is_lost(LatticePoint p) const;
 
-  /// The greatest rank of the diamonds that are crossed and not split, in the pages that were looked into: no
-  /// other than one that is a diamond of the mesh has it, since ranks do not grow from parents to children.
+  /// The greatest rank of the diamonds that are crossed and not split; where that is less, the greatest of a
+  /// page that was not looked into, since no diamond of it is split. A diamond of the mesh has it: ranks do
+  /// not grow from parents to children.
   [[nodiscard]] int greatest_left() const { return greatest_left_; }
 
   /// Place in the codes that `find` hands out of a point of a page.

@@ -64,19 +64,25 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
   const int level = std::countr_zero(static_cast<std::uint32_t>(step)) - shift_;
   if (level < 0 || level > grid_.top()) return false;
   const LatticePoint at = in_samples(p), last = grid_.last();
-  PageId id{level, {}};
+  const LatticePoint middle{at.i >> level, at.j >> level, at.k >> level};
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t u = at[axis] >> level;
-    if (u % kSide == 0 || u % kSide == kSide - 1 || u + 1 > last[axis] >> level) return false;
-    id.block[axis] = u / kSide;
+    if (middle[axis] == 0 || middle[axis] + 1 > last[axis] >> level) return false;
   }
-  const HeldPage<Word>* from = pages_.held(id);
-  if (from == nullptr) return false;
-  const Word* middle = from->samples.data() + PageGrid::place(at, level);
+  PageId id{-1, {}};
+  const Word* words = nullptr;
   std::size_t n = 0;
-  for (const std::ptrdiff_t dk : {-kSide * kSide, 0, kSide * kSide}) {
-    for (const std::ptrdiff_t dj : {-kSide, 0, kSide}) {
-      for (const std::ptrdiff_t di : {-1, 0, 1}) samples[n++] = value(middle[di + dj + dk]);
+  for (std::int32_t k = middle.k - 1; k <= middle.k + 1; ++k) {
+    for (std::int32_t j = middle.j - 1; j <= middle.j + 1; ++j) {
+      for (std::int32_t i = middle.i - 1; i <= middle.i + 1; ++i) {
+        const PageId next{level, {i / kSide, j / kSide, k / kSide}};
+        if (next != id) {
+          const HeldPage<Word>* from = pages_.held(next);
+          if (from == nullptr) return false;
+          id = next;
+          words = from->samples.data();
+        }
+        samples[n++] = value(words[PageGrid::place({i, j, k}, 0)]);
+      }
     }
   }
   return true;
@@ -94,8 +100,8 @@ void StoredDiamonds<Sample>::set_contour(double isovalue) {
                                          : found < isovalue;
     (below ? begin : end) = below ? middle + 1 : middle;
   }
+  if (contour_ == 0 || least_above_ != begin) ++contour_;
   least_above_ = begin;
-  ++contour_;
 }
 
 template <class Sample>

@@ -47,6 +47,9 @@ class StoredDiamonds {
     return s.i <= e.i && s.j <= e.j && s.k <= e.k;
   }
 
+  /// Null where the page is not in memory. Valid until the next one is asked for.
+  const HeldPage<Word>* held_page(const PageId& id) { return pages_.held(id); }
+
   /// The sample at a lattice point; beyond the data the nearest one. Throws PageLost.
   double sample(LatticePoint p) { return value(word(in_samples(p))); }
   /// The same at a point in samples.

@@ -72,7 +72,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
   surface.diamonds = contour.split_diamonds();
   surface.tetrahedra =
       static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count()) + contour.tetrahedra_added();
-  surface.max_error = diamonds_.error(std::max(contour.greatest_rank(), pages_.greatest_left()));
+  surface.max_error = diamonds_.error(std::max(contour.greatest_rank_at_lost(), pages_.greatest_left()));
   surface.contour = builder.finish();
   return surface;
 }

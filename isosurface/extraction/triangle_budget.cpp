@@ -54,9 +54,7 @@ void TriangleBudget<Sample>::visit_page(int level, LatticePoint block, const Pag
     const Diamond diamond = page_.diamond(q);
     // What is clipped is worked out.
     const bool whole = simple && ((page_.is_inside() && !request_.region) || counter_.is_inside(diamond));
-    const std::int64_t more = whole
-                                  ? stencil.triangles_added(page_.slots(stencil, q), page_.above(stencil, q))
-                                  : counter_.added_by_split(diamond);
+    const std::int64_t more = whole ? page_.triangles_added(stencil, q) : counter_.added_by_split(diamond);
     visit(q, rank, 3 * (pages_.levels() - 1 - level) + stencil.phase, more);
   }
 }

@@ -67,14 +67,27 @@ GradientEstimator::GradientEstimator(const Vec3& spacing) {
     for (int axis = 0; axis < 3; ++axis)
       matrix[static_cast<std::size_t>(axis)] += directions_[s][axis] * directions_[s];
   }
-  for (std::size_t s = 0; s < kDirections; ++s) inverse_[s] = solve_symmetric(matrix, directions_[s]);
+  for (std::size_t s = 0; s < kDirections; ++s)
+    inverse_[s] = 0.5 / lengths_[s] * solve_symmetric(matrix, directions_[s]);
+}
+
+Vec3 GradientEstimator::central(const Neighbourhood& values) const {
+  Vec3 result;
+  for (std::size_t s = 0; s < kDirections; ++s) {
+    const auto [i, j, k] = kSteps[s];
+    result += (values[neighbour(i, j, k)] - values[neighbour(-i, -j, -k)]) * inverse_[s];
+  }
+  return result;
 }
 
 Vec3 GradientEstimator::operator()(const Neighbourhood& values) const {
+  // Of what is not finite 0 times is NaN.
+  double sum = 0;
+  for (const double value : values) sum += 0 * value;
+  if (sum == 0) return central(values);
   const double middle = values[neighbour(0, 0, 0)];
   if (!std::isfinite(middle)) return {};
   Differences slopes;
-  bool all = true;
   for (std::size_t s = 0; s < kDirections; ++s) {
     const auto [i, j, k] = kSteps[s];
     const double ahead = values[neighbour(i, j, k)], behind = values[neighbour(-i, -j, -k)];
@@ -85,13 +98,9 @@ Vec3 GradientEstimator::operator()(const Neighbourhood& values) const {
       slopes[s] = (middle - behind) / lengths_[s];
     } else {
       slopes[s] = std::numeric_limits<double>::quiet_NaN();
-      all = false;
     }
   }
-  if (!all) return solve(slopes);
-  Vec3 result;
-  for (std::size_t s = 0; s < kDirections; ++s) result += slopes[s] * inverse_[s];
-  return result;
+  return solve(slopes);
 }
 
 Vec3 GradientEstimator::solve(const Differences& slopes) const {

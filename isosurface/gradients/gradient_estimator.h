@@ -31,11 +31,13 @@ class GradientEstimator {
   static constexpr std::size_t kDirections = 13;
   using Differences = std::array<double, kDirections>;
 
+  /// Where all of the values are finite.
+  [[nodiscard]] Vec3 central(const Neighbourhood& values) const;
   [[nodiscard]] Vec3 solve(const Differences& slopes) const;
 
   std::array<Vec3, kDirections> directions_{};  ///< unit vectors
   std::array<double, kDirections> lengths_{};   ///< of the steps to the neighbours
-  /// The least-squares solution is this times the slopes where all are known.
+  /// The least-squares solution is this times the differences over both steps where all are known.
   std::array<Vec3, kDirections> inverse_{};
 };
 
