@@ -70,9 +70,11 @@ void PageDiamonds<Sample>::get_outside(LatticePoint q) {
   const bool has_page = level_ <= diamonds_.grid().top();
   for (std::size_t m = 0; m < stencil.count; ++m) {
     const LatticePoint at = q + stencil.offsets[m], u = corner_ + at;
+    const bool in_page = is_in_page(at);
+    if (in_page && inside_ && has_page) continue;
     const bool is_on_page =
         has_page && std::min({u.i, u.j, u.k}) >= 0 && u.i <= extent.i && u.j <= extent.j && u.k <= extent.k;
-    if (is_on_page && (is_in_page(at) || get_from_neighbour(at))) continue;
+    if (is_on_page && (in_page || get_from_neighbour(at))) continue;
     // Vertices outside the domain are none of the mesh.
     if (!diamonds_.domain().contains(in_lattice(at))) {
       *words_.at(at) = static_cast<Word>(ordered(Sample{0}));

@@ -23,6 +23,13 @@ unsigned not_less(const std::uint8_t* codes, unsigned least) {
   return static_cast<unsigned>(high * kGather >> 56);
 }
 
+/// Whether no diamond of a row is crossed with an error.
+bool is_zero(const std::uint8_t* codes) {
+  std::array<std::uint64_t, 2> row;
+  std::memcpy(row.data(), codes, sizeof row);
+  return (row[0] | row[1]) == 0;
+}
+
 /// A row of points of a page that is no complete one, seen as phases of its diamonds: -1 where the points are
 /// coarser ones.
 struct RowPhases {
@@ -199,7 +206,8 @@ PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const Surfa
     least[static_cast<std::size_t>(phase)] = static_cast<unsigned>(std::clamp(rank - 4 * level, 1, kNever));
   }
   // What is not split has no more than this, and mostly just that.
-  const int most_left = cut.generation < first_generation + 3 ? cut.rank : cut.rank - 1;
+  const bool look_at_left =
+      greatest_left_ < (cut.generation < first_generation + 3 ? cut.rank : cut.rank - 1);
   PageMask mask, left;
   for (std::int32_t k = 0; k < count.k; ++k) {
     for (std::int32_t j = 0; j < count.j; ++j) {
@@ -211,6 +219,7 @@ PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const Surfa
           spread[static_cast<std::size_t>(i)] = i * step < kSide ? row[i * step] : std::uint8_t{0};
         row = spread.data();
       }
+      if (is_zero(row)) continue;
       const auto bits = [row](unsigned at_least) {
         return not_less(row, at_least) | not_less(row + 8, at_least) << 8;
       };
@@ -225,14 +234,14 @@ PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const Surfa
         split |= bits(static_cast<unsigned>(std::clamp(cut.rank - 4 * level, 1, kNever))) & of_phase & places;
       }
       mask.rows[at] = static_cast<std::uint16_t>(split & own);
-      left.rows[at] = static_cast<std::uint16_t>(bits(1) & own & ~split);
+      if (look_at_left) left.rows[at] = static_cast<std::uint16_t>(bits(1) & own & ~split);
     }
   }
   if (limits_.any()) {
     limit(level, block, mask);
     limit(level, block, left);
   }
-  if (greatest_left_ < most_left) {
+  if (look_at_left) {
     left.for_each([&](LatticePoint q) {
       greatest_left_ = std::max(greatest_left_, (*codes_)[place(level, q)] + 4 * level);
     });

@@ -65,8 +65,19 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
   if (level < 0 || level > grid_.top()) return false;
   const LatticePoint at = in_samples(p), last = grid_.last();
   const LatticePoint middle{at.i >> level, at.j >> level, at.k >> level};
+  bool on_one_page = true;
   for (int axis = 0; axis < 3; ++axis) {
-    if (middle[axis] == 0 || middle[axis] + 1 > last[axis] >> level) return false;
+    const std::int32_t x = middle[axis];
+    if (x == 0 || x + 1 > last[axis] >> level) return false;
+    on_one_page = on_one_page && x % kSide != 0 && x % kSide != kSide - 1;
+  }
+  if (on_one_page) {
+    const HeldPage<Word>* from = pages_.held({level, {middle.i / kSide, middle.j / kSide, middle.k / kSide}});
+    if (from == nullptr) return false;
+    const Word* first = from->samples.data() + PageGrid::place(middle - LatticePoint{1, 1, 1}, 0);
+    for (std::size_t n = 0; n < 27; ++n)
+      samples[n] = value(first[n % 3 + kSide * (n / 3 % 3) + kSide * kSide * (n / 9)]);
+    return true;
   }
   PageId id{-1, {}};
   const Word* words = nullptr;

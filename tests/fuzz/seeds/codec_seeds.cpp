@@ -1,0 +1,118 @@
+// Makes the seeds of the fuzz targets of codecs of samples and of gradients: FOLDER is that of all seeds. To
+// be run again where a codec's bytes change.
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/sample_codec.h"
+
+namespace adamas::fuzz {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+struct Seed {
+  std::string name;
+  SampleCoding coding;
+  LatticePoint count;
+  bool complete;
+  int noise;  ///< in parts of the greatest number
+};
+
+void append(Bytes& to, const Bytes& from) { to.insert(to.end(), from.begin(), from.end()); }
+void put(Bytes& to, std::size_t number) { to.push_back(static_cast<std::byte>(number & 0xff)); }
+
+void put_points(Bytes& to, LatticePoint count) {
+  for (int axis = 0; axis < 3; ++axis) put(to, static_cast<std::size_t>(count[axis] - 1));
+}
+void put_tables(Bytes& to, const Bytes& tables, const Bytes& page) {
+  put(to, tables.size());
+  put(to, tables.size() >> 8);
+  append(to, tables);
+  append(to, page);
+}
+
+/// Waves and noise.
+template <class Number, std::size_t N>
+void fill(std::array<Number, N>& numbers, int noise) {
+  std::mt19937 random(5);
+  for (std::size_t n = 0; n < N; ++n) {
+    const double x = static_cast<double>(n % 16), y = static_cast<double>(n / 16 % 16),
+                 z = static_cast<double>(n / 256);
+    const double wave = 0.4 * std::sin(0.2 * x + 0.3 * y) * std::cos(0.25 * z);
+    const double part = noise == 0 ? 0 : static_cast<double>(random() % 1000) / 1000 / noise;
+    numbers[n] = static_cast<Number>((0.5 + wave + 0.1 * part) * static_cast<double>(Number(~Number{0})));
+  }
+}
+
+void write(const std::filesystem::path& folder, const std::string& name, const Bytes& bytes) {
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / name, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+template <class Word>
+void make_samples(const std::filesystem::path& folder, const Seed& seed) {
+  const PageShape shape{seed.count, seed.complete, 0};
+  typename SampleCodec<Word>::Around around;
+  for (std::size_t n = 0; n < around.size(); ++n) around[n] = static_cast<Word>(n * n * 7);
+  typename SampleCodec<Word>::Samples samples;
+  fill(samples, seed.noise);
+  const auto survey = sample_survey<Word>(seed.coding);
+  survey->add(shape, around, samples);
+  const auto codec = survey->codec();
+  Bytes page, bytes;
+  codec->encode(shape, around, samples, page);
+  put(bytes, sizeof(Word) + (seed.coding == SampleCoding::kInterpolation ? 128 : 0));
+  put_points(bytes, seed.count);
+  put(bytes, seed.complete ? 1 : 0);
+  put_tables(bytes, codec->tables(), page);
+  write(folder / "sample_codec", seed.name, bytes);
+}
+
+void make_gradients(const std::filesystem::path& folder, const Seed& seed) {
+  const PageShape shape{seed.count, seed.complete, 0};
+  GradientCodesAround around;
+  for (std::size_t n = 0; n < around.size(); ++n) around[n] = static_cast<std::uint16_t>(n * n * 7);
+  GradientCodes codes;
+  fill(codes, seed.noise);
+  GradientSurvey survey(seed.coding);
+  survey.add(shape, around, codes);
+  const GradientCodec codec = survey.codec();
+  Bytes page, bytes;
+  codec.encode(shape, around, codes, page);
+  put(bytes, (seed.coding == SampleCoding::kInterpolation ? 128 : 0) + (seed.complete ? 1 : 0));
+  put_points(bytes, seed.count);
+  put_tables(bytes, codec.tables(), page);
+  write(folder / "gradient_codec", seed.name, bytes);
+}
+
+void make(const std::filesystem::path& folder) {
+  constexpr auto kEdge = SampleCoding::kSplitEdge, kOurs = SampleCoding::kInterpolation;
+  make_samples<std::uint8_t>(folder, {"bytes", kOurs, {5, 4, 3}, false, 0});
+  make_samples<std::uint8_t>(folder, {"complete", kOurs, {4, 4, 3}, true, 0});
+  make_samples<std::uint8_t>(folder, {"raw", kOurs, {3, 3, 3}, false, 1});
+  make_samples<std::uint16_t>(folder, {"shorts", kOurs, {6, 4, 3}, false, 9});
+  make_samples<std::uint32_t>(folder, {"words", kOurs, {4, 3, 3}, false, 3});
+  make_samples<std::uint8_t>(folder, {"split_bytes", kEdge, {5, 4, 3}, false, 0});
+  make_samples<std::uint8_t>(folder, {"split_complete", kEdge, {4, 4, 3}, true, 0});
+  make_samples<std::uint32_t>(folder, {"split_words", kEdge, {4, 3, 3}, false, 3});
+  make_gradients(folder, {"page", kOurs, {6, 5, 3}, false, 2});
+  make_gradients(folder, {"complete", kOurs, {4, 4, 4}, true, 2});
+  make_gradients(folder, {"raw", kOurs, {3, 3, 3}, false, 1});
+  make_gradients(folder, {"split_page", kEdge, {6, 5, 3}, false, 2});
+  make_gradients(folder, {"split_complete", kEdge, {4, 4, 4}, true, 2});
+}
+
+}  // namespace
+}  // namespace adamas::fuzz
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  adamas::fuzz::make(argv[1]);
+}
