@@ -1,9 +1,10 @@
 #include "isosurface/contour/contour.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <numeric>
 #include <utility>
 
 #include "core/base/assert.h"
@@ -82,14 +83,55 @@ Contour ContourBuilder::finish() {
   return std::move(contour_);
 }
 
-Contour triangulate_crossed(const Domain& domain, std::vector<CrossedTetrahedron> crossed, double isovalue,
-                            const ContourOptions& options) {
-  std::sort(crossed.begin(), crossed.end(), [](const CrossedTetrahedron& a, const CrossedTetrahedron& b) {
-    return std::tie(a.diamond, a.slot) < std::tie(b.diamond, b.slot);
+std::uint32_t DiamondContour::edge_point(std::size_t a, std::size_t b) {
+  std::uint32_t& point = edge_points_[std::min(a, b)][std::max(a, b)];
+  if (point == ContourBuilder::kNone)
+    point = builder_.edge_point(points_[a], points_[b], values_[a], values_[b]);
+  return point;
+}
+
+void DiamondContour::add_tetrahedron(int slot) {
+  const std::size_t r = 2 + static_cast<std::size_t>(slot), next = r + 1 == 2 + ring_ ? 2 : r + 1;
+  const std::array<std::size_t, 4> members{0, 1, r, next};
+  unsigned above = 0;
+  for (std::size_t v = 0; v < 4; ++v) above |= unsigned{above_[members[v]]} << v;
+  const TetrahedronContour& table = kTetrahedronContours[above];
+  if (table.triangle_count == 0) return;
+  for (const std::size_t m : members) {
+    if (!std::isfinite(values_[m])) return;
+  }
+  if (last_sample_ && is_beyond({points_[0], points_[1], points_[r], points_[next]}, *last_sample_)) return;
+  for (std::size_t n = 0; n < table.triangle_count; ++n) {
+    std::array<std::uint32_t, 3> triangle;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto [v, w] = kTetrahedronEdges[table.triangles[n][c]];
+      triangle[c] = edge_point(members[v], members[w]);
+    }
+    builder_.add_triangle(triangle);
+  }
+}
+
+DiamondsInSpace::DiamondsInSpace(const IndexedHierarchy& hierarchy,
+                                 const std::optional<LatticePoint>& last_sample)
+    : shift_(kRootBits - 1 - hierarchy.levels()) {
+  std::uint64_t last = 0;
+  hierarchy.for_each_diamond([&](const Diamond& diamond, std::uint8_t slots) {
+    if (last_sample && is_beyond(diamond, *last_sample)) return;
+    const LatticePoint p = diamond.point();
+    diamonds_.push_back({ZOrder::interleave({p.i >> shift_, p.j >> shift_, p.k >> shift_}), slots});
+    last = std::max(last, diamonds_.back().place);
   });
-  ContourBuilder builder(domain, isovalue, options);
-  for (const CrossedTetrahedron& t : crossed) builder.add(t);
-  return builder.finish();
+  // By some bits after others, from the lowest on.
+  constexpr int kDigitBits = 11;
+  std::vector<PlacedDiamond> sorted(diamonds_.size());
+  for (int bit = 0; bit < static_cast<int>(std::bit_width(last)); bit += kDigitBits) {
+    std::array<std::size_t, (1u << kDigitBits) + 1> begin{};
+    const auto digit = [bit](const PlacedDiamond& d) { return d.place >> bit & ((1u << kDigitBits) - 1); };
+    for (const PlacedDiamond& d : diamonds_) ++begin[digit(d) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    for (const PlacedDiamond& d : diamonds_) sorted[begin[digit(d)]++] = d;
+    diamonds_.swap(sorted);
+  }
 }
 
 }  // namespace adamas

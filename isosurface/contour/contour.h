@@ -12,6 +12,7 @@
 #include "core/lattice/lattice_point.h"
 #include "core/lattice/point_numbers.h"
 #include "isosurface/hierarchy/indexed_hierarchy.h"
+#include "isosurface/storage/z_order.h"
 
 namespace adamas {
 
@@ -66,6 +67,8 @@ bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sa
 /// A contour that grows by a tetrahedron at a time. Points are numbered as they are first met.
 class ContourBuilder {
  public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;  ///< the number of no point
+
   ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options);
 
   /// Throws Error where the surface has more points than 32 bits can number.
@@ -86,26 +89,73 @@ class ContourBuilder {
   PointNumbers numbers_;
 };
 
-/// Those that the contour crosses, in any order; see extract_contour.
-template <class Values>
-std::vector<CrossedTetrahedron> find_crossed(const IndexedHierarchy& hierarchy, const Values& values,
-                                             double isovalue, const std::optional<LatticePoint>& last_sample);
+/// The triangles of one diamond after another.
+class DiamondContour {
+ public:
+  /// The builder must outlive this, and have the same isovalue and last sample.
+  DiamondContour(ContourBuilder& builder, double isovalue, const std::optional<LatticePoint>& last_sample)
+      : builder_(builder), isovalue_(isovalue), last_sample_(last_sample) {}
 
-/// The contour through these tetrahedra; their order does not matter.
-Contour triangulate_crossed(const Domain& domain, std::vector<CrossedTetrahedron> crossed, double isovalue,
-                            const ContourOptions& options);
+  /// Those in some of the diamond's tetrahedra, by slot as bits. `values`: see extract_contour.
+  template <class Values>
+  void add(const Diamond& diamond, unsigned slots, const Values& values);
+
+ private:
+  static constexpr std::size_t kMembers = 10;  ///< the ends of the split edge, and the ring
+
+  void add_tetrahedron(int slot);
+  std::uint32_t edge_point(std::size_t a, std::size_t b);
+
+  ContourBuilder& builder_;
+  double isovalue_;
+  std::optional<LatticePoint> last_sample_;
+  /// Of the diamond at hand.
+  std::size_t ring_ = 0;
+  std::array<LatticePoint, kMembers> points_;
+  std::array<double, kMembers> values_;
+  std::array<bool, kMembers> above_;
+  std::array<std::array<std::uint32_t, kMembers>, kMembers> edge_points_;  ///< by ends, the lesser first
+};
+
+/// A diamond of a hierarchy and its tetrahedra in the mesh.
+struct PlacedDiamond {
+  std::uint64_t place;  ///< in z-order
+  std::uint8_t slots;   ///< as bits
+};
+
+/// The diamonds with tetrahedra in the mesh, in z-order: what is near in space is near in memory.
+class DiamondsInSpace {
+ public:
+  /// Leaves out those wholly beyond the last sample.
+  DiamondsInSpace(const IndexedHierarchy& hierarchy, const std::optional<LatticePoint>& last_sample);
+
+  /// Calls visit(diamond, slots).
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (const PlacedDiamond& placed : diamonds_)
+      visit(Diamond((1 << shift_) * ZOrder::deinterleave(placed.place)), unsigned{placed.slots});
+  }
+
+ private:
+  int shift_;
+  std::vector<PlacedDiamond> diamonds_;
+};
 
 /// The contour of the piecewise linear function on the current mesh with the given values at its vertices.
 /// `values(p)` gives the value at the lattice point p as a double; it is asked once for each vertex of a
-/// diamond, so several times for a vertex of the mesh, in no order that means anything, and not for diamonds
-/// beyond the last sample. A value equal to the isovalue counts as above it. Tetrahedra with a value that is
-/// not finite have no surface. The result depends on the mesh alone, not on how the hierarchy came to it.
-/// Throws Error where the surface has more points than 32 bits can number.
+/// diamond, so several times for a vertex of the mesh, and not for diamonds beyond the last sample. A value
+/// equal to the isovalue counts as above it. Tetrahedra with a value that is not finite have no surface. The
+/// result depends on the mesh alone, not on how the hierarchy came to it. Throws Error where the surface has
+/// more points than 32 bits can number.
 template <class Values>
 Contour extract_contour(const IndexedHierarchy& hierarchy, const Values& values, double isovalue,
                         const ContourOptions& options = {}) {
-  return triangulate_crossed(
-      hierarchy.domain(), find_crossed(hierarchy, values, isovalue, options.last_sample), isovalue, options);
+  ContourBuilder builder(hierarchy.domain(), isovalue, options);
+  DiamondContour contour(builder, isovalue, options.last_sample);
+  DiamondsInSpace(hierarchy, options.last_sample).for_each([&](const Diamond& diamond, unsigned slots) {
+    contour.add(diamond, slots, values);
+  });
+  return builder.finish();
 }
 
 /// Whether the diamond lies wholly beyond the last sample: it reaches by its scale to all sides of its point.
@@ -116,37 +166,25 @@ inline bool is_beyond(const Diamond& diamond, LatticePoint last_sample) {
 }
 
 template <class Values>
-std::vector<CrossedTetrahedron> find_crossed(const IndexedHierarchy& hierarchy, const Values& values,
-                                             double isovalue,
-                                             const std::optional<LatticePoint>& last_sample) {
-  std::vector<CrossedTetrahedron> crossed;
-  hierarchy.for_each_diamond([&](const Diamond& diamond, std::uint8_t slots) {
-    if (last_sample && is_beyond(diamond, *last_sample)) return;
-    const std::size_t count = static_cast<std::size_t>(diamond.tetrahedron_count());
-    // Tetrahedron `slot` has the vertices `slot` and `slot` + 1 of the ring.
-    const unsigned used = slots | unsigned{slots} << 1 | unsigned{slots} >> (count - 1);
-    const auto [a, b] = diamond.split_edge();
-    const double value_a = values(a), value_b = values(b);
-    const unsigned axis_above = unsigned{value_a >= isovalue} | unsigned{value_b >= isovalue} << 1;
-    std::array<double, 9> ring;
-    unsigned ring_above = 0;
-    for (std::size_t r = 0; r < count; ++r) {
-      if ((used >> r & 1) == 0) continue;
-      ring[r] = values(diamond.ring(static_cast<int>(r)));
-      ring_above |= unsigned{ring[r] >= isovalue} << r;
-    }
-    ring[count] = ring[0];
-    ring_above |= (ring_above & 1) << count;
-    for (std::size_t slot = 0; slot < count; ++slot) {
-      const unsigned above = axis_above | (ring_above >> slot & 3) << 2;
-      if ((slots >> slot & 1) == 0 || kTetrahedronContours[above].triangle_count == 0) continue;
-      crossed.push_back({diamond.point(),
-                         static_cast<std::uint8_t>(slot),
-                         static_cast<std::uint8_t>(above),
-                         {value_a, value_b, ring[slot], ring[slot + 1]}});
-    }
-  });
-  return crossed;
+void DiamondContour::add(const Diamond& diamond, unsigned slots, const Values& values) {
+  constexpr unsigned kEnds = 2;
+  ring_ = static_cast<std::size_t>(diamond.tetrahedron_count());
+  // Tetrahedron `slot` has the vertices `slot` and `slot` + 1 of the ring.
+  const unsigned used = (slots | slots << 1 | slots >> (ring_ - 1)) << kEnds | 3;
+  const auto [a, b] = diamond.split_edge();
+  bool any_above = false, any_below = false;
+  for (std::size_t m = 0; m < kEnds + ring_; ++m) {
+    if ((used >> m & 1) == 0) continue;
+    points_[m] = m == 0 ? a : m == 1 ? b : diamond.ring(static_cast<int>(m - kEnds));
+    values_[m] = values(points_[m]);
+    above_[m] = values_[m] >= isovalue_;
+    (above_[m] ? any_above : any_below) = true;
+  }
+  if (!any_above || !any_below) return;
+  for (auto& row : edge_points_) row.fill(ContourBuilder::kNone);
+  for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
+    if ((slots >> slot & 1) != 0) add_tetrahedron(slot);
+  }
 }
 
 }  // namespace adamas
