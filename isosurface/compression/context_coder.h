@@ -18,7 +18,9 @@ namespace adamas {
 /// used by several threads at once.
 class ContextCoder {
  public:
-  static constexpr std::size_t kMaxSymbols = 255, kMaxTables = 255, kMostClusters = 64;
+  static constexpr std::size_t kMaxSymbols = 255, kMaxTables = 255;
+  /// Tables that are made: so many stay in the caches.
+  static constexpr std::size_t kMostClusters = 64;
   static constexpr int kScaleBits = 10;
   static constexpr std::uint32_t kScale = 1u << kScaleBits;
   static constexpr std::size_t kLanes = 4;
