@@ -58,7 +58,7 @@ std::vector<std::uint16_t> frequencies_of(std::span<const std::uint64_t> counts)
 
 ContextCoder::ContextCoder(const ContextCounts& counts)
     : ContextCoder([&counts] {
-        ContextClusters clusters = context_clusters(counts, kMaxTables);
+        ContextClusters clusters = context_clusters(counts, kMostClusters);
         std::vector<Frequencies> tables;
         for (const auto& cluster : clusters.counts) tables.push_back(frequencies_of(cluster));
         return ContextCoder(counts.symbols(), std::move(clusters.map), std::move(tables));

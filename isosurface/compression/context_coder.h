@@ -19,7 +19,9 @@ namespace adamas {
 class ContextCoder {
  public:
   static constexpr std::size_t kMaxSymbols = 255, kMaxTables = 255;
-  static constexpr int kScaleBits = 11;
+  /// Tables that are made: so many stay in the caches.
+  static constexpr std::size_t kMostClusters = 64;
+  static constexpr int kScaleBits = 10;
   static constexpr std::uint32_t kScale = 1u << kScaleBits;
   static constexpr std::size_t kLanes = 4;
   static constexpr std::uint32_t kLeastState = 1u << 16;

@@ -1,100 +1,86 @@
 #include "isosurface/compression/error_stage.h"
 
-#include <algorithm>
+#include <cstring>
 
 #include "isosurface/compression/row_lanes.h"
+#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
 
-constexpr int kMostCode = 63;
+using Codes = PaddedGrid<std::uint8_t>;
 
-/// How much more than predicted a code may be, from -63 to 63, in classes.
-constexpr auto kClassOfRoom = [] {
-  std::array<std::uint8_t, 2 * kMostCode + 1> classes{};
-  for (int room = -kMostCode; room <= kMostCode; ++room) {
-    int number = 0;
-    for (const int least : {0, 1, 2, 4, 7, 13, 25}) number += room >= least ? 1 : 0;
-    classes[static_cast<std::size_t>(room + kMostCode)] = static_cast<std::uint8_t>(number);
-  }
-  return classes;
-}();
+constexpr std::uint8_t kRoomClasses = ErrorStages<std::uint8_t>::kRoomClasses;
+/// Stands for a context where a child's error is as great as the point's may be.
+constexpr std::uint8_t kDetermined = 255;
 
-/// The greatest code that goes with ValueFields::error_room: the scales of two levels differ by a factor of
-/// two.
-constexpr auto kMostOfRoom = [] {
-  std::array<std::uint8_t, kMostCode + 1> most{};
-  for (int room = 0; room < kMostCode; ++room) {
-    most[static_cast<std::size_t>(room)] =
-        static_cast<std::uint8_t>(std::min(kMostCode - room + 4, kMostCode));
-  }
-  return most;
-}();
-
-/// Of the children on the page, of all points of a row.
-void greatest_child(const PaddedGrid<std::uint8_t>& errors, LatticePoint row, const LatticePoint& odd,
-                    std::uint8_t* greatest) {
-  RowLanes<std::uint8_t, PageGrid::kSide> lanes(errors.at({-1, -1, -1}));
-  for (int axis = 0; axis < 3; ++axis) {
-    if (odd[axis] == 0) continue;
+/// What is predicted of the points of a row, from the own errors that stand there: not more than they may be,
+/// and not less than any child on the page. For each a part of its context too.
+void predict(const Codes& errors, const Codes& most_errors, LatticePoint first, int phase,
+             std::uint8_t* predicted, std::uint8_t* contexts) {
+  using Lanes = RowLanes<std::uint8_t, PageGrid::kSide>;
+  static_assert(Lanes::kParts == 1);
+  const LatticePoint row{0, first.j, first.k};
+  Lanes children(errors.at({-1, -1, -1}));
+  for (int axis = 0; phase < 2 && axis < 3; ++axis) {
+    if ((first[axis] & 1) == 0) continue;
     LatticePoint step{};
     step[axis] = 1;
-    lanes.take_greatest(errors.at(row - step));
-    lanes.take_greatest(errors.at(row + step));
+    children.take_greatest(errors.at(row - step));
+    children.take_greatest(errors.at(row + step));
   }
-  lanes.store(greatest);
+  std::array<std::uint8_t, PageGrid::kSide> greatest_child;
+  children.store(greatest_child.data());
+  Lanes lanes(predicted);
+  lanes.take_least(most_errors.at(row));
+  lanes.take_greatest(greatest_child.data());
+  std::array<std::uint8_t, PageGrid::kSide> codes;
+  lanes.store(codes.data());
+  // The points between them belong to a later phase.
+  copy_every_other(codes.data(), predicted, static_cast<std::size_t>(first.i));
+
+  using Part = Lanes::Part;
+  const Part code = Lanes::load(codes.data()), most = Lanes::load(most_errors.at(row)),
+             floor = Lanes::load(greatest_child.data());
+  const Part room = most > code ? most - code : Part{};
+  Part context = code == 0 ? Part{} + kRoomClasses : Part{};
+  for (const std::uint8_t least : {1, 2, 4, 7, 13, 25}) context += room >= least ? Part{} + 1 : Part{};
+  context = floor >= most ? Part{} + kDetermined : context;
+  std::memcpy(contexts, &context, sizeof context);
 }
 
 }  // namespace
 
 template <class Word>
-void ErrorStages<Word>::make(const ValueFields<Word>& fields, const PageShape& shape, int phase,
-                             ValueStage<std::uint8_t>& stage) {
-  stage.clear();
-  ErrorRow known{};
-  std::array<std::uint8_t, PageGrid::kSide> children{};
-  for (int n = 0; n < value_kind_count(phase); ++n) {
-    const ValueKind kind = value_kind(phase, n);
-    kind.rows(shape, [&](LatticePoint q) {
-      const LatticePoint row{0, q.j, q.k};
-      if (phase == 2) known_edge_errors(fields.heights, q, n, known);
-      if (phase == 1) known_face_errors(fields.heights, q, n, known);
-      if (phase == 0) known_centre_errors(fields.heights, q, known);
-      if (phase < 2) greatest_child(fields.errors, row, kind.odd, children.data());
-      add_row(kind, q, shape, phase, greatest_of_cubes(fields.error_room, q), known, children, stage);
+void ErrorStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, int phase, bool trust,
+                             bool take, ValueStage& stage) {
+  with_wide_lanes([&](auto) {
+    Codes& contexts = fields.error_contexts;
+    for_each_row(shape, phase, [&](LatticePoint first) {
+      const LatticePoint row{0, first.j, first.k};
+      predict(fields.errors, fields.most_errors, first, phase, fields.predicted.at(row), contexts.at(row));
+      if (take) copy_points(shape, first, fields.predicted, fields.errors);
     });
-  }
-}
-
-template <class Word>
-void ErrorStages<Word>::add_row(const ValueKind& kind, LatticePoint q, const PageShape& shape, int phase,
-                                const std::array<std::uint8_t, 8>& rooms, const ErrorRow& known,
-                                const std::array<std::uint8_t, PageGrid::kSide>& children,
-                                ValueStage<std::uint8_t>& stage) {
-  constexpr int kMissing = 2 * kRoomClassCount;
-  const int count = (shape.count.i - q.i + 1) / 2;
-  const auto context = [&](int n) {
-    const int missing = kind.missing({q.i + 2 * n, q.j, q.k}, shape, phase) > 0 ? kMissing : 0;
-    return (phase * 2 + (shape.level == 0 ? 0 : 1)) * 2 * kMissing + missing;
-  };
-  // But for the points at its ends all of a row miss as much.
-  const int first = context(0), last = context(count - 1), inner = context(std::min(1, count - 1));
-  const std::size_t begin = stage.size, place = PageGrid::place(q, 0);
-  for (int n = 0; n < count; ++n) {
-    const auto i = static_cast<std::size_t>(q.i + 2 * n), to = begin + static_cast<std::size_t>(n);
-    const int predicted = std::max<int>(known[static_cast<std::size_t>(n)], children[i]);
-    const int room = kMostOfRoom[rooms[static_cast<std::size_t>(n)]] - predicted;
-    stage.places[to] = static_cast<std::uint16_t>(place + 2 * static_cast<std::size_t>(n));
-    stage.predicted[to] = static_cast<std::uint8_t>(predicted);
-    stage.contexts[to] = static_cast<std::uint16_t>(inner + (predicted == 0 ? kRoomClassCount : 0) +
-                                                    kClassOfRoom[static_cast<std::size_t>(room + kMostCode)]);
-  }
-  stage.size += static_cast<std::size_t>(count);
-  stage.contexts[begin] = static_cast<std::uint16_t>(stage.contexts[begin] + first - inner);
-  if (count > 1) {
-    stage.contexts[stage.size - 1] =
-        static_cast<std::uint16_t>(stage.contexts[stage.size - 1] + last - inner);
-  }
+    // Samples that are not whole numbers are worked with in another precision.
+    const bool is_finest = shape.level == 0, are_exact = is_finest && sizeof(Word) < sizeof(float);
+    const int base = 1 + (phase * 2 + (is_finest ? 0 : 1)) * 2 * 2 * kRoomClasses;
+    constexpr int kMissing = 2 * kRoomClasses;
+    with_points(shape, phase, PhasePoints::Of::kErrors, [&](const PhasePoints& points) {
+      const bool some = trust && are_exact;
+      const auto list = some ? points.open() : points.all();
+      std::size_t size = 0;
+      for (std::size_t n = 0; n < list.size(); ++n) {
+        const std::uint8_t part = contexts[list[n]];
+        const bool misses = some || !points.sure()[n];
+        const bool is_sure = part == kDetermined || (are_exact && !misses);
+        stage.places[size] = list[n];
+        stage.contexts[size] =
+            static_cast<std::uint16_t>(is_sure ? kSure : base + (misses ? kMissing : 0) + part);
+        size += is_sure && trust ? 0 : 1;
+      }
+      stage.size = size;
+    });
+  });
 }
 
 template class ErrorStages<std::uint8_t>;

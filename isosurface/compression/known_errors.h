@@ -3,20 +3,31 @@
 #include <array>
 #include <cstdint>
 
-#include "core/lattice/lattice_point.h"
+#include "core/geometry/vec3.h"
 #include "isosurface/compression/height_grid.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/compression/padded_grid.h"
+#include "isosurface/storage/page.h"
 
 namespace adamas {
 
-/// Error codes of the points of a kind in a row: the first, and those that follow it in steps of two.
-using ErrorRow = std::array<std::int32_t, PageGrid::kSide / 2>;
+/// What the error of the smallest diamonds depends on beside samples, where these lie `spacing` apart. Alike
+/// on all levels.
+struct ErrorGeometry {
+  explicit ErrorGeometry(const Vec3& spacing);
 
-/// What the samples next to points tell of their diamonds' errors, where the scale's greatest error is that
-/// of the longest edge and the spacing is the same along all axes: of the row from q on, for edges along the
-/// axis `own`, and for faces across it.
-void known_edge_errors(const HeightGrid& heights, LatticePoint q, int own, ErrorRow& row);
-void known_face_errors(const HeightGrid& heights, LatticePoint q, int own, ErrorRow& row);
-void known_centre_errors(const HeightGrid& heights, LatticePoint q, ErrorRow& row);
+  /// See OctantStencils::slope_factors.
+  std::array<float, 3> slope_factors;
+  /// Squares of the diameters' ratios to the scale's greatest error: of the tetrahedra round edges along an
+  /// axis, round faces across it, and of those in cubes.
+  std::array<float, 3> edge_diameters, face_diameters;
+  float centre_diameter;
+};
+
+/// The codes of the greatest errors of the diamonds' own tetrahedra, of all points of a page that it may own,
+/// as far as the heights are known: where those in and on a diamond of the finest level are whole numbers of
+/// 16 bits at most, that which preprocessing finds, bit for bit. Fills whole rows; 0 where all coordinates
+/// are even.
+void known_errors(const HeightGrid& heights, const ErrorGeometry& geometry, const PageShape& shape,
+                  PaddedGrid<std::uint8_t>& codes);
 
 }  // namespace adamas

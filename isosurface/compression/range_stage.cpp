@@ -1,9 +1,11 @@
 #include "isosurface/compression/range_stage.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "isosurface/compression/row_lanes.h"
+#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
@@ -15,14 +17,12 @@ struct Neighbours {
   std::array<std::ptrdiff_t, 6> children{};
 };
 
-constexpr Neighbours neighbours(const ValueKind& kind, int phase) {
+/// Of edges along the axis `own`, of faces across it, or of centres.
+constexpr Neighbours neighbours(int phase, int own) {
   Neighbours result;
   const auto add = [&result](LatticePoint d) {
     result.samples[static_cast<std::size_t>(result.sample_count++)] = PaddedGrid<int>::offset(d);
   };
-  // The axis by which edges and faces differ from each other.
-  int own = 0;
-  while (phase != 0 && kind.odd[own] != (phase == 2 ? 1 : 0)) ++own;
   for (int code = 0; code < 27; ++code) {
     const LatticePoint d{code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
     const int length = d.i * d.i + d.j * d.j + d.k * d.k;
@@ -36,14 +36,14 @@ constexpr Neighbours neighbours(const ValueKind& kind, int phase) {
   return result;
 }
 
-template <int Phase, int Number>
-constexpr Neighbours kNeighbours = neighbours(value_kind(Phase, Number), Phase);
+template <int Phase, int Own>
+constexpr Neighbours kNeighbours = neighbours(Phase, Own);
 
 /// Of the points of a row, those of other kinds too, whose numbers mean nothing. Unrolled: nearly all time
 /// goes here.
-template <int Phase, int Number, class Word>
+template <int Phase, int Own, class Word>
 void known_least(const Word* samples, const Word* values, Word* row) {
-  constexpr Neighbours kNear = kNeighbours<Phase, Number>;
+  constexpr Neighbours kNear = kNeighbours<Phase, Own>;
   RowLanes<Word, PageGrid::kSide> least(samples);
   [&]<std::size_t... N>(std::index_sequence<N...>) { (least.take_least(samples + kNear.samples[N]), ...); }
   (std::make_index_sequence<kNear.sample_count>());
@@ -52,140 +52,106 @@ void known_least(const Word* samples, const Word* values, Word* row) {
   least.store(row);
 }
 
-/// About four times the logarithm of a number to the base 2.
-int quarter_octaves(std::uint32_t number) {
-  const auto bits = static_cast<int>(std::bit_width(number));
-  if (bits == 0) return 0;
-  return 4 * (bits - 1) + static_cast<int>((std::uint64_t{number} << 2 >> (bits - 1)) & 3);
-}
-
-/// How far the samples inside may be from the interpolation, which the error tells, as seen from the bound.
-int error_class(std::uint8_t error, std::uint32_t spread, std::uint32_t bound) {
-  if (error == 0) return 0;
-  const int ratio = error - 60 + quarter_octaves(spread) - quarter_octaves(bound);
-  return std::clamp((ratio + 20) / 4, 1, 7);
-}
-
 template <class Word>
-int bound_class(Word bound) {
-  constexpr int kStep = sizeof(Word) == 1 ? 1 : sizeof(Word) == 2 ? 2 : 4;
-  return (static_cast<int>(std::bit_width(bound)) + kStep - 1) / kStep;
-}
+constexpr int kMostBits = 8 * sizeof(Word);
 
-/// Makes both stages of a kind, row by row.
-template <class Word, int Phase, int Number>
-class RangeRows {
+/// How far the samples inside may be from the interpolation, as the error tells, seen from the bound: by
+/// error and by how many bits more the samples' spread has than the room to the bound has.
+template <class Word>
+constexpr auto kClassesOfErrors = [] {
+  constexpr int kMost = kMostBits<Word>;
+  std::array<std::array<std::uint8_t, 2 * kMost + 1>, 64> classes{};
+  for (int error = 1; error < 64; ++error) {
+    for (int bits = -kMost; bits <= kMost; ++bits)
+      classes[static_cast<std::size_t>(error)][static_cast<std::size_t>(bits + kMost)] =
+          static_cast<std::uint8_t>(std::clamp((error >> 2) - 10 + bits, 1, 7));
+  }
+  return classes;
+}();
+
+/// The contexts of points, kSure where nothing is open.
+template <class Word>
+class ContextsOf {
  public:
-  using Errors = typename Page<Word>::template Points<std::uint8_t>;
-  using Stages = RangeStages<Word>;
+  /// `base`: the first context.
+  ContextsOf(const ValueFields<Word>& fields, int base) : fields_(fields), base_(base) {}
 
-  RangeRows(const ValueFields<Word>& fields, const PageShape& shape, const Errors& errors, bool trust,
-            std::array<ValueStage<Word>, 2>& stages)
-      : fields_(fields), shape_(shape), errors_(errors), trust_(trust), stages_(stages) {}
-
-  void make() {
-    kKind.rows(shape_, [this](LatticePoint q) { make(q); });
+  /// Of both sides.
+  [[nodiscard]] std::array<int, 2> find(std::size_t place) const {
+    const Word low = fields_.known[0][place], high = static_cast<Word>(~fields_.known[1][place]);
+    const std::uint32_t spread = high > low ? static_cast<std::uint32_t>(high - low) : 0u;
+    const int spread_bits = static_cast<int>(std::bit_width(spread)) + kMostBits<Word>;
+    const auto& classes = kClassesOfErrors<Word>[fields_.errors[place]];
+    std::array<int, 2> contexts;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Word known = fields_.known[side][place];
+      const auto room = static_cast<std::uint32_t>(known - std::min(known, fields_.bounds[side][place]));
+      const int bits = static_cast<int>(std::bit_width(room));
+      constexpr int kStep = sizeof(Word);
+      const int context = base_ + (bits - 1) / kStep * RangeStages<Word>::kErrorClasses +
+                          classes[static_cast<std::size_t>(spread_bits - bits)];
+      contexts[side] = room == 0 ? int{RangeStages<Word>::kSure} : context;
+    }
+    return contexts;
   }
 
  private:
-  static constexpr ValueKind kKind = value_kind(Phase, Number);
-
-  void make(LatticePoint q) {
-    const std::size_t row = PageGrid::place({0, q.j, q.k}, 0);
-    for (std::size_t side = 0; side < 2; ++side) {
-      known_least<Phase, Number>(fields_.samples[side].at({0, q.j, q.k}),
-                                 fields_.values[side].at({0, q.j, q.k}), stages_[side].sure.data() + row);
-    }
-    const std::int32_t count = (shape_.count.i - q.i + 1) / 2;
-    std::int32_t begin = 0, end = 0;
-    if (Phase < 2 || shape_.level == 0) {
-      const auto sure = [&](std::int32_t n) {
-        return kKind.missing({q.i + 2 * n, q.j, q.k}, shape_, Phase) == 0;
-      };
-      begin = sure(0) ? 0 : 1;
-      end = sure(count - 1) ? count : count - 1;
-      // A neighbour along another axis is missing to all of them.
-      if (begin >= end || !sure(begin)) begin = end = 0;
-    }
-    if (begin < end) add_sure(q, begin, end);
-    if (begin > 0 || end < count) add_open(q, count, begin, end);
-  }
-
-  void add_sure(LatticePoint q, std::int32_t begin, std::int32_t end) {
-    const auto place =
-        static_cast<std::uint16_t>(PageGrid::place(q, 0) + 2 * static_cast<std::size_t>(begin));
-    for (std::size_t side = 0; side < 2; ++side) {
-      ValueStage<Word>& stage = stages_[side];
-      if (trust_) {
-        stage.segments[stage.segment_count++] = {place, static_cast<std::uint16_t>(end - begin),
-                                                 shape_.count.i == PageGrid::kSide};
-        continue;
-      }
-      for (std::int32_t n = 0; n < end - begin; ++n) {
-        const auto at = static_cast<std::uint16_t>(place + 2 * n);
-        put(side, at, Stages::kSure, stage.sure[at], stage.sure[at]);
-      }
-    }
-  }
-
-  /// All but those from begin to end.
-  void add_open(LatticePoint q, std::int32_t count, std::int32_t begin, std::int32_t end) {
-    const std::array<std::array<Word, 8>, 2> bounds{greatest_of_cubes(fields_.least[0], q),
-                                                    greatest_of_cubes(fields_.least[1], q)};
-    for (std::int32_t n = 0; n < count; ++n) {
-      if (n >= begin && n < end) continue;
-      const auto place = static_cast<std::uint16_t>(PageGrid::place(q, 0) + 2 * static_cast<std::size_t>(n));
-      const Word low = stages_[0].sure[place], high = static_cast<Word>(~stages_[1].sure[place]);
-      const std::uint32_t spread = high > low ? static_cast<std::uint32_t>(high - low) : 0;
-      for (std::size_t side = 0; side < 2; ++side) {
-        const Word known = stages_[side].sure[place];
-        const Word bound = std::min(bounds[side][static_cast<std::size_t>(n)], known);
-        put(side, place, context(errors_[place], spread, static_cast<Word>(known - bound)), known, bound);
-      }
-    }
-  }
-
-  [[nodiscard]] int context(std::uint8_t error, std::uint32_t spread, Word room) const {
-    const int group = Phase < 2 ? 2 : shape_.level == 0 ? 0 : 1;
-    const int bounds = bound_class(room);
-    const int errors = bounds == 0 ? 0 : error_class(error, spread, room);
-    return 1 + (group * Stages::kBoundClasses + bounds) * Stages::kErrorClasses + errors;
-  }
-
-  void put(std::size_t side, std::uint16_t place, int context, Word known, Word bound) {
-    ValueStage<Word>& stage = stages_[side];
-    stage.places[stage.size] = place;
-    stage.contexts[stage.size] =
-        static_cast<std::uint16_t>(side * Stages::kSideContexts + static_cast<std::size_t>(context));
-    stage.predicted[stage.size] = known;
-    stage.bound[stage.size++] = bound;
-  }
-
   const ValueFields<Word>& fields_;
-  const PageShape& shape_;
-  const Errors& errors_;
-  bool trust_;
-  std::array<ValueStage<Word>, 2>& stages_;
+  int base_;
 };
+
+/// Makes fields.known of the rows of a phase.
+template <int Phase, class Word>
+void find_known(ValueFields<Word>& fields, const PageShape& shape, bool take) {
+  for_each_row(shape, Phase, [&](LatticePoint first) {
+    const LatticePoint row{0, first.j, first.k};
+    // The axis by which edges and faces differ from each other.
+    constexpr std::int32_t kOwn = Phase == 2 ? 1 : 0;
+    const bool own_j = Phase != 0 && (first.j & 1) == kOwn, own_k = Phase != 0 && (first.k & 1) == kOwn;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Word *samples = fields.samples[side].at(row), *values = fields.values[side].at(row);
+      Word* known = fields.known[side].at(row);
+      if (own_j) {
+        known_least<Phase, 1>(samples, values, known);
+      } else if (own_k) {
+        known_least<Phase, 2>(samples, values, known);
+      } else {
+        known_least<Phase, 0>(samples, values, known);
+      }
+      if (take) copy_points(shape, first, fields.known[side], fields.values[side]);
+    }
+  });
+}
 
 }  // namespace
 
 template <class Word>
-void RangeStages<Word>::make(const ValueFields<Word>& fields, const PageShape& shape,
-                             const typename Page<Word>::template Points<std::uint8_t>& errors, int phase,
-                             bool trust, std::array<ValueStage<Word>, 2>& stages) {
-  for (auto& stage : stages) stage.clear();
-  if (phase == 0) {
-    RangeRows<Word, 0, 0>(fields, shape, errors, trust, stages).make();
-  } else if (phase == 1) {
-    RangeRows<Word, 1, 0>(fields, shape, errors, trust, stages).make();
-    RangeRows<Word, 1, 1>(fields, shape, errors, trust, stages).make();
-    RangeRows<Word, 1, 2>(fields, shape, errors, trust, stages).make();
-  } else {
-    RangeRows<Word, 2, 0>(fields, shape, errors, trust, stages).make();
-    RangeRows<Word, 2, 1>(fields, shape, errors, trust, stages).make();
-    RangeRows<Word, 2, 2>(fields, shape, errors, trust, stages).make();
-  }
+void RangeStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, int phase, bool trust,
+                             bool take, std::array<ValueStage, 2>& stages) {
+  with_wide_lanes([&](auto) {
+    if (phase == 0) find_known<0>(fields, shape, take);
+    if (phase == 1) find_known<1>(fields, shape, take);
+    if (phase == 2) find_known<2>(fields, shape, take);
+    const int group = phase < 2 ? 2 : shape.level == 0 ? 0 : 1;
+    const ContextsOf<Word> contexts(fields, 1 + group * kBoundClasses * kErrorClasses);
+    const bool are_known = phase < 2 || shape.level == 0;
+    with_points(shape, phase, PhasePoints::Of::kRanges, [&](const PhasePoints& points) {
+      const bool some = trust && are_known;
+      const auto list = some ? points.open() : points.all();
+      std::array<std::size_t, 2> sizes{};
+      for (std::size_t n = 0; n < list.size(); ++n) {
+        const bool is_sure = !some && are_known && points.sure()[n];
+        const auto of_sides = contexts.find(list[n]);
+        for (std::size_t side = 0; side < 2; ++side) {
+          const int context = is_sure ? int{kSure} : of_sides[side];
+          stages[side].places[sizes[side]] = list[n];
+          stages[side].contexts[sizes[side]] = static_cast<std::uint16_t>(context);
+          sizes[side] += context == kSure && trust ? 0 : 1;
+        }
+      }
+      for (std::size_t side = 0; side < 2; ++side) stages[side].size = sizes[side];
+    });
+  });
 }
 
 template class RangeStages<std::uint8_t>;

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "isosurface/compression/bit_stream.h"
+#include "isosurface/compression/row_lanes.h"
 #include "isosurface/compression/value_symbols.h"
 
 namespace adamas {
@@ -20,104 +21,133 @@ std::byte head(ErrorMode errors, RangeMode ranges) {
   return static_cast<std::byte>(static_cast<int>(errors) | static_cast<int>(ranges) << kRangeModeAt);
 }
 
-bool is_coded(RangeMode mode) { return mode == RangeMode::kCoded || mode == RangeMode::kCodedButSure; }
-
 /// The decoder's part of walk_values.
 template <class Word>
 class ValueReader {
  public:
-  using Codes = typename Page<Word>::template Points<std::uint8_t>;
-  using Words = typename Page<Word>::template Points<Word>;
-
   ValueReader(const ContextCoder& coder, std::span<const std::byte> symbols,
-              std::span<const std::byte> extras, ErrorMode error_mode, RangeMode range_mode)
-      : decoder_(coder, symbols), extras_(extras), error_mode_(error_mode), range_mode_(range_mode) {}
+              std::span<const std::byte> extras, const PageShape& shape, ErrorMode error_mode,
+              RangeMode range_mode, ValueFields<Word>& fields)
+      : shape_(shape),
+        error_mode_(error_mode),
+        range_mode_(range_mode),
+        fields_(fields),
+        decoder_(coder, symbols),
+        extras_(extras) {}
 
-  [[nodiscard]] bool needs_errors() const { return error_mode_ == ErrorMode::kCoded; }
+  static constexpr bool kFills = true;
+  [[nodiscard]] bool needs_errors() const { return is_coded(error_mode_); }
   [[nodiscard]] bool needs_ranges() const { return range_mode_ != RangeMode::kEmpty; }
 
-  void errors(const ValueStage<std::uint8_t>& stage, Codes& codes) {
-    decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
-    std::uint8_t all = 0;
-    ValueSummary<Word> summary = summary_;
-    for (std::size_t n = 0; n < stage.size; ++n) {
-      all |= symbols_[n];
-      const auto code = static_cast<std::uint8_t>((symbols_[n] + stage.predicted[n]) & 63);
-      codes[stage.places[n]] = code;
-      summary.add_error(code);
+  void errors(int /*phase*/, const ValueStage& stage) {
+    const std::size_t size = stage.size;
+    decoder_.decode({stage.contexts.data(), size}, {symbols_.data(), size});
+    unsigned all = 0, sure = 0;
+    for (std::size_t n = 0; n < size; ++n) all |= symbols_[n];
+    for (std::size_t n = 0; error_mode_ == ErrorMode::kCoded && n < size; ++n)
+      sure |= stage.contexts[n] == ErrorStages<Word>::kSure ? symbols_[n] : 0u;
+    const PaddedGrid<std::uint8_t>& predicted = fields_.predicted;
+    PaddedGrid<std::uint8_t>& errors = fields_.errors;
+    for (std::size_t n = 0; n < size; ++n) {
+      const std::size_t place = stage.places[n];
+      errors[place] = static_cast<std::uint8_t>((symbols_[n] + predicted[place]) & 63);
     }
-    summary_ = summary;
+    summary_.any_sure_error_other |= sure != 0;
     good_ = good_ && all < ValueContexts<Word>::kErrorSymbols;
   }
 
-  void range(const ValueStage<Word>& stage, std::size_t side, Words& words) {
-    copy_sure<Word>(
-        stage, [&words](std::size_t place) { return words.data() + place; }, seen_from(side, Word{0}));
-    summary_.add_sure(stage);
-    if (range_mode_ == RangeMode::kPredicted) {
-      for (std::size_t n = 0; n < stage.size; ++n) {
-        const Word value = stage.predicted[n];
-        summary_.add_range(value, value, false);
-        words[stage.places[n]] = seen_from(side, value);
+  void range(int /*phase*/, std::size_t side, const ValueStage& stage) {
+    if (range_mode_ == RangeMode::kPredicted) return;
+    const std::size_t size = stage.size;
+    decoder_.decode({stage.contexts.data(), size}, {symbols_.data(), size});
+    const PaddedGrid<Word>&known = fields_.known[side], &bounds = fields_.bounds[side];
+    PaddedGrid<Word>& values = fields_.values[side];
+    BitReader extras = extras_;
+    unsigned all = 0, sure = 0;
+    bool good = true;
+    for (std::size_t n = 0; n < size; ++n) {
+      const std::uint8_t symbol = symbols_[n];
+      if (symbol == RangeToken<Word>::kPredicted) continue;
+      all |= symbol;
+      sure |= stage.contexts[n] == kSureRange ? symbol : 0u;
+      const std::size_t place = stage.places[n];
+      const Word predicted = known[place], bound = std::min(bounds[place], predicted);
+      if (symbol == RangeToken<Word>::kBound) {
+        good = good && bound != predicted;
+        values[place] = bound;
+      } else {
+        values[place] = word(symbol, predicted, bound, extras, good);
       }
-      return;
     }
-    decoder_.decode({stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
-    ValueSummary<Word> summary = summary_;
-    for (std::size_t n = 0; n < stage.size; ++n) {
-      const Word predicted = stage.predicted[n];
-      const Word value = word(symbols_[n], predicted, stage.bound[n]);
-      summary.add_range(value, predicted, ValueContexts<Word>::is_sure(stage.contexts[n]));
-      words[stage.places[n]] = seen_from(side, value);
-    }
-    summary_ = summary;
+    extras_ = extras;
+    good_ = good_ && good;
+    static_assert(RangeToken<Word>::kPredicted == 0);
+    summary_.any_other |= all != 0;
+    summary_.any_sure_range_other |= sure != 0;
   }
 
   /// Whether the page is one that is coded so.
-  [[nodiscard]] bool finish(bool coded) const {
-    if (coded && (!decoder_.finish() || !extras_.at_end())) return false;
-    const bool right_errors = !needs_errors() || summary_.error_mode() == error_mode_;
-    return good_ && right_errors && summary_.range_mode() == range_mode_;
+  [[nodiscard]] bool finish() {
+    const bool coded = is_coded(error_mode_) || is_coded(range_mode_);
+    if (!good_ || (coded && (!decoder_.finish() || !extras_.at_end()))) return false;
+    summary_.add_errors(shape_, fields_);
+    if (needs_ranges()) summary_.add_ranges(shape_, fields_);
+    return summary_.error_mode() == error_mode_ && summary_.range_mode() == range_mode_;
   }
 
  private:
-  Word word(std::uint8_t symbol, Word predicted, Word bound) {
+  static constexpr std::uint16_t kSureRange = ValueContexts<Word>::kRanges + RangeStages<Word>::kSure;
+
+  static Word word(std::uint8_t symbol, Word predicted, Word bound, BitReader& extras, bool& good) {
     using Token = RangeToken<Word>;
-    if (symbol == Token::kPredicted) return predicted;
-    Word value = bound;
-    std::uint32_t extra = 0;
     if (symbol > Token::kBehind) {
-      symbol = Token::kBound;
-      good_ = false;
+      good = false;
+      return predicted;
     }
-    if (symbol != Token::kBound) {
-      extras_.refill();
-      extra = static_cast<std::uint32_t>(extras_.take(Token::extra_bits(symbol)));
-      value = Token{symbol, extra}.value(predicted);
-    }
-    const Token token = Token::of(value, predicted, bound);
-    good_ = good_ && token.symbol == symbol && token.extra == extra;
+    extras.refill();
+    const auto extra = static_cast<std::uint32_t>(extras.take(Token::extra_bits(symbol)));
+    const Word value = Token{symbol, extra}.value(predicted);
+    // Else another token would stand for it.
+    good = good && value != bound && (value > predicted) == (symbol == Token::kBehind);
     return value;
   }
 
-  ContextDecoder decoder_;
-  BitReader extras_;
+  PageShape shape_;
   ErrorMode error_mode_;
   RangeMode range_mode_;
-  ValueSummary<Word> summary_;
+  ValueFields<Word>& fields_;
+  ContextDecoder decoder_;
+  BitReader extras_;
+  ValueSummary summary_;
   bool good_ = true;
-  std::array<std::uint8_t, ValueStage<Word>::kMost> symbols_;
+  std::array<std::uint8_t, ValueStage::kMost> symbols_;
 };
+
+/// The page's values from the fields.
+template <class Word>
+void store_values(const ValueFields<Word>& fields, const PageShape& shape, Page<Word>& page) {
+  for (std::int32_t k = 0; k < shape.count.k; ++k) {
+    for (std::int32_t j = 0; j < shape.count.j; ++j) {
+      const LatticePoint row{0, j, k};
+      const std::size_t to = PageGrid::place(row, 0);
+      std::copy_n(fields.values[0].at(row), PageGrid::kSide, page.low.data() + to);
+      std::copy_n(fields.errors.at(row), PageGrid::kSide, page.errors.data() + to);
+      const Word* high = fields.values[1].at(row);
+      for (std::size_t i = 0; i < PageGrid::kSide; ++i) page.high[to + i] = static_cast<Word>(~high[i]);
+    }
+  }
+}
 
 }  // namespace
 
 template <class Word>
-ValueSurvey<Word>::ValueSurvey() : counts_(ValueContexts<Word>::kCount, ValueContexts<Word>::kSymbols) {}
+ValueSurvey<Word>::ValueSurvey(const Vec3& spacing)
+    : geometry_(spacing), counts_(ValueContexts<Word>::kCount, ValueContexts<Word>::kSymbols) {}
 
 template <class Word>
 void ValueSurvey<Word>::add(const PageShape& shape, const Surroundings<Word>& around,
                             const Page<Word>& page) {
-  const ValueSymbols<Word> symbols(shape, around, page);
+  const ValueSymbols<Word> symbols(geometry_, shape, around, page);
   for (const auto& stage : symbols.stages()) {
     for (std::size_t n = 0; n < stage.symbols.size(); ++n) counts_.add(stage.contexts[n], stage.symbols[n]);
   }
@@ -133,23 +163,24 @@ std::vector<std::byte> ValueCodec<Word>::tables() const {
 }
 
 template <class Word>
-ValueCodec<Word> ValueCodec<Word>::parse(std::span<const std::byte> tables, std::string_view name) {
+ValueCodec<Word> ValueCodec<Word>::parse(std::span<const std::byte> tables, const Vec3& spacing,
+                                         std::string_view name) {
   BitReader in(tables);
   ContextCoder coder =
       ContextCoder::read(in, ValueContexts<Word>::kCount, ValueContexts<Word>::kSymbols, name);
   if (!in.at_end()) fail("{}: expected the end after the tables of values, found more data", name);
-  return ValueCodec(std::move(coder));
+  return ValueCodec(ErrorGeometry(spacing), std::move(coder));
 }
 
 template <class Word>
 void ValueCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& around,
                               const Page<Word>& page, std::vector<std::byte>& out) const {
-  const ValueSymbols<Word> symbols(shape, around, page);
+  const ValueSymbols<Word> symbols(geometry_, shape, around, page);
   const ErrorMode errors = symbols.summary().error_mode();
   const RangeMode ranges = symbols.summary().range_mode();
   out.push_back(head(errors, ranges));
   if (errors == ErrorMode::kEqual) out.push_back(static_cast<std::byte>(symbols.summary().any_error));
-  if (errors != ErrorMode::kCoded && !is_coded(ranges)) return;
+  if (!is_coded(errors) && !is_coded(ranges)) return;
   ContextEncoder encoder(coder_);
   for (const auto& stage : symbols.stages()) encoder.put(stage.contexts, stage.symbols);
   const std::size_t at = out.size();
@@ -180,7 +211,7 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
     if (error == 0 || error >= ValueContexts<Word>::kErrorSymbols || !any_point) return false;
     bytes = bytes.subspan(1);
   }
-  const bool coded = errors == ErrorMode::kCoded || is_coded(ranges);
+  const bool coded = is_coded(errors) || is_coded(ranges);
   std::size_t length = 0;
   if (coded) {
     if (bytes.size() < kLengthBytes) return false;
@@ -190,20 +221,18 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
   } else if (!bytes.empty()) {
     return false;
   }
-  ValueReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), errors, ranges);
-  if (errors != ErrorMode::kCoded) page.errors.fill(error);
-  if (ranges == RangeMode::kEmpty) {
-    page.low.fill(ValueFields<Word>::kUnknown);
-    page.high.fill(0);
-  }
+  ValueFields<Word> fields;
+  fields.load(shape, around, page);
+  if (!is_coded(errors)) fields.fill_errors(shape, error);
+  ValueReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), shape, errors, ranges, fields);
   if (shape.complete) {
-    walk_complete_values<Word>(shape, page, reader);
+    walk_complete_values<Word>(fields, shape, reader);
   } else {
-    fill_coarser_values(shape, around, page);
-    const bool trust = ranges == RangeMode::kCodedButSure || ranges == RangeMode::kPredicted;
-    walk_values<Word>(shape, around, page, trust, reader);
+    const ValueTrust trust{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
+    walk_values<Word>(fields, geometry_, shape, trust, reader);
   }
-  return reader.finish(coded);
+  store_values(fields, shape, page);
+  return reader.finish();
 }
 
 template class ValueSurvey<std::uint8_t>;

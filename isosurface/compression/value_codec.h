@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/vec3.h"
 #include "isosurface/compression/context_coder.h"
+#include "isosurface/compression/known_errors.h"
 #include "isosurface/storage/page.h"
 
 namespace adamas {
@@ -16,16 +18,19 @@ namespace adamas {
 template <class Word>
 class ValueSurvey {
  public:
-  ValueSurvey();
+  /// `spacing`: of the volume's samples.
+  explicit ValueSurvey(const Vec3& spacing);
 
   /// `around` is not read where the page is complete; of `page` only places that have points are read.
   void add(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
   /// Adds what another survey has counted. The order of pages and of merging does not matter.
   void merge(const ValueSurvey& other) { counts_.merge(other.counts_); }
 
+  [[nodiscard]] const ErrorGeometry& geometry() const { return geometry_; }
   [[nodiscard]] const ContextCounts& counts() const { return counts_; }
 
  private:
+  ErrorGeometry geometry_;
   ContextCounts counts_;
 };
 
@@ -35,12 +40,15 @@ class ValueSurvey {
 template <class Word>
 class ValueCodec {
  public:
-  explicit ValueCodec(const ValueSurvey<Word>& survey) : coder_(survey.counts()) {}
+  explicit ValueCodec(const ValueSurvey<Word>& survey)
+      : geometry_(survey.geometry()), coder_(survey.counts()) {}
 
   /// From which `parse` makes the codec again; the same bytes for equal surveys.
   [[nodiscard]] std::vector<std::byte> tables() const;
   /// Throws Error, which begins with `name`, unless some codec's `tables` could have given just these bytes.
-  [[nodiscard]] static ValueCodec parse(std::span<const std::byte> tables, std::string_view name);
+  /// `spacing`: that of the survey.
+  [[nodiscard]] static ValueCodec parse(std::span<const std::byte> tables, const Vec3& spacing,
+                                        std::string_view name);
 
   /// Appends the values of the page's own points, in whole bytes. `around` is not read where the page is
   /// complete; of `page` only places that have points are read.
@@ -53,8 +61,10 @@ class ValueCodec {
                             const Surroundings<Word>& around, Page<Word>& page) const;
 
  private:
-  explicit ValueCodec(ContextCoder coder) : coder_(std::move(coder)) {}
+  ValueCodec(const ErrorGeometry& geometry, ContextCoder coder)
+      : geometry_(geometry), coder_(std::move(coder)) {}
 
+  ErrorGeometry geometry_;
   ContextCoder coder_;
 };
 

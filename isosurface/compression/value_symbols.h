@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "isosurface/compression/value_walk.h"
@@ -10,54 +11,45 @@ namespace adamas {
 
 /// How a page's errors are coded, and its ranges. The first that serves is taken.
 enum class ErrorMode : std::uint8_t {
-  kZero,   ///< all are 0
-  kEqual,  ///< all are the same
+  kZero,          ///< all are 0
+  kEqual,         ///< all are the same
+  kCodedButSure,  ///< those that were sure are as predicted, the others are coded
   kCoded
 };
 enum class RangeMode : std::uint8_t {
   kEmpty,         ///< all have nothing in them
   kPredicted,     ///< all as predicted
-  kCodedButSure,  ///< those that were sure are as predicted, the others are coded
+  kCodedButSure,  ///< as of errors
   kCoded
 };
 
+constexpr bool is_coded(ErrorMode mode) { return mode >= ErrorMode::kCodedButSure; }
+constexpr bool is_coded(RangeMode mode) { return mode >= RangeMode::kCodedButSure; }
+
 /// What is to be found of a page's errors and ranges to know their modes.
-template <class Word>
 struct ValueSummary {
-  std::uint8_t any_error = 0;    ///< the bits that any of the codes has
-  std::uint8_t all_errors = 63;  ///< the bits that all have
-  bool any_other = false;        ///< a word of a range that is not predicted
-  bool any_sure_other = false;   ///< among those of which all is known
-  bool any_word = false;         ///< a range that is not empty
+  std::uint8_t any_error = 0;                                       ///< the bits that any of the codes has
+  std::uint8_t all_errors = 63;                                     ///< the bits that all have
+  bool any_word = false;                                            ///< a range that is not empty
+  bool any_other = false;                                           ///< a range that is not as predicted
+  bool any_sure_error_other = false, any_sure_range_other = false;  ///< among those that are sure
 
-  void add_error(std::uint8_t code) {
-    any_error |= code;
-    all_errors &= code;
-  }
-  void add_range(Word value, Word predicted, bool sure) {
-    any_other |= value != predicted;
-    any_sure_other |= sure && value != predicted;
-    any_word |= value != ValueFields<Word>::kUnknown;
-  }
-
-  /// Points whose ranges are as predicted.
-  void add_sure(const ValueStage<Word>& stage) {
-    for (std::size_t n = 0; n < stage.segment_count && !any_word; ++n) {
-      const auto& [place, count, whole_row] = stage.segments[n];
-      for (std::size_t m = place; m < place + 2u * count; m += 2) {
-        any_word |= stage.sure[m] != ValueFields<Word>::kUnknown;
-      }
-    }
-  }
+  /// Takes in the page's own errors.
+  template <class Word>
+  void add_errors(const PageShape& shape, const ValueFields<Word>& fields);
+  /// Takes in whether its ranges are empty.
+  template <class Word>
+  void add_ranges(const PageShape& shape, const ValueFields<Word>& fields);
 
   [[nodiscard]] ErrorMode error_mode() const {
     if (any_error == 0) return ErrorMode::kZero;
-    return any_error == all_errors ? ErrorMode::kEqual : ErrorMode::kCoded;
+    if (any_error == all_errors) return ErrorMode::kEqual;
+    return any_sure_error_other ? ErrorMode::kCoded : ErrorMode::kCodedButSure;
   }
   [[nodiscard]] RangeMode range_mode() const {
     if (!any_word) return RangeMode::kEmpty;
     if (!any_other) return RangeMode::kPredicted;
-    return any_sure_other ? RangeMode::kCoded : RangeMode::kCodedButSure;
+    return any_sure_range_other ? RangeMode::kCoded : RangeMode::kCodedButSure;
   }
 };
 
@@ -65,7 +57,8 @@ struct ValueSummary {
 template <class Word>
 class ValueSymbols {
  public:
-  ValueSymbols(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
+  ValueSymbols(const ErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
+               const Page<Word>& page);
 
   struct Stage {
     std::vector<std::uint16_t> contexts;
@@ -76,25 +69,30 @@ class ValueSymbols {
     int count;
   };
 
-  [[nodiscard]] const ValueSummary<Word>& summary() const { return summary_; }
+  [[nodiscard]] const ValueSummary& summary() const { return summary_; }
   /// Those to be coded, by stages.
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
   /// The bits that symbols leave open, in their order.
   [[nodiscard]] const std::vector<Extra>& extras() const { return extras_; }
 
   // For walk_values.
+  static constexpr bool kFills = false;
   [[nodiscard]] static bool needs_errors() { return true; }
   [[nodiscard]] static bool needs_ranges() { return true; }
-  void errors(const ValueStage<std::uint8_t>& stage,
-              const typename Page<Word>::template Points<std::uint8_t>& codes);
-  void range(const ValueStage<Word>& stage, std::size_t side,
-             const typename Page<Word>::template Points<Word>& words);
+  void errors(int phase, const ValueStage& stage);
+  void range(int phase, std::size_t side, const ValueStage& stage);
 
  private:
-  void collect(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page, bool trust);
+  void collect(const ErrorGeometry& geometry, ValueTrust trust);
   void leave_out_what_modes_tell();
+  /// Whether any point of a phase that is not in the stage is not as predicted.
+  template <class T>
+  [[nodiscard]] bool any_other(int phase, const ValueStage& stage, const PaddedGrid<T>& found,
+                               const PaddedGrid<T>& predicted) const;
 
-  ValueSummary<Word> summary_;
+  PageShape shape_;
+  std::unique_ptr<ValueFields<Word>> fields_;
+  ValueSummary summary_;
   std::vector<Stage> stages_;
   std::vector<std::size_t> range_stages_;  ///< which of them
   std::vector<Extra> extras_;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "isosurface/compression/row_lanes.h"
 #include "isosurface/preprocessing/preprocess.h"
 
 namespace adamas {
@@ -14,6 +16,21 @@ namespace {
 Domain domain_of(const VolumeGrid& volume, int depth) {
   const double side = static_cast<double>(std::int32_t{1} << depth);
   return {Box3{volume.origin, volume.origin + side * volume.spacing}, {1, 1, 1}};
+}
+
+/// Makes a page's marks the codes of those with a range that is not all on one side of `least`.
+template <class Word>
+void mark_crossed(const HeldPage<Word>& page, Word least) {
+  using Lanes = RowLanes<Word, PageGrid::kSide>;
+  using Codes [[gnu::vector_size(Lanes::kStep)]] = std::uint8_t;
+  for (std::size_t n = 0; n < PageGrid::kPoints; n += Lanes::kStep) {
+    const auto crossed =
+        (Lanes::load(page.low.data() + n) < least) & (Lanes::load(page.high.data() + n) >= least);
+    Codes codes;
+    std::memcpy(&codes, page.errors.data() + n, sizeof codes);
+    codes &= __builtin_convertvector(crossed, Codes);
+    std::memcpy(page.marks.data() + n, &codes, sizeof codes);
+  }
 }
 
 }  // namespace
@@ -123,9 +140,7 @@ void StoredDiamonds<Sample>::mark(const PageId& id, const HeldPage<Word>& page) 
     page.marks.fill(0);
     return;
   }
-  const auto least = static_cast<Word>(least_above_);
-  for (std::size_t n = 0; n < PageGrid::kPoints; ++n)
-    page.marks[n] = page.low[n] < least && least <= page.high[n] ? page.errors[n] : std::uint8_t{0};
+  mark_crossed(page, static_cast<Word>(least_above_));
 }
 
 template <class Sample>

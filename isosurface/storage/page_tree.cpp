@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/base/assert.h"
+#include "isosurface/compression/row_lanes.h"
 
 namespace adamas {
 
@@ -14,6 +15,12 @@ struct AxisPlaces {
   std::array<std::int32_t, 2> blocks{};
   int block_count = 0;
   std::array<std::uint8_t, Surroundings<std::uint8_t>::kSide> which{}, place{};
+  /// Those in each block: the first, how many, and whether their places follow each other.
+  struct Run {
+    std::size_t first = 0, count = 0;
+    bool is_run = true;
+  };
+  std::array<Run, 2> runs{};
 
   AxisPlaces(std::int32_t block, std::int32_t extent) {
     for (std::int32_t c = 0; c < Surroundings<std::uint8_t>::kSide; ++c) {
@@ -23,9 +30,37 @@ struct AxisPlaces {
         blocks[static_cast<std::size_t>(block_count++)] = parent;
       which[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(block_count - 1);
       place[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(at % PageGrid::kSide);
+      Run& run = runs[static_cast<std::size_t>(block_count - 1)];
+      if (run.count == 0) run.first = static_cast<std::size_t>(c);
+      run.is_run = run.is_run && place[static_cast<std::size_t>(c)] == place[run.first] + run.count;
+      ++run.count;
     }
   }
 };
+
+/// Copies all that is known of N points in a row.
+template <std::size_t N, class Word>
+void copy_points(const Page<Word>& page, std::size_t at, Surroundings<Word>& around, std::size_t to) {
+  std::copy_n(page.samples.data() + at, N, around.samples.data() + to);
+  std::copy_n(page.low.data() + at, N, around.low.data() + to);
+  std::copy_n(page.high.data() + at, N, around.high.data() + to);
+  std::copy_n(page.errors.data() + at, N, around.errors.data() + to);
+}
+
+/// Copies what a row has of one of the blocks.
+template <class Word>
+void copy_row(const AxisPlaces& places, int block, const Page<Word>& page, std::size_t row,
+              Surroundings<Word>& around, std::size_t to) {
+  // Away from the data's ends the numbers of points are these, and they lie side by side.
+  const auto [first, count, is_run] = places.runs[static_cast<std::size_t>(block)];
+  const std::size_t at = row + places.place[first];
+  if (is_run && count == 1) return copy_points<1>(page, at, around, to + first);
+  if (is_run && count == 2) return copy_points<2>(page, at, around, to + first);
+  if (is_run && count == 9) return copy_points<9>(page, at, around, to + first);
+  if (is_run && count == 10) return copy_points<10>(page, at, around, to + first);
+  for (std::size_t c = first; c < first + count; ++c)
+    copy_points<1>(page, row + places.place[c], around, to + c);
+}
 
 }  // namespace
 
@@ -97,15 +132,7 @@ bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around) 
             if (y.which[j] != by) continue;
             const std::size_t row =
                 PageGrid::kSide * (y.place[j] + std::size_t{PageGrid::kSide} * z.place[k]);
-            const std::size_t to = kSide * (j + kSide * k);
-            for (std::size_t i = 0; i < kSide; ++i) {
-              if (x.which[i] != bx) continue;
-              const std::size_t at = row + x.place[i];
-              around.samples[to + i] = from->samples[at];
-              around.low[to + i] = from->low[at];
-              around.high[to + i] = from->high[at];
-              around.errors[to + i] = from->errors[at];
-            }
+            copy_row(x, bx, *from, row, around, kSide * (j + kSide * k));
           }
         }
       }
@@ -117,16 +144,18 @@ bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around) 
 template <class Word>
 void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Word>& around,
                                   Page<Word>& page) {
-  LatticePoint q{};
-  for (q.k = 0; q.k < shape.count.k; q.k += 2) {
-    for (q.j = 0; q.j < shape.count.j; q.j += 2) {
-      for (q.i = 0; q.i < shape.count.i; q.i += 2) {
-        const std::size_t to = PageGrid::place(q, 0), from = surrounding_place(q);
-        page.samples[to] = around.samples[from];
-        page.low[to] = around.low[from];
-        page.high[to] = around.high[from];
-        page.errors[to] = around.errors[from];
-      }
+  for (std::int32_t k = 0; k < shape.count.k; k += 2) {
+    for (std::int32_t j = 0; j < shape.count.j; j += 2) {
+      const std::size_t to = PageGrid::place({0, j, k}, 0), from = surrounding_place({0, j, k});
+      const auto fill = [=](const auto& coarser, auto& numbers) {
+        using Lanes = EightLanes<typename std::remove_reference_t<decltype(numbers)>::value_type>;
+        const Lanes lanes = Lanes::load(coarser.data() + from);
+        Lanes::store_by_turns(lanes, lanes, numbers.data() + to);
+      };
+      fill(around.samples, page.samples);
+      fill(around.low, page.low);
+      fill(around.high, page.high);
+      fill(around.errors, page.errors);
     }
   }
 }

@@ -67,7 +67,8 @@ struct Surveys {
   ValueSurvey<Word> values;
   std::optional<GradientSurvey> gradients;
 
-  explicit Surveys(const StoreOptions& options) : samples(sample_survey<Word>(options.coding)) {
+  Surveys(const StoreOptions& options, const Vec3& spacing)
+      : samples(sample_survey<Word>(options.coding)), values(spacing) {
     if (options.gradients) gradients.emplace(options.coding);
   }
 
@@ -195,13 +196,13 @@ class StoreBuilder {
       constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15ull;
       return numbers.size() <= kSurveyed || grid_.page(number).level > 0 || number * kScatter >> 61 == 0;
     });
-    Surveys<Word> surveys(options_);
+    Surveys<Word> surveys(options_, volume_.spacing);
     for_each_batch(some, "surveying", [&](std::span<const Job<Word>> jobs) {
       constexpr std::size_t kPart = kBatch / 4;
       std::vector<std::unique_ptr<Surveys<Word>>> parts((jobs.size() + kPart - 1) / kPart);
       parallel_chunks(jobs.size(), kPart, [&](std::size_t begin, std::size_t end) {
         auto& part = parts[begin / kPart];
-        part = std::make_unique<Surveys<Word>>(options_);
+        part = std::make_unique<Surveys<Word>>(options_, volume_.spacing);
         for (const Job<Word>& job : jobs.subspan(begin, end - begin)) part->add(job);
       });
       for (const auto& part : parts) surveys.merge(*part);

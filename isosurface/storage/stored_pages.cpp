@@ -30,7 +30,7 @@ StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t 
       step_(step),
       parts_(parts),
       samples_(parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())),
-      values_(ValueCodec<Word>::parse(file.header().value_tables, file.name())),
+      values_(ValueCodec<Word>::parse(file.header().value_tables, file.header().grid.spacing, file.name())),
       tree_(file.grid(), memory / sizeof(Page<Word>),
             [this](const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
                    Page<Word>& page) { return load(id, shape, around, page); }) {}

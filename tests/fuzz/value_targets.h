@@ -34,7 +34,7 @@ class SeededWords {
 template <class Word>
 void value_page(std::span<const std::byte> tables, std::span<const std::byte> bytes, const PageShape& shape,
                 std::uint8_t seed) {
-  const auto codec = ValueCodec<Word>::parse(tables, "fuzz");
+  const auto codec = ValueCodec<Word>::parse(tables, {1, 1, 1}, "fuzz");
   require(std::ranges::equal(codec.tables(), tables), "other tables");
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();

@@ -16,6 +16,8 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
+constexpr Vec3 kEven{1, 1, 1};
+
 template <class Word>
 struct Case {
   PageShape shape{};
@@ -26,8 +28,8 @@ template <class Word>
 using Cases = std::vector<Case<Word>>;
 
 template <class Word>
-ValueCodec<Word> codec_of(const Cases<Word>& cases) {
-  ValueSurvey<Word> survey;
+ValueCodec<Word> codec_of(const Cases<Word>& cases, const Vec3& spacing = kEven) {
+  ValueSurvey<Word> survey(spacing);
   for (const auto& c : cases) survey.add(c.shape, c.around, c.page);
   return ValueCodec<Word>(survey);
 }
@@ -70,9 +72,9 @@ void expect_there_and_back(const ValueCodec<Word>& codec, const Case<Word>& c) {
 
 /// With the codec of all, and with that which is made from its tables. Returns the bytes of all pages.
 template <class Word>
-std::size_t expect_all_there_and_back(const Cases<Word>& cases) {
-  const ValueCodec<Word> codec = codec_of(cases);
-  const ValueCodec<Word> parsed = ValueCodec<Word>::parse(codec.tables(), "here");
+std::size_t expect_all_there_and_back(const Cases<Word>& cases, const Vec3& spacing = kEven) {
+  const ValueCodec<Word> codec = codec_of(cases, spacing);
+  const ValueCodec<Word> parsed = ValueCodec<Word>::parse(codec.tables(), spacing, "here");
   EXPECT_EQ(parsed.tables(), codec.tables());
   std::size_t size = 0;
   for (const auto& c : cases) {
@@ -145,7 +147,7 @@ void expect_less_than(double bits, double scale, Vec3 spacing = {1, 1, 1}, int d
   const test::PreparedVolume<Sample> reference(kDimensions, waves<Sample>(kDimensions, scale), spacing,
                                                depth);
   const auto cases = cases_of(reference);
-  const std::size_t size = expect_all_there_and_back(cases);
+  const std::size_t size = expect_all_there_and_back(cases, spacing);
   const auto points = static_cast<double>(kDimensions[0] * kDimensions[1] * kDimensions[2]);
   EXPECT_LT(8 * static_cast<double>(size) / points, bits);
 }
@@ -252,13 +254,13 @@ TYPED_TEST(ValueCodecOf, CodesPagesThatAreAllAlike) {
 TEST(ValueCodec, IsTheSameForSurveysInAnyOrder) {
   const auto cases =
       cases_of(test::PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
-  ValueSurvey<std::uint8_t> forth, back, parts;
+  ValueSurvey<std::uint8_t> forth(kEven), back(kEven), parts(kEven);
   for (std::size_t n = 0; n < cases.size(); ++n) {
     const auto& a = cases[n];
     const auto& b = cases[cases.size() - 1 - n];
     forth.add(a.shape, a.around, a.page);
     back.add(b.shape, b.around, b.page);
-    ValueSurvey<std::uint8_t> one;
+    ValueSurvey<std::uint8_t> one(kEven);
     one.add(a.shape, a.around, a.page);
     parts.merge(one);
   }
@@ -301,18 +303,19 @@ TEST(ValueCodec, AnswersToTablesThatAreCutOrCorrupt) {
   const auto codec = codec_of(cases);
   const Bytes tables = codec.tables();
   for (std::size_t length = 0; length < tables.size(); ++length) {
-    EXPECT_THROW(static_cast<void>(ValueCodec<std::uint8_t>::parse(std::span(tables).first(length), "here")),
-                 Error);
+    EXPECT_THROW(
+        static_cast<void>(ValueCodec<std::uint8_t>::parse(std::span(tables).first(length), kEven, "here")),
+        Error);
   }
   Bytes longer = tables;
   longer.push_back(std::byte{0});
-  EXPECT_THROW(static_cast<void>(ValueCodec<std::uint8_t>::parse(longer, "here")), Error);
+  EXPECT_THROW(static_cast<void>(ValueCodec<std::uint8_t>::parse(longer, kEven, "here")), Error);
   std::size_t good = 0;
   for (std::size_t bit = 0; bit < 8 * tables.size(); ++bit) {
     Bytes corrupt = tables;
     corrupt[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
     try {
-      const auto other = ValueCodec<std::uint8_t>::parse(corrupt, "here");
+      const auto other = ValueCodec<std::uint8_t>::parse(corrupt, kEven, "here");
       ASSERT_EQ(other.tables(), corrupt);
       if (++good % 50 == 0) expect_there_and_back(other, cases.back());
     } catch (const Error& error) {
