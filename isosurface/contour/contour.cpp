@@ -77,6 +77,13 @@ void ContourBuilder::add(const CrossedTetrahedron& t) {
   }
 }
 
+void ContourBuilder::expect(std::size_t triangles) {
+  // Closed surfaces have half as many points.
+  contour_.triangles.reserve(triangles);
+  contour_.points.reserve(triangles / 2);
+  contour_.edge_points.reserve(triangles / 2);
+}
+
 Contour ContourBuilder::finish() {
   if (options_.last_sample)
     clip_contour(contour_, {domain_.box().min, domain_.position(*options_.last_sample)});

@@ -78,6 +78,8 @@ class ContourBuilder {
   std::uint32_t edge_point(LatticePoint a, LatticePoint b, double value_a, double value_b);
   /// By the numbers of its points.
   void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }
+  /// Makes room for about so many triangles.
+  void expect(std::size_t triangles);
   /// The contour, clipped; the builder is not to be used then.
   [[nodiscard]] Contour finish();
 

@@ -64,7 +64,8 @@ void PageContour<Sample>::add_diamond(const DiamondStencil& stencil, LatticePoin
   const Members above = page_.above(stencil, q);
   const unsigned slots = page_.slots(stencil, q);
   ++split_diamonds_;
-  tetrahedra_ += static_cast<std::uint64_t>(std::popcount(slots));
+  tetrahedra_ +=
+      page_.is_inside() ? stencil.tetrahedron_count : static_cast<std::size_t>(std::popcount(slots));
   if (!limits_.lost.empty()) note_lost_children(stencil, q);
   // Children of phase 2 are points of the next finer level.
   const bool finer = stencil.phase == 2;

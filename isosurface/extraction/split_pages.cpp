@@ -66,8 +66,14 @@ std::array<unsigned, 9> pages_of_children(const PageMask& split) {
 }  // namespace
 
 template <class Sample>
-bool SplitPages<Sample>::any() const {
-  return std::any_of(levels_.begin(), levels_.end(), [](const Level& level) { return !level.masks.empty(); });
+std::size_t SplitPages<Sample>::count() const {
+  std::size_t sum = 0;
+  for (const Level& level : levels_) {
+    for (const PageMask& mask : level.masks) {
+      for (const std::uint16_t row : mask.rows) sum += static_cast<std::size_t>(std::popcount(row));
+    }
+  }
+  return sum;
 }
 
 template <class Sample>

@@ -82,8 +82,8 @@ class SplitPages {
   [[nodiscard]] const PageMask& mask(int level, const PageOfLevel& page) const {
     return levels_[static_cast<std::size_t>(level)].masks[page.mask];
   }
-  /// Whether any diamond is split.
-  [[nodiscard]] bool any() const;
+  /// How many diamonds are split.
+  [[nodiscard]] std::size_t count() const;
   /// Calls visit(level, page, part) for each page that has split diamonds, from the coarsest level on, in
   /// z-order; part: of the way to the end.
   template <class Visit>

@@ -88,7 +88,7 @@ ExtractedSurface contour_of_subtrees(StoredDiamonds<Sample>& diamonds, SplitPage
                                      const SurfaceRequest& request, int bisections, Progress& progress) {
   SubtreeMesh<Sample> subtrees(diamonds, pages, bisections);
   ExtractedSurface surface;
-  if (!pages.any()) {
+  if (pages.count() == 0) {
     constexpr std::int32_t kMiddle = std::int32_t{1} << (kRootBits - 1);
     subtrees.add_root(Diamond({kMiddle, kMiddle, kMiddle}));
   }

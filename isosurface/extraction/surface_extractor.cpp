@@ -36,7 +36,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Pro
   if (subtree_bisections_ > 0) {
     surface = contour_of_subtrees(diamonds_, pages_, request_, subtree_bisections_, progress);
   } else {
-    surface = pages_.any() ? contour_of_mesh(progress) : contour_of_root();
+    surface = pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   }
   if (request_.region) clip_contour(surface.contour, *request_.region);
   return surface;
@@ -63,6 +63,8 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
   ContourBuilder builder(domain(), request_.isovalue, options());
+  // A little more than surfaces have for each split diamond.
+  builder.expect(pages_.count() * 3 / 2);
   PageContour<Sample> contour(diamonds_, pages_, limits_, builder);
   pages_.for_each_page([&](int level, const auto& page, double part) {
     progress.step("extracting", part);

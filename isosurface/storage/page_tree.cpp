@@ -84,7 +84,7 @@ const HeldPage<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
       --predictors_;
     }
     slot.used = true;
-    return slot.page.get();
+    return slot.page;
   }
   Surroundings<Word> around;
   if (!surroundings(id, around)) return nullptr;
@@ -109,7 +109,7 @@ const HeldPage<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
   slot.wanted = wanted;
   slot.page->marked = 0;
   slot_of(id) = fresh;
-  return slot.page.get();
+  return slot.page;
 }
 
 template <class Word>
@@ -168,7 +168,7 @@ std::uint32_t PageTree<Word>::free_slot() {
     return slot;
   }
   if (slots_.size() < capacity_) {
-    slots_.push_back({{}, std::make_unique_for_overwrite<HeldPage<Word>>()});
+    slots_.push_back({{}, arena_.add()});
     return static_cast<std::uint32_t>(slots_.size() - 1);
   }
   for (;; considered_ = considered_ + 1 == slots_.size() ? 0 : considered_ + 1) {

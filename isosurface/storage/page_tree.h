@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <vector>
 
 #include "isosurface/storage/page.h"
+#include "isosurface/storage/page_arena.h"
 
 namespace adamas {
 
@@ -43,7 +43,7 @@ class PageTree {
     const std::uint32_t found = slot_of(id);
     if (found == kNone || !slots_[found].wanted) return nullptr;
     slots_[found].used = true;
-    return slots_[found].page.get();
+    return slots_[found].page;
   }
 
   /// What is known round a page of the next coarser level. Returns false where something cannot be had. Does
@@ -61,7 +61,7 @@ class PageTree {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Slot {
     PageId id;
-    std::unique_ptr<HeldPage<Word>> page;
+    HeldPage<Word>* page = nullptr;
     bool held = false, used = false, wanted = false;
   };
   /// Slots of the pages of a level, i running fastest.
@@ -81,6 +81,7 @@ class PageTree {
   std::size_t capacity_;
   Loader loader_;
   std::vector<Level> levels_;
+  PageArena<HeldPage<Word>> arena_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;
   std::size_t considered_ = 0;  ///< the slot whose page is the next that may leave
