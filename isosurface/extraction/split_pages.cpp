@@ -23,6 +23,11 @@ unsigned not_less(const std::uint8_t* codes, unsigned least) {
   return static_cast<unsigned>(high * kGather >> 56);
 }
 
+/// The same of a row.
+unsigned row_not_less(const std::uint8_t* codes, unsigned least) {
+  return not_less(codes, least) | not_less(codes + 8, least) << 8;
+}
+
 /// Whether no diamond of a row is crossed with an error.
 bool is_zero(const std::uint8_t* codes) {
   std::array<std::uint64_t, 2> row;
@@ -37,6 +42,44 @@ struct RowPhases {
 
   RowPhases(std::int32_t j, std::int32_t k)
       : odd(2 - (j & 1) - (k & 1)), even((j | k) & 1 ? 3 - (j & 1) - (k & 1) : -1) {}
+};
+
+/// Of the diamonds of a level's page, those that a cut splits.
+class CutOfPage {
+ public:
+  /// `order`: the page's in z-order; `generation`: that of the level's cubes.
+  CutOfPage(const SurfaceCut& cut, int level, int generation, std::uint64_t order) : place_(cut.place) {
+    for (int phase = 0; phase < 3; ++phase) {
+      int rank = cut.least_rank(generation + phase);
+      if (generation + phase == cut.generation && order < cut.page) rank = cut.rank;
+      if (generation + phase == cut.generation && order == cut.page) last_phase_ = phase;
+      least_[static_cast<std::size_t>(phase)] = code(rank, level);
+    }
+    last_least_ = code(cut.rank, level);
+  }
+
+  /// Of a row of codes, as bits.
+  [[nodiscard]] unsigned split(const std::uint8_t* codes, const RowPhases& phases, std::size_t row) const {
+    unsigned bits = row_not_less(codes, least_[static_cast<std::size_t>(phases.odd)]) & kOdd;
+    if (phases.even >= 0) bits |= row_not_less(codes, least_[static_cast<std::size_t>(phases.even)]) & kEven;
+    if (last_phase_ < 0) return bits;
+    const unsigned of_phase =
+        (phases.odd == last_phase_ ? kOdd : 0u) | (phases.even == last_phase_ ? kEven : 0u);
+    const auto before = static_cast<std::ptrdiff_t>(place_) - static_cast<std::ptrdiff_t>(kSide * row);
+    const unsigned places = before <= 0 ? 0u : before >= kSide ? 0xffffu : (1u << before) - 1;
+    return bits | (row_not_less(codes, last_least_) & of_phase & places);
+  }
+
+ private:
+  /// The least code of a level that has the rank; beyond all codes where none has.
+  static unsigned code(int rank, int level) {
+    return static_cast<unsigned>(std::clamp(rank - 4 * level, 1, 128));
+  }
+
+  std::array<unsigned, 3> least_;  ///< by phase: codes that are split
+  int last_phase_ = -1;            ///< where a phase's diamonds are split up to a place, from this code on
+  unsigned last_least_;
+  std::size_t place_;
 };
 
 /// Where along an axis the children of a point of phase 2 lie, in pages of the next finer level: from the one
@@ -195,25 +238,10 @@ PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const Surfa
   LatticePoint count;
   for (int axis = 0; axis < 3; ++axis) count[axis] = std::min(reach[axis] - kSide * block[axis] + 1, kSide);
   const auto in_row = static_cast<std::uint16_t>((1u << count.i) - 1);
-  const int first_generation = 3 * (levels() - 1 - level), step = 1 << levels_below(level);
-  const std::uint64_t order = ZOrder::interleave(block);
-  // By phase: codes that are split, and in the cut's own generation the one that is up to a place.
-  constexpr int kNever = 128;
-  std::array<unsigned, 3> least;
-  int up_to = -1;
-  for (int phase = 0; phase < 3; ++phase) {
-    int rank = cut.least_rank(first_generation + phase);
-    if (first_generation + phase == cut.generation && order <= cut.page) {
-      if (order < cut.page)
-        rank = cut.rank;
-      else
-        up_to = phase;
-    }
-    least[static_cast<std::size_t>(phase)] = static_cast<unsigned>(std::clamp(rank - 4 * level, 1, kNever));
-  }
-  // What is not split has no more than this, and mostly just that.
-  const bool look_at_left =
-      greatest_left_ < (cut.generation < first_generation + 3 ? cut.rank : cut.rank - 1);
+  const int generation = 3 * (levels() - 1 - level), step = 1 << levels_below(level);
+  const CutOfPage in_page(cut, level, generation, ZOrder::interleave(block));
+  // What is not split has no greater rank than this, and mostly just that.
+  const bool look_at_left = greatest_left_ < (cut.generation < generation + 3 ? cut.rank : cut.rank - 1);
   PageMask mask, left;
   for (std::int32_t k = 0; k < count.k; ++k) {
     for (std::int32_t j = 0; j < count.j; ++j) {
@@ -226,21 +254,11 @@ PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const Surfa
         row = spread.data();
       }
       if (is_zero(row)) continue;
-      const auto bits = [row](unsigned at_least) {
-        return not_less(row, at_least) | not_less(row + 8, at_least) << 8;
-      };
       const std::size_t at = static_cast<std::size_t>(j + kSide * k);
       const unsigned own = in_row & (phases.even < 0 ? kOdd : kOdd | kEven);
-      unsigned split = bits(least[static_cast<std::size_t>(phases.odd)]) & kOdd;
-      if (phases.even >= 0) split |= bits(least[static_cast<std::size_t>(phases.even)]) & kEven;
-      if (up_to >= 0) {
-        const unsigned of_phase = (phases.odd == up_to ? kOdd : 0) | (phases.even == up_to ? kEven : 0);
-        const auto before = static_cast<std::ptrdiff_t>(cut.place) - static_cast<std::ptrdiff_t>(kSide * at);
-        const unsigned places = before <= 0 ? 0 : before >= kSide ? 0xffff : (1u << before) - 1;
-        split |= bits(static_cast<unsigned>(std::clamp(cut.rank - 4 * level, 1, kNever))) & of_phase & places;
-      }
+      const unsigned split = in_page.split(row, phases, at);
       mask.rows[at] = static_cast<std::uint16_t>(split & own);
-      if (look_at_left) left.rows[at] = static_cast<std::uint16_t>(bits(1) & own & ~split);
+      if (look_at_left) left.rows[at] = static_cast<std::uint16_t>(row_not_less(row, 1) & own & ~split);
     }
   }
   if (limits_.any()) {
