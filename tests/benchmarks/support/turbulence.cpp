@@ -20,8 +20,8 @@ constexpr double kAmplitudeFactor = 0.7937005259840998;  // 2^(-1/3)
 /// A rotation, by a quaternion of whole numbers, after which no plane of lattice points is parallel to a
 /// side: else the prediction of a sample from its neighbours would meet the interpolation of a lattice.
 Vec3 turned(const Vec3& p) {
-  constexpr double w = 5;
-  constexpr Vec3 v{2, -3, 1};
+  const double w = 5;
+  const Vec3 v{2, -3, 1};
   const Vec3 t = (2 / (w * w + squared_norm(v))) * cross(v, p);
   return p + w * t + cross(v, t);
 }
