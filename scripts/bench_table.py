@@ -11,7 +11,8 @@ import sys
 import tempfile
 import time
 
-from bench_volumes import large_rows, volume_rows
+from bench_large import large_rows
+from bench_volumes import volume_rows
 
 
 def note(text):
@@ -176,11 +177,15 @@ PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "sphere": s
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="bench", description="Prints a table of what the project and its peers do.")
-    parser.add_argument("build", help="folder of the release build")
-    parser.add_argument("parts", nargs="*", metavar="PART", help="only these: " + ", ".join(PARTS))
+    parser = argparse.ArgumentParser(prog="scripts/bench", usage="%(prog)s [--quick] [--large] [PART ...]",
+                                     description="Builds and runs the benchmarks; prints a table of what the project and "
+                                     "its peers do. Data sets are looked for in $ADAMAS_DATA, or else in ../shared/data.")
+    parser.add_argument("build", help=argparse.SUPPRESS)
+    parser.add_argument("parts", nargs="*", metavar="PART",
+                        help=f"only these: {', '.join(PARTS)} (default: all but large)")
     parser.add_argument("--quick", action="store_true", help="smaller grids, shorter runs")
-    parser.add_argument("--large", action="store_true", help="only: a volume of more than 2^31 samples")
+    parser.add_argument("--large", action="store_true",
+                        help="the same as the part large alone: a volume of more than 2^31 samples")
     arguments = parser.parse_intermixed_args()
     unknown = [name for name in arguments.parts if name not in PARTS]
     if unknown:

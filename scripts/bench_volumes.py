@@ -135,7 +135,7 @@ def codec_table(lines):
         best = max(ratio(name, p) for p in peers)
         for coder in ours:
             yield [f"lossless, {name}: {coder}", f"{ratio(name, coder):.2f} at {million(of[coder]['decode'])}", theirs,
-                   f"{ratio(name, coder) / best:.2f}", "", f"{size} {line['type']}, directory and tables counted, 1 thread"]
+                   f"{ratio(name, coder) / best:.2f}", "", f"{size} {line['type']}, bytes of samples, directory and tables, 1 thread"]
     for coder in ours:
         mean = geometric_mean([ratio(v, coder) for v in volumes])
         for peer in peers:
@@ -152,7 +152,8 @@ def codec_table(lines):
 
 
 def codec_rows(build, quick):
-    volumes = ["buckyball:128"] if quick else ["buckyball:256", "buckyball:256:uint16"]
+    sides = ["128"] if quick else ["256", "256:uint16"]
+    volumes = [f"{name}:{side}" for name in ("buckyball", "turbulence") for side in sides]
     if not quick:
         volumes += [v for v in data_volumes() if can_read(build, v)]
     yield from codec_table([line for v in volumes for line in lines_of(build, "bench_volume_codec", v)])
@@ -221,67 +222,3 @@ def surface_rows(build, quick):
 def volume_rows(build, quick):
     for part in (store_rows, codec_rows, contour_rows, surface_rows):
         yield from part(build, quick)
-
-
-LARGE = (2048, 2048, 520)
-BUMP = 24
-
-
-def write_sparse(path):
-    """More than 2^31 samples, nearly all zero and not on the disk: a ball of values round the last sample but some, and
-    one round a place before 2^31."""
-    nx, ny, nz = LARGE
-    with open(path, "wb") as file:
-        file.truncate(nx * ny * nz)
-        for centre in ((100, 100, 100), (nx - 100, ny - 100, nz - 60)):
-            x, y, z = centre
-            for k in range(-BUMP, BUMP + 1):
-                for j in range(-BUMP, BUMP + 1):
-                    row = [max(0, round(255 - 10 * math.sqrt(i * i + j * j + k * k))) for i in range(-BUMP, BUMP + 1)]
-                    file.seek(x - BUMP + nx * (y + j + ny * (z + k)))
-                    file.write(bytes(row))
-    return centre
-
-
-def same_samples(raw, restored, box):
-    nx, ny, _ = LARGE
-    (x0, x1), (y0, y1), (z0, z1) = box
-    with open(raw, "rb") as file, open(restored, "rb") as found:
-        for k in range(z0, z1 + 1):
-            for j in range(y0, y1 + 1):
-                file.seek(x0 + nx * (j + ny * k))
-                if file.read(x1 - x0 + 1) != found.read(x1 - x0 + 1):
-                    return False
-        return found.read(1) == b""
-
-
-def large_row(what, figures, at, good=""):
-    return [f"large: {what}", f"{figures['seconds']:.1f} s, {bytes_text(figures['peak_memory_bytes'])}", "", good, "", at]
-
-
-def large_rows(build, _quick):
-    """Beyond 2^31 samples: a sparse file stored, its last part restored and compared, a surface of a region there."""
-    adamas = os.path.join(build, "cli/adamas")
-    size = "x".join(str(n) for n in LARGE)
-    with tempfile.TemporaryDirectory() as folder:
-        raw, path, part = (os.path.join(folder, name) for name in ("large.raw", "large.adm", "part.raw"))
-        centre = write_sparse(raw)
-        dimensions = ",".join(str(n) for n in LARGE)
-        found = store(build, raw, path, "--dimensions", dimensions, "--type", "uint8", "--scratch", folder)
-        bound = 2**30 + 64 * LARGE[0] * LARGE[1]
-        yield large_row("store", found, f"{size} uint8, {found['samples']:,} samples, all threads",
-                        f"{million(found['samples'] / found['seconds'])}, memory / bound {found['peak_memory_bytes'] / bound:.2f}")
-        box = [(max(c - 40, 0), min(c + 39, n - 1)) for c, n in zip(centre, LARGE)]
-        region = ",".join(f"{low},{high}" for low, high in box)
-        figures = part + ".json"
-        for command, options in (("restore", ["-o", part]),
-                                 ("isosurface", ["--isovalue", "100.5", "--error", "0.2voxels", "-o", part + ".ply"])):
-            _, peak = run_measured(adamas, command, path, "--region", region, "-q", "--json", figures, *options)
-            with open(figures, encoding="utf-8") as file:
-                values = json.load(file) | {"peak_memory_bytes": peak}
-            good = f"{values['triangles']:,} triangles" if "triangles" in values else ""
-            if command == "restore":
-                if not same_samples(raw, part, box):
-                    sys.exit("bench: large: expected the samples of the file, found others")
-                good = "bit for bit"
-            yield large_row(command, values, f"region {region} of the same", good)

@@ -3,10 +3,12 @@
 
 import os
 import sys
+import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
+from bench_large import QUICK, ball_centres, check_samples, distance_from_spheres, write_sparse  # noqa: E402
 from bench_table import closest_point_table, hierarchy_table, some  # noqa: E402
 from bench_volumes import codec_table, contour_table, surface_table  # noqa: E402
 
@@ -62,6 +64,38 @@ class BenchTableTest(unittest.TestCase):
         self.assertEqual([r[3:5] for r in rows], [["0.25 (0.50)", "<= 0.25"], ["0.25", "<= 0.1"]])
         with self.assertRaises(KeyError):
             list(surface_table([{"row": "other"}]))
+
+    def test_spheres_of_the_large_volume(self):
+        # Octahedra, whose corners are a little beyond spheres of radius 23.45.
+        steps = [[s * (a == axis) for a in range(3)] for axis in range(3) for s in (-23.55, 23.55)]
+        centres = ((0, 0, 0), (100, 200, 300))
+        vertices = [[c + s for c, s in zip(centre, step)] for centre in centres for step in steps]
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mesh.obj")
+            for faces in (16, 15):
+                with open(path, "w", encoding="utf-8") as file:
+                    file.writelines("v {} {} {}\n".format(*v) for v in vertices)
+                    file.writelines(["f 1 2 3\n"] * faces)
+                if faces == 16:
+                    self.assertAlmostEqual(distance_from_spheres(path, centres), 0.1)
+                else:
+                    with self.assertRaisesRegex(SystemExit, "expected 2 closed spheres"):
+                        distance_from_spheres(path, centres)
+
+    def test_samples_of_the_large_volume(self):
+        with tempfile.TemporaryDirectory() as folder:
+            raw, part = os.path.join(folder, "large.raw"), os.path.join(folder, "part.raw")
+            write_sparse(raw, QUICK)
+            x, y, z = ball_centres(QUICK)[1]
+            box = [(x, x + 1), (y, y), (z, z)]
+            for found in (bytes([255, 245]), bytes([255, 244]), bytes([255, 245, 0])):
+                with open(part, "wb") as file:
+                    file.write(found)
+                if found == bytes([255, 245]):
+                    check_samples(QUICK, raw, part, box)
+                else:
+                    with self.assertRaisesRegex(SystemExit, "expected the samples"):
+                        check_samples(QUICK, raw, part, box)
 
 
 if __name__ == "__main__":

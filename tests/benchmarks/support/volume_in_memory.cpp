@@ -1,9 +1,12 @@
 #include "tests/benchmarks/support/volume_in_memory.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 
 #include "core/io/volume_reader.h"
 #include "core/io/volume_stack.h"
@@ -11,6 +14,7 @@
 #include "isosurface/compression/split_edge_prediction.h"
 #include "isosurface/storage/page.h"
 #include "isosurface/storage/sample_dispatch.h"
+#include "tests/benchmarks/support/turbulence.h"
 
 namespace adamas::bench {
 namespace {
@@ -35,14 +39,43 @@ VolumeInMemory read_file(const std::string& name, VolumeReader reader) {
                      [&](std::uint64_t k, std::span<std::byte> to) { reader.read_plane(k, to); });
 }
 
+/// Of the parts of a generated volume's name: NAME:SIDE[:TYPE].
+SampleType generated_type(const std::vector<std::string>& parts) {
+  const std::string type = parts.size() > 2 ? parts[2] : "uint8";
+  return type == "uint8" ? SampleType::kUint8 : type == "uint16" ? SampleType::kUint16 : SampleType::kFloat32;
+}
+
+std::string generated_name(const std::vector<std::string>& parts) {
+  return parts[0] + " " + parts.at(1) + "^3 " + sample_name(generated_type(parts));
+}
+
 VolumeInMemory make_buckyball(const std::vector<std::string>& parts) {
   const std::uint64_t side = std::stoull(parts.at(1));
-  const std::string type = parts.size() > 2 ? parts[2] : "uint8";
-  const Buckyball ball({side, side, side}, type == "uint8"    ? SampleType::kUint8
-                                           : type == "uint16" ? SampleType::kUint16
-                                                              : SampleType::kFloat32);
-  return read_planes("buckyball " + parts[1] + "^3 " + type, ball.grid(),
+  const Buckyball ball({side, side, side}, generated_type(parts));
+  return read_planes(generated_name(parts), ball.grid(),
                      [&](std::uint64_t k, std::span<std::byte> to) { ball.plane(k, to); });
+}
+
+/// From 0 to the greatest number of the type; float32 to 1.
+VolumeInMemory make_turbulence(const std::vector<std::string>& parts) {
+  const std::uint64_t side = std::stoull(parts.at(1));
+  VolumeGrid grid;
+  grid.dimensions = {side, side, side};
+  grid.type = generated_type(parts);
+  VolumeInMemory volume{generated_name(parts), grid, std::vector<std::byte>(grid.bytes())};
+  const std::vector<float> values = turbulence(side);
+  with_sample_type(grid.type, [&](auto sample) {
+    using Sample = decltype(sample);
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      if constexpr (std::is_floating_point_v<Sample>)
+        sample = values[n];
+      else
+        sample =
+            static_cast<Sample>(std::floor(std::numeric_limits<Sample>::max() * double{values[n]} + 0.5));
+      std::memcpy(volume.bytes.data() + n * sizeof(Sample), &sample, sizeof(Sample));
+    }
+  });
+  return volume;
 }
 
 RawVolume raw_form(const std::string& text) {
@@ -74,6 +107,7 @@ std::vector<std::byte> VolumeInMemory::ordered_words() const {
 VolumeInMemory load_volume(const std::string& what) {
   const std::vector<std::string> parts = split(what, ':');
   if (parts.at(0) == "buckyball") return make_buckyball(parts);
+  if (parts[0] == "turbulence") return make_turbulence(parts);
   const std::filesystem::path path = parts.back();
   if (parts[0] == "raw") return read_file(path.stem().string(), open_raw_volume(path, raw_form(parts.at(1))));
   if (parts[0] == "stack")
