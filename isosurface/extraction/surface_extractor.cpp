@@ -126,11 +126,10 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
       surface.lost = lost;
       return surface;
     } catch (const PageLost& missing) {
-      const auto [level, block] = missing.page;
-      const std::string what =
-          fmt::format("the page of level {} at {}, {}, {}", level, block.i, block.j, block.k);
+      const std::string what = page_name(missing.page);
       if (request.strict) fail("{} is damaged", what);
-      if (level == diamonds_.grid().top() || std::find(lost.begin(), lost.end(), missing.page) != lost.end())
+      if (missing.page.level == diamonds_.grid().top() ||
+          std::find(lost.begin(), lost.end(), missing.page) != lost.end())
         fail("{} is damaged, without which there is no surface", what);
       lost.push_back(missing.page);
       limits_.lost.add(missing.page);
