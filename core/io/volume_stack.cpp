@@ -85,6 +85,41 @@ bool fits(const std::string& name, const std::vector<Part>& parts) {
   return reached[size];
 }
 
+/// The decimal number behind one of at least as many digits.
+std::string next_number(std::string digits) {
+  for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit) {
+    if (*digit != '9') {
+      ++*digit;
+      return digits;
+    }
+    *digit = '0';
+  }
+  return "1" + digits;
+}
+
+/// Throws Error, which names the first file that is missing, where the numbers of the names, which ascend,
+/// have gaps. Only where a pattern is text and one number is that of a name sure.
+void check_numbers(const std::filesystem::path& pattern, const std::vector<Part>& parts,
+                   const std::vector<std::string>& names) {
+  std::string before, behind;
+  std::size_t numbers = 0;
+  for (const Part& part : parts) {
+    if (part.kind == Part::Kind::kAny || part.kind == Part::Kind::kOne) return;
+    numbers += part.kind == Part::Kind::kNumber ? 1 : 0;
+    (numbers == 0 ? before : behind) += part.text;
+  }
+  if (numbers != 1) return;
+  for (std::size_t n = 1; n < names.size(); ++n) {
+    const std::string& last = names[n - 1];
+    const std::string next =
+        before + next_number(last.substr(before.size(), last.size() - before.size() - behind.size())) +
+        behind;
+    if (names[n] != next)
+      fail("{}: expected this file between {} and {}, found none", (pattern.parent_path() / next).string(),
+           last, names[n]);
+  }
+}
+
 }  // namespace
 
 bool natural_less(const std::string& a, const std::string& b) {
@@ -126,6 +161,7 @@ std::vector<std::filesystem::path> match_stack(const std::filesystem::path& patt
   }
   if (names.empty()) fail("{}: expected files of such names, found none", pattern.string());
   std::sort(names.begin(), names.end(), natural_less);
+  check_numbers(pattern, parts, names);
   std::vector<std::filesystem::path> paths;
   for (const std::string& name : names) {
     paths.push_back(pattern.has_parent_path() ? pattern.parent_path() / name : std::filesystem::path(name));

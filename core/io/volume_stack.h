@@ -19,7 +19,8 @@ VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths,
 /// The files of a folder whose names fit a pattern, in natural order (9 before 10). In the file's name '*'
 /// stands for any characters, '?' for one, a run of '#' for a number of at least as many digits, and '%d' or
 /// '%04d' for a number as printf writes it. Throws Error with the pattern where none fits or there is nothing
-/// of that kind in it.
+/// of that kind in it, and with the first file that is missing where numbers have gaps; these are looked at
+/// where there is one number in the pattern and none of '*' and '?'.
 std::vector<std::filesystem::path> match_stack(const std::filesystem::path& pattern);
 
 /// Whether text `a` comes before `b` when runs of digits are compared as numbers.

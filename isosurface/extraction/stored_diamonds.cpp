@@ -67,7 +67,7 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
   RecentEntry& recent = recent_[static_cast<std::size_t>(id.level)];
   if (recent.id != id) {
     const std::optional<PageEntry> found = pages_.entry(id);
-    if (!found) throw PageLost{id};
+    if (!found) throw PageLost{id, id};
     recent.id = id;
     recent.entry = *found;
   }

@@ -13,9 +13,9 @@
 
 namespace adamas {
 
-/// A page that is needed cannot be had.
+/// A page that is needed cannot be had, since a page is damaged: it itself or one that it is predicted from.
 struct PageLost {
-  PageId page;
+  PageId page, damaged;
 };
 
 /// What a store knows of diamonds and their points, by points of the lattice that its domain spans.
@@ -96,7 +96,7 @@ class StoredDiamonds {
  private:
   const HeldPage<Word>& page(const PageId& id) {
     const HeldPage<Word>* found = pages_.page(id);
-    if (found == nullptr) throw PageLost{id};
+    if (found == nullptr) throw PageLost{id, pages_.last_damaged()};
     return *found;
   }
   const PageEntry& entry(const PageId& id);

@@ -128,14 +128,16 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
       surface.lost = lost;
       return surface;
     } catch (const PageLost& missing) {
-      const auto [level, block] = missing.page;
-      const std::string what =
-          fmt::format("the page of level {} at {}, {}, {}", level, block.i, block.j, block.k);
-      if (request.strict) fail("{} is damaged", what);
-      if (level == diamonds_.grid().top() || std::find(lost.begin(), lost.end(), missing.page) != lost.end())
-        fail("{} is damaged, without which there is no surface", what);
-      lost.push_back(missing.page);
-      limits_.lost.add(missing.page);
+      // Where it is not enough to do without the damaged page, the one that is predicted from it is lost too.
+      const auto is_known = [&](const PageId& page) {
+        return std::find(lost.begin(), lost.end(), page) != lost.end();
+      };
+      const PageId page = is_known(missing.damaged) ? missing.page : missing.damaged;
+      if (request.strict) fail("{} is damaged", page_name(page));
+      if (page.level == diamonds_.grid().top() || is_known(page))
+        fail("{} is damaged, without which there is no surface", page_name(page));
+      lost.push_back(page);
+      limits_.lost.add(page);
     }
   }
 }

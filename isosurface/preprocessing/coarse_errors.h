@@ -62,7 +62,8 @@ class CoarseErrors {
     int mirrored;
     std::array<LatticePoint, 4> corners;  ///< in the coordinates of LeafPoints
     std::size_t first, count;
-    double low, high;  ///< of the samples; low > high where none counts
+    /// Of the samples; low > high where none counts, `high` infinite where one of the data is not finite.
+    double low, high;
     alignas(16) std::array<Real, kMostPoints> samples;
     alignas(16) std::array<double, kMostPoints> exact;  ///< the same, not filled where Real is double
   };
@@ -119,7 +120,9 @@ class CoarseErrors {
       values[c] = value(cell.corners()[c], samples);
       sum += std::abs(values[c]);
     }
-    if (!std::isfinite(sum)) return error_code(diameter);
+    if constexpr (std::is_same_v<Sample, float>) {
+      if (!std::isfinite(sum) || part.high == std::numeric_limits<double>::infinity()) return error_code(1.0);
+    }
     const Linear linear = interpolation(cell, values, part);
     double slope = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {

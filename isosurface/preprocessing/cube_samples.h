@@ -29,8 +29,8 @@ struct CubeSamples {
   using Octants = std::array<T, OctantStencils::kPoints * OctantStencils::kOctants>;
 
   LatticePoint base{};  ///< the cube's first corner
-  /// By point of an octant, then octant: what is interpolated, and what counts, NaN where that is not a
-  /// finite sample of the data.
+  /// By point of an octant, then octant: what is interpolated, and what counts, which is NaN beyond the data
+  /// and infinite where a sample of the data is not finite.
   alignas(64) Octants<Real> value, counted;
   /// What counts, i running fastest.
   std::array<Real, kCube * kCube * kCube> whole;
@@ -71,7 +71,11 @@ struct CubeSamples {
     if (!all_count) {
       for (std::int32_t i = 0; i < kCube; ++i) {
         Real& v = values[static_cast<std::size_t>(i)];
-        if (base.i + i > last_counted || !std::isfinite(v)) v = std::numeric_limits<Real>::quiet_NaN();
+        if (base.i + i > last_counted) {
+          v = std::numeric_limits<Real>::quiet_NaN();
+        } else if (std::is_same_v<Sample, float> && !std::isfinite(v)) {
+          v = std::numeric_limits<Real>::infinity();
+        }
       }
       scatter(values, counted, j, k);
     }

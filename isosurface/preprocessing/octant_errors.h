@@ -89,15 +89,16 @@ class OctantErrors {
       Lanes bounded = ratio < diameter ? ratio : diameter;
       bounded = error > zero ? bounded : zero;
       if constexpr (std::is_same_v<Sample, float>) {
-        const Lanes sum = zero * (corners[0] + corners[1] + corners[2] + corners[3]);
-        bounded = sum == zero ? bounded : diameter;
+        // The scale's greatest where a corner or another sample is not finite.
+        const Lanes sum = zero * (corners[0] + corners[1] + corners[2] + corners[3] + error);
+        bounded = sum == zero ? bounded : zero + 1;
       }
       greatest = Vector::greater(greatest, bounded);
     }
     return greatest;
   }
 
-  /// e_a of the tetrahedron.
+  /// e_a of the tetrahedron; infinite where a sample that is no corner is not finite.
   Lanes difference(const OctantStencils::Shape& shape, const Corners& corners, const Real* counted) const {
     Lanes greatest{};
     const OctantStencils::Point* points = stencils_.points().data();

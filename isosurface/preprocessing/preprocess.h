@@ -33,11 +33,12 @@ using PageSink = std::function<void(const PageId&, const Page<OrderedWord<Sample
 ///
 /// A diamond's error is at least that of each of its tetrahedra: the greatest difference between the samples
 /// in and on it and the linear interpolation of its corners over the length of that interpolation's gradient,
-/// or the tetrahedron's diameter if that is less; 0 where there is no difference, the diameter where a corner
-/// is not finite. Its range covers the samples in and on its tetrahedra. Both cover those of its child
-/// diamonds. Samples that are not finite count in neither. Corners beyond the data have the nearest sample's
-/// value. With subtrees the error is that of the diamonds that many levels further, and finer levels have
-/// error 0 and low > high, as have the corners of the lattice. Errors are codes of level_error_scale.
+/// or the tetrahedron's diameter if that is less; 0 where there is no difference; the greatest of the level
+/// where a sample in or on it is not finite, for no interpolation stands for that. Its range covers the
+/// finite samples in and on its tetrahedra. Both cover those of its child diamonds. Corners beyond the data
+/// have the nearest sample's value. With subtrees the error is that of the diamonds that many levels further,
+/// and finer levels have error 0 and low > high, as have the corners of the lattice. Errors are codes of
+/// level_error_scale.
 ///
 /// Planes are read in ascending order, every 16th one twice. Memory does not grow with the number of planes,
 /// but for 1/4096 of the samples. Sample: uint8, uint16, int16 or float, as grid.type says. Throws Error for

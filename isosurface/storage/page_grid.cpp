@@ -8,6 +8,11 @@
 
 namespace adamas {
 
+std::string page_name(const PageId& page) {
+  return fmt::format("the page of level {} at {}, {}, {}", page.level, page.block.i, page.block.j,
+                     page.block.k);
+}
+
 PageGrid::PageGrid(const std::array<std::uint64_t, 3>& dimensions) {
   constexpr std::uint64_t kMost = (std::uint64_t{1} << kMaxDepth) + 1;
   for (int axis = 0; axis < 3; ++axis) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "core/lattice/lattice_point.h"
 
@@ -16,6 +17,9 @@ struct PageId {
 
   bool operator==(const PageId&) const = default;
 };
+
+/// "the page of level 0 at 1, 2, 3", as messages speak of it.
+std::string page_name(const PageId& page);
 
 /// How the points of a volume lie in pages (D 4.5): the sequence of hierarchical z-order, cut where cubes of
 /// 16^3 points end, so that every page is compact in space. The coarsest level is a page by itself.

@@ -55,8 +55,7 @@ class Restorer {
   void copy(const PageId& id, std::int32_t base, std::vector<Sample>& planes) {
     const Page<Word>* page = pages_.page(id);
     if (page == nullptr)
-      fail("{}: the page of level {} at {}, {}, {} is damaged, or one that it is predicted from",
-           file_.name(), id.level, id.block.i, id.block.j, id.block.k);
+      fail("{}: {} is damaged, or one that it is predicted from", file_.name(), page_name(id));
     const BlockSpan x(id.block.i, part_.first.i, part_.last.i), y(id.block.j, part_.first.j, part_.last.j),
         z(id.block.k, part_.first.k, part_.last.k);
     for (std::int32_t k = z.begin; k <= z.end; ++k) {

@@ -6,6 +6,7 @@
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
+#include "isosurface/preprocessing/error_scale.h"
 #include "isosurface/storage/byte_stream.h"
 
 namespace adamas {
@@ -91,6 +92,11 @@ DirectoryChunk read_chunk(ByteReader& in) {
 }
 
 void check_chunks(const StoreRoot& root, const PageGrid& grid, std::uint64_t end, std::string_view name) {
+  // What is kept in memory of every page must not be more than the file has room to tell of.
+  const std::uint64_t parts = (grid.page_count() + DirectoryChunk::kPages - 1) / DirectoryChunk::kPages;
+  if (root.chunks.size() / root.header.steps < parts)
+    fail("{}: expected {} parts or more of a directory for each of {} steps, found {} in all", name, parts,
+         root.header.steps, root.chunks.size());
   const DirectoryChunk* before = nullptr;
   for (const DirectoryChunk& chunk : root.chunks) {
     if (chunk.step >= root.header.steps || chunk.first % DirectoryChunk::kPages != 0 ||
@@ -207,6 +213,7 @@ std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const 
     entry.low = word();
     entry.high = word();
     entry.error = in.number<std::uint8_t>();
+    if (entry.error >= ErrorScale::kCodes) return {};
     entry.offset = offset;
     offset += size;
     if (grid.page(number).level >= kCopiedLevel) {

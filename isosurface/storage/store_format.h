@@ -92,7 +92,7 @@ std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first
 
 /// The entries of a chunk's pages in that order. Words have `word_bytes` bytes.
 std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std::size_t word_bytes);
-/// Offsets and copies too. Nothing where the bytes are not those of so many entries.
+/// Offsets and copies too. Nothing where the bytes are not those of so many entries, or an error is no code.
 std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
                                                     std::span<const std::byte> bytes, std::size_t word_bytes);
 

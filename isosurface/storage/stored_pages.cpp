@@ -38,6 +38,7 @@ StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t 
 template <class Word>
 bool StoredPages<Word>::load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
                              Page<Word>& page) {
+  last_damaged_ = id;
   if (std::find(damaged_.begin(), damaged_.end(), id) != damaged_.end()) return false;
   const StoreFile::Payload payload = file_.read(step_, id);
   PagePayload parts;

@@ -57,6 +57,8 @@ class StoredPages {
   std::optional<PageEntry> entry(const PageId& id) { return file_.entry(step_, id); }
   /// Pages that were found damaged, in the order in which they were met.
   [[nodiscard]] const std::vector<PageId>& damaged() const { return damaged_; }
+  /// The damaged page for which a page could not be had, when that was last so.
+  [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }
   [[nodiscard]] PageCounts counts() const;
 
  private:
@@ -69,6 +71,7 @@ class StoredPages {
   ValueCodec<Word> values_;
   PageTree<Word> tree_;
   std::vector<PageId> damaged_;
+  PageId last_damaged_;
   std::uint64_t copies_ = 0;
 };
 

@@ -132,8 +132,7 @@ class Verifier {
 
   void problem(const PageId& id, const char* what) {
     if (result_.problems.size() >= kMostProblems) return;
-    result_.problems.push_back(
-        fmt::format("page of level {} at {}, {}, {} {}", id.level, id.block.i, id.block.j, id.block.k, what));
+    result_.problems.push_back(fmt::format("{} {}", page_name(id), what));
   }
 
   StoreFile& file_;

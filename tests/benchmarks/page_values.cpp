@@ -77,7 +77,7 @@ Figures measure(StoreFile& file, int level, double isovalue, std::size_t most) {
   std::vector<Coded<Word>> batch(kBatch);
   for (int run = 0; run < 5; ++run) {
     Figures found;
-    diamonds.set_contour(isovalue, 0);
+    diamonds.set_contour(isovalue);
     int ranks = 0;
     for (std::size_t first = 0; first < all.size(); first += kBatch) {
       const std::size_t size = std::min(kBatch, all.size() - first);

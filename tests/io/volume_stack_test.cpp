@@ -187,26 +187,56 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& path
 
 TEST(MatchStack, Patterns) {
   const test::Scratch scratch;
-  for (const char* name : {"a1.tif", "a2.tif", "a10.tif", "a010.tif", "a.tif", "b0001.tif", "b0012.tif",
-                           "b12345.tif", "b012345.tif", "a1.tiff"}) {
+  for (const char* name : {"a8.tif", "a9.tif", "a10.tif", "a010.tif", "a.tif", "b9998.tif", "b9999.tif",
+                           "b10000.tif", "b010000.tif", "b998.tif", "a9.tiff"}) {
     put_bytes(scratch / name, "x");
   }
-  std::filesystem::create_directory(scratch / "a3.tif");
+  std::filesystem::create_directory(scratch / "a11.tif");
   using Names = std::vector<std::string>;
   const auto match = [&](const std::string& pattern) { return names_of(match_stack(scratch / pattern)); };
-  EXPECT_EQ(match("a*.tif"), (Names{"a.tif", "a1.tif", "a2.tif", "a010.tif", "a10.tif"}));
-  EXPECT_EQ(match("a?.tif"), (Names{"a1.tif", "a2.tif"}));
-  EXPECT_EQ(match("a%d.tif"), (Names{"a1.tif", "a2.tif", "a10.tif"}));
-  EXPECT_EQ(match("a#.tif"), (Names{"a1.tif", "a2.tif", "a10.tif"}));
-  EXPECT_EQ(match("b%04d.tif"), (Names{"b0001.tif", "b0012.tif", "b12345.tif"}));
+  EXPECT_EQ(match("a*.tif"), (Names{"a.tif", "a8.tif", "a9.tif", "a010.tif", "a10.tif"}));
+  EXPECT_EQ(match("a?.tif"), (Names{"a8.tif", "a9.tif"}));
+  EXPECT_EQ(match("a%d.tif"), (Names{"a8.tif", "a9.tif", "a10.tif"}));
+  EXPECT_EQ(match("a#.tif"), (Names{"a8.tif", "a9.tif", "a10.tif"}));
+  EXPECT_EQ(match("b%04d.tif"), (Names{"b9998.tif", "b9999.tif", "b10000.tif"}));
   EXPECT_EQ(match("b####.tif"), match("b%04d.tif"));
-  EXPECT_EQ(match("*1.tif*"), (Names{"a1.tif", "a1.tiff", "b0001.tif"}));
-  EXPECT_EQ(match_stack(scratch / "a?.tif").front(), scratch / "a1.tif");
+  EXPECT_EQ(match("*9.tif*"), (Names{"a9.tif", "a9.tiff", "b9999.tif"}));
+  EXPECT_EQ(match_stack(scratch / "a?.tif").front(), scratch / "a8.tif");
   EXPECT_TRUE(says(error_of([&] { match("c*.tif"); }), "c*.tif: expected files of such names, found none"));
-  EXPECT_TRUE(says(error_of([&] { match("a1.tif"); }), "a1.tif: expected a pattern with *, ?, # or %d"));
+  EXPECT_TRUE(says(error_of([&] { match("a8.tif"); }), "a8.tif: expected a pattern with *, ?, # or %d"));
   EXPECT_TRUE(says(error_of([&] { match("100%.tif"); }), "expected a pattern with"));
   EXPECT_TRUE(says(error_of([&] { match_stack(scratch / "none" / "*.tif"); }),
                    "none: expected a folder that can be read"));
+}
+
+TEST(MatchStack, NumbersWithGaps) {
+  const test::Scratch scratch;
+  const std::string huge(30, '9');
+  for (const char* name : {"img_1.tif", "img_2.tif", "img_4.tif", "img_6.tif", "b0099.png", "b0101.png",
+                           "c9_1.tif", "c9_3.tif", "d1_1", "d1_3", "8", "9", "11"}) {
+    put_bytes(scratch / name, "x");
+  }
+  put_bytes(scratch / ("e" + huge), "x");
+  put_bytes(scratch / ("e1" + std::string(29, '0') + "1"), "x");
+  const auto error = [&](const std::string& pattern) {
+    return error_of([&] { match_stack(scratch / pattern); });
+  };
+  const auto missing = [&](const std::string& name) { return (scratch / name).string() + ": expected"; };
+  EXPECT_TRUE(says(error("img_%d.tif"),
+                   missing("img_3.tif") + " this file between img_2.tif and img_4.tif, found none"));
+  EXPECT_TRUE(says(error("img_#.tif"), missing("img_3.tif")));
+  EXPECT_TRUE(says(error("b%04d.png"), missing("b0100.png")));
+  EXPECT_TRUE(says(error("c9_%d.tif"), missing("c9_2.tif")));
+  EXPECT_TRUE(says(error("%d"), missing("10")));
+  EXPECT_TRUE(says(error("e%d"), missing("e1" + std::string(30, '0'))));
+  // Which numbers these are is not sure.
+  EXPECT_EQ(match_stack(scratch / "img_*.tif").size(), 4u);
+  EXPECT_EQ(match_stack(scratch / "img_?.tif").size(), 4u);
+  EXPECT_EQ(match_stack(scratch / "d%d_%d").size(), 2u);
+  put_bytes(scratch / "img_3.tif", "x");
+  EXPECT_TRUE(says(error("img_%d.tif"), missing("img_5.tif")));
+  put_bytes(scratch / "img_5.tif", "x");
+  EXPECT_EQ(match_stack(scratch / "img_%d.tif").size(), 6u);
 }
 
 TEST(MatchStack, NaturalOrder) {

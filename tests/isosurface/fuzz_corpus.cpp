@@ -2,6 +2,7 @@
 #include "tests/fuzz/replay.h"
 #include "tests/fuzz/residual_targets.h"
 #include "tests/fuzz/sample_targets.h"
+#include "tests/fuzz/store_targets.h"
 #include "tests/fuzz/value_targets.h"
 
 namespace adamas {
@@ -12,6 +13,7 @@ TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::r
 TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sample_codec), 8u); }
 TEST(FuzzCorpus, ValueCodec) { EXPECT_EQ(fuzz::replay("value_codec", fuzz::value_codec), 5u); }
 TEST(FuzzCorpus, GradientCodec) { EXPECT_EQ(fuzz::replay("gradient_codec", fuzz::gradient_codec), 5u); }
+TEST(FuzzCorpus, StoreFormat) { EXPECT_EQ(fuzz::replay("store_format", fuzz::store_format), 4u); }
 
 }  // namespace
 }  // namespace adamas

@@ -181,6 +181,32 @@ TEST(StoreFile, RefusesOtherFiles) {
   EXPECT_THROW(StoreFile(folder / "text.adm"), Error);
 }
 
+/// As many samples as there may be, and no directory: nothing is made room for.
+TEST(StoreFile, RefusesMorePagesThanItsDirectoryHas) {
+  const test::Scratch folder;
+  StoreRoot root;
+  root.header.grid.dimensions = {262145, 262145, 262145};
+  for (std::size_t parts = 0; parts < 3; ++parts) {
+    const std::vector<std::byte> last = root.serialise();
+    const StorePrologue prologue{StorePrologue::kBytes, last.size()};
+    std::string bytes;
+    for (const auto& part : {prologue.serialise(), last})
+      bytes.append(reinterpret_cast<const char*>(part.data()), part.size());
+    test::put_bytes(folder / "huge.adm", bytes);
+    try {
+      StoreFile(folder / "huge.adm");
+      FAIL();
+    } catch (const Error& e) {
+      const std::string wanted = fmt::format(
+          "huge.adm: expected 9819165450 parts or more of a directory for each of 1 "
+          "steps, found {} in all",
+          parts);
+      EXPECT_NE(std::string(e.what()).find(wanted), std::string::npos) << e.what();
+    }
+    root.chunks.push_back({0, DirectoryChunk::kPages * parts});
+  }
+}
+
 TEST(StoreFileWriter, TellsOfAFullDisk) {
   StoreHeader header;
   header.grid.dimensions = {1, 1, 1};

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <set>
 
 #include "tests/isosurface/contour_checks.h"
 #include "tests/isosurface/surface_checks.h"
@@ -158,6 +160,42 @@ TEST(SurfaceExtractor, WithoutErrorHasThePointsOfTheFullMesh) {
         for (const Vec3& p : test::points_on(surface.contour))
           ASSERT_NEAR(function.at(p).value, isovalue, 1e-9);
         EXPECT_EQ(surface.max_error, 0);
+      }
+    }
+  }
+}
+
+/// Of linear samples a few of which are missing: tetrahedra that have one in them or on them are cut down to
+/// those that have it at a corner and so no surface, and the others are not cut at all.
+TEST(SurfaceExtractor, WithoutErrorHasTheHolesOfTheFullMesh) {
+  constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+  const std::set<LatticePoint> missing{{5, 9, 7}, {8, 8, 8},    {13, 6, 11},
+                                       {3, 3, 2}, {20, 12, 10}, {16, 9, 0}};
+  for (const Dimensions& box : std::vector<Dimensions>{{9, 9, 9}, {33, 17, 20}, {40, 34, 12}}) {
+    for (const float hole : {kMissing, std::numeric_limits<float>::infinity()}) {
+      const MemoryVolume<float> volume(box, [&](LatticePoint p) {
+        return missing.contains(p) ? hole : static_cast<float>(4 * p.i + 2 * p.j - p.k);
+      });
+      for (int depth = 0; depth <= 2; ++depth) {
+        OpenStore<float> store(volume, depth);
+        const int levels = store.pages().grid().depth();
+        const IndexedHierarchy full = test::DiamondTable(store).full_mesh();
+        for (const double isovalue : {15.5, 31.0, 40.25, 47.25}) {
+          SCOPED_TRACE(testing::Message() << box[0] << " x " << box[1] << " x " << box[2] << ", isovalue "
+                                          << isovalue << ", subtrees " << depth);
+          SurfaceRequest request;
+          request.isovalue = isovalue;
+          request.least_parameter = 0;
+          const Contour found = store.extract(request).contour;
+          const Contour wanted = extract_contour(full, test::field_of(volume, levels), isovalue,
+                                                 test::options_of(volume, levels, 0));
+          ASSERT_GT(wanted.triangles.size(), 0u);
+          test::expect_near(test::measure(found), test::measure(wanted),
+                            1e-8 * (1 + test::measure(wanted).area));
+          if (box[0] > 9 && depth == 0) {
+            EXPECT_LT(found.triangles.size(), wanted.triangles.size());
+          }
+        }
       }
     }
   }

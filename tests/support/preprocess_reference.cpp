@@ -147,7 +147,10 @@ double PreprocessReference::measure(const Corners& corners, ReferenceValues& res
         for (std::size_t c = 0; c < 4; ++c) parts[c] = barycentric.at(c, p);
         if (std::min({parts[0], parts[1], parts[2], parts[3]}) < 0) continue;
         const double sample = volume_.value(p);
-        if (!std::isfinite(sample)) continue;
+        if (!std::isfinite(sample)) {
+          is_finite = false;
+          continue;
+        }
         const std::uint32_t word = volume_.words[volume_.index(p)];
         result.low = std::min(result.low, word);
         result.high = std::max(result.high, word);
@@ -163,7 +166,11 @@ double PreprocessReference::measure(const Corners& corners, ReferenceValues& res
       const Vec3& s = volume_.grid.spacing;
       diameter = std::max(diameter, norm({d.i * s.x, d.j * s.y, d.k * s.z}));
     }
-  if (!is_finite) return diameter;
+  if (!is_finite) {
+    const auto [a, b] = longest_edge(corners);
+    const int level = trailing_zeros(midpoint(corners[a], corners[b]));
+    return level_error_scale(volume_.grid.spacing, level).greatest();
+  }
   if (error == 0) return 0;
   return std::min(diameter, error / norm(barycentric.gradient(values, volume_.grid.spacing)));
 }

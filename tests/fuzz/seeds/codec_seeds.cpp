@@ -1,5 +1,5 @@
-// Makes the seeds of the fuzz targets of codecs of samples and of gradients: FOLDER is that of all seeds. To
-// be run again where a codec's bytes change.
+// Makes the seeds of the fuzz targets of codecs of samples and of gradients, and of the store's own bytes:
+// FOLDER is that of all seeds. To be run again where such bytes change.
 
 #include <cmath>
 #include <filesystem>
@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "core/base/checksum.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"
+#include "isosurface/storage/store_format.h"
 
 namespace adamas::fuzz {
 namespace {
@@ -92,6 +94,44 @@ void make_gradients(const std::filesystem::path& folder, const Seed& seed) {
   write(folder / "gradient_codec", seed.name, bytes);
 }
 
+/// All of a store but its pages, which are of a few bytes each.
+void make_store(const std::filesystem::path& folder, const std::string& name, const VolumeGrid& grid,
+                std::uint32_t steps) {
+  StoreRoot root;
+  root.header.grid = grid;
+  root.header.steps = steps;
+  root.header.sample_tables = root.header.value_tables = {std::byte{1}, std::byte{2}};
+  const PageGrid pages(grid.dimensions);
+  Bytes directory, bytes;
+  StorePrologue prologue{StorePrologue::kBytes, 0};
+  for (std::uint32_t step = 0; step < steps; ++step) {
+    const std::uint64_t end = std::uint64_t{2} << (3 * pages.top());
+    for (std::uint64_t first = 0; first < end; first += DirectoryChunk::kPages) {
+      const std::size_t count = chunk_pages(pages, first).size();
+      if (count == 0) continue;
+      PageEntry entry;
+      entry.low = 3, entry.high = 200, entry.error = 40, entry.size = 20, entry.checksum = 77;
+      const Bytes part = serialise_entries(std::vector(count, entry), sample_bytes(grid.type));
+      root.chunks.push_back({step, first, prologue.root_offset, part.size(), crc32c(part), 32, 33});
+      prologue.root_offset += part.size();
+      append(directory, part);
+    }
+  }
+  Bytes last = root.serialise(), start = prologue.serialise();
+  last.resize(last.size() - 4);
+  bytes.assign(start.begin() + 8, start.end() - 4);
+  put_tables(bytes, last, directory);
+  write(folder / "store_format", name, bytes);
+}
+
+VolumeGrid grid_of(SampleType type, std::array<std::uint64_t, 3> dimensions) {
+  VolumeGrid grid;
+  grid.type = type;
+  grid.dimensions = dimensions;
+  grid.spacing = {1, 0.5, 2};
+  return grid;
+}
+
 void make(const std::filesystem::path& folder) {
   constexpr auto kEdge = SampleCoding::kSplitEdge, kOurs = SampleCoding::kInterpolation;
   make_samples<std::uint8_t>(folder, {"bytes", kOurs, {5, 4, 3}, false, 0});
@@ -107,6 +147,10 @@ void make(const std::filesystem::path& folder) {
   make_gradients(folder, {"raw", kOurs, {3, 3, 3}, false, 1});
   make_gradients(folder, {"split_page", kEdge, {6, 5, 3}, false, 2});
   make_gradients(folder, {"split_complete", kEdge, {4, 4, 4}, true, 2});
+  make_store(folder, "one_sample", grid_of(SampleType::kUint8, {1, 1, 1}), 1);
+  make_store(folder, "floats", grid_of(SampleType::kFloat32, {20, 17, 9}), 2);
+  make_store(folder, "copies", grid_of(SampleType::kUint16, {130, 20, 20}), 1);
+  make_store(folder, "rod", grid_of(SampleType::kInt16, {300, 1, 2}), 1);
 }
 
 }  // namespace

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "core/base/checksum.h"
+#include "core/base/error.h"
+#include "isosurface/storage/store_format.h"
+#include "tests/fuzz/require.h"
+
+namespace adamas::fuzz {
+
+/// The bytes with their checksum behind them.
+inline std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
+  std::vector<std::byte> result(bytes.begin(), bytes.end());
+  const std::uint32_t checksum = crc32c(bytes);
+  const auto behind = std::as_bytes(std::span(&checksum, 1));
+  result.insert(result.end(), behind.begin(), behind.end());
+  return result;
+}
+
+/// The parts of a directory one after another, as their sizes say: those that are taken are written as they
+/// were read.
+inline void store_directory(const StoreRoot& root, std::span<const std::byte> bytes) {
+  const PageGrid grid(root.header.grid.dimensions);
+  const std::size_t word_bytes = sample_bytes(root.header.grid.type);
+  for (const DirectoryChunk& chunk : root.chunks) {
+    const auto part =
+        bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(chunk.size, bytes.size())));
+    bytes = bytes.subspan(part.size());
+    const auto entries = parse_entries(grid, chunk, part, word_bytes);
+    if (!entries) fail("expected a part of the directory, found other bytes");
+    require(std::ranges::equal(serialise_entries(*entries, word_bytes), part), "another part");
+    const auto numbers = chunk_pages(grid, chunk.first);
+    require(entries->size() == numbers.size(), "pages without entries");
+    std::uint64_t offset = chunk.pages, copy = chunk.copies;
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      const PageEntry& entry = (*entries)[n];
+      const bool is_copied = grid.page(numbers[n]).level >= kCopiedLevel;
+      require(entry.offset == offset && entry.copy == (is_copied ? copy : 0), "pages with gaps");
+      require(entry.error < 64, "an error without a code");
+      offset += entry.size;
+      copy += is_copied ? entry.size : 0;
+    }
+  }
+}
+
+/// All of a store but its pages: of the prologue what is between its name and its checksum, 20 bytes; the
+/// size of the root in 2 bytes; the root without its checksum; the parts of the directory. What is taken is
+/// written as it was read, and has no more pages than the directory has room for.
+inline void store_format(std::string_view bytes) {
+  constexpr std::size_t kMagic = 8, kPrologue = StorePrologue::kBytes - kMagic - 4, kHeader = kPrologue + 2;
+  const auto given = std::as_bytes(std::span(bytes));
+  if (given.size() < kHeader) fail("expected a header, found {} bytes", given.size());
+  auto first = StorePrologue{}.serialise();
+  first.resize(StorePrologue::kBytes - 4);
+  std::copy_n(given.begin(), kPrologue, first.begin() + kMagic);
+  first = with_checksum(first);
+  const StorePrologue prologue = StorePrologue::parse(first, "fuzz");
+  require(prologue.serialise() == first, "another prologue");
+
+  const auto size = std::to_integer<std::size_t>(given[kPrologue]) +
+                    256 * std::to_integer<std::size_t>(given[kPrologue + 1]);
+  const auto rest = given.subspan(kHeader);
+  const auto last = with_checksum(rest.first(std::min(size, rest.size())));
+  const StoreRoot root = StoreRoot::parse(last, prologue.root_offset, "fuzz");
+  require(root.serialise() == last, "another root");
+  for (const DirectoryChunk& chunk : root.chunks)
+    require(chunk.offset + chunk.size <= prologue.root_offset, "a directory beyond the root");
+  const std::uint64_t pages = PageGrid(root.header.grid.dimensions).page_count();
+  require(pages <= root.chunks.size() * DirectoryChunk::kPages / root.header.steps,
+          "pages without a directory");
+  store_directory(root, rest.subspan(last.size() - 4));
+}
+
+}  // namespace adamas::fuzz
