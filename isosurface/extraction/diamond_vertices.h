@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -16,14 +15,10 @@ struct DiamondVertices {
   unsigned slots = 0;  ///< of the tetrahedra in the domain, as bits
   double begin = 0, end = 0, middle = 0;
   std::array<double, 9> ring{};  ///< the first again behind the last
-  /// Which of them are not below the isovalue, as bits in the order of the members.
-  unsigned above = 0;
-  bool finite = true;  ///< all of them
 
   /// `values(p)`: at the lattice point p. Without the middle its value is 0.
   template <class Values>
-  DiamondVertices(const Diamond& diamond, const Domain& domain, double isovalue, bool with_middle,
-                  const Values& values);
+  DiamondVertices(const Diamond& diamond, const Domain& domain, bool with_middle, const Values& values);
 
   [[nodiscard]] std::array<double, 4> tetrahedron(int slot) const {
     const auto s = static_cast<std::size_t>(slot);
@@ -36,17 +31,11 @@ struct DiamondVertices {
     for (std::size_t v = 0; v < 4; ++v) result[v] = vertices[v] < 4 ? whole[vertices[v]] : middle;
     return result;
   }
-  /// Which of these are not below the isovalue, as bits.
-  [[nodiscard]] unsigned above_of(int slot, const std::array<std::uint8_t, 4>& vertices) const {
-    const unsigned bits = (above & 3) | (above >> (3 + slot) & 3) << 2 | (above & 4) << 2;
-    return (bits >> vertices[0] & 1) | (bits >> vertices[1] & 1) << 1 | (bits >> vertices[2] & 1) << 2 |
-           (bits >> vertices[3] & 1) << 3;
-  }
 };
 
 template <class Values>
-DiamondVertices::DiamondVertices(const Diamond& diamond, const Domain& domain, double isovalue,
-                                 bool with_middle, const Values& values) {
+DiamondVertices::DiamondVertices(const Diamond& diamond, const Domain& domain, bool with_middle,
+                                 const Values& values) {
   const int count = diamond.tetrahedron_count();
   if (domain.boundary_count(diamond.point()) == 0) {
     slots = (1u << count) - 1;
@@ -63,12 +52,6 @@ DiamondVertices::DiamondVertices(const Diamond& diamond, const Domain& domain, d
     if ((used >> r & 1) != 0) ring[static_cast<std::size_t>(r)] = values(diamond.ring(r));
   }
   ring[static_cast<std::size_t>(count)] = ring[0];
-  const auto is_above = [&](double value) {
-    finite = finite && std::isfinite(value);
-    return unsigned{value >= isovalue};
-  };
-  above = is_above(begin) | is_above(end) << 1 | is_above(middle) << 2;
-  for (int r = 0; r <= count; ++r) above |= is_above(ring[static_cast<std::size_t>(r)]) << (3 + r);
 }
 
 }  // namespace adamas

@@ -6,7 +6,6 @@
 
 #include "core/base/error.h"
 #include "isosurface/contour/contour_clip.h"
-#include "isosurface/extraction/diamond_vertices.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/subtree_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
@@ -45,14 +44,10 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Pro
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
   const Diamond root(root_);
-  const DiamondVertices v(root, domain(), request_.isovalue, false,
-                          [this](LatticePoint p) { return diamonds_.sample(p); });
   ContourBuilder builder(domain(), request_.isovalue, options());
-  for (int slot = 0; slot < root.tetrahedron_count(); ++slot) {
-    const unsigned above = v.above_of(slot, {0, 1, 2, 3});
-    builder.add(
-        {root_, static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(above), v.tetrahedron(slot)});
-  }
+  DiamondContour(builder, request_.isovalue, diamonds_.last_sample())
+      .add(root, (1u << root.tetrahedron_count()) - 1,
+           [this](LatticePoint p) { return diamonds_.sample(p); });
   ExtractedSurface surface;
   surface.contour = builder.finish();
   surface.tetrahedra = static_cast<std::uint64_t>(root.tetrahedron_count());

@@ -10,8 +10,7 @@ namespace adamas {
 
 template <class Sample>
 DiamondVertices TriangleCounter<Sample>::vertices(const Diamond& diamond, bool with_middle) {
-  return {diamond, diamonds_.domain(), request_.isovalue, with_middle,
-          [this](LatticePoint p) { return diamonds_.sample(p); }};
+  return {diamond, diamonds_.domain(), with_middle, [this](LatticePoint p) { return diamonds_.sample(p); }};
 }
 
 template <class Sample>
