@@ -62,21 +62,6 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
   return *number;
 }
 
-void ContourBuilder::add(const CrossedTetrahedron& t) {
-  const auto is_finite = [](double value) { return std::isfinite(value); };
-  if (!std::all_of(t.values.begin(), t.values.end(), is_finite)) return;
-  const std::array<LatticePoint, 4> vertices = Diamond(t.diamond).tetrahedron(t.slot);
-  if (options_.last_sample && is_beyond(vertices, *options_.last_sample)) return;
-  const TetrahedronContour& table = kTetrahedronContours[t.above];
-  for (std::size_t n = 0; n < table.triangle_count; ++n) {
-    std::array<std::uint32_t, 3>& triangle = contour_.triangles.emplace_back();
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto [v, w] = kTetrahedronEdges[table.triangles[n][c]];
-      triangle[c] = edge_point(vertices[v], vertices[w], t.values[v], t.values[w]);
-    }
-  }
-}
-
 void ContourBuilder::expect(std::size_t triangles) {
   // Closed surfaces have half as many points.
   contour_.triangles.reserve(triangles);

@@ -54,27 +54,18 @@ struct ContourOptions {
   std::optional<LatticePoint> last_sample;
 };
 
-/// A tetrahedron of the mesh that a contour crosses.
-struct CrossedTetrahedron {
-  LatticePoint diamond;
-  std::uint8_t slot, above;  ///< above: the vertices whose values are not below the isovalue, as bits
-  std::array<double, 4> values;
-};
-
 /// Whether the tetrahedron has at most a face in the data's box.
 bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample);
 
-/// A contour that grows by a tetrahedron at a time. Points are numbered as they are first met.
+/// A contour that grows by a triangle at a time. Points are numbered as they are first met.
 class ContourBuilder {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;  ///< the number of no point
 
   ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options);
 
-  /// Throws Error where the surface has more points than 32 bits can number.
-  void add(const CrossedTetrahedron& tetrahedron);
   /// The number of the point on an edge of the mesh between two finite values, one of them below the isovalue
-  /// and one not. Throws as `add` does.
+  /// and one not. Throws Error where the surface has more points than 32 bits can number.
   std::uint32_t edge_point(LatticePoint a, LatticePoint b, double value_a, double value_b);
   /// By the numbers of its points.
   void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace adamas {
 
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNone = ContourBuilder::kNone;
 
 /// Which page along an axis a coordinate is on, from one page before to one behind: -1 to 1.
 std::int32_t page_of(std::int32_t x) { return x >> 4; }
@@ -63,10 +62,9 @@ template <class Sample>
 void PageContour<Sample>::add_diamond(const DiamondStencil& stencil, LatticePoint q) {
   const Members above = page_.above(stencil, q);
   const unsigned slots = page_.slots(stencil, q);
-  ++split_diamonds_;
   tetrahedra_ +=
       page_.is_inside() ? stencil.tetrahedron_count : static_cast<std::size_t>(std::popcount(slots));
-  if (!limits_.lost.empty()) note_lost_children(stencil, q);
+  if (!limits_.lost.empty()) note_lost_children(page_.diamond(q));
   // Children of phase 2 are points of the next finer level.
   const bool finer = stencil.phase == 2;
   const Neighbours& pages = finer ? finer_ : same_;
@@ -77,37 +75,18 @@ void PageContour<Sample>::add_diamond(const DiamondStencil& stencil, LatticePoin
     const LatticePoint child = (finer ? 2 : 1) * q + stencil.children[n / 2];
     const PageMask* split = pages[neighbour(child)];
     if (split != nullptr && split->has({in_page(child.i), in_page(child.j), in_page(child.k)})) continue;
-    if (page_.is_inside() || is_in_data(q, child, page_.level() - (finer ? 1 : 0)))
+    if (page_.is_inside() || pages_.is_in_data(page_.diamond(q).child(static_cast<int>(n / 2))))
       add_half(stencil, q, half, above);
   }
 }
 
 template <class Sample>
-LatticePoint PageContour<Sample>::child_in_lattice(LatticePoint q, LatticePoint child,
-                                                   int child_level) const {
-  const LatticePoint p = page_.in_lattice(q);
-  if (child_level == page_.level()) return page_.in_lattice(child);
-  const std::int32_t half = (page_.in_lattice({1, 0, 0}) - page_.in_lattice({0, 0, 0})).i / 2;
-  return p + half * (child - 2 * q);
-}
-
-template <class Sample>
-bool PageContour<Sample>::is_in_data(LatticePoint q, LatticePoint child, int child_level) const {
-  const LatticePoint p = child_in_lattice(q, child, child_level);
-  return diamonds_.domain().contains(p) && !is_beyond(Diamond(p), diamonds_.last_sample());
-}
-
-template <class Sample>
-void PageContour<Sample>::note_lost_children(const DiamondStencil& stencil, LatticePoint q) {
-  for (std::size_t c = 0; c < stencil.child_count; ++c) {
-    const bool finer = stencil.phase == 2;
-    const LatticePoint child = (finer ? 2 : 1) * q + stencil.children[c];
-    const int child_level = page_.level() - (finer ? 1 : 0);
-    if (!is_in_data(q, child, child_level)) continue;
+void PageContour<Sample>::note_lost_children(const Diamond& diamond) {
+  for (int c = 0; c < diamond.child_count(); ++c) {
     // What cannot be had has no greater error than what it comes from.
-    if (pages_.is_lost(child_in_lattice(q, child, child_level)))
-      greatest_rank_at_lost_ =
-          std::max(greatest_rank_at_lost_, diamonds_.rank_if_crossed(page_.in_lattice(q)));
+    const LatticePoint child = diamond.child(c);
+    if (pages_.is_in_data(child) && pages_.is_lost(child))
+      greatest_rank_at_lost_ = std::max(greatest_rank_at_lost_, diamonds_.rank_if_crossed(diamond.point()));
   }
 }
 

@@ -22,7 +22,6 @@ class PageContour {
   /// some. Throws PageLost.
   void add(int level, const typename SplitPages<Sample>::PageOfLevel& page);
 
-  [[nodiscard]] std::uint64_t split_diamonds() const { return split_diamonds_; }
   /// How many tetrahedra the mesh has more than the diamonds of its root.
   [[nodiscard]] std::uint64_t tetrahedra_added() const { return tetrahedra_; }
   /// Of the split diamonds of which a child is kept from being split by pages that cannot be had.
@@ -37,11 +36,7 @@ class PageContour {
   [[nodiscard]] Neighbours neighbours(int level, LatticePoint block) const;
 
   void add_diamond(const DiamondStencil& stencil, LatticePoint q);
-  /// Of a child in units of its level, from the first point of its parent's page.
-  [[nodiscard]] LatticePoint child_in_lattice(LatticePoint q, LatticePoint child, int child_level) const;
-  /// Whether the child is not wholly outside.
-  [[nodiscard]] bool is_in_data(LatticePoint q, LatticePoint child, int child_level) const;
-  void note_lost_children(const DiamondStencil& stencil, LatticePoint q);
+  void note_lost_children(const Diamond& diamond);
   void add_half(const DiamondStencil& stencil, LatticePoint q, const DiamondStencil::Half& half,
                 Members above);
   std::uint32_t edge_point(LatticePoint a, LatticePoint b);
@@ -58,7 +53,7 @@ class PageContour {
   static constexpr std::int32_t kEdgeSide = 35;
   std::vector<std::uint32_t> edge_points_;
   std::vector<std::uint32_t> used_;
-  std::uint64_t split_diamonds_ = 0, tetrahedra_ = 0;
+  std::uint64_t tetrahedra_ = 0;
   int greatest_rank_at_lost_ = 0;
 };
 

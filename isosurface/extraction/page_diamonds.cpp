@@ -20,7 +20,7 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
   level_ = level;
   block_ = block;
   corner_ = PageGrid::kSide * block;
-  lattice_step_ = 1 << (level - diamonds_.level({1, 1, 1}));
+  lattice_step_ = diamonds_.lattice_step(level);
   const LatticePoint last = diamonds_.grid().last();
   inside_ = true;
   for (int axis = 0; axis < 3; ++axis) {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "isosurface/contour/contour.h"
 #include "isosurface/storage/z_order.h"
 
 namespace adamas {
@@ -136,6 +137,11 @@ bool SplitPages<Sample>::is_split(LatticePoint p) const {
   const PageOfLevel* found = page(level, {u.i / kSide, u.j / kSide, u.k / kSide});
   return found != nullptr && found->mask != kNone &&
          mask(level, *found).has({u.i % kSide, u.j % kSide, u.k % kSide});
+}
+
+template <class Sample>
+bool SplitPages<Sample>::is_in_data(LatticePoint p) const {
+  return diamonds_.domain().contains(p) && !is_beyond(Diamond(p), diamonds_.last_sample());
 }
 
 template <class Sample>

@@ -99,12 +99,14 @@ class SplitPages {
   }
   /// The lattice point of a page's point.
   [[nodiscard]] LatticePoint in_lattice(int level, LatticePoint block, LatticePoint q) const {
-    return (1 << (level - diamonds_.level({1, 1, 1}))) * (PageGrid::kSide * block + q);
+    return diamonds_.lattice_step(level) * (PageGrid::kSide * block + q);
   }
 
   /// Of the diamond of any lattice point: its rank where it may be split, else 0. Throws PageLost.
   int rank(LatticePoint p);
   [[nodiscard]] bool is_split(LatticePoint p) const;
+  /// Whether its diamond is not wholly outside.
+  [[nodiscard]] bool is_in_data(LatticePoint p) const;
   /// Whether it is kept from being split by pages that cannot be had.
   [[nodiscard]] bool is_lost(LatticePoint p) const;
 

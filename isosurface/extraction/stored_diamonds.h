@@ -35,6 +35,8 @@ class StoredDiamonds {
   [[nodiscard]] int levels() const { return grid_.depth(); }
   /// The level of a lattice point in the store: coordinates in samples are multiples of 2^level.
   [[nodiscard]] int level(LatticePoint p) const { return trailing_zeros(p) - shift_; }
+  /// How many lattice units there are between points of a level.
+  [[nodiscard]] std::int32_t lattice_step(int level) const { return std::int32_t{1} << (level + shift_); }
   [[nodiscard]] LatticePoint in_samples(LatticePoint p) const {
     return {p.i >> shift_, p.j >> shift_, p.k >> shift_};
   }

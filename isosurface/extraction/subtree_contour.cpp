@@ -34,11 +34,9 @@ class SubtreeMesh {
   /// A diamond that is split, and what of its children is part of the mesh.
   void add(const Diamond& diamond) {
     split(diamond);
-    const Domain& domain = diamonds_.domain();
     for (std::size_t c = 0; c < static_cast<std::size_t>(diamond.child_count()); ++c) {
       const Diamond child(diamond.child(static_cast<int>(c)));
-      if (!domain.contains(child.point()) || is_beyond(child, diamonds_.last_sample())) continue;
-      if (pages_.is_split(child.point())) continue;
+      if (!pages_.is_in_data(child.point()) || pages_.is_split(child.point())) continue;
       // What cannot be had has no greater error than what it comes from.
       const int rank = pages_.rank(pages_.is_lost(child.point()) ? diamond.point() : child.point());
       greatest_rank_ = std::max(greatest_rank_, rank);
@@ -95,10 +93,10 @@ ExtractedSurface contour_of_subtrees(StoredDiamonds<Sample>& diamonds, SplitPage
   pages.for_each_page([&](int level, const auto& page, double part) {
     progress.step("extracting", part);
     pages.mask(level, page).for_each([&](LatticePoint q) {
-      ++surface.diamonds;
       subtrees.add(Diamond(pages.in_lattice(level, page.block, q)));
     });
   });
+  surface.diamonds = pages.count();
   surface.max_error = subtrees.greatest_error();
   surface.tetrahedra = subtrees.mesh().tetrahedron_count();
   surface.contour =

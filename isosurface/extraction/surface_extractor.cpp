@@ -66,7 +66,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
     contour.add(level, page);
   });
   ExtractedSurface surface;
-  surface.diamonds = contour.split_diamonds();
+  surface.diamonds = pages_.count();
   surface.tetrahedra =
       static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count()) + contour.tetrahedra_added();
   surface.max_error = diamonds_.error(std::max(contour.greatest_rank_at_lost(), pages_.greatest_left()));

@@ -25,10 +25,11 @@ bool TriangleCounter<Sample>::is_inside(const Diamond& diamond) const {
 }
 
 template <class Sample>
-std::int64_t TriangleCounter<Sample>::count_clipped(const CrossedTetrahedron& tetrahedron) const {
+std::int64_t TriangleCounter<Sample>::count_clipped(const Diamond& diamond, int slot) {
   ContourBuilder builder(diamonds_.domain(), request_.isovalue,
                          {request_.least_parameter, diamonds_.last_sample()});
-  builder.add(tetrahedron);
+  DiamondContour(builder, request_.isovalue, diamonds_.last_sample())
+      .add(diamond, 1u << slot, [this](LatticePoint p) { return diamonds_.sample(p); });
   Contour contour = builder.finish();
   if (request_.region) clip_contour(contour, *request_.region);
   return static_cast<std::int64_t>(contour.triangles.size());
@@ -55,8 +56,7 @@ std::int64_t TriangleCounter<Sample>::count(const Diamond& diamond, int slot,
   }
   const std::int64_t triangles = kTetrahedronContours[above].triangle_count;
   if (triangles == 0 || is_inside(diamond)) return triangles;
-  return count_clipped(
-      {diamond.point(), static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(above), values});
+  return count_clipped(diamond, slot);
 }
 
 template <class Sample>

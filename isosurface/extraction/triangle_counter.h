@@ -28,7 +28,7 @@ class TriangleCounter {
  private:
   DiamondVertices vertices(const Diamond& diamond, bool with_middle);
   std::int64_t count(const Diamond& diamond, int slot, const std::array<double, 4>& values, int bisections);
-  std::int64_t count_clipped(const CrossedTetrahedron& tetrahedron) const;
+  std::int64_t count_clipped(const Diamond& diamond, int slot);
 
   StoredDiamonds<Sample>& diamonds_;
   const SurfaceRequest& request_;
