@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
+#include "core/base/arena.h"
 #include "core/lattice/lattice_map.h"
 
 namespace adamas {
@@ -31,21 +31,23 @@ class PointNumbers {
       const auto [block, is_new] = blocks_.insert(key);
       if (is_new) {
         *block = static_cast<std::uint32_t>(numbers_.size());
-        numbers_.emplace_back().fill(kNone);
+        numbers_.add()->fill(kNone);
       }
       last_key_ = key;
-      last_block_ = *block;
+      last_block_ = &numbers_[*block];
     }
     std::uint32_t& number =
-        numbers_[last_block_][static_cast<std::size_t>((q.i & 3) + 4 * (q.j & 3) + 16 * (q.k & 3))];
+        (*last_block_)[static_cast<std::size_t>((q.i & 3) + 4 * (q.j & 3) + 16 * (q.k & 3))];
     return {&number, number == kNone};
   }
 
  private:
+  using Block = std::array<std::uint32_t, 64>;
+
   LatticeMap<std::uint32_t> blocks_;
-  std::vector<std::array<std::uint32_t, 64>> numbers_;
+  Arena<Block> numbers_;
   LatticePoint last_key_ = kNoKey<LatticePoint>;
-  std::uint32_t last_block_ = 0;
+  Block* last_block_ = nullptr;
 };
 
 }  // namespace adamas

@@ -50,7 +50,7 @@ class ContextCoder {
     return ranges_[map_[context] * (symbols_ + 1) + symbol];
   }
   [[nodiscard]] Range escape(std::size_t context) const { return range(context, symbols_); }
-  /// The tables as a decoder reads them.
+  /// The tables as a decoder reads them, of contexts from some one on.
   struct View {
     const std::uint8_t* map;
     const Entry* all;
@@ -58,7 +58,7 @@ class ContextCoder {
       return all + (std::size_t{map[context]} << kScaleBits);
     }
   };
-  [[nodiscard]] View tables_view() const { return {map_.data(), entries_.data()}; }
+  [[nodiscard]] View tables_view(std::size_t first) const { return {map_.data() + first, entries_.data()}; }
 
  private:
   /// A frequency for each symbol, then that of the escape; their sum is kScale.
@@ -79,8 +79,8 @@ class ContextEncoder {
  public:
   explicit ContextEncoder(const ContextCoder& coder) : coder_(coder) {}
 
-  /// What one call of ContextDecoder::decode will give.
-  void put(std::span<const std::uint16_t> contexts, std::span<const std::uint8_t> symbols);
+  /// What one call of ContextDecoder::decode will give. Contexts are added to `base`.
+  void put(std::size_t base, std::span<const std::uint8_t> contexts, std::span<const std::uint8_t> symbols);
   /// Appends the bytes to `out`.
   void finish(std::vector<std::byte>& out) const;
 
@@ -100,15 +100,18 @@ class ContextDecoder {
  public:
   ContextDecoder(const ContextCoder& coder, std::span<const std::byte> bytes);
 
-  /// Fills `symbols`, one for each context.
-  void decode(std::span<const std::uint16_t> contexts, std::span<std::uint8_t> symbols);
+  /// Fills `symbols`, one for each context, which is added to `base`.
+  void decode(std::size_t base, std::span<const std::uint8_t> contexts, std::span<std::uint8_t> symbols);
   /// Whether the bytes end here, and no symbol was wrong.
   [[nodiscard]] bool finish() const;
 
  private:
-  std::uint8_t decode_one(std::uint32_t& state, std::uint16_t context);
+  std::uint8_t decode_one(std::uint32_t& state, std::size_t context);
+  /// What follows an escape: a symbol that has no frequency in the context.
+  std::uint8_t decode_escaped(std::uint32_t& state, std::size_t context);
   void renormalise(std::uint32_t& state);
-  std::size_t decode_most(std::span<const std::uint16_t> contexts, std::span<std::uint8_t> symbols);
+  std::size_t decode_most(std::size_t base, std::span<const std::uint8_t> contexts,
+                          std::span<std::uint8_t> symbols);
 
   const ContextCoder& coder_;
   const std::byte* next_;

@@ -35,10 +35,12 @@ struct BackwardStates {
 
 }  // namespace
 
-void ContextEncoder::put(std::span<const std::uint16_t> contexts, std::span<const std::uint8_t> symbols) {
+void ContextEncoder::put(std::size_t base, std::span<const std::uint8_t> contexts,
+                         std::span<const std::uint8_t> symbols) {
   ADAMAS_ASSERT(contexts.size() == symbols.size());
   for (std::size_t n = 0; n < symbols.size(); ++n) {
-    items_.push_back({contexts[n], symbols[n], static_cast<std::uint8_t>(n % kLanes)});
+    items_.push_back(
+        {static_cast<std::uint16_t>(base + contexts[n]), symbols[n], static_cast<std::uint8_t>(n % kLanes)});
   }
 }
 
@@ -88,62 +90,59 @@ void ContextDecoder::renormalise(std::uint32_t& state) {
   next_ += 2;
 }
 
-std::uint8_t ContextDecoder::decode_one(std::uint32_t& state, std::uint16_t context) {
-  std::uint32_t symbol = 0;
-  state = step(coder_.tables_view().entries(context), state, symbol);
+std::uint8_t ContextDecoder::decode_escaped(std::uint32_t& state, std::size_t context) {
+  const std::uint32_t symbol = state & ((1u << kEscapedBits) - 1);
+  state >>= kEscapedBits;
   renormalise(state);
-  if (symbol == ContextCoder::kEscape) {
-    symbol = state & ((1u << kEscapedBits) - 1);
-    state >>= kEscapedBits;
-    renormalise(state);
-    if (symbol >= coder_.symbols() || coder_.range(context, symbol).frequency != 0) {
-      good_ = false;
-      symbol = 0;
-    }
-  }
-  return static_cast<std::uint8_t>(symbol);
+  if (symbol < coder_.symbols() && coder_.range(context, symbol).frequency == 0)
+    return static_cast<std::uint8_t>(symbol);
+  good_ = false;
+  return 0;
 }
 
-void ContextDecoder::decode(std::span<const std::uint16_t> contexts, std::span<std::uint8_t> symbols) {
+std::uint8_t ContextDecoder::decode_one(std::uint32_t& state, std::size_t context) {
+  std::uint32_t symbol = 0;
+  state = step(coder_.tables_view(context).entries(0), state, symbol);
+  renormalise(state);
+  return symbol == ContextCoder::kEscape ? decode_escaped(state, context) : static_cast<std::uint8_t>(symbol);
+}
+
+void ContextDecoder::decode(std::size_t base, std::span<const std::uint8_t> contexts,
+                            std::span<std::uint8_t> symbols) {
   ADAMAS_ASSERT(contexts.size() == symbols.size());
-  std::size_t n = decode_most(contexts, symbols);
-  // After an escape, or near the end: one by one until four are done.
-  while (n < symbols.size()) {
-    for (std::size_t lane = 0; lane < kLanes && n < symbols.size(); ++lane, ++n) {
-      symbols[n] = decode_one(states_[lane], contexts[n]);
-    }
-    n += decode_most(contexts.subspan(n), symbols.subspan(n));
-  }
+  for (std::size_t n = decode_most(base, contexts, symbols); n < symbols.size(); ++n)
+    symbols[n] = decode_one(states_[n % kLanes], base + contexts[n]);
 }
 
-/// Decodes four at a time until there is an escape among them or the stream is near its end. Returns how
-/// many.
-std::size_t ContextDecoder::decode_most(std::span<const std::uint16_t> contexts,
+/// Decodes as many at a time as there are states until the stream is near its end. Returns how many.
+std::size_t ContextDecoder::decode_most(std::size_t base, std::span<const std::uint8_t> contexts,
                                         std::span<std::uint8_t> symbols) {
+  // Each symbol takes a word at most, and one more after an escape.
+  constexpr std::ptrdiff_t kMostBytes = 4 * kLanes;
   // Copies that nothing points to stay in registers.
-  const auto tables = coder_.tables_view();
+  const auto tables = coder_.tables_view(base);
   std::array<std::uint32_t, kLanes> states = states_;
   const std::byte* next = next_;
   std::size_t n = 0;
-  for (; n + kLanes <= symbols.size() && end_ - next >= 2 * static_cast<std::ptrdiff_t>(kLanes);
-       n += kLanes) {
-    std::array<std::uint32_t, kLanes> found{};
-    std::array<std::uint32_t, kLanes> after = states;
-    const std::byte* at = next;
-    bool escaped = false;
+  for (; n + kLanes <= symbols.size() && end_ - next >= kMostBytes; n += kLanes) {
+#pragma GCC unroll 8
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::uint32_t state = step(tables.entries(contexts[n + lane]), after[lane], found[lane]);
+      std::uint32_t symbol = 0;
+      const std::uint32_t state = step(tables.entries(contexts[n + lane]), states[lane], symbol);
+      // Without a branch, for which there is no telling: whether a word belongs to the state.
       const bool low = state < ContextCoder::kLeastState;
-      const std::uint32_t longer = state << kWordBits | load_word(at);
-      after[lane] = low ? longer : state;
-      at += low ? 2 : 0;
-      escaped |= found[lane] == ContextCoder::kEscape;
+      const std::uint32_t longer = state << kWordBits | load_word(next);
+      states[lane] = low ? longer : state;
+      next += low ? 2 : 0;
+      if (symbol == ContextCoder::kEscape) [[unlikely]] {
+        next_ = next;
+        std::uint32_t escaped = states[lane];
+        symbol = decode_escaped(escaped, base + contexts[n + lane]);
+        states[lane] = escaped;
+        next = next_;
+      }
+      symbols[n + lane] = static_cast<std::uint8_t>(symbol);
     }
-    if (escaped) break;
-    states = after;
-    next = at;
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-      symbols[n + lane] = static_cast<std::uint8_t>(found[lane]);
   }
   states_ = states;
   next_ = next;

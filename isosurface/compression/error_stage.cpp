@@ -1,84 +1,79 @@
 #include "isosurface/compression/error_stage.h"
 
-#include <cstring>
+#include <algorithm>
+#include <utility>
 
-#include "isosurface/compression/row_lanes.h"
 #include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
 
-using Codes = PaddedGrid<std::uint8_t>;
+using Codes = ParityCells<std::uint8_t>;
 
-constexpr std::uint8_t kRoomClasses = ErrorStages<std::uint8_t>::kRoomClasses;
-/// Stands for a context where a child's error is as great as the point's may be.
-constexpr std::uint8_t kDetermined = 255;
+constexpr std::uint8_t kMostCode = 63;
+constexpr int kRoomClasses = ErrorStages<std::uint8_t>::kRoomClasses;
 
-/// What is predicted of the points of a row, from the own errors that stand there: not more than they may be,
-/// and not less than any child on the page. For each a part of its context too.
-void predict(const Codes& errors, const Codes& most_errors, LatticePoint first, int phase,
-             std::uint8_t* predicted, std::uint8_t* contexts) {
-  using Lanes = RowLanes<std::uint8_t, PageGrid::kSide>;
-  static_assert(Lanes::kParts == 1);
-  const LatticePoint row{0, first.j, first.k};
-  Lanes children(errors.at({-1, -1, -1}));
-  for (int axis = 0; phase < 2 && axis < 3; ++axis) {
-    if ((first[axis] & 1) == 0) continue;
-    LatticePoint step{};
-    step[axis] = 1;
-    children.take_greatest(errors.at(row - step));
-    children.take_greatest(errors.at(row + step));
+/// Centres have children on the page's level along all axes, faces along two, edges none.
+constexpr std::size_t child_count(int parity) {
+  return phase_of(parity) == 2 ? 0 : static_cast<std::size_t>(2 * (3 - phase_of(parity)));
+}
+constexpr CellNeighbour child(int parity, std::size_t number) {
+  LatticePoint step{};
+  std::size_t found = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((parity >> axis & 1) != 0 && found++ == number / 2) step[axis] = number % 2 == 0 ? -1 : 1;
   }
-  std::array<std::uint8_t, PageGrid::kSide> greatest_child;
-  children.store(greatest_child.data());
-  Lanes lanes(predicted);
-  lanes.take_least(most_errors.at(row));
-  lanes.take_greatest(greatest_child.data());
-  std::array<std::uint8_t, PageGrid::kSide> codes;
-  lanes.store(codes.data());
-  // The points between them belong to a later phase.
-  copy_every_other(codes.data(), predicted, static_cast<std::size_t>(first.i));
+  return cell_neighbour(parity, step);
+}
 
-  using Part = Lanes::Part;
-  const Part code = Lanes::load(codes.data()), most = Lanes::load(most_errors.at(row)),
-             floor = Lanes::load(greatest_child.data());
-  const Part room = most > code ? most - code : Part{};
-  Part context = code == 0 ? Part{} + kRoomClasses : Part{};
-  for (const std::uint8_t least : {1, 2, 4, 7, 13, 25}) context += room >= least ? Part{} + 1 : Part{};
-  context = floor >= most ? Part{} + kDetermined : context;
-  std::memcpy(contexts, &context, sizeof context);
+/// Makes predictions not more than they may be, and not less than any child on the page. For each a part of
+/// its context too, from 1 on; 0 where a child is as great as the point may be.
+template <int Parity, std::size_t Bytes>
+[[gnu::always_inline]] inline void predict(const AllCells<std::uint8_t>& errors, const Codes& cube_room,
+                                           Codes& predicted, Codes& parts) {
+  using Lanes = WideLanes<std::uint8_t, Bytes>;
+  using Numbers = typename Lanes::Numbers;
+  for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+    Numbers least{};
+    [&]<std::size_t... N>(std::index_sequence<N...>) {
+      ((least = Lanes::greater(
+            least, Lanes::load(errors[child(Parity, N).parity].data() + n + child(Parity, N).offset))),
+       ...);
+    }
+    (std::make_index_sequence<child_count(Parity)>());
+    const Numbers most = kMostCode - greatest_of_cubes<Parity, Lanes>(cube_room.data() + n);
+    const Numbers code = Lanes::greater(Lanes::lesser(Lanes::load(predicted.data() + n), most), least);
+    const Numbers room = Lanes::greater(most, code) - code;
+    Numbers part = code == 0 ? Numbers{} + (1 + kRoomClasses) : Numbers{} + 1;
+    for (const std::uint8_t from : {1, 2, 4, 7, 13, 25}) part += room >= from ? Numbers{} + 1 : Numbers{};
+    Lanes::store(code, predicted.data() + n);
+    Lanes::store(least >= most ? Numbers{} : part, parts.data() + n);
+  }
 }
 
 }  // namespace
 
 template <class Word>
-void ErrorStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, int phase, bool trust,
-                             bool take, ValueStage& stage) {
-  with_wide_lanes([&](auto) {
-    Codes& contexts = fields.error_contexts;
-    for_each_row(shape, phase, [&](LatticePoint first) {
-      const LatticePoint row{0, first.j, first.k};
-      predict(fields.errors, fields.most_errors, first, phase, fields.predicted.at(row), contexts.at(row));
-      if (take) copy_points(shape, first, fields.predicted, fields.errors);
+void ErrorStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+                             ValueStage& stage) {
+  stage.begin(parity, ParityBox::of(shape.count, parity));
+  with_wide_lanes([&](auto bytes) {
+    Codes parts;
+    with_parity(parity, [&](auto of) {
+      predict<of(), bytes()>(fields.errors, fields.cube_error_room, fields.predicted[of()], parts);
     });
     // Samples that are not whole numbers are worked with in another precision.
     const bool is_finest = shape.level == 0, are_exact = is_finest && sizeof(Word) < sizeof(float);
-    const int base = 1 + (phase * 2 + (is_finest ? 0 : 1)) * 2 * 2 * kRoomClasses;
+    // Parts begin with 1, and so do the contexts of points that are not sure.
+    const int base = (phase_of(parity) * 2 + (is_finest ? 0 : 1)) * 2 * 2 * kRoomClasses;
     constexpr int kMissing = 2 * kRoomClasses;
-    with_points(shape, phase, PhasePoints::Of::kErrors, [&](const PhasePoints& points) {
-      const bool some = trust && are_exact;
-      const auto list = some ? points.open() : points.all();
-      std::size_t size = 0;
-      for (std::size_t n = 0; n < list.size(); ++n) {
-        const std::uint8_t part = contexts[list[n]];
-        const bool misses = some || !points.sure()[n];
-        const bool is_sure = part == kDetermined || (are_exact && !misses);
-        stage.places[size] = list[n];
-        stage.contexts[size] =
-            static_cast<std::uint16_t>(is_sure ? kSure : base + (misses ? kMissing : 0) + part);
-        size += is_sure && trust ? 0 : 1;
-      }
-      stage.size = size;
+    const SurePoints points(shape, parity, SurePoints::Of::kErrors);
+    stage.add_rows<bytes() == 32>(points, [&](std::size_t cell, RowBytes have_all) {
+      const RowBytes part = load_row(parts.data() + cell);
+      const RowBytes open = bytes_not_zero(part) & (are_exact ? ~have_all : ~RowBytes{0});
+      const RowBytes contexts =
+          part + kEachByte * static_cast<RowBytes>(base) + (~have_all & kEachByte * kMissing);
+      return std::pair(contexts & open, trust ? open : ~RowBytes{0});
     });
   });
 }

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "isosurface/compression/interpolation_page.h"
 #include "isosurface/compression/page_order.h"
+#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
@@ -78,6 +79,8 @@ class InterpolationCodec<Word>::Reader {
   }
 
  private:
+  using Token = ResidualToken<Word>;
+
   [[nodiscard]] const std::byte* begin() const { return buffer_.data() + RangeDecoder::kSlack; }
 
   std::uint64_t take(int bits) {
@@ -87,18 +90,23 @@ class InterpolationCodec<Word>::Reader {
 
   /// Adds what the symbols leave open.
   bool join(std::span<const std::uint8_t> groups, const std::uint8_t* symbols, Word* folded) {
-    constexpr std::uint64_t kOpen = 0xf0f0f0f0f0f0f0f0u;
+    constexpr std::uint64_t kEach = 0x0101010101010101u, kOpen = kEach * 0xf0, kHighest = kEach << 7;
+    static_assert(Token::kDirect == 16);
     std::size_t n = 0;
     for (; n + 8 <= groups.size(); n += 8) {
       std::uint64_t eight = 0;
       std::memcpy(&eight, symbols + n, sizeof eight);
       any_ = any_ || eight != 0;
-      if ((eight & kOpen) != 0) {
+      // The lowest byte that is 0, of those that differ from the escape's, has its highest bit here.
+      const std::uint64_t other = eight ^ kEach * Token::kEscape;
+      if ((eight & kOpen) == 0) {
+        if constexpr (sizeof(Word) > 1) std::copy_n(symbols + n, 8, folded + n);
+      } else if (((other - kEach) & ~other & kHighest) == 0) {
+        join_tokens(symbols + n, folded + n);
+      } else {
         for (std::size_t m = n; m < n + 8; ++m) {
           if (!join_one(groups[m], symbols[m], folded[m])) return false;
         }
-      } else if constexpr (sizeof(Word) > 1) {
-        for (std::size_t m = n; m < n + 8; ++m) folded[m] = symbols[m];
       }
     }
     for (; n < groups.size(); ++n) {
@@ -108,8 +116,28 @@ class InterpolationCodec<Word>::Reader {
     return true;
   }
 
+  /// Eight symbols that are tokens, without branches, for which there is no telling.
+  void join_tokens(const std::uint8_t* symbols, Word* folded) {
+    struct Entry {
+      Word first = 0;         ///< the least number that is folded to the token
+      std::uint8_t open = 0;  ///< bits that it leaves open
+    };
+    static constexpr auto kEntries = [] {
+      std::array<Entry, Token::kTokens> entries;
+      for (int token = 0; token < Token::kTokens; ++token)
+        entries[static_cast<std::size_t>(token)] = {Token::join(token, 0),
+                                                    static_cast<std::uint8_t>(Token::extra_bits(token))};
+      return entries;
+    }();
+    constexpr int kPerRefill = BitReader::kRefilled / Token::extra_bits(Token::kTokens - 1);
+    for (int m = 0; m < 8; ++m) {
+      if (m % kPerRefill == 0) bits_.refill();
+      const Entry entry = kEntries[symbols[m]];
+      folded[m] = static_cast<Word>(entry.first | take(entry.open));
+    }
+  }
+
   bool join_one(std::size_t group, int symbol, Word& folded) {
-    using Token = ResidualToken<Word>;
     if (symbol < Token::kDirect) {
       folded = static_cast<Word>(symbol);
       return true;
@@ -266,9 +294,11 @@ bool InterpolationCodec<Word>::decode_smooth(const PageShape& shape, const Aroun
     });
     return true;
   }
-  InterpolationPage<Word> page(shape.count, around);
-  for (int set = 0; set < InterpolationCells<Word>::kSets; ++set) page.predict(set);
-  page.store(samples);
+  with_wide_lanes([&](auto) {
+    InterpolationPage<Word> page(shape.count, around);
+    for (int set = 0; set < InterpolationCells<Word>::kSets; ++set) page.predict(set);
+    page.store(samples);
+  });
   return true;
 }
 
@@ -280,12 +310,14 @@ bool InterpolationCodec<Word>::decode_sets(Reader& reader, const PageShape& shap
   std::array<std::uint8_t, Page::kMostInSet> groups;
   std::array<Word, Page::kMostInSet> folded;
   for (int set = 0; set < InterpolationCells<Word>::kSets; ++set) {
-    page.predict(set);
-    page.contexts(set, group_of(set), groups.data());
+    with_wide_lanes([&](auto) {
+      page.predict(set);
+      page.contexts(set, group_of(set), groups.data());
+    });
     if (!reader.take(std::span(groups).first(page.size(set)), folded.data())) return false;
-    page.apply(set, folded.data());
+    with_wide_lanes([&](auto) { page.apply(set, folded.data()); });
   }
-  page.store(samples);
+  with_wide_lanes([&](auto) { page.store(samples); });
   return reader.at_end();
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "isosurface/compression/interpolation_cells.h"
+#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 

@@ -23,36 +23,32 @@ class RowErrors {
   RowErrors(const HeightGrid& heights, const ErrorGeometry& geometry)
       : heights_(heights), geometry_(geometry) {}
 
-  /// Of all points of a row.
-  void fill(LatticePoint row, std::uint8_t* codes) const {
+  /// Of all points of a row, by the parity of their first coordinate.
+  void fill(LatticePoint row, std::uint8_t* even_codes, std::uint8_t* odd_codes) const {
     for (std::size_t n = 0; n < PageGrid::kSide / 2; n += Lanes::kCount) {
-      Integers even{}, odd{};
       const LatticePoint first{1, row.j, row.k};
       if ((row.j & row.k & 1) != 0) {
-        even = face<0>(row, n);
-        odd = centre(first, n);
+        store(face<0>(row, n), even_codes + n);
+        store(centre(first, n), odd_codes + n);
       } else if ((row.j & 1) != 0) {
-        even = edge<1>(row, n);
-        odd = face<2>(first, n);
+        store(edge<1>(row, n), even_codes + n);
+        store(face<2>(first, n), odd_codes + n);
       } else if ((row.k & 1) != 0) {
-        even = edge<2>(row, n);
-        odd = face<1>(first, n);
+        store(edge<2>(row, n), even_codes + n);
+        store(face<1>(first, n), odd_codes + n);
       } else {
-        odd = edge<0>(first, n);
+        store(edge<0>(first, n), odd_codes + n);
       }
-      store(even, odd, codes + 2 * n);
     }
   }
 
  private:
   static constexpr std::size_t kCount = Lanes::kCount;
 
-  [[gnu::always_inline]] static inline void store(Integers even, Integers odd, std::uint8_t* to) {
-    using Pairs [[gnu::vector_size(2 * kCount)]] = std::uint16_t;
-    constexpr bool kLittle = std::endian::native == std::endian::little;
-    const Integers both = kLittle ? even | odd << 8 : odd | even << 8;
-    const Pairs pairs = __builtin_convertvector(both, Pairs);
-    std::memcpy(to, &pairs, sizeof pairs);
+  [[gnu::always_inline]] static inline void store(Integers codes, std::uint8_t* to) {
+    using Narrow [[gnu::vector_size(kCount)]] = std::uint8_t;
+    const Narrow narrow = __builtin_convertvector(codes, Narrow);
+    std::memcpy(to, &narrow, sizeof narrow);
   }
 
   /// error_code of each number.
@@ -229,11 +225,15 @@ ErrorGeometry::ErrorGeometry(const Vec3& spacing) {
 }
 
 void known_errors(const HeightGrid& heights, const ErrorGeometry& geometry, const PageShape& shape,
-                  PaddedGrid<std::uint8_t>& codes) {
+                  AllCells<std::uint8_t>& codes) {
   with_wide_lanes([&](auto bytes) {
     const RowErrors<bytes()> errors(heights, geometry);
     for (std::int32_t k = 0; k < shape.count.k; ++k) {
-      for (std::int32_t j = 0; j < shape.count.j; ++j) errors.fill({0, j, k}, codes.at({0, j, k}));
+      for (std::int32_t j = 0; j < shape.count.j; ++j) {
+        const auto even = static_cast<std::size_t>((j & 1) << 1 | (k & 1) << 2);
+        const std::size_t cell = surrounding_place({0, j & ~1, k & ~1});
+        errors.fill({0, j, k}, codes[even].data() + cell, codes[even + 1].data() + cell);
+      }
     }
   });
 }

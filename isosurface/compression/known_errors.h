@@ -5,7 +5,7 @@
 
 #include "core/geometry/vec3.h"
 #include "isosurface/compression/height_grid.h"
-#include "isosurface/compression/padded_grid.h"
+#include "isosurface/compression/parity_cells.h"
 #include "isosurface/storage/page.h"
 
 namespace adamas {
@@ -25,9 +25,8 @@ struct ErrorGeometry {
 
 /// The codes of the greatest errors of the diamonds' own tetrahedra, of all points of a page that it may own,
 /// as far as the heights are known: where those in and on a diamond of the finest level are whole numbers of
-/// 16 bits at most, that which preprocessing finds, bit for bit. Fills whole rows; 0 where all coordinates
-/// are even.
+/// 16 bits at most, that which preprocessing finds, bit for bit. Fills whole rows.
 void known_errors(const HeightGrid& heights, const ErrorGeometry& geometry, const PageShape& shape,
-                  PaddedGrid<std::uint8_t>& codes);
+                  AllCells<std::uint8_t>& codes);
 
 }  // namespace adamas

@@ -1,156 +1,162 @@
 #include "isosurface/compression/range_stage.h"
 
-#include <algorithm>
 #include <bit>
+#include <cstring>
 #include <utility>
 
-#include "isosurface/compression/row_lanes.h"
 #include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
 
-/// From a point: the samples in and on its diamond that may be known, and the children on the page's level.
+/// Of a point: the samples in and on its diamond that may be known, and the children on the page's level.
 struct Neighbours {
-  int sample_count = 0, child_count = 0;
-  std::array<std::ptrdiff_t, 11> samples{};
-  std::array<std::ptrdiff_t, 6> children{};
+  std::size_t sample_count = 0, child_count = 0;
+  std::array<CellNeighbour, 11> samples{};
+  std::array<CellNeighbour, 6> children{};
 };
 
-/// Of edges along the axis `own`, of faces across it, or of centres.
-constexpr Neighbours neighbours(int phase, int own) {
+constexpr Neighbours neighbours(int parity) {
+  const int phase = phase_of(parity);
+  // The axis by which edges and faces differ from each other: edges lie along it, faces across it.
+  const int distinct = phase == 2 ? parity : 7 - parity;
+  const int own = distinct == 4 ? 2 : distinct == 2 ? 1 : 0;
   Neighbours result;
-  const auto add = [&result](LatticePoint d) {
-    result.samples[static_cast<std::size_t>(result.sample_count++)] = PaddedGrid<int>::offset(d);
-  };
   for (int code = 0; code < 27; ++code) {
     const LatticePoint d{code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
     const int length = d.i * d.i + d.j * d.j + d.k * d.k;
     const bool in_plane = d[own] == 0, on_axis = length == 1 && !in_plane;
-    if (phase == 0 ? length == 3 || length == 0 : in_plane || on_axis) add(d);
-    const bool is_child = phase == 0 ? length == 1 : phase == 1 && length == 1 && in_plane;
-    if (is_child) {
-      result.children[static_cast<std::size_t>(result.child_count++)] = PaddedGrid<int>::offset(d);
-    }
+    if (phase == 0 ? length == 3 || length == 0 : in_plane || on_axis)
+      result.samples[result.sample_count++] = cell_neighbour(parity, d);
+    if (phase == 0 ? length == 1 : phase == 1 && length == 1 && in_plane)
+      result.children[result.child_count++] = cell_neighbour(parity, d);
   }
   return result;
 }
 
-template <int Phase, int Own>
-constexpr Neighbours kNeighbours = neighbours(Phase, Own);
+using Bits = ParityCells<std::uint8_t>;
 
-/// Of the points of a row, those of other kinds too, whose numbers mean nothing. Unrolled: nearly all time
-/// goes here.
-template <int Phase, int Own, class Word>
-void known_least(const Word* samples, const Word* values, Word* row) {
-  constexpr Neighbours kNear = kNeighbours<Phase, Own>;
-  RowLanes<Word, PageGrid::kSide> least(samples);
-  [&]<std::size_t... N>(std::index_sequence<N...>) { (least.take_least(samples + kNear.samples[N]), ...); }
-  (std::make_index_sequence<kNear.sample_count>());
-  [&]<std::size_t... N>(std::index_sequence<N...>) { (least.take_least(values + kNear.children[N]), ...); }
-  (std::make_index_sequence<kNear.child_count>());
-  least.store(row);
-}
-
-template <class Word>
-constexpr int kMostBits = 8 * sizeof(Word);
-
-/// How far the samples inside may be from the interpolation, as the error tells, seen from the bound: by
-/// error and by how many bits more the samples' spread has than the room to the bound has.
-template <class Word>
-constexpr auto kClassesOfErrors = [] {
-  constexpr int kMost = kMostBits<Word>;
-  std::array<std::array<std::uint8_t, 2 * kMost + 1>, 64> classes{};
-  for (int error = 1; error < 64; ++error) {
-    for (int bits = -kMost; bits <= kMost; ++bits)
-      classes[static_cast<std::size_t>(error)][static_cast<std::size_t>(bits + kMost)] =
-          static_cast<std::uint8_t>(std::clamp((error >> 2) - 10 + bits, 1, 7));
-  }
-  return classes;
-}();
-
-/// The contexts of points, kSure where nothing is open.
-template <class Word>
-class ContextsOf {
+/// What stages are made of, for so many numbers at a time.
+template <class Word, int Parity, std::size_t Bytes>
+class RangeLanes {
  public:
-  /// `base`: the first context.
-  ContextsOf(const ValueFields<Word>& fields, int base) : fields_(fields), base_(base) {}
+  using Lanes = WideLanes<Word, Bytes>;
+  using Numbers = typename Lanes::Numbers;
 
-  /// Of both sides.
-  [[nodiscard]] std::array<int, 2> find(std::size_t place) const {
-    const Word low = fields_.known[0][place], high = static_cast<Word>(~fields_.known[1][place]);
-    const std::uint32_t spread = high > low ? static_cast<std::uint32_t>(high - low) : 0u;
-    const int spread_bits = static_cast<int>(std::bit_width(spread)) + kMostBits<Word>;
-    const auto& classes = kClassesOfErrors<Word>[fields_.errors[place]];
-    std::array<int, 2> contexts;
-    for (std::size_t side = 0; side < 2; ++side) {
-      const Word known = fields_.known[side][place];
-      const auto room = static_cast<std::uint32_t>(known - std::min(known, fields_.bounds[side][place]));
-      const int bits = static_cast<int>(std::bit_width(room));
-      constexpr int kStep = sizeof(Word);
-      const int context = base_ + (bits - 1) / kStep * RangeStages<Word>::kErrorClasses +
-                          classes[static_cast<std::size_t>(spread_bits - bits)];
-      contexts[side] = room == 0 ? int{RangeStages<Word>::kSure} : context;
+  /// The least of what is known of each point.
+  [[gnu::always_inline]] static inline void find_known(const AllCells<Word>& samples,
+                                                       const AllCells<Word>& values,
+                                                       ParityCells<Word>& known) {
+    for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+      const auto at = [n](const AllCells<Word>& cells, CellNeighbour near) {
+        return Lanes::load(cells[near.parity].data() + n + near.offset);
+      };
+      Numbers least = at(samples, kNear.samples[0]);
+      [&]<std::size_t... N>(std::index_sequence<N...>) {
+        ((least = Lanes::lesser(least, at(samples, kNear.samples[N]))), ...);
+      }
+      (std::make_index_sequence<kNear.sample_count>());
+      [&]<std::size_t... N>(std::index_sequence<N...>) {
+        ((least = Lanes::lesser(least, at(values, kNear.children[N]))), ...);
+      }
+      (std::make_index_sequence<kNear.child_count>());
+      Lanes::store(least, known.data() + n);
     }
-    return contexts;
+  }
+
+  /// Makes the bounds of a side, and how many bits the room to them has.
+  [[gnu::always_inline]] static inline void find_bounds(const ParityCells<Word>& cube_bounds,
+                                                        const ParityCells<Word>& known,
+                                                        ParityCells<Word>& bounds, Bits& bits) {
+    for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+      const Numbers most = Lanes::load(known.data() + n);
+      const Numbers bound = Lanes::lesser(greatest_of_cubes<Parity, Lanes>(cube_bounds.data() + n), most);
+      Lanes::store(bound, bounds.data() + n);
+      put_bits(most - bound, bits.data() + n);
+    }
+  }
+
+  /// How many bits the difference between the least and the greatest known sample has.
+  [[gnu::always_inline]] static inline void find_spread(const ParityCells<Word>& low,
+                                                        const ParityCells<Word>& inverted_high, Bits& bits) {
+    for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+      const Numbers least = Lanes::load(low.data() + n);
+      put_bits(Lanes::greater(~Lanes::load(inverted_high.data() + n), least) - least, bits.data() + n);
+    }
   }
 
  private:
-  const ValueFields<Word>& fields_;
-  int base_;
+  static constexpr Neighbours kNear = neighbours(Parity);
+
+  /// std::bit_width of each number.
+  [[gnu::always_inline]] static inline void put_bits(Numbers numbers, std::uint8_t* to) {
+    using Narrow [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
+    Numbers bits{};
+    for (unsigned n = 0; n < 8 * sizeof(Word); ++n) {
+      // A variable: sanitizers make the expression one that does not fit.
+      const auto from = static_cast<Word>(Word{1} << n);
+      bits += numbers >= from ? Numbers{} + 1 : Numbers{};
+    }
+    const Narrow narrow = __builtin_convertvector(bits, Narrow);
+    std::memcpy(to, &narrow, sizeof narrow);
+  }
 };
 
-/// Makes fields.known of the rows of a phase.
-template <int Phase, class Word>
-void find_known(ValueFields<Word>& fields, const PageShape& shape, bool take) {
-  for_each_row(shape, Phase, [&](LatticePoint first) {
-    const LatticePoint row{0, first.j, first.k};
-    // The axis by which edges and faces differ from each other.
-    constexpr std::int32_t kOwn = Phase == 2 ? 1 : 0;
-    const bool own_j = Phase != 0 && (first.j & 1) == kOwn, own_k = Phase != 0 && (first.k & 1) == kOwn;
-    for (std::size_t side = 0; side < 2; ++side) {
-      const Word *samples = fields.samples[side].at(row), *values = fields.values[side].at(row);
-      Word* known = fields.known[side].at(row);
-      if (own_j) {
-        known_least<Phase, 1>(samples, values, known);
-      } else if (own_k) {
-        known_least<Phase, 2>(samples, values, known);
-      } else {
-        known_least<Phase, 0>(samples, values, known);
-      }
-      if (take) copy_points(shape, first, fields.known[side], fields.values[side]);
-    }
-  });
+/// Contexts by the room to the bound and by how far the samples inside may be from the interpolation, as the
+/// error tells, seen from the bound: by error and by how many bits more the samples' spread has than the
+/// room.
+template <class Word, std::size_t Bytes>
+[[gnu::always_inline]] inline void find_contexts(int base, const Bits& errors, const Bits& spread_bits,
+                                                 const Bits& room_bits, Bits& contexts) {
+  using Lanes = WideLanes<std::uint8_t, Bytes>;
+  using Numbers = typename Lanes::Numbers;
+  constexpr std::uint8_t kErrorClasses = RangeStages<Word>::kErrorClasses;
+  constexpr int kStep = std::countr_zero(sizeof(Word));
+  for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+    const Numbers error = Lanes::load(errors.data() + n), room = Lanes::load(room_bits.data() + n);
+    // Clamped from 1 to 7, with 64 added so that nothing falls below 0.
+    constexpr std::uint8_t kShift = 64;
+    Numbers error_class = (error >> 2) + Lanes::load(spread_bits.data() + n) - room + (kShift - 10);
+    error_class = Lanes::lesser(Lanes::greater(error_class, Numbers{} + (kShift + 1)),
+                                Numbers{} + (kShift + kErrorClasses - 1)) -
+                  kShift;
+    const Numbers context = static_cast<std::uint8_t>(base) + ((room - 1) >> kStep) * kErrorClasses +
+                            (error == 0 ? Numbers{} : error_class);
+    Lanes::store(room == 0 ? Numbers{} + RangeStages<Word>::kSure : context, contexts.data() + n);
+  }
 }
 
 }  // namespace
 
 template <class Word>
-void RangeStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, int phase, bool trust,
-                             bool take, std::array<ValueStage, 2>& stages) {
-  with_wide_lanes([&](auto) {
-    if (phase == 0) find_known<0>(fields, shape, take);
-    if (phase == 1) find_known<1>(fields, shape, take);
-    if (phase == 2) find_known<2>(fields, shape, take);
-    const int group = phase < 2 ? 2 : shape.level == 0 ? 0 : 1;
-    const ContextsOf<Word> contexts(fields, 1 + group * kBoundClasses * kErrorClasses);
-    const bool are_known = phase < 2 || shape.level == 0;
-    with_points(shape, phase, PhasePoints::Of::kRanges, [&](const PhasePoints& points) {
-      const bool some = trust && are_known;
-      const auto list = some ? points.open() : points.all();
-      std::array<std::size_t, 2> sizes{};
-      for (std::size_t n = 0; n < list.size(); ++n) {
-        const bool is_sure = !some && are_known && points.sure()[n];
-        const auto of_sides = contexts.find(list[n]);
-        for (std::size_t side = 0; side < 2; ++side) {
-          const int context = is_sure ? int{kSure} : of_sides[side];
-          stages[side].places[sizes[side]] = list[n];
-          stages[side].contexts[sizes[side]] = static_cast<std::uint16_t>(context);
-          sizes[side] += context == kSure && trust ? 0 : 1;
-        }
+void RangeStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+                             std::array<ValueStage, 2>& stages) {
+  const int phase = phase_of(parity);
+  const bool are_known = phase < 2 || shape.level == 0;
+  const int group = phase < 2 ? 2 : shape.level == 0 ? 0 : 1;
+  for (ValueStage& stage : stages) stage.begin(parity, ParityBox::of(shape.count, parity));
+  with_wide_lanes([&](auto bytes) {
+    Bits spread, contexts;
+    std::array<Bits, 2> room;
+    with_parity(parity, [&](auto of) {
+      using Lanes = RangeLanes<Word, of(), bytes()>;
+      for (std::size_t side = 0; side < 2; ++side) {
+        Lanes::find_known(fields.samples[side], fields.values[side], fields.known[side]);
+        Lanes::find_bounds(fields.cube_bounds[side], fields.known[side], fields.bounds[side], room[side]);
       }
-      for (std::size_t side = 0; side < 2; ++side) stages[side].size = sizes[side];
+      Lanes::find_spread(fields.known[0], fields.known[1], spread);
     });
+    const SurePoints points(shape, parity, SurePoints::Of::kRanges);
+    for (std::size_t side = 0; side < 2; ++side) {
+      find_contexts<Word, bytes()>(1 + group * kBoundClasses * kErrorClasses,
+                                   fields.errors[static_cast<std::size_t>(parity)], spread, room[side],
+                                   contexts);
+      stages[side].template add_rows<bytes() == 32>(points, [&](std::size_t cell, RowBytes have_all) {
+        const RowBytes row = load_row(contexts.data() + cell);
+        const RowBytes open = bytes_not_zero(row) & (are_known ? ~have_all : ~RowBytes{0});
+        return std::pair(row & open, trust ? open : ~RowBytes{0});
+      });
+    }
   });
 }
 

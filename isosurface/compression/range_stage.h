@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "isosurface/compression/value_fields.h"
@@ -9,22 +8,21 @@
 
 namespace adamas {
 
-/// What is expected of the two sides of the ranges of a phase's points: `known` is the least known word in
+/// What is expected of the two sides of the ranges of a parity's points: `known` is the least known word in
 /// and on the diamond, from which the range begins or before which; before the bound it should not begin.
-/// Edges first, then faces, then centres: the diamond of a centre is that of its faces together, and these
-/// those of their edges, so that where all are known there is nothing to be coded.
+/// The diamond of a centre is that of its faces together, and these those of their edges, so that where all
+/// are known there is nothing to be coded.
 template <class Word>
 class RangeStages {
  public:
   static constexpr int kBoundClasses = 8, kErrorClasses = 8, kGroups = 3;
   /// The context of points whose range is known but for the unforeseen, also from the bound.
-  static constexpr std::uint16_t kSure = 0;
-  static constexpr std::uint16_t kContexts = 1 + kGroups * kBoundClasses * kErrorClasses;
+  static constexpr std::uint8_t kSure = 0;
+  static constexpr int kContexts = 1 + kGroups * kBoundClasses * kErrorClasses;
 
-  /// Fills fields.known, and the stages of both sides with the points that are coded. All errors are known.
-  /// `trust`: whether sure points are not coded. `take`: whether what is known becomes the values of the
-  /// phase's points.
-  static void make(ValueFields<Word>& fields, const PageShape& shape, int phase, bool trust, bool take,
+  /// Fills fields.known and fields.bounds, and the stages of both sides with the points that are coded. All
+  /// errors are known. `trust`: whether sure points are not coded.
+  static void make(ValueFields<Word>& fields, const PageShape& shape, int parity, bool trust,
                    std::array<ValueStage, 2>& stages);
 };
 

@@ -13,6 +13,7 @@ struct RangeToken {
   static constexpr std::uint8_t kPredicted = 0;  ///< just there
   static constexpr std::uint8_t kBound = 1;      ///< at the bound, which is another word
   static constexpr std::uint8_t kFirst = 2;      ///< the distance is 1; then 2, 3, 4 to 5, 6 to 7, 8 to 11...
+  static constexpr std::uint8_t kFirstOpen = kFirst + 3;  ///< from this one on bits follow
   static constexpr std::uint8_t kBehind =
       static_cast<std::uint8_t>(kFirst + 2 * kBits - 1);  ///< all bits follow
   static constexpr std::size_t kSymbols = kBehind + 1;
@@ -35,7 +36,7 @@ struct RangeToken {
   /// Of a symbol from kFirst on.
   static constexpr int extra_bits(std::uint8_t symbol) {
     if (symbol == kBehind) return kBits;
-    return symbol < kFirst + 3 ? 0 : (symbol - kFirst - 3) / 2 + 1;
+    return symbol < kFirstOpen ? 0 : (symbol - kFirstOpen) / 2 + 1;
   }
 
   /// The word from a symbol from kFirst on. Another token may stand for it too, or none if the symbol is not

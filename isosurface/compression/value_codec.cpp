@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstring>
 
 #include "core/base/error.h"
 #include "isosurface/compression/bit_stream.h"
-#include "isosurface/compression/row_lanes.h"
 #include "isosurface/compression/value_symbols.h"
+#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
@@ -35,55 +37,53 @@ class ValueReader {
         decoder_(coder, symbols),
         extras_(extras) {}
 
-  static constexpr bool kFills = true;
   [[nodiscard]] bool needs_errors() const { return is_coded(error_mode_); }
   [[nodiscard]] bool needs_ranges() const { return range_mode_ != RangeMode::kEmpty; }
 
-  void errors(int /*phase*/, const ValueStage& stage) {
-    const std::size_t size = stage.size;
-    decoder_.decode({stage.contexts.data(), size}, {symbols_.data(), size});
-    unsigned all = 0, sure = 0;
-    for (std::size_t n = 0; n < size; ++n) all |= symbols_[n];
-    for (std::size_t n = 0; error_mode_ == ErrorMode::kCoded && n < size; ++n)
-      sure |= stage.contexts[n] == ErrorStages<Word>::kSure ? symbols_[n] : 0u;
-    const PaddedGrid<std::uint8_t>& predicted = fields_.predicted;
-    PaddedGrid<std::uint8_t>& errors = fields_.errors;
-    for (std::size_t n = 0; n < size; ++n) {
-      const std::size_t place = stage.places[n];
-      errors[place] = static_cast<std::uint8_t>((symbols_[n] + predicted[place]) & 63);
-    }
-    summary_.any_sure_error_other |= sure != 0;
-    good_ = good_ && all < ValueContexts<Word>::kErrorSymbols;
+  void errors(const ValueStage& stage) {
+    decode(stage);
+    if (error_mode_ == ErrorMode::kCoded)
+      summary_.any_sure_error_other |= any_sure_symbol(stage, ErrorStages<Word>::kSure);
+    const auto parity = static_cast<std::size_t>(stage.parity);
+    const std::uint8_t* const predicted = fields_.predicted[parity].data();
+    std::uint8_t* const errors = fields_.errors[parity].data();
+    with_wide_lanes([&](auto bytes) {
+      constexpr RowBytes kCode = kEachByte * (ValueContexts<Word>::kErrorSymbols - 1);
+      RowBytes all = 0;
+      for_each_row<bytes() == 32>(stage, [&](std::size_t cell, RowBytes symbols, int count) {
+        all |= symbols;
+        const RowBytes codes = ((symbols & kCode) + load_row(predicted + cell)) & kCode;
+        store_row(codes & first_bytes(count), errors + cell);
+      });
+      good_ = good_ && (all & ~kCode) == 0;
+    });
   }
 
-  void range(int /*phase*/, std::size_t side, const ValueStage& stage) {
-    if (range_mode_ == RangeMode::kPredicted) return;
-    const std::size_t size = stage.size;
-    decoder_.decode({stage.contexts.data(), size}, {symbols_.data(), size});
-    const PaddedGrid<Word>&known = fields_.known[side], &bounds = fields_.bounds[side];
-    PaddedGrid<Word>& values = fields_.values[side];
-    BitReader extras = extras_;
-    unsigned all = 0, sure = 0;
-    bool good = true;
-    for (std::size_t n = 0; n < size; ++n) {
-      const std::uint8_t symbol = symbols_[n];
-      if (symbol == RangeToken<Word>::kPredicted) continue;
-      all |= symbol;
-      sure |= stage.contexts[n] == kSureRange ? symbol : 0u;
-      const std::size_t place = stage.places[n];
-      const Word predicted = known[place], bound = std::min(bounds[place], predicted);
-      if (symbol == RangeToken<Word>::kBound) {
-        good = good && bound != predicted;
-        values[place] = bound;
-      } else {
-        values[place] = word(symbol, predicted, bound, extras, good);
-      }
+  void range(std::size_t side, const ValueStage& stage) {
+    if (range_mode_ == RangeMode::kPredicted) {
+      symbols_.fill(Token::kPredicted);
+    } else {
+      decode(stage);
     }
-    extras_ = extras;
-    good_ = good_ && good;
-    static_assert(RangeToken<Word>::kPredicted == 0);
-    summary_.any_other |= all != 0;
-    summary_.any_sure_range_other |= sure != 0;
+    if (range_mode_ == RangeMode::kCoded)
+      summary_.any_sure_range_other |= any_sure_symbol(stage, RangeStages<Word>::kSure);
+    Word* const values = fields_.values[side][static_cast<std::size_t>(stage.parity)].data();
+    with_wide_lanes([&](auto bytes) {
+      ParityCells<std::uint8_t> symbols{};
+      ParityCells<Word> words;
+      RowBytes all = 0, open = 0;
+      for_each_row<bytes() == 32>(stage, [&](std::size_t cell, RowBytes row, int) {
+        all |= row;
+        open |= open_symbols(row);
+        store_row(row, symbols.data() + cell);
+      });
+      summary_.any_other |= all != 0;
+      good_ = good_ && put_near<bytes()>(symbols, fields_.known[side], fields_.bounds[side], words);
+      for_each_row<false>(stage, [&](std::size_t cell, RowBytes, auto count) {
+        std::copy_n(words.data() + cell, static_cast<int>(count), values + cell);
+      });
+      if (open != 0) put_far(stage.box, symbols, side, values);
+    });
   }
 
   /// Whether the page is one that is coded so.
@@ -96,19 +96,91 @@ class ValueReader {
   }
 
  private:
-  static constexpr std::uint16_t kSureRange = ValueContexts<Word>::kRanges + RangeStages<Word>::kSure;
+  using Token = RangeToken<Word>;
+  static_assert(Token::kPredicted == 0);
 
-  static Word word(std::uint8_t symbol, Word predicted, Word bound, BitReader& extras, bool& good) {
-    using Token = RangeToken<Word>;
+  void decode(const ValueStage& stage) {
+    decoder_.decode(stage.base, {stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
+  }
+
+  /// Where points that are sure are coded: whether any of them is not as expected.
+  bool any_sure_symbol(const ValueStage& stage, std::uint8_t sure_context) const {
+    unsigned any = 0;
+    for (std::size_t n = 0; n < stage.size; ++n) any |= stage.contexts[n] == sure_context ? symbols_[n] : 0u;
+    return any != 0;
+  }
+
+  /// Calls visit(cell, symbols, number of points) for each row; the symbols of points that are not coded are
+  /// 0.
+  template <bool Wide, class Visit>
+  [[gnu::always_inline]] void for_each_row(const ValueStage& stage, Visit visit) const {
+    const std::uint8_t* next = symbols_.data();
+    const RowBytes* coded = stage.coded.data();
+    stage.box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
+      const RowBytes those = *coded++;
+      visit(cell, spread_bytes<Wide>(load_row(next), those), count);
+      next += bytes_in(those);
+    });
+  }
+
+  /// The words for symbols that leave nothing open, at all cells. False where such a symbol cannot stand
+  /// there.
+  template <std::size_t Bytes>
+  [[gnu::always_inline]] static inline bool put_near(const ParityCells<std::uint8_t>& symbols,
+                                                     const ParityCells<Word>& known,
+                                                     const ParityCells<Word>& bounds,
+                                                     ParityCells<Word>& words) {
+    using Lanes = WideLanes<Word, Bytes>;
+    using Numbers = typename Lanes::Numbers;
+    using Symbols [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
+    Numbers bad{};
+    for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+      Symbols row;
+      std::memcpy(&row, symbols.data() + n, sizeof row);
+      const Numbers symbol = __builtin_convertvector(row, Numbers);
+      const Numbers predicted = Lanes::load(known.data() + n), bound = Lanes::load(bounds.data() + n);
+      const Numbers distance = symbol < Token::kFirst ? Numbers{} : symbol - (Token::kFirst - 1);
+      const Numbers before = predicted - distance;
+      Lanes::store(symbol == Token::kBound ? bound : before, words.data() + n);
+      // Else another token would stand for the word.
+      const Numbers wrong = symbol == Token::kBound  ? (bound == predicted ? ~Numbers{} : Numbers{})
+                            : symbol < Token::kFirst ? Numbers{}
+                                                     : (before > predicted ? ~Numbers{} : Numbers{}) |
+                                                           (before == bound ? ~Numbers{} : Numbers{});
+      bad |= symbol < Token::kFirstOpen ? wrong : Numbers{};
+    }
+    Word any = 0;
+    for (std::size_t n = 0; n < Lanes::kCount; ++n) any = static_cast<Word>(any | bad[n]);
+    return any == 0;
+  }
+
+  /// The greatest bit of the bytes of a row with symbols that leave something open.
+  static constexpr RowBytes open_symbols(RowBytes row) {
+    constexpr RowBytes kGreatest = kEachByte << 7;
+    return (((row & ~kGreatest) + kEachByte * (128 - Token::kFirstOpen)) | row) & kGreatest;
+  }
+
+  /// The words for these.
+  void put_far(const ParityBox& box, const ParityCells<std::uint8_t>& symbols, std::size_t side,
+               Word* values) {
+    box.for_each_row([&](std::size_t first, std::size_t, int) {
+      for (RowBytes open = open_symbols(load_row(symbols.data() + first)); open != 0; open &= open - 1) {
+        const std::size_t cell = first + static_cast<std::size_t>(std::countr_zero(open)) / 8;
+        values[cell] = word(symbols[cell], fields_.known[side][cell], fields_.bounds[side][cell]);
+      }
+    });
+  }
+
+  Word word(std::uint8_t symbol, Word predicted, Word bound) {
     if (symbol > Token::kBehind) {
-      good = false;
+      good_ = false;
       return predicted;
     }
-    extras.refill();
-    const auto extra = static_cast<std::uint32_t>(extras.take(Token::extra_bits(symbol)));
+    extras_.refill();
+    const auto extra = static_cast<std::uint32_t>(extras_.take(Token::extra_bits(symbol)));
     const Word value = Token{symbol, extra}.value(predicted);
     // Else another token would stand for it.
-    good = good && value != bound && (value > predicted) == (symbol == Token::kBehind);
+    good_ = good_ && value != bound && (value > predicted) == (symbol == Token::kBehind);
     return value;
   }
 
@@ -120,23 +192,8 @@ class ValueReader {
   BitReader extras_;
   ValueSummary summary_;
   bool good_ = true;
-  std::array<std::uint8_t, ValueStage::kMost> symbols_;
+  std::array<std::uint8_t, ValueStage::kMost + ValueStage::kSlack> symbols_;
 };
-
-/// The page's values from the fields.
-template <class Word>
-void store_values(const ValueFields<Word>& fields, const PageShape& shape, Page<Word>& page) {
-  for (std::int32_t k = 0; k < shape.count.k; ++k) {
-    for (std::int32_t j = 0; j < shape.count.j; ++j) {
-      const LatticePoint row{0, j, k};
-      const std::size_t to = PageGrid::place(row, 0);
-      std::copy_n(fields.values[0].at(row), PageGrid::kSide, page.low.data() + to);
-      std::copy_n(fields.errors.at(row), PageGrid::kSide, page.errors.data() + to);
-      const Word* high = fields.values[1].at(row);
-      for (std::size_t i = 0; i < PageGrid::kSide; ++i) page.high[to + i] = static_cast<Word>(~high[i]);
-    }
-  }
-}
 
 }  // namespace
 
@@ -149,7 +206,8 @@ void ValueSurvey<Word>::add(const PageShape& shape, const Surroundings<Word>& ar
                             const Page<Word>& page) {
   const ValueSymbols<Word> symbols(geometry_, shape, around, page);
   for (const auto& stage : symbols.stages()) {
-    for (std::size_t n = 0; n < stage.symbols.size(); ++n) counts_.add(stage.contexts[n], stage.symbols[n]);
+    for (std::size_t n = 0; n < stage.symbols.size(); ++n)
+      counts_.add(stage.base + stage.contexts[n], stage.symbols[n]);
   }
 }
 
@@ -182,7 +240,7 @@ void ValueCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& 
   if (errors == ErrorMode::kEqual) out.push_back(static_cast<std::byte>(symbols.summary().any_error));
   if (!is_coded(errors) && !is_coded(ranges)) return;
   ContextEncoder encoder(coder_);
-  for (const auto& stage : symbols.stages()) encoder.put(stage.contexts, stage.symbols);
+  for (const auto& stage : symbols.stages()) encoder.put(stage.base, stage.contexts, stage.symbols);
   const std::size_t at = out.size();
   out.resize(at + kLengthBytes);
   encoder.finish(out);
@@ -231,7 +289,7 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
     const ValueTrust trust{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
     walk_values<Word>(fields, geometry_, shape, trust, reader);
   }
-  store_values(fields, shape, page);
+  fields.store_values(shape, page);
   return reader.finish();
 }
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "isosurface/compression/row_lanes.h"
+#include "isosurface/compression/eight_lanes.h"
 #include "isosurface/compression/split_edge_prediction.h"
 #include "isosurface/compression/wide_lanes.h"
 
@@ -47,15 +47,6 @@ Codes error_room_of(const Codes& parents) {
   const Codes::Part room = codes < most ? most - codes : Codes::Part{};
   return {{codes == 0 ? Codes::Part{} + kMostCode : room}};
 }
-Codes most_of_room(const Codes& rooms) { return {{kMostCode - rooms.parts[0]}}; }
-
-/// Numbers of the cubes of a page, whose centres are the points of phase 0, one more on each side: that whose
-/// centre is at 2 c - 1 has the coordinates c from 0 to 9. Rows of 16, of which the last are not used.
-template <class T>
-using CubeNumbers = std::array<T, 1600>;
-constexpr std::size_t cube_place(std::int32_t i, std::int32_t j, std::int32_t k) {
-  return static_cast<std::size_t>(i + 16 * (j + 10 * k));
-}
 
 /// Of a row of cubes, whose centres have the coordinates j and k: where in Surroundings the parents of their
 /// diamonds lie. They are those corners of a cube that lie in the middle of edges of the next coarser cubes:
@@ -86,30 +77,37 @@ class ParentRows {
   std::size_t along_i_, along_j_, along_k_;
 };
 
-/// Calls visit(row, even, odd) with the greatest number of the cubes that each point of a row is in or on.
-template <class T, class Visit>
-void to_points(const CubeNumbers<T>& cubes, const PageShape& shape, Visit visit) {
-  using Lanes = EightLanes<T>;
-  // Two cubes along an axis have an even coordinate between them, one has an odd one.
-  const auto first = [](std::int32_t x) { return (x + 1) / 2; };
-  const auto second = [](std::int32_t x) { return x / 2 + 1; };
-  for (std::int32_t k = 0; k < shape.count.k; ++k) {
-    for (std::int32_t j = 0; j < shape.count.j; ++j) {
-      const auto at = [&](std::int32_t i) {
-        const auto load = [&](std::int32_t y, std::int32_t z) {
-          return Lanes::load(cubes.data() + cube_place(i, y, z));
-        };
-        return Lanes::greatest(Lanes::greatest(load(first(j), first(k)), load(second(j), first(k))),
-                               Lanes::greatest(load(first(j), second(k)), load(second(j), second(k))));
-      };
-      const auto before = at(0), behind = at(1);
-      visit(LatticePoint{0, j, k}, Lanes::greatest(before, behind), behind);
-    }
-  }
-}
-
 /// The last even coordinate round the page whose points are known.
 std::int32_t last_even(std::int32_t count) { return count & ~1; }
+
+/// Heights of a row of 16 samples that are all finite, by the parity of their coordinates.
+template <class Word>
+void load_whole_row(const Word* row, float* even, float* odd) {
+  using Pairs [[gnu::vector_size(16 * sizeof(Word))]] = Wider<Word>;
+  using Heights [[gnu::vector_size(8 * sizeof(float))]] = float;
+  constexpr int kBits = 8 * sizeof(Word);
+  Pairs pairs;
+  std::memcpy(&pairs, row, sizeof pairs);
+  constexpr bool kLittle = std::endian::native == std::endian::little;
+  const Heights low = __builtin_convertvector(pairs & static_cast<Wider<Word>>(static_cast<Word>(~Word{0})),
+                                              Heights),
+                high = __builtin_convertvector(pairs >> kBits, Heights);
+  std::memcpy(even, kLittle ? &low : &high, sizeof low);
+  std::memcpy(odd, kLittle ? &high : &low, sizeof high);
+}
+
+/// Calls visit(parity, cell, place, number of points) for each row of a page's points of one parity, with the
+/// place of the first of them; the others follow in steps of two.
+template <class Visit>
+void for_each_row(const PageShape& shape, int parity, Visit visit) {
+  const std::size_t first = PageGrid::place({parity & 1, parity >> 1 & 1, parity >> 2}, 0);
+  std::size_t j = 0, k = 0;
+  const ParityBox box = ParityBox::of(shape.count, parity);
+  box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
+    visit(cell, first + 2 * PageGrid::kSide * (j + PageGrid::kSide * k), count);
+    if (++j == static_cast<std::size_t>(box.nj)) j = 0, ++k;
+  });
+}
 
 }  // namespace
 
@@ -118,93 +116,80 @@ void ValueFields<Word>::load(const PageShape& shape, const Surroundings<Word>& a
                              const Page<Word>& page) {
   with_wide_lanes([&](auto) {
     for (std::size_t side = 0; side < 2; ++side) {
-      samples[side].fill(kUnknown);
-      values[side].fill(kUnknown);
+      for (std::size_t parity = 0; parity < 8; ++parity) {
+        samples[side][parity].fill(kUnknown);
+        values[side][parity].fill(kUnknown);
+      }
     }
-    errors.fill(0);
-    if (shape.count != LatticePoint{16, 16, 16}) heights.fill(0);
+    for (auto& cells : errors) cells.fill(0);
     load_points(shape, page);
     if (shape.complete) return;
-    load_behind(shape, around);
-    load_coarser(shape, around);
-    mirror<0>(shape);
-    mirror<1>(shape);
-    mirror<2>(shape);
+    load_coarser(around);
     load_parents(shape, around);
+    if (shape.level == 0) load_heights(shape, around, page);
   });
 }
 
 template <class Word>
-void ValueFields<Word>::set_point(LatticePoint q, Word sample) {
-  *heights.at(q) = height(sample);
-  if (!is_finite(sample)) return;
-  *samples[0].at(q) = sample;
-  *samples[1].at(q) = static_cast<Word>(~sample);
-}
-
-template <class Word>
 void ValueFields<Word>::load_points(const PageShape& shape, const Page<Word>& page) {
-  for (std::int32_t k = 0; k < shape.count.k; ++k) {
-    for (std::int32_t j = 0; j < shape.count.j; ++j) {
-      const Word* row = page.samples.data() + PageGrid::place({0, j, k}, 0);
-      if (sizeof(Word) < sizeof(float) && shape.count.i == PageGrid::kSide) {
-        load_whole_row({0, j, k}, row);
-      } else {
-        for (std::int32_t i = 0; i < shape.count.i; ++i) set_point({i, j, k}, row[i]);
+  for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
+    Word* const least = samples[0][static_cast<std::size_t>(parity)].data();
+    Word* const greatest = samples[1][static_cast<std::size_t>(parity)].data();
+    for_each_row(shape, parity, [&](std::size_t cell, std::size_t place, auto count) {
+      const Word* from = page.samples.data() + place;
+      std::array<Word, 8> row;
+      for (int i = 0; i < count; ++i) row[static_cast<std::size_t>(i)] = from[2 * i];
+      for (int i = 0; i < count; ++i) {
+        const Word word = row[static_cast<std::size_t>(i)];
+        least[cell + static_cast<std::size_t>(i)] = is_finite(word) ? word : kUnknown;
+        greatest[cell + static_cast<std::size_t>(i)] = is_finite(word) ? static_cast<Word>(~word) : kUnknown;
       }
-    }
+    });
   }
 }
 
-/// Of samples that are all finite.
+/// What is known of the points whose coordinates are all even.
 template <class Word>
-void ValueFields<Word>::load_whole_row(LatticePoint first, const Word* row) {
-  using Words [[gnu::vector_size(16 * sizeof(Word))]] = Word;
-  using Pairs [[gnu::vector_size(16 * sizeof(Word))]] = Wider<Word>;
-  using Heights [[gnu::vector_size(8 * sizeof(float))]] = float;
-  constexpr int kBits = 8 * sizeof(Word);
-  Words words;
-  std::memcpy(&words, row, sizeof words);
-  std::memcpy(samples[0].at(first), &words, sizeof words);
-  const Words inverted = ~words;
-  std::memcpy(samples[1].at(first), &inverted, sizeof words);
-  Pairs pairs;
-  std::memcpy(&pairs, row, sizeof pairs);
-  constexpr bool kLittle = std::endian::native == std::endian::little;
-  const Heights low = __builtin_convertvector(pairs & Wider<Word>{kUnknown}, Heights),
-                high = __builtin_convertvector(pairs >> kBits, Heights);
-  std::memcpy(heights.at(first), kLittle ? &low : &high, sizeof low);
-  std::memcpy(heights.at(first + LatticePoint{1, 0, 0}), kLittle ? &high : &low, sizeof high);
+void ValueFields<Word>::load_coarser(const Surroundings<Word>& around) {
+  for (std::size_t n = 0; n < around.samples.size(); ++n) {
+    const Word word = around.samples[n];
+    samples[0][0][n] = is_finite(word) ? word : kUnknown;
+    samples[1][0][n] = is_finite(word) ? static_cast<Word>(~word) : kUnknown;
+    values[0][0][n] = around.low[n];
+    values[1][0][n] = static_cast<Word>(~around.high[n]);
+  }
+  errors[0] = around.errors;
 }
 
 template <class Word>
-void ValueFields<Word>::load_behind(const PageShape& shape, const Surroundings<Word>& around) {
-  const LatticePoint last{last_even(shape.count.i), last_even(shape.count.j), last_even(shape.count.k)};
+void ValueFields<Word>::load_heights(const PageShape& shape, const Surroundings<Word>& around,
+                                     const Page<Word>& page) {
+  const LatticePoint count = shape.count;
+  if (count != LatticePoint{16, 16, 16}) heights.fill(0);
+  for (std::int32_t k = 0; k < count.k; ++k) {
+    for (std::int32_t j = 0; j < count.j; ++j) {
+      const Word* row = page.samples.data() + PageGrid::place({0, j, k}, 0);
+      if (sizeof(Word) < sizeof(float) && count.i == PageGrid::kSide) {
+        load_whole_row(row, heights.at({0, j, k}), heights.at({1, j, k}));
+      } else {
+        for (std::int32_t i = 0; i < count.i; ++i) *heights.at({i, j, k}) = height(row[i]);
+      }
+    }
+  }
+  // Behind the page, where the samples of coarser levels are known.
+  const LatticePoint last{last_even(count.i), last_even(count.j), last_even(count.k)};
   for (std::int32_t k = 0; k <= last.k; k += 2) {
     for (std::int32_t j = 0; j <= last.j; j += 2) {
-      const bool behind = k >= shape.count.k || j >= shape.count.j;
+      const bool behind = k >= count.k || j >= count.j;
       for (std::int32_t i = behind ? 0 : last.i; i <= last.i; i += 2) {
-        if (!behind && i < shape.count.i) continue;
-        set_point({i, j, k}, around.samples[surrounding_place({i, j, k})]);
+        if (behind || i >= count.i)
+          *heights.at({i, j, k}) = height(around.samples[surrounding_place({i, j, k})]);
       }
     }
   }
-}
-
-/// The values of points of coarser levels, and what says that nothing is known between them.
-template <class Word>
-void ValueFields<Word>::load_coarser(const PageShape& shape, const Surroundings<Word>& around) {
-  using Words = EightLanes<Word>;
-  const Words unknown = Words{}.inverted();
-  for (std::int32_t k = 0; k < shape.count.k; k += 2) {
-    for (std::int32_t j = 0; j < shape.count.j; j += 2) {
-      const LatticePoint row{0, j, k};
-      const std::size_t from = surrounding_place(row);
-      Words::store_by_turns(Words::load(around.low.data() + from), unknown, values[0].at(row));
-      Words::store_by_turns(Words::load(around.high.data() + from).inverted(), unknown, values[1].at(row));
-      Codes::store_by_turns(Codes::load(around.errors.data() + from), Codes{}, errors.at(row));
-    }
-  }
+  mirror<0>(shape);
+  mirror<1>(shape);
+  mirror<2>(shape);
 }
 
 /// Before the page, and behind it, where a neighbour's height is not known, stands that of the other
@@ -240,57 +225,68 @@ void ValueFields<Word>::mirror(const PageShape& shape) {
 template <class Word>
 void ValueFields<Word>::load_parents(const PageShape& shape, const Surroundings<Word>& around) {
   using Words = EightLanes<Word>;
-  CubeNumbers<Word> low{}, high{};
-  CubeNumbers<std::uint8_t> error_room{};
-  for (std::int32_t k = 1; k < shape.count.k; k += 2) {
-    for (std::int32_t j = 1; j < shape.count.j; j += 2) {
-      const ParentRows rows(j, k);
-      const std::size_t cubes = cube_place(1, (j + 1) / 2, (k + 1) / 2);
-      rows.find(around.low.data(), Words::greatest).store(low.data() + cubes);
-      rows.find(around.high.data(), Words::least).inverted().store(high.data() + cubes);
-      error_room_of(rows.find(around.errors.data(), Codes::least)).store(error_room.data() + cubes);
-      // Centres behind the last point are no cube's.
-      for (std::size_t n = static_cast<std::size_t>(shape.count.i) / 2; n < 8; ++n)
-        low[cubes + n] = high[cubes + n] = error_room[cubes + n] = 0;
-    }
-  }
-  to_points(low, shape, [this](LatticePoint row, auto even, auto odd) {
-    Words::store_by_turns(even, odd, bounds[0].at(row));
-  });
-  to_points(high, shape, [this](LatticePoint row, auto even, auto odd) {
-    Words::store_by_turns(even, odd, bounds[1].at(row));
-  });
-  to_points(error_room, shape, [this](LatticePoint row, auto even, auto odd) {
-    Codes::store_by_turns(most_of_room(even), most_of_room(odd), most_errors.at(row));
+  for (auto& cells : cube_bounds) cells.fill(0);
+  cube_error_room.fill(0);
+  const ParityBox box = ParityBox::of(shape.count, 7);
+  std::int32_t j = 1, k = 1;
+  box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
+    const ParentRows rows(j, k);
+    const auto store = [&](const auto& lanes, auto& cells) {
+      std::array<typename std::remove_reference_t<decltype(cells)>::value_type, 8> row;
+      lanes.store(row.data());
+      std::copy_n(row.begin(), static_cast<int>(count), cells.begin() + static_cast<std::ptrdiff_t>(cell));
+    };
+    store(rows.find(around.low.data(), Words::greatest), cube_bounds[0]);
+    store(rows.find(around.high.data(), Words::least).inverted(), cube_bounds[1]);
+    store(error_room_of(rows.find(around.errors.data(), Codes::least)), cube_error_room);
+    j += 2;
+    if (j > 2 * box.nj) j = 1, k += 2;
   });
 }
 
 template <class Word>
 void ValueFields<Word>::load_values(const PageShape& shape, const Page<Word>& page) {
-  LatticePoint q{};
-  for (q.k = 0; q.k < shape.count.k; ++q.k) {
-    for (q.j = 0; q.j < shape.count.j; ++q.j) {
-      for (q.i = 0; q.i < shape.count.i; ++q.i) {
-        if (!shape.owns(q)) continue;
-        const std::size_t from = PageGrid::place(q, 0);
-        *values[0].at(q) = page.low[from];
-        *values[1].at(q) = static_cast<Word>(~page.high[from]);
-        *errors.at(q) = page.errors[from];
+  for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
+    const auto p = static_cast<std::size_t>(parity);
+    for_each_row(shape, parity, [&](std::size_t cell, std::size_t place, int count) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        values[0][p][cell + i] = page.low[place + 2 * i];
+        values[1][p][cell + i] = static_cast<Word>(~page.high[place + 2 * i]);
+        errors[p][cell + i] = page.errors[place + 2 * i];
       }
-    }
+    });
   }
 }
 
 template <class Word>
 void ValueFields<Word>::fill_errors(const PageShape& shape, std::uint8_t code) {
-  LatticePoint q{};
-  for (q.k = 0; q.k < shape.count.k; ++q.k) {
-    for (q.j = 0; q.j < shape.count.j; ++q.j) {
-      for (q.i = 0; q.i < shape.count.i; ++q.i) {
-        if (shape.owns(q)) *errors.at(q) = code;
+  for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
+    for_each_row(shape, parity, [&](std::size_t cell, std::size_t, int count) {
+      std::fill_n(errors[static_cast<std::size_t>(parity)].begin() + static_cast<std::ptrdiff_t>(cell), count,
+                  code);
+    });
+  }
+}
+
+template <class Word>
+void ValueFields<Word>::store_values(const PageShape& shape, Page<Word>& page) const {
+  with_wide_lanes([&](auto) {
+    for (std::int32_t k = 0; k < shape.count.k; ++k) {
+      for (std::int32_t j = 0; j < shape.count.j; ++j) {
+        const auto even = static_cast<std::size_t>((j & 1) << 1 | (k & 1) << 2);
+        const std::size_t cell = surrounding_place({0, j & ~1, k & ~1}), to = PageGrid::place({0, j, k}, 0);
+        const auto join = [&](const auto& all, auto* row, auto change) {
+          using Lanes = EightLanes<typename std::remove_cvref_t<decltype(all[0])>::value_type>;
+          Lanes::store_by_turns(change(Lanes::load(all[even].data() + cell)),
+                                change(Lanes::load(all[even + 1].data() + cell)), row + to);
+        };
+        const auto same = [](const auto& lanes) { return lanes; };
+        join(values[0], page.low.data(), same);
+        join(values[1], page.high.data(), [](const auto& lanes) { return lanes.inverted(); });
+        join(errors, page.errors.data(), same);
       }
     }
-  }
+  });
 }
 
 template struct ValueFields<std::uint8_t>;

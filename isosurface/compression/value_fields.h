@@ -1,11 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "isosurface/compression/height_grid.h"
-#include "isosurface/compression/padded_grid.h"
+#include "isosurface/compression/parity_cells.h"
 #include "isosurface/storage/page.h"
 
 namespace adamas {
@@ -23,35 +22,33 @@ struct ValueFields {
   void load_values(const PageShape& shape, const Page<Word>& page);
   /// Gives all own points the same error.
   void fill_errors(const PageShape& shape, std::uint8_t code);
+  /// The values of all places of the page.
+  void store_values(const PageShape& shape, Page<Word>& page) const;
 
-  /// What no range of a point's diamond falls below, as far as something is known of it.
-  [[nodiscard]] Word bound(std::size_t side, std::size_t place) const {
-    return std::min(bounds[side][place], known[side][place]);
-  }
+  std::array<AllCells<Word>, 2> samples;  ///< words of finite samples
+  std::array<AllCells<Word>, 2> values;   ///< the ranges found so far, and those of coarser levels
+  AllCells<std::uint8_t> errors;          ///< codes found so far, and those of coarser levels; 0 elsewhere
+  /// By cube, which is where its centre is: the greatest of the least samples of the diamonds that are the
+  /// parents of the cube's; 0 where they are not known.
+  std::array<ParityCells<Word>, 2> cube_bounds;
+  /// By cube: 63 less the greatest code that the least error of these parents lets a point have; 0 where that
+  /// is not known.
+  ParityCells<std::uint8_t> cube_error_room;
+  /// Of the finest level alone: finite; what is not known is mirrored.
+  HeightGrid heights;
 
-  std::array<PaddedGrid<Word>, 2> samples;  ///< words of finite samples
-  std::array<PaddedGrid<Word>, 2> values;   ///< the ranges found so far, and those of coarser levels
-  std::array<PaddedGrid<Word>, 2> known;    ///< what RangeStages makes
-  /// The greatest of the least samples of the diamonds that are parents of a cube's that the point is in or
-  /// on; 0 where they are not known.
-  std::array<PaddedGrid<Word>, 2> bounds;
-  HeightGrid heights;  ///< finite; what is not known is mirrored
-  /// Codes found so far, and those of coarser levels; 0 elsewhere.
-  PaddedGrid<std::uint8_t> errors;
-  PaddedGrid<std::uint8_t> predicted;       ///< own errors, of which ErrorStages makes what is expected
-  PaddedGrid<std::uint8_t> error_contexts;  ///< what ErrorStages works with
-  /// The greatest code that the least error of these parents lets a point have.
-  PaddedGrid<std::uint8_t> most_errors;
+  // What stages work with, of the points of one parity; the predictions of errors of all.
+  std::array<ParityCells<Word>, 2> known;   ///< what RangeStages expects
+  std::array<ParityCells<Word>, 2> bounds;  ///< what no range of a point falls below; not above `known`
+  AllCells<std::uint8_t> predicted;         ///< own errors, of which ErrorStages makes what is expected
 
  private:
   void load_points(const PageShape& shape, const Page<Word>& page);
-  void load_whole_row(LatticePoint first, const Word* row);
-  void load_behind(const PageShape& shape, const Surroundings<Word>& around);
-  void set_point(LatticePoint q, Word sample);
+  void load_heights(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
+  void load_coarser(const Surroundings<Word>& around);
+  void load_parents(const PageShape& shape, const Surroundings<Word>& around);
   template <int Axis>
   void mirror(const PageShape& shape);
-  void load_coarser(const PageShape& shape, const Surroundings<Word>& around);
-  void load_parents(const PageShape& shape, const Surroundings<Word>& around);
 };
 
 }  // namespace adamas

@@ -6,14 +6,12 @@ namespace adamas {
 
 namespace {
 
-/// Calls visit(row, step) with the first of a row's own points and how far they lie apart.
+/// Calls visit(parity, cell, number of points) for each row of the page's own points.
 template <class Visit>
 void for_each_own_row(const PageShape& shape, Visit visit) {
-  for (std::int32_t k = 0; k < shape.count.k; ++k) {
-    for (std::int32_t j = 0; j < shape.count.j; ++j) {
-      const bool some = !shape.complete && ((j | k) & 1) == 0;
-      if (!some || shape.count.i > 1) visit(LatticePoint{some ? 1 : 0, j, k}, some ? 2 : 1);
-    }
+  for (std::size_t parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
+    ParityBox::of(shape.count, static_cast<int>(parity))
+        .for_each_row([&](std::size_t cell, std::size_t, int count) { visit(parity, cell, count); });
   }
 }
 
@@ -21,34 +19,23 @@ void for_each_own_row(const PageShape& shape, Visit visit) {
 
 template <class Word>
 void ValueSummary::add_errors(const PageShape& shape, const ValueFields<Word>& fields) {
-  using Lanes = RowLanes<std::uint8_t, PageGrid::kSide>;
-  // Bits of the points that count, by whether all of a row's do.
-  std::array<std::array<std::uint8_t, PageGrid::kSide>, 2> own{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count.i); ++i) {
-    own[1][i] = 255;
-    own[0][i] = (i & 1) != 0 || shape.complete ? 255 : 0;
-  }
-  Lanes::Part any{}, all = ~any;
-  for (std::int32_t k = 0; k < shape.count.k; ++k) {
-    for (std::int32_t j = 0; j < shape.count.j; ++j) {
-      const auto counted = Lanes::load(own[static_cast<std::size_t>((j | k) & 1)].data());
-      const auto codes = Lanes::load(fields.errors.at({0, j, k}));
-      any |= codes & counted;
-      all &= codes | ~counted;
-    }
-  }
-  for (std::size_t n = 0; n < PageGrid::kSide; ++n) {
-    any_error = static_cast<std::uint8_t>(any_error | any[n]);
-    all_errors = static_cast<std::uint8_t>(all_errors & all[n]);
+  RowBytes any = 0, all = ~any;
+  for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
+    const RowBytes codes = load_row(fields.errors[parity].data() + cell), counted = first_bytes(count);
+    any |= codes & counted;
+    all &= codes | ~counted;
+  });
+  for (int n = 0; n < 64; n += 8) {
+    any_error = static_cast<std::uint8_t>(any_error | (any >> n & 255));
+    all_errors = static_cast<std::uint8_t>(all_errors & all >> n);
   }
 }
 
 template <class Word>
 void ValueSummary::add_ranges(const PageShape& shape, const ValueFields<Word>& fields) {
-  for_each_own_row(shape, [&](LatticePoint first, std::int32_t step) {
-    const Word* words = fields.values[0].at(first);
-    for (std::int32_t n = 0; !any_word && first.i + n < shape.count.i; n += step)
-      any_word = words[n] != ValueFields<Word>::kUnknown;
+  for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
+    const Word* words = fields.values[0][parity].data() + cell;
+    for (int n = 0; !any_word && n < count; ++n) any_word = words[n] != ValueFields<Word>::kUnknown;
   });
 }
 
@@ -81,54 +68,53 @@ void ValueSymbols<Word>::collect(const ErrorGeometry& geometry, ValueTrust trust
 }
 
 template <class Word>
-template <class T>
-bool ValueSymbols<Word>::any_other(int phase, const ValueStage& stage, const PaddedGrid<T>& found,
-                                   const PaddedGrid<T>& predicted) const {
-  std::vector<bool> coded(PaddedGrid<T>::kPoints, false);
-  for (std::size_t n = 0; n < stage.size; ++n) coded[stage.places[n]] = true;
-  bool any = false;
-  for_each_row(shape_, phase, [&](LatticePoint first) {
-    const std::size_t place = PaddedGrid<T>::place(first);
-    for (std::int32_t n = 0; n < row_count(shape_, first); ++n) {
-      const std::size_t at = place + 2 * static_cast<std::size_t>(n);
-      any = any || (!coded[at] && found[at] != predicted[at]);
+template <class T, class Symbol>
+bool ValueSymbols<Word>::add(const ValueStage& stage, const ParityCells<T>& found,
+                             const ParityCells<T>& expected, Symbol symbol) {
+  Stage& made = stages_.emplace_back();
+  made.base = stage.base;
+  made.contexts.assign(stage.contexts.begin(),
+                       stage.contexts.begin() + static_cast<std::ptrdiff_t>(stage.size));
+  made.symbols.reserve(stage.size);
+  bool any_other = false;
+  const RowBytes* coded = stage.coded.data();
+  stage.box.for_each_row([&](std::size_t first, std::size_t, int count) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if ((*coded >> 8 * i & 1) != 0) {
+        made.symbols.push_back(symbol(first + i));
+      } else {
+        any_other = any_other || found[first + i] != expected[first + i];
+      }
     }
+    ++coded;
   });
-  return any;
+  return any_other;
 }
 
 template <class Word>
-void ValueSymbols<Word>::errors(int phase, const ValueStage& stage) {
-  Stage& made = stages_.emplace_back();
-  made.contexts.assign(stage.contexts.begin(), stage.contexts.begin() + stage.size);
-  made.symbols.resize(stage.size);
-  for (std::size_t n = 0; n < stage.size; ++n) {
-    const std::uint8_t code = fields_->errors[stage.places[n]];
-    ADAMAS_ASSERT(code < ValueContexts<Word>::kErrorSymbols);
-    made.symbols[n] = static_cast<std::uint8_t>((code - fields_->predicted[stage.places[n]]) & 63);
-  }
-  summary_.any_sure_error_other =
-      summary_.any_sure_error_other || any_other(phase, stage, fields_->errors, fields_->predicted);
+void ValueSymbols<Word>::errors(const ValueStage& stage) {
+  const auto& found = fields_->errors[static_cast<std::size_t>(stage.parity)];
+  const auto& expected = fields_->predicted[static_cast<std::size_t>(stage.parity)];
+  summary_.any_sure_error_other |= add(stage, found, expected, [&](std::size_t cell) {
+    ADAMAS_ASSERT(found[cell] < ValueContexts<Word>::kErrorSymbols);
+    return static_cast<std::uint8_t>((found[cell] - expected[cell]) & 63);
+  });
 }
 
 template <class Word>
-void ValueSymbols<Word>::range(int phase, std::size_t side, const ValueStage& stage) {
+void ValueSymbols<Word>::range(std::size_t side, const ValueStage& stage) {
   range_stages_.push_back(stages_.size());
-  Stage& made = stages_.emplace_back();
-  made.contexts.assign(stage.contexts.begin(), stage.contexts.begin() + stage.size);
-  made.symbols.resize(stage.size);
-  for (std::size_t n = 0; n < stage.size; ++n) {
-    const std::size_t place = stage.places[n];
-    const auto token = RangeToken<Word>::of(fields_->values[side][place], fields_->known[side][place],
-                                            fields_->bound(side, place));
+  const auto& found = fields_->values[side][static_cast<std::size_t>(stage.parity)];
+  const auto& expected = fields_->known[side];
+  const bool other = add(stage, found, expected, [&](std::size_t cell) {
+    const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->bounds[side][cell]);
     summary_.any_other = summary_.any_other || token.symbol != RangeToken<Word>::kPredicted;
-    made.symbols[n] = token.symbol;
     const int count = RangeToken<Word>::extra_bits(token.symbol);
     if (count > 0) extras_.push_back({token.extra, count});
-  }
-  const bool other = any_other(phase, stage, fields_->values[side], fields_->known[side]);
-  summary_.any_sure_range_other = summary_.any_sure_range_other || other;
-  summary_.any_other = summary_.any_other || other;
+    return token.symbol;
+  });
+  summary_.any_sure_range_other |= other;
+  summary_.any_other |= other;
 }
 
 template <class Word>

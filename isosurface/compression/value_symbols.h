@@ -61,8 +61,8 @@ class ValueSymbols {
                const Page<Word>& page);
 
   struct Stage {
-    std::vector<std::uint16_t> contexts;
-    std::vector<std::uint8_t> symbols;
+    std::size_t base = 0;  ///< to which contexts are added
+    std::vector<std::uint8_t> contexts, symbols;
   };
   struct Extra {
     std::uint32_t bits;
@@ -76,19 +76,19 @@ class ValueSymbols {
   [[nodiscard]] const std::vector<Extra>& extras() const { return extras_; }
 
   // For walk_values.
-  static constexpr bool kFills = false;
   [[nodiscard]] static bool needs_errors() { return true; }
   [[nodiscard]] static bool needs_ranges() { return true; }
-  void errors(int phase, const ValueStage& stage);
-  void range(int phase, std::size_t side, const ValueStage& stage);
+  void errors(const ValueStage& stage);
+  void range(std::size_t side, const ValueStage& stage);
 
  private:
   void collect(const ErrorGeometry& geometry, ValueTrust trust);
   void leave_out_what_modes_tell();
-  /// Whether any point of a phase that is not in the stage is not as predicted.
-  template <class T>
-  [[nodiscard]] bool any_other(int phase, const ValueStage& stage, const PaddedGrid<T>& found,
-                               const PaddedGrid<T>& predicted) const;
+  /// Adds the stage, with the symbols that symbol(cell) gives of the points that are coded. Returns whether
+  /// any other point is not as expected.
+  template <class T, class Symbol>
+  bool add(const ValueStage& stage, const ParityCells<T>& found, const ParityCells<T>& expected,
+           Symbol symbol);
 
   PageShape shape_;
   std::unique_ptr<ValueFields<Word>> fields_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "isosurface/compression/error_stage.h"
 #include "isosurface/compression/known_errors.h"
@@ -18,8 +19,8 @@ namespace adamas {
 /// errors and one for each side of the ranges.
 template <class Word>
 struct ValueContexts {
-  static constexpr std::uint16_t kRanges = ErrorStages<Word>::kContexts;
-  static constexpr std::uint16_t kComplete = kRanges + RangeStages<Word>::kContexts;
+  static constexpr std::size_t kRanges = ErrorStages<Word>::kContexts;
+  static constexpr std::size_t kComplete = kRanges + RangeStages<Word>::kContexts;
   static constexpr std::size_t kCount = kComplete + 3;
   static constexpr std::size_t kErrorSymbols = 64;
   static constexpr std::size_t kSymbols = std::max(kErrorSymbols, RangeToken<Word>::kSymbols);
@@ -30,63 +31,51 @@ struct ValueTrust {
   bool errors, ranges;
 };
 
-/// Of a word of a page's range, as it is seen on a side: see ValueFields.
-template <class Word>
-constexpr Word seen_from(std::size_t side, Word word) {
-  return side == 0 ? word : static_cast<Word>(~word);
-}
-
 /// The order in which the values of a page are coded: its errors, then its ranges, in stages of each. Calls
-/// port.errors(phase, stage) and port.range(phase, side, stage), in which an encoder reads the fields' errors
-/// and values and a decoder, which says so by kFills, fills those of the stage; the others are there, as
-/// predicted. The fields are loaded.
+/// port.errors(stage) and port.range(side, stage), in which an encoder reads the fields' errors and values
+/// and a decoder fills those of the stage's parity, as predicted where they are not coded. The fields are
+/// loaded.
 template <class Word, class Port>
 void walk_values(ValueFields<Word>& fields, const ErrorGeometry& geometry, const PageShape& shape,
                  ValueTrust trust, Port& port) {
   std::array<ValueStage, 2> stages;
   if (port.needs_errors()) {
-    known_errors(fields.heights, geometry, shape, fields.predicted);
-    for (int phase = 3; phase-- > 0;) {
-      ErrorStages<Word>::make(fields, shape, phase, trust.errors, Port::kFills, stages[0]);
-      port.errors(phase, stages[0]);
+    if (shape.level == 0) {
+      known_errors(fields.heights, geometry, shape, fields.predicted);
+    } else {
+      // What the samples of a coarse level tell of its errors is not worth working out.
+      for (auto& cells : fields.predicted) cells.fill(0);
+    }
+    for (const int parity : kCodedParities) {
+      ErrorStages<Word>::make(fields, shape, parity, trust.errors, stages[0]);
+      port.errors(stages[0]);
     }
   }
-  for (int phase = 3; port.needs_ranges() && phase-- > 0;) {
-    RangeStages<Word>::make(fields, shape, phase, trust.ranges, Port::kFills, stages);
-    for (std::size_t side = 0; side < 2; ++side) {
-      ValueStage& stage = stages[side];
-      for (std::size_t n = 0; n < stage.size; ++n) stage.contexts[n] += ValueContexts<Word>::kRanges;
-      port.range(phase, side, stage);
-    }
+  if (!port.needs_ranges()) return;
+  for (ValueStage& stage : stages) stage.base = ValueContexts<Word>::kRanges;
+  for (const int parity : kCodedParities) {
+    RangeStages<Word>::make(fields, shape, parity, trust.ranges, stages);
+    for (std::size_t side = 0; side < 2; ++side) port.range(side, stages[side]);
   }
 }
 
-/// The same of a complete page, of which nothing but the samples is known: plane by plane, errors predicted
-/// as 0 and ranges as the samples.
+/// The same of a complete page, of which nothing but the samples is known: errors predicted as 0 and ranges
+/// as the samples.
 template <class Word, class Port>
 void walk_complete_values(ValueFields<Word>& fields, const PageShape& shape, Port& port) {
-  fields.predicted.fill(0);
-  for (auto& bounds : fields.bounds) bounds.fill(0);
+  for (auto& cells : fields.predicted) cells.fill(0);
+  for (auto& cells : fields.bounds) cells.fill(0);
   ValueStage stage;
-  for (std::int32_t k = 0; k < shape.count.k; ++k) {
-    stage.size = 0;
-    for (std::int32_t j = 0; j < shape.count.j; ++j) {
-      for (std::int32_t i = 0; i < shape.count.i; ++i)
-        stage.places[stage.size++] = static_cast<std::uint16_t>(PaddedGrid<Word>::place({i, j, k}));
-    }
-    const auto fill = [&stage](std::size_t context) {
-      std::fill_n(stage.contexts.begin(), stage.size, static_cast<std::uint16_t>(context));
-    };
-    fill(ValueContexts<Word>::kComplete);
-    if (port.needs_errors()) port.errors(-1, stage);
+  for (int parity = 0; parity < 8; ++parity) {
+    stage.begin(parity, ParityBox::of(shape.count, parity));
+    // Nothing is sure, as it would be in the context 0.
+    stage.add_rows<false>({}, [](std::size_t, RowBytes) { return std::pair(kEachByte, ~RowBytes{0}); });
+    stage.base = ValueContexts<Word>::kComplete - 1;
+    if (port.needs_errors()) port.errors(stage);
     for (std::size_t side = 0; port.needs_ranges() && side < 2; ++side) {
-      fill(ValueContexts<Word>::kComplete + 1 + side);
-      for (std::size_t n = 0; n < stage.size; ++n) {
-        const Word known = fields.samples[side][stage.places[n]];
-        fields.known[side][stage.places[n]] = known;
-        if (Port::kFills) fields.values[side][stage.places[n]] = known;
-      }
-      port.range(-1, side, stage);
+      ++stage.base;
+      fields.known[side] = fields.samples[side][static_cast<std::size_t>(parity)];
+      port.range(side, stage);
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "core/base/large_pages.h"
 #include "core/lattice/diamond.h"
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/contour/point_between.h"
@@ -64,9 +65,9 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
 
 void ContourBuilder::expect(std::size_t triangles) {
   // Closed surfaces have half as many points.
-  contour_.triangles.reserve(triangles);
-  contour_.points.reserve(triangles / 2);
-  contour_.edge_points.reserve(triangles / 2);
+  reserve_in_large_pages(contour_.triangles, triangles);
+  reserve_in_large_pages(contour_.points, triangles / 2);
+  reserve_in_large_pages(contour_.edge_points, triangles / 2);
 }
 
 Contour ContourBuilder::finish() {

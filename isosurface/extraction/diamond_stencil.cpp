@@ -1,6 +1,6 @@
 #include "isosurface/extraction/diamond_stencil.h"
 
-#include "isosurface/compression/padded_grid.h"
+#include "isosurface/extraction/padded_grid.h"
 
 namespace adamas {
 

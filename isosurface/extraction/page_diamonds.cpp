@@ -9,9 +9,11 @@ namespace {
 
 constexpr std::int32_t kLast = PageGrid::kSide - 1;
 
-bool is_in_page(LatticePoint q) {
-  return std::min({q.i, q.j, q.k}) >= 0 && std::max({q.i, q.j, q.k}) <= kLast;
+/// The page that has a point, from -1 to 1 pages away along each axis, as a bit.
+std::uint32_t bit_of_page(LatticePoint q) {
+  return 1u << static_cast<unsigned>((q.i >> 4) + 1 + 3 * ((q.j >> 4) + 1) + 9 * ((q.k >> 4) + 1));
 }
+constexpr std::uint32_t kOwnPage = 1u << 13, kAllPages = (1u << 27) - 1;
 
 }  // namespace
 
@@ -27,21 +29,24 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
     const std::int64_t end = std::int64_t{corner_[axis] + PageGrid::kSide} << level;
     inside_ = inside_ && block[axis] > 0 && end <= last[axis];
   }
-  const bool has_page = level <= diamonds_.grid().top();
-  if (has_page) {
-    const auto& samples = diamonds_.marked_page({level, block}).samples;
+  known_ = 0;
+  // Of coarser levels than the coarsest page's own no page has the points side by side.
+  if (level <= diamonds_.grid().top()) {
+    const auto& samples = diamonds_.page({level, block}).samples;
     for (std::int32_t k = 0; k <= kLast; ++k) {
       for (std::int32_t j = 0; j <= kLast; ++j)
         std::copy_n(samples.data() + PageGrid::place({0, j, k}, 0), PageGrid::kSide, words_.at({0, j, k}));
     }
+    known_ = kOwnPage;
+    get_from_neighbours();
   }
-  known_neighbours_ = 0;
   finite_ = true;
+  const bool is_all_there = inside_ && known_ == kAllPages;
+  if (is_all_there && !std::is_floating_point_v<Sample>) return;
   split.for_each([&](LatticePoint q) {
-    // Of coarser levels than the coarsest page's own no page has the points side by side.
     const bool near_border =
-        !has_page || !inside_ || std::min({q.i, q.j, q.k}) == 0 || std::max({q.i, q.j, q.k}) == kLast;
-    if (near_border) get_outside(q);
+        !inside_ || known_ == 0 || std::min({q.i, q.j, q.k}) == 0 || std::max({q.i, q.j, q.k}) == kLast;
+    if (near_border && !is_all_there) get_others(q);
     if constexpr (std::is_floating_point_v<Sample>) {
       const DiamondStencil& stencil = DiamondStencil::at(q);
       for (std::size_t m = 0; m < stencil.count; ++m)
@@ -51,37 +56,52 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
 }
 
 template <class Sample>
-bool PageDiamonds<Sample>::get_from_neighbour(LatticePoint q) {
-  const LatticePoint step{q.i >> 4, q.j >> 4, q.k >> 4};
-  const auto n = static_cast<std::size_t>(step.i + 1 + 3 * (step.j + 1) + 9 * (step.k + 1));
-  if ((known_neighbours_ >> n & 1) == 0) {
-    neighbours_[n] = diamonds_.held_page({level_, block_ + step});
-    known_neighbours_ |= 1u << n;
+void PageDiamonds<Sample>::get_from_neighbours() {
+  const LatticePoint blocks = diamonds_.grid().blocks(level_);
+  for (std::int32_t n = 0; n < 27; ++n) {
+    const LatticePoint step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}, block = block_ + step;
+    if (step == LatticePoint{} || std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i ||
+        block.j >= blocks.j || block.k >= blocks.k)
+      continue;
+    const Page<Word>* page = diamonds_.held_page({level_, block});
+    if (page == nullptr) continue;
+    known_ |= 1u << n;
+    // One plane of the page, one edge or one corner.
+    LatticePoint first, last;
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = step[axis] < 0 ? -1 : step[axis] > 0 ? PageGrid::kSide : 0;
+      last[axis] = step[axis] == 0 ? kLast : first[axis];
+    }
+    for (std::int32_t k = first.k; k <= last.k; ++k) {
+      for (std::int32_t j = first.j; j <= last.j; ++j) {
+        const Word* from = page->samples.data() + PageGrid::place({first.i, j, k}, 0);
+        Word* to = words_.at({first.i, j, k});
+        if (step.i == 0) {
+          std::copy_n(from, PageGrid::kSide, to);
+        } else {
+          *to = *from;
+        }
+      }
+    }
   }
-  if (neighbours_[n] == nullptr) return false;
-  *words_.at(q) = neighbours_[n]->samples[PageGrid::place(q, 0)];
-  return true;
 }
 
 template <class Sample>
-void PageDiamonds<Sample>::get_outside(LatticePoint q) {
+bool PageDiamonds<Sample>::is_there(LatticePoint q) const {
+  if ((known_ & bit_of_page(q)) == 0) return false;
+  const LatticePoint u = corner_ + q, extent = diamonds_.grid().extent(level_);
+  return u.i <= extent.i && u.j <= extent.j && u.k <= extent.k;
+}
+
+template <class Sample>
+void PageDiamonds<Sample>::get_others(LatticePoint q) {
   const DiamondStencil& stencil = DiamondStencil::at(q);
-  const LatticePoint extent = diamonds_.grid().extent(level_);
-  const bool has_page = level_ <= diamonds_.grid().top();
   for (std::size_t m = 0; m < stencil.count; ++m) {
-    const LatticePoint at = q + stencil.offsets[m], u = corner_ + at;
-    const bool in_page = is_in_page(at);
-    if (in_page && inside_ && has_page) continue;
-    const bool is_on_page =
-        has_page && std::min({u.i, u.j, u.k}) >= 0 && u.i <= extent.i && u.j <= extent.j && u.k <= extent.k;
-    if (is_on_page && (in_page || get_from_neighbour(at))) continue;
+    const LatticePoint at = q + stencil.offsets[m];
+    if (is_there(at)) continue;
     // Vertices outside the domain are none of the mesh.
-    if (!diamonds_.domain().contains(in_lattice(at))) {
-      *words_.at(at) = static_cast<Word>(ordered(Sample{0}));
-      continue;
-    }
-    *words_.at(at) = diamonds_.word(in_samples(at));
-    known_neighbours_ = 0;
+    const bool is_vertex = diamonds_.domain().contains(in_lattice(at));
+    *words_.at(at) = is_vertex ? diamonds_.word(in_samples(at)) : static_cast<Word>(ordered(Sample{0}));
   }
 }
 

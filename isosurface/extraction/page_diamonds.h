@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "isosurface/compression/padded_grid.h"
 #include "isosurface/extraction/diamond_stencil.h"
+#include "isosurface/extraction/padded_grid.h"
 #include "isosurface/extraction/split_pages.h"
 
 namespace adamas {
@@ -60,9 +60,12 @@ class PageDiamonds {
   }
 
  private:
-  void get_outside(LatticePoint q);
-  /// The same for what a page that is in memory has: false where there is none.
-  bool get_from_neighbour(LatticePoint q);
+  /// Copies what the pages round the page have of the points round it, as far as they are in memory.
+  void get_from_neighbours();
+  /// Gets those members of a diamond that are not on a page in memory.
+  void get_others(LatticePoint q);
+  /// Whether a member of a page's point was got together with the others.
+  [[nodiscard]] bool is_there(LatticePoint q) const;
 
   StoredDiamonds<Sample>& diamonds_;
   int level_ = 0;
@@ -70,10 +73,9 @@ class PageDiamonds {
   std::int32_t lattice_step_ = 1;
   bool inside_ = false, finite_ = true;
   PaddedGrid<Word> words_;
-  /// The pages round the page by steps from -1 to 1 along each axis, null where they are not in memory; as
-  /// far as they are known. Loading any page makes them unknown.
-  std::array<const HeldPage<Word>*, 27> neighbours_{};
-  std::uint32_t known_neighbours_ = 0;
+  /// Of the pages round the page, by steps from -1 to 1 along each axis, i running fastest: those whose
+  /// points are there, as bits.
+  std::uint32_t known_ = 0;
 };
 
 extern template class PageDiamonds<std::uint8_t>;

@@ -113,9 +113,7 @@ template <class Sample>
 std::size_t SplitPages<Sample>::count() const {
   std::size_t sum = 0;
   for (const Level& level : levels_) {
-    for (const PageMask& mask : level.masks) {
-      for (const std::uint16_t row : mask.rows) sum += static_cast<std::size_t>(std::popcount(row));
-    }
+    for (const PageMask& mask : level.masks) sum += mask.count();
   }
   return sum;
 }
@@ -229,7 +227,7 @@ typename SplitPages<Sample>::PageOfLevel SplitPages<Sample>::look_into(int level
       return page;
     }
   }
-  codes_ = &diamonds_.marked_page(where).marks;
+  diamonds_.find_crossed(where, codes_);
   const PageMask split = split_of(level, block, cut);
   if (std::any_of(split.rows.begin(), split.rows.end(), [](std::uint16_t row) { return row != 0; })) {
     page.mask = static_cast<std::uint32_t>(of.masks.size());
@@ -252,7 +250,7 @@ PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const Surfa
   for (std::int32_t k = 0; k < count.k; ++k) {
     for (std::int32_t j = 0; j < count.j; ++j) {
       const RowPhases phases(j, k);
-      const std::uint8_t* row = codes_->data() + place(level, {0, j, k});
+      const std::uint8_t* row = codes_.data() + place(level, {0, j, k});
       std::array<std::uint8_t, kSide> spread;
       if (step > 1) {
         for (std::int32_t i = 0; i < kSide; ++i)
@@ -273,7 +271,7 @@ PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const Surfa
   }
   if (look_at_left) {
     left.for_each([&](LatticePoint q) {
-      greatest_left_ = std::max(greatest_left_, (*codes_)[place(level, q)] + 4 * level);
+      greatest_left_ = std::max(greatest_left_, codes_[place(level, q)] + 4 * level);
     });
   }
   return mask;

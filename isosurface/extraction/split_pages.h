@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/lattice/lattice_map.h"
@@ -23,6 +24,19 @@ struct PageMask {
   }
   void add(LatticePoint q) {
     rows[static_cast<std::size_t>(q.j + PageGrid::kSide * q.k)] |= static_cast<std::uint16_t>(1u << q.i);
+  }
+  [[nodiscard]] std::size_t count() const {
+    // Bits are counted in parts of two, four and eight bits, and summed up in 16, which they fit in.
+    std::uint64_t sum = 0;
+    for (std::size_t row = 0; row < rows.size(); row += 4) {
+      std::uint64_t four;
+      std::memcpy(&four, rows.data() + row, sizeof four);
+      four -= four >> 1 & 0x5555555555555555u;
+      four = (four & 0x3333333333333333u) + (four >> 2 & 0x3333333333333333u);
+      four = (four + (four >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+      sum += (four & 0x00ff00ff00ff00ffu) + (four >> 8 & 0x00ff00ff00ff00ffu);
+    }
+    return (sum & 0xffff) + (sum >> 16 & 0xffff) + (sum >> 32 & 0xffff) + (sum >> 48);
   }
   /// Calls visit(q) for each of them, i running fastest.
   template <class Visit>
@@ -62,7 +76,7 @@ class SplitPages {
       levels_[static_cast<std::size_t>(level)] = {};
       for (const LatticePoint block : candidates(level)) {
         const PageOfLevel found = look_into(level, block, cut);
-        if (found.mask != kNone) visit(level, found, mask(level, found), codes());
+        if (found.mask != kNone) visit(level, found, mask(level, found), codes_);
       }
     }
   }
@@ -123,7 +137,7 @@ class SplitPages {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
  private:
-  using Codes = typename Page<Word>::template Points<std::uint8_t>;
+  using Codes = typename StoredDiamonds<Sample>::Codes;
   struct Level {
     std::vector<PageOfLevel> pages;
     std::vector<PageMask> masks;
@@ -137,7 +151,6 @@ class SplitPages {
   [[nodiscard]] PageId id(int level, LatticePoint block) const {
     return {level - levels_below(level), block};
   }
-  [[nodiscard]] const Codes& codes() const { return *codes_; }
 
   /// Where diamonds may be split, since coarser ones are.
   std::vector<LatticePoint> candidates(int level);
@@ -155,7 +168,7 @@ class SplitPages {
   StoredDiamonds<Sample>& diamonds_;
   const SplitLimits& limits_;
   std::vector<Level> levels_;
-  const Codes* codes_ = nullptr;
+  Codes codes_;  ///< of the page that was looked into last
   int greatest_left_ = 0;
 };
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "isosurface/compression/row_lanes.h"
+#include "isosurface/compression/wide_lanes.h"
 #include "isosurface/preprocessing/preprocess.h"
 
 namespace adamas {
@@ -18,19 +18,22 @@ Domain domain_of(const VolumeGrid& volume, int depth) {
   return {Box3{volume.origin, volume.origin + side * volume.spacing}, {1, 1, 1}};
 }
 
-/// Makes a page's marks the codes of those with a range that is not all on one side of `least`.
+/// Makes `codes` those of the diamonds with a range that is not all on one side of `least`, and 0 of others.
 template <class Word>
-void mark_crossed(const HeldPage<Word>& page, Word least) {
-  using Lanes = RowLanes<Word, PageGrid::kSide>;
-  using Codes [[gnu::vector_size(Lanes::kStep)]] = std::uint8_t;
-  for (std::size_t n = 0; n < PageGrid::kPoints; n += Lanes::kStep) {
-    const auto crossed =
-        (Lanes::load(page.low.data() + n) < least) & (Lanes::load(page.high.data() + n) >= least);
-    Codes codes;
-    std::memcpy(&codes, page.errors.data() + n, sizeof codes);
-    codes &= __builtin_convertvector(crossed, Codes);
-    std::memcpy(page.marks.data() + n, &codes, sizeof codes);
-  }
+void select_crossed(const Page<Word>& page, Word least,
+                    typename Page<Word>::template Points<std::uint8_t>& codes) {
+  with_wide_lanes([&](auto bytes) {
+    using Lanes = WideLanes<Word, bytes()>;
+    using Codes [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
+    for (std::size_t n = 0; n < PageGrid::kPoints; n += Lanes::kCount) {
+      const auto crossed =
+          (Lanes::load(page.low.data() + n) < least) & (Lanes::load(page.high.data() + n) >= least);
+      Codes selected;
+      std::memcpy(&selected, page.errors.data() + n, sizeof selected);
+      selected &= __builtin_convertvector(crossed, Codes);
+      std::memcpy(codes.data() + n, &selected, sizeof selected);
+    }
+  });
 }
 
 }  // namespace
@@ -81,36 +84,44 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
   const int level = std::countr_zero(static_cast<std::uint32_t>(step)) - shift_;
   if (level < 0 || level > grid_.top()) return false;
   const LatticePoint at = in_samples(p), last = grid_.last();
-  const LatticePoint middle{at.i >> level, at.j >> level, at.k >> level};
-  bool on_one_page = true;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t x = middle[axis];
-    if (x == 0 || x + 1 > last[axis] >> level) return false;
-    on_one_page = on_one_page && x % kSide != 0 && x % kSide != kSide - 1;
+  const LatticePoint first{(at.i >> level) - 1, (at.j >> level) - 1, (at.k >> level) - 1};
+  // Along each axis: where the three places lie in their pages, and how many of them in the first one.
+  std::array<std::array<std::size_t, 3>, 3> offsets;
+  LatticePoint in_first{};
+  std::size_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis, stride *= kSide) {
+    const std::int32_t x = first[axis];
+    if (x < 0 || x + 2 > last[axis] >> level) return false;
+    for (std::int32_t n = 0; n < 3; ++n)
+      offsets[static_cast<std::size_t>(axis)][static_cast<std::size_t>(n)] =
+          stride * static_cast<std::size_t>((x + n) % kSide);
+    in_first[axis] = std::min(3, kSide - x % kSide);
   }
-  if (on_one_page) {
-    const HeldPage<Word>* from = pages_.held({level, {middle.i / kSide, middle.j / kSide, middle.k / kSide}});
+  // By whether places lie in the second page along each axis, as bits.
+  std::array<const Word*, 8> pages;
+  const LatticePoint block{first.i / kSide, first.j / kSide, first.k / kSide};
+  for (int second = 0; second < 8; ++second) {
+    LatticePoint of = block;
+    bool is_used = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((second >> axis & 1) == 0) continue;
+      ++of[axis];
+      is_used = is_used && in_first[axis] < 3;
+    }
+    if (!is_used) continue;
+    const Page<Word>* from = pages_.held({level, of});
     if (from == nullptr) return false;
-    const Word* first = from->samples.data() + PageGrid::place(middle - LatticePoint{1, 1, 1}, 0);
-    for (std::size_t n = 0; n < 27; ++n)
-      samples[n] = value(first[n % 3 + kSide * (n / 3 % 3) + kSide * kSide * (n / 9)]);
-    return true;
+    pages[static_cast<std::size_t>(second)] = from->samples.data();
   }
-  PageId id{-1, {}};
-  const Word* words = nullptr;
   std::size_t n = 0;
-  for (std::int32_t k = middle.k - 1; k <= middle.k + 1; ++k) {
-    for (std::int32_t j = middle.j - 1; j <= middle.j + 1; ++j) {
-      for (std::int32_t i = middle.i - 1; i <= middle.i + 1; ++i) {
-        const PageId next{level, {i / kSide, j / kSide, k / kSide}};
-        if (next != id) {
-          const HeldPage<Word>* from = pages_.held(next);
-          if (from == nullptr) return false;
-          id = next;
-          words = from->samples.data();
-        }
-        samples[n++] = value(words[PageGrid::place({i, j, k}, 0)]);
-      }
+  for (std::int32_t k = 0; k < 3; ++k) {
+    for (std::int32_t j = 0; j < 3; ++j) {
+      const std::size_t row =
+          offsets[1][static_cast<std::size_t>(j)] + offsets[2][static_cast<std::size_t>(k)];
+      const std::size_t second = (j >= in_first.j ? 2u : 0u) | (k >= in_first.k ? 4u : 0u);
+      for (std::int32_t i = 0; i < 3; ++i)
+        samples[n++] =
+            value(pages[second | (i >= in_first.i ? 1u : 0u)][row + offsets[0][static_cast<std::size_t>(i)]]);
     }
   }
   return true;
@@ -128,32 +139,25 @@ void StoredDiamonds<Sample>::set_contour(double isovalue) {
                                          : found < isovalue;
     (below ? begin : end) = below ? middle + 1 : middle;
   }
-  if (contour_ == 0 || least_above_ != begin) ++contour_;
   least_above_ = begin;
 }
 
 template <class Sample>
-void StoredDiamonds<Sample>::mark(const PageId& id, const HeldPage<Word>& page) {
-  page.marked = contour_;
-  const PageEntry& known = entry(id);
-  if (!crosses(known.low, known.high)) {
-    page.marks.fill(0);
-    return;
+void StoredDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
+  const Page<Word>& found = page(id);
+  if (greatest_rank(id) == 0) {
+    codes.fill(0);
+  } else {
+    select_crossed(found, static_cast<Word>(least_above_), codes);
   }
-  mark_crossed(page, static_cast<Word>(least_above_));
-}
-
-template <class Sample>
-const HeldPage<typename StoredDiamonds<Sample>::Word>& StoredDiamonds<Sample>::marked_page(const PageId& id) {
-  const HeldPage<Word>& found = page(id);
-  if (found.marked != contour_) mark(id, found);
-  return found;
 }
 
 template <class Sample>
 int StoredDiamonds<Sample>::greatest_rank(const PageId& id) {
   const PageEntry& known = entry(id);
-  return known.error == 0 || !crosses(known.low, known.high) ? 0 : known.error + 4 * id.level;
+  if (known.part_count() == 0 || !crosses(known.low, known.high)) return 0;
+  const int code = known.part_errors[known.part(static_cast<std::uint32_t>(least_above_))];
+  return code == 0 ? 0 : code + 4 * id.level;
 }
 
 template <class Sample>
@@ -161,7 +165,9 @@ int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
   const LatticePoint at = in_samples(p);
   const PageId id = grid_.page(at);
   if (pages_.held(id) == nullptr && id.level < grid_.top() && greatest_rank(id) == 0) return 0;
-  const int code = marked_page(id).marks[PageGrid::place(at, id.level)];
+  const Page<Word>& found = page(id);
+  const std::size_t place = PageGrid::place(at, id.level);
+  const int code = crosses(found.low[place], found.high[place]) ? found.errors[place] : 0;
   return code == 0 ? 0 : code + 4 * level(p);
 }
 

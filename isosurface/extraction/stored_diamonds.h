@@ -49,8 +49,14 @@ class StoredDiamonds {
     return s.i <= e.i && s.j <= e.j && s.k <= e.k;
   }
 
+  /// Valid until the next one is asked for. Throws PageLost.
+  const Page<Word>& page(const PageId& id) {
+    const Page<Word>* found = pages_.page(id);
+    if (found == nullptr) throw PageLost{id, pages_.last_damaged()};
+    return *found;
+  }
   /// Null where the page is not in memory. Valid until the next one is asked for.
-  const HeldPage<Word>* held_page(const PageId& id) { return pages_.held(id); }
+  const Page<Word>* held_page(const PageId& id) { return pages_.held(id); }
 
   /// The sample at a lattice point; beyond the data the nearest one. Throws PageLost.
   double sample(LatticePoint p) { return value(word(in_samples(p))); }
@@ -86,9 +92,10 @@ class StoredDiamonds {
   /// No diamond of the page that the contour crosses has a greater rank; 0 where it crosses none. Not for the
   /// coarsest page, which has diamonds of several levels. Throws PageLost.
   int greatest_rank(const PageId& id);
-  /// A page whose marks are the error codes of the diamonds that the contour crosses, 0 of the others. Throws
-  /// PageLost.
-  const HeldPage<Word>& marked_page(const PageId& id);
+  /// Of a page's diamonds: the error codes of those that the contour crosses, 0 of the others.
+  using Codes = typename Page<Word>::template Points<std::uint8_t>;
+  /// Throws PageLost.
+  void find_crossed(const PageId& id, Codes& codes);
 
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
 
@@ -96,13 +103,7 @@ class StoredDiamonds {
   std::array<double, 2> range();
 
  private:
-  const HeldPage<Word>& page(const PageId& id) {
-    const HeldPage<Word>* found = pages_.page(id);
-    if (found == nullptr) throw PageLost{id, pages_.last_damaged()};
-    return *found;
-  }
   const PageEntry& entry(const PageId& id);
-  void mark(const PageId& id, const HeldPage<Word>& page);
   /// The contour crosses what has a range with low < least_above_ <= high, as ordered words.
   [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {
     return low <= high && low < least_above_ && least_above_ <= high;
@@ -123,7 +124,6 @@ class StoredDiamonds {
   std::array<LatticePoint, PageGrid::kMaxDepth + 2> reaches_{};
   std::vector<RecentEntry> recent_;  ///< by level
   std::uint64_t least_above_ = 0;    ///< the least ordered word of a value not below the isovalue
-  std::uint64_t contour_ = 0;        ///< which one the marks of pages are for
   std::array<double, kRanks> errors_{};
 };
 

@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "core/base/arena.h"
+#include "core/base/large_pages.h"
 #include "core/lattice/point_numbers.h"
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/storage/stored_gradients.h"
@@ -33,14 +35,13 @@ class VertexGradients {
   Vec3 at(LatticePoint p, std::int32_t step) {
     // Vertices of a finer mesh than this one have a gradient of their own.
     const auto [number, is_new] = numbers_.insert(p);
-    if (is_new || steps_[*number] != step) {
-      const Vec3 gradient = stored_ ? stored(p, step) : estimate(p, step);
-      if (!is_new) return gradient;
+    if (!is_new && gradients_[*number].step == step) return gradients_[*number].gradient;
+    const Vec3 gradient = stored_ ? stored(p, step) : estimate(p, step);
+    if (is_new) {
       *number = static_cast<std::uint32_t>(gradients_.size());
-      gradients_.push_back(gradient);
-      steps_.push_back(step);
+      *gradients_.add() = {gradient, step};
     }
-    return gradients_[*number];
+    return gradient;
   }
 
   /// How far away neighbours are in a mesh that has the edge.
@@ -96,12 +97,16 @@ class VertexGradients {
     return *found;
   }
 
+  struct KnownGradient {
+    Vec3 gradient;
+    std::int32_t step;  ///< from neighbours so far away
+  };
+
   StoredDiamonds<Sample> diamonds_;
   std::optional<StoredGradients> stored_;
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
   PointNumbers numbers_;
-  std::vector<Vec3> gradients_;
-  std::vector<std::int32_t> steps_;
+  Arena<KnownGradient> gradients_;
 };
 
 }  // namespace
@@ -111,7 +116,7 @@ std::vector<Vec3> surface_normals(StoredPages<OrderedWord<Sample>>& pages, const
                                   Progress& progress) {
   VertexGradients<Sample> gradients(pages);
   std::vector<Vec3> normals;
-  normals.reserve(contour.points.size());
+  reserve_in_large_pages(normals, contour.points.size());
   for (const EdgePoint& edge : contour.edge_points) {
     if (normals.size() % 65536 == 0)
       progress.step("normals",

@@ -9,24 +9,47 @@
 
 namespace adamas {
 
+/// Calls visit(place) with the places of the page's own points.
+template <class Visit>
+void for_each_own_place(const PageShape& shape, Visit&& visit) {
+  LatticePoint q{};
+  for (q.k = 0; q.k < shape.count.k; ++q.k) {
+    for (q.j = 0; q.j < shape.count.j; ++q.j) {
+      for (q.i = 0; q.i < shape.count.i; ++q.i) {
+        if (shape.owns(q)) visit(PageGrid::place(q, 0));
+      }
+    }
+  }
+}
+
 /// Of the page's own points.
 template <class Word>
 PageSummary summary(const PageShape& shape, const Page<Word>& page) {
   PageSummary result;
   result.low = std::numeric_limits<Word>::max();
-  LatticePoint q{};
-  for (q.k = 0; q.k < shape.count.k; ++q.k) {
-    for (q.j = 0; q.j < shape.count.j; ++q.j) {
-      for (q.i = 0; q.i < shape.count.i; ++q.i) {
-        if (!shape.owns(q)) continue;
-        const std::size_t place = PageGrid::place(q, 0);
-        result.low = std::min<std::uint32_t>(result.low, page.low[place]);
-        result.high = std::max<std::uint32_t>(result.high, page.high[place]);
-        result.error = std::max(result.error, page.errors[place]);
-      }
-    }
-  }
+  for_each_own_place(shape, [&](std::size_t place) {
+    result.low = std::min<std::uint32_t>(result.low, page.low[place]);
+    result.high = std::max<std::uint32_t>(result.high, page.high[place]);
+    result.error = std::max(result.error, page.errors[place]);
+  });
   if (shape.complete) result.error = ErrorScale::kCodes - 1;
+  const std::size_t count = result.part_count();
+  if (count == 0) return result;
+  if (shape.complete) {
+    std::fill_n(result.part_errors.begin(), count, result.error);
+    return result;
+  }
+  for_each_own_place(shape, [&](std::size_t place) {
+    const std::uint32_t low = page.low[place], high = page.high[place];
+    const std::uint8_t error = page.errors[place];
+    if (low >= high || error == 0) return;
+    for (std::size_t n = result.part(low + 1); n <= result.part(high); ++n)
+      result.part_errors[n] = std::max(result.part_errors[n], error);
+  });
+  const int least = result.error - PageSummary::kSpan;
+  for (std::uint8_t& error : result.part_errors) {
+    if (error > 0) error = static_cast<std::uint8_t>(std::max<int>(error, least));
+  }
   return result;
 }
 

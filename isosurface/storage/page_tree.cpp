@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/base/assert.h"
-#include "isosurface/compression/row_lanes.h"
+#include "isosurface/compression/eight_lanes.h"
 
 namespace adamas {
 
@@ -14,7 +14,7 @@ namespace {
 struct AxisPlaces {
   std::array<std::int32_t, 2> blocks{};
   int block_count = 0;
-  std::array<std::uint8_t, Surroundings<std::uint8_t>::kSide> which{}, place{};
+  std::array<std::uint8_t, Surroundings<std::uint8_t>::kSide> place{};
   /// Those in each block: the first, how many, and whether their places follow each other.
   struct Run {
     std::size_t first = 0, count = 0;
@@ -28,7 +28,6 @@ struct AxisPlaces {
       const std::int32_t parent = at / PageGrid::kSide;
       if (block_count == 0 || blocks[static_cast<std::size_t>(block_count - 1)] != parent)
         blocks[static_cast<std::size_t>(block_count++)] = parent;
-      which[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(block_count - 1);
       place[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(at % PageGrid::kSide);
       Run& run = runs[static_cast<std::size_t>(block_count - 1)];
       if (run.count == 0) run.first = static_cast<std::size_t>(c);
@@ -38,35 +37,58 @@ struct AxisPlaces {
   }
 };
 
-/// Copies all that is known of N points in a row.
-template <std::size_t N, class Word>
-void copy_points(const Page<Word>& page, std::size_t at, Surroundings<Word>& around, std::size_t to) {
-  std::copy_n(page.samples.data() + at, N, around.samples.data() + to);
-  std::copy_n(page.low.data() + at, N, around.low.data() + to);
-  std::copy_n(page.high.data() + at, N, around.high.data() + to);
-  std::copy_n(page.errors.data() + at, N, around.errors.data() + to);
+/// Of a page round which something is: the part of Surroundings that one page of the next coarser level has.
+struct Part {
+  const AxisPlaces &x, &y, &z;
+  std::array<int, 3> blocks;  ///< which of those of the axes
+};
+
+/// Copies what is known of it, for rows of N points side by side; of any, one by one, where N is 0.
+template <std::size_t N, PageParts Parts, class Word>
+void copy_part(const Part& part, const Page<Word>& page, Surroundings<Word>& around) {
+  constexpr std::size_t kSide = Surroundings<Word>::kSide;
+  const auto run = [&part](const AxisPlaces& places, std::size_t axis) {
+    return places.runs[static_cast<std::size_t>(part.blocks[axis])];
+  };
+  const AxisPlaces::Run xs = run(part.x, 0), ys = run(part.y, 1), zs = run(part.z, 2);
+  const auto copy = [&](const auto& from, auto& to) {
+    for (std::size_t k = zs.first; k < zs.first + zs.count; ++k) {
+      for (std::size_t j = ys.first; j < ys.first + ys.count; ++j) {
+        const auto* row = from.data() + PageGrid::kSide * (part.y.place[j] +
+                                                           std::size_t{PageGrid::kSide} * part.z.place[k]);
+        auto* at = to.data() + kSide * (j + kSide * k);
+        if constexpr (N > 0) {
+          std::copy_n(row + part.x.place[xs.first], N, at + xs.first);
+        } else {
+          for (std::size_t c = xs.first; c < xs.first + xs.count; ++c) at[c] = row[part.x.place[c]];
+        }
+      }
+    }
+  };
+  copy(page.samples, around.samples);
+  if constexpr (Parts == PageParts::kAll) {
+    copy(page.low, around.low);
+    copy(page.high, around.high);
+    copy(page.errors, around.errors);
+  }
 }
 
-/// Copies what a row has of one of the blocks.
-template <class Word>
-void copy_row(const AxisPlaces& places, int block, const Page<Word>& page, std::size_t row,
-              Surroundings<Word>& around, std::size_t to) {
+template <PageParts Parts, class Word>
+void copy_part(const Part& part, const Page<Word>& page, Surroundings<Word>& around) {
   // Away from the data's ends the numbers of points are these, and they lie side by side.
-  const auto [first, count, is_run] = places.runs[static_cast<std::size_t>(block)];
-  const std::size_t at = row + places.place[first];
-  if (is_run && count == 1) return copy_points<1>(page, at, around, to + first);
-  if (is_run && count == 2) return copy_points<2>(page, at, around, to + first);
-  if (is_run && count == 9) return copy_points<9>(page, at, around, to + first);
-  if (is_run && count == 10) return copy_points<10>(page, at, around, to + first);
-  for (std::size_t c = first; c < first + count; ++c)
-    copy_points<1>(page, row + places.place[c], around, to + c);
+  const AxisPlaces::Run xs = part.x.runs[static_cast<std::size_t>(part.blocks[0])];
+  if (xs.is_run && xs.count == 1) return copy_part<1, Parts>(part, page, around);
+  if (xs.is_run && xs.count == 2) return copy_part<2, Parts>(part, page, around);
+  if (xs.is_run && xs.count == 9) return copy_part<9, Parts>(part, page, around);
+  if (xs.is_run && xs.count == 10) return copy_part<10, Parts>(part, page, around);
+  copy_part<0, Parts>(part, page, around);
 }
 
 }  // namespace
 
 template <class Word>
-PageTree<Word>::PageTree(const PageGrid& grid, std::size_t capacity, Loader loader)
-    : grid_(grid), capacity_(std::max(capacity, kLeast)), loader_(std::move(loader)) {
+PageTree<Word>::PageTree(const PageGrid& grid, PageParts parts, std::size_t capacity, Loader loader)
+    : grid_(grid), parts_(parts), capacity_(std::max(capacity, kLeast)), loader_(std::move(loader)) {
   for (int level = 0; level <= grid_.top(); ++level) {
     const LatticePoint n = grid_.blocks(level);
     const auto row = static_cast<std::size_t>(n.i), plane = row * static_cast<std::size_t>(n.j);
@@ -75,7 +97,7 @@ PageTree<Word>::PageTree(const PageGrid& grid, std::size_t capacity, Loader load
 }
 
 template <class Word>
-const HeldPage<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
+const Page<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
   const std::uint32_t found = slot_of(id);
   if (found != kNone) {
     Slot& slot = slots_[found];
@@ -107,7 +129,6 @@ const HeldPage<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
   slot.id = id;
   slot.held = slot.used = true;
   slot.wanted = wanted;
-  slot.page->marked = 0;
   slot_of(id) = fresh;
   return slot.page;
 }
@@ -117,7 +138,6 @@ bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around) 
   if (grid_.is_complete(id)) return true;
   const LatticePoint extent = grid_.extent(id.level + 1);
   const AxisPlaces x(id.block.i, extent.i), y(id.block.j, extent.j), z(id.block.k, extent.k);
-  constexpr std::size_t kSide = Surroundings<Word>::kSide;
   for (int bz = 0; bz < z.block_count; ++bz) {
     for (int by = 0; by < y.block_count; ++by) {
       for (int bx = 0; bx < x.block_count; ++bx) {
@@ -126,14 +146,11 @@ bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around) 
         };
         const Page<Word>* from = page({id.level + 1, {block(x, bx), block(y, by), block(z, bz)}}, false);
         if (from == nullptr) return false;
-        for (std::size_t k = 0; k < kSide; ++k) {
-          if (z.which[k] != bz) continue;
-          for (std::size_t j = 0; j < kSide; ++j) {
-            if (y.which[j] != by) continue;
-            const std::size_t row =
-                PageGrid::kSide * (y.place[j] + std::size_t{PageGrid::kSide} * z.place[k]);
-            copy_row(x, bx, *from, row, around, kSide * (j + kSide * k));
-          }
+        const Part part{x, y, z, {bx, by, bz}};
+        if (parts_ == PageParts::kSamples) {
+          copy_part<PageParts::kSamples>(part, *from, around);
+        } else {
+          copy_part<PageParts::kAll>(part, *from, around);
         }
       }
     }
@@ -143,7 +160,7 @@ bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around) 
 
 template <class Word>
 void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Word>& around,
-                                  Page<Word>& page) {
+                                  Page<Word>& page) const {
   for (std::int32_t k = 0; k < shape.count.k; k += 2) {
     for (std::int32_t j = 0; j < shape.count.j; j += 2) {
       const std::size_t to = PageGrid::place({0, j, k}, 0), from = surrounding_place({0, j, k});
@@ -153,6 +170,7 @@ void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Wor
         Lanes::store_by_turns(lanes, lanes, numbers.data() + to);
       };
       fill(around.samples, page.samples);
+      if (parts_ == PageParts::kSamples) continue;
       fill(around.low, page.low);
       fill(around.high, page.high);
       fill(around.errors, page.errors);

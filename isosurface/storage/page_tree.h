@@ -5,19 +5,10 @@
 #include <functional>
 #include <vector>
 
+#include "core/base/arena.h"
 #include "isosurface/storage/page.h"
-#include "isosurface/storage/page_arena.h"
 
 namespace adamas {
-
-/// A page in memory.
-template <class Word>
-struct HeldPage : Page<Word> {
-  /// For who uses the page: a byte for each place, which goes with the page, and a number that says what the
-  /// bytes are; 0 when the page comes.
-  mutable typename Page<Word>::template Points<std::uint8_t> marks;
-  mutable std::uint64_t marked = 0;
-};
 
 /// Pages of one volume in memory. Those leave first that nobody asked for since they were last considered
 /// (second chance, an approximation of least recently used). A page needs those of the next coarser level
@@ -29,17 +20,17 @@ class PageTree {
   /// be had.
   using Loader = std::function<bool(const PageId&, const PageShape&, const Surroundings<Word>&, Page<Word>&)>;
 
-  /// Keeps `capacity` pages at most, but never less than kLeast.
-  PageTree(const PageGrid& grid, std::size_t capacity, Loader loader);
+  /// Keeps `capacity` pages at most, but never less than kLeast. `parts`: what of pages is there.
+  PageTree(const PageGrid& grid, PageParts parts, std::size_t capacity, Loader loader);
   static constexpr std::size_t kLeast = 64;
 
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
 
   /// The page, or null where it or one that it is predicted from cannot be had. Valid until the next call.
   /// `wanted`: the page is asked for itself, not to predict another.
-  const HeldPage<Word>* page(const PageId& id, bool wanted = true);
+  const Page<Word>* page(const PageId& id, bool wanted = true);
   /// The same for a page that is in memory; null for others.
-  const HeldPage<Word>* find(const PageId& id) {
+  const Page<Word>* find(const PageId& id) {
     const std::uint32_t found = slot_of(id);
     if (found == kNone || !slots_[found].wanted) return nullptr;
     slots_[found].used = true;
@@ -51,7 +42,7 @@ class PageTree {
   bool surroundings(const PageId& id, Surroundings<Word>& around);
 
   /// Copies the points of coarser levels into a page.
-  static void fill_coarser(const PageShape& shape, const Surroundings<Word>& around, Page<Word>& page);
+  void fill_coarser(const PageShape& shape, const Surroundings<Word>& around, Page<Word>& page) const;
 
   /// Number of pages that were loaded, again where they had left; and of those that only predicted others.
   [[nodiscard]] std::uint64_t loaded() const { return loaded_; }
@@ -61,7 +52,7 @@ class PageTree {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Slot {
     PageId id;
-    HeldPage<Word>* page = nullptr;
+    Page<Word>* page = nullptr;
     bool held = false, used = false, wanted = false;
   };
   /// Slots of the pages of a level, i running fastest.
@@ -78,10 +69,11 @@ class PageTree {
   std::uint32_t free_slot();
 
   PageGrid grid_;
+  PageParts parts_;
   std::size_t capacity_;
   Loader loader_;
   std::vector<Level> levels_;
-  PageArena<HeldPage<Word>> arena_;
+  Arena<Page<Word>> arena_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;
   std::size_t considered_ = 0;  ///< the slot whose page is the next that may leave

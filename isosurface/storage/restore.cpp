@@ -22,13 +22,30 @@ struct BlockSpan {
         end(std::min(last, PageGrid::kSide * block + PageGrid::kSide - 1)) {}
 };
 
+/// Bytes of the pages of a part that are worked with at a time: of those of its level each is needed once, of
+/// coarser ones those of a few rows; and as many again, since pages leave in no strict order.
+template <class Word>
+std::size_t working_set(const PageGrid& grid, const RestoredPart& part) {
+  std::size_t pages = 0;
+  for (int level = part.level; level <= grid.top(); ++level) {
+    const auto along = [&](int axis) {
+      const std::int32_t span = (part.last[axis] - part.first[axis]) >> (level - part.level);
+      return static_cast<std::size_t>(span / PageGrid::kSide + 3);
+    };
+    pages += level == part.level ? along(0) : 3 * along(0) * along(1);
+  }
+  return 2 * pages * sizeof(Page<Word>);
+}
+
 template <class Sample>
 class Restorer {
  public:
   using Word = OrderedWord<Sample>;
 
   Restorer(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory)
-      : file_(file), part_(part), pages_(file, step, memory, PageParts::kSamples) {}
+      : file_(file),
+        part_(part),
+        pages_(file, step, std::min(memory, working_set<Word>(file.grid(), part)), PageParts::kSamples) {}
 
   PageCounts run(const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
     const std::size_t plane = part_.grid.plane_samples();

@@ -84,9 +84,10 @@ struct Surveys {
   }
 };
 
-/// The bytes of a page.
+/// The bytes of a page, and what the directory says of it.
 struct CodedPage {
   std::vector<std::byte> samples, values, gradients;
+  PageSummary summary;
 };
 
 template <class Word>
@@ -106,6 +107,7 @@ struct Codecs {
     samples->encode(job.shape, job.around.samples, job.page.samples, coded.samples);
     values.encode(job.shape, job.around, job.page, coded.values);
     if (gradients) gradients->encode(job.shape, job.gradients_around, job.gradients, coded.gradients);
+    coded.summary = summary(job.shape, job.page);
   }
 };
 
@@ -114,7 +116,7 @@ class GradientScratch {
  public:
   GradientScratch(const std::filesystem::path& folder, const PageGrid& grid)
       : scratch_(folder, grid, PageParts::kSamples),
-        tree_(grid, kMemory / sizeof(Page<std::uint16_t>),
+        tree_(grid, PageParts::kSamples, kMemory / sizeof(Page<std::uint16_t>),
               [this](const PageId& id, const PageShape&, const Surroundings<std::uint16_t>&,
                      Page<std::uint16_t>& page) {
                 scratch_.get(id, page);
@@ -145,7 +147,7 @@ class StoreBuilder {
         options_(options),
         progress_(progress),
         scratch_(options.scratch, grid_),
-        tree_(grid_, kMemory / sizeof(Page<Word>),
+        tree_(grid_, PageParts::kAll, kMemory / sizeof(Page<Word>),
               [this](const PageId& id, const PageShape&, const Surroundings<Word>&, Page<Word>& page) {
                 scratch_.get(id, page);
                 return true;
@@ -227,7 +229,7 @@ class StoreBuilder {
         header.bytes.values += page.values.size();
         header.bytes.gradients += page.gradients.size();
         writer.add_page(0, jobs[n].number, join_payload({page.samples, page.values, page.gradients}),
-                        summary(jobs[n].shape, jobs[n].page));
+                        page.summary);
       }
     });
     header.sample_tables = codecs.samples->tables();

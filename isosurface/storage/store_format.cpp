@@ -75,6 +75,36 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
   return header;
 }
 
+/// Four bits for each part, the first lowest: 0 where nothing is crossed, else 15 less what its greatest
+/// error is below that of the page.
+void write_part_errors(ByteWriter& out, const PageSummary& summary) {
+  const std::size_t count = summary.part_count();
+  for (std::size_t n = 0; n < count; n += 2) {
+    const auto bits = [&](std::size_t part) {
+      const int error = part < count ? summary.part_errors[part] : 0;
+      return error == 0 ? 0 : PageSummary::kSpan + 1 - (summary.error - error);
+    };
+    out.number(static_cast<std::uint8_t>(bits(n) | bits(n + 1) << 4));
+  }
+}
+
+/// False where an error is no code.
+bool read_part_errors(ByteReader& in, PageSummary& summary) {
+  const std::size_t count = summary.part_count();
+  for (std::size_t n = 0; n < count; n += 2) {
+    const auto both = in.number<std::uint8_t>();
+    if (n + 1 == count && both >> 4 != 0) return false;
+    for (const std::size_t part : {n, n + 1}) {
+      const int bits = part == n ? both & 15 : both >> 4;
+      if (bits == 0) continue;
+      const int error = summary.error - (PageSummary::kSpan + 1 - bits);
+      if (error < 1) return false;
+      summary.part_errors[part] = static_cast<std::uint8_t>(error);
+    }
+  }
+  return true;
+}
+
 void write_chunk(ByteWriter& out, const DirectoryChunk& chunk) {
   out.number(chunk.step);
   for (const std::uint64_t n : {chunk.first, chunk.offset, chunk.size, chunk.pages, chunk.copies})
@@ -188,6 +218,7 @@ std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std
     for (const std::uint32_t word : {entry.low, entry.high})
       out.bytes(std::as_bytes(std::span(&word, 1)).first(word_bytes));
     out.number(entry.error);
+    write_part_errors(out, entry);
   }
   return bytes;
 }
@@ -213,7 +244,7 @@ std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const 
     entry.low = word();
     entry.high = word();
     entry.error = in.number<std::uint8_t>();
-    if (entry.error >= ErrorScale::kCodes) return {};
+    if (entry.error >= ErrorScale::kCodes || !read_part_errors(in, entry)) return {};
     entry.offset = offset;
     offset += size;
     if (grid.page(number).level >= kCopiedLevel) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -38,6 +41,25 @@ struct PageSummary {
   /// The greatest of their error codes, which are those of the page's level; of the coarsest page, which has
   /// diamonds of several levels, the greatest code there is.
   std::uint8_t error = 0;
+  /// The same by isovalue. The words from low + 1 to high, each the least that is not below some isovalue,
+  /// lie in parts of 2^part_bits() words; no diamond that a contour for a part's isovalues crosses has a
+  /// greater code than the part's, which is 0 where there is none, and else at most kSpan below `error`.
+  static constexpr std::size_t kParts = 16;
+  static constexpr int kSpan = 14;
+  std::array<std::uint8_t, kParts> part_errors{};
+
+  bool operator==(const PageSummary&) const = default;
+
+  [[nodiscard]] int part_bits() const {
+    return std::max(
+        0, static_cast<int>(std::bit_width(high - low - 1)) - static_cast<int>(std::bit_width(kParts - 1)));
+  }
+  /// 0 where no contour crosses anything with an error.
+  [[nodiscard]] std::size_t part_count() const {
+    return low < high && error > 0 ? ((high - low - 1) >> part_bits()) + 1 : 0;
+  }
+  /// Which part has a word from low + 1 to high.
+  [[nodiscard]] std::size_t part(std::uint32_t word) const { return (word - low - 1) >> part_bits(); }
 };
 
 /// What the directory says of a page.

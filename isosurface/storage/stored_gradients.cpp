@@ -22,7 +22,7 @@ StoredGradients::StoredGradients(StoreFile& file, std::uint32_t step, std::size_
     : file_(file),
       step_(step),
       codec_(codec_of(file)),
-      tree_(file.grid(), memory / sizeof(Page<std::uint16_t>),
+      tree_(file.grid(), PageParts::kSamples, memory / sizeof(Page<std::uint16_t>),
             [this](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>& around,
                    Page<std::uint16_t>& page) { return load(id, shape, around.samples, page.samples); }) {}
 
@@ -39,7 +39,7 @@ std::optional<Vec3> StoredGradients::direction(LatticePoint p) {
   // Not all points beyond the data are among those that pages have.
   for (int axis = 0; axis < 3; ++axis) p[axis] = std::min(p[axis], grid.last()[axis]);
   const PageId id = grid.page(p);
-  const HeldPage<std::uint16_t>* found = tree_.find(id);
+  const Page<std::uint16_t>* found = tree_.find(id);
   if (found == nullptr) found = tree_.page(id);
   if (found == nullptr) return {};
   const unsigned code = found->samples[PageGrid::place(p, id.level)];

@@ -28,12 +28,13 @@ template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory, PageParts parts)
     : file_(file),
       step_(step),
-      parts_(parts),
       samples_(parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())),
-      values_(ValueCodec<Word>::parse(file.header().value_tables, file.header().grid.spacing, file.name())),
-      tree_(file.grid(), memory / sizeof(Page<Word>),
+      tree_(file.grid(), parts, memory / sizeof(Page<Word>),
             [this](const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
-                   Page<Word>& page) { return load(id, shape, around, page); }) {}
+                   Page<Word>& page) { return load(id, shape, around, page); }) {
+  if (parts == PageParts::kAll)
+    values_ = ValueCodec<Word>::parse(file.header().value_tables, file.header().grid.spacing, file.name());
+}
 
 template <class Word>
 bool StoredPages<Word>::load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
@@ -44,7 +45,7 @@ bool StoredPages<Word>::load(const PageId& id, const PageShape& shape, const Sur
   PagePayload parts;
   if (payload.state == PageState::kDamaged || !split_payload(payload.bytes, parts) ||
       !samples_->decode(parts.samples, shape, around.samples, page.samples) ||
-      (parts_ == PageParts::kAll && !values_.decode(parts.values, shape, around, page))) {
+      (values_ && !values_->decode(parts.values, shape, around, page))) {
     damaged_.push_back(id);
     return false;
   }

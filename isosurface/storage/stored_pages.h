@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "isosurface/compression/sample_codec.h"
@@ -45,12 +46,12 @@ class StoredPages {
   [[nodiscard]] const PageGrid& grid() const { return file_.grid(); }
 
   /// The page, or null where it is damaged or predicted from one that is. Valid until the next call.
-  const HeldPage<Word>* page(const PageId& id) {
-    const HeldPage<Word>* found = tree_.find(id);
+  const Page<Word>* page(const PageId& id) {
+    const Page<Word>* found = tree_.find(id);
     return found != nullptr ? found : tree_.page(id);
   }
   /// The same for a page that is in memory; null for others.
-  const HeldPage<Word>* held(const PageId& id) { return tree_.find(id); }
+  const Page<Word>* held(const PageId& id) { return tree_.find(id); }
   /// What is known round a page; false where something cannot be had.
   bool surroundings(const PageId& id, Surroundings<Word>& around) { return tree_.surroundings(id, around); }
   /// What the directory says of it; nothing where that is damaged.
@@ -66,9 +67,8 @@ class StoredPages {
 
   StoreFile& file_;
   std::uint32_t step_;
-  PageParts parts_;
   std::unique_ptr<SampleCodec<Word>> samples_;
-  ValueCodec<Word> values_;
+  std::optional<ValueCodec<Word>> values_;  ///< none where samples are all that is wanted
   PageTree<Word> tree_;
   std::vector<PageId> damaged_;
   PageId last_damaged_;

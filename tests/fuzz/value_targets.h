@@ -29,6 +29,18 @@ class SeededWords {
   std::uint32_t state_ = 1;
 };
 
+/// The samples of a page, and what is round it.
+template <class Word>
+void seeded_page(std::uint8_t seed, Page<Word>& page, Surroundings<Word>& around) {
+  SeededWords words(seed);
+  const unsigned most = static_cast<Word>(~Word{0});
+  words.fill(page.samples, most);
+  words.fill(around.samples, most);
+  words.fill(around.low, most);
+  words.fill(around.high, most);
+  words.fill(around.errors, 63);
+}
+
 /// Tables and a page of it, whose samples and surroundings the seed tells. What is taken is written as it was
 /// read.
 template <class Word>
@@ -38,13 +50,7 @@ void value_page(std::span<const std::byte> tables, std::span<const std::byte> by
   require(std::ranges::equal(codec.tables(), tables), "other tables");
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
-  SeededWords words(seed);
-  const unsigned most = static_cast<Word>(~Word{0});
-  words.fill(page->samples, most);
-  words.fill(around->samples, most);
-  words.fill(around->low, most);
-  words.fill(around->high, most);
-  words.fill(around->errors, 63);
+  seeded_page(seed, *page, *around);
   if (!codec.decode(bytes, shape, *around, *page)) fail("expected a page, found other bytes");
   std::vector<std::byte> again;
   codec.encode(shape, *around, *page, again);

@@ -18,18 +18,21 @@ namespace {
 using Dimensions = std::array<std::uint64_t, 3>;
 constexpr Dimensions kDimensions{39, 35, 33};
 
-/// What is stored of the points of a phase that are sure.
-template <class Word, class Check>
-void for_each_sure(const PageShape& shape, int phase, PhasePoints::Of of, Check check) {
+/// Calls check(cell, coordinates in the page) for the points of a parity whose errors are sure.
+template <class Check>
+void for_each_sure(const PageShape& shape, int parity, Check check) {
+  const SurePoints sure(shape, parity, SurePoints::Of::kErrors);
+  const ParityBox box = ParityBox::of(shape.count, parity);
+  const LatticePoint odd{parity & 1, parity >> 1 & 1, parity >> 2};
   std::size_t count = 0;
-  with_points(shape, phase, of, [&](const PhasePoints& points) {
-    for (std::size_t n = 0; n < points.all().size(); ++n) {
-      if (points.sure()[n]) check(points.all()[n]);
-      count += points.sure()[n] ? 1 : 0;
-    }
-    ASSERT_EQ(count + points.open().size(), points.all().size());
-  });
-  // A page of full size: 13 to 49 of 64 along rows of each kind.
+  for (std::int32_t n = 0; n < box.size(); ++n) {
+    const LatticePoint c{n % box.ni, n / box.ni % box.nj, n / box.ni / box.nj};
+    if ((sure.row(static_cast<std::size_t>(c.j), static_cast<std::size_t>(c.k)) >> 8 * c.i & 1) == 0)
+      continue;
+    ++count;
+    check(kFirstCell + static_cast<std::size_t>(c.i + 11 * (c.j + 11 * c.k)), 2 * c + odd);
+  }
+  // A page of full size: seven or eight of eight along each axis.
   if (shape.count == LatticePoint{16, 16, 16}) {
     ASSERT_GE(count, 343u);
   }
@@ -53,20 +56,20 @@ void expect_known(const Dimensions& dimensions, const std::function<Sample(std::
     const PageShape shape = volume.shape(id);
     const Page<Word> page = volume.page(id);
     fields->load(shape, volume.around(id), page);
-    fields->load_values(shape, page);
     known_errors(fields->heights, geometry, shape, fields->predicted);
-    for (int phase = 0; phase < 3; ++phase) {
-      for_each_sure<Word>(shape, phase, PhasePoints::Of::kErrors, [&](std::size_t place) {
-        int code = fields->predicted[place];
-        const auto side = static_cast<std::size_t>(PaddedGrid<Word>::kSide);
-        const std::size_t steps[3] = {1, side, side * side};
-        for (std::size_t axis = 0; phase < 2 && axis < 3; ++axis) {
-          const std::size_t coordinate = place / steps[axis] % side;
-          if (coordinate % 2 != 0) continue;  // one more than the point's
-          code = std::max<int>(code, fields->errors[place - steps[axis]]);
-          code = std::max<int>(code, fields->errors[place + steps[axis]]);
+    for (const int parity : kCodedParities) {
+      for_each_sure(shape, parity, [&](std::size_t cell, LatticePoint q) {
+        int code = fields->predicted[static_cast<std::size_t>(parity)][cell];
+        for (int axis = 0; phase_of(parity) < 2 && axis < 3; ++axis) {
+          if (q[axis] % 2 == 0) continue;
+          for (const std::int32_t way : {-1, 1}) {
+            LatticePoint child = q;
+            child[axis] += way;
+            code = std::max<int>(code, page.errors[PageGrid::place(child, 0)]);
+          }
         }
-        ASSERT_EQ(code, fields->errors[place]) << "phase " << phase << " place " << place;
+        ASSERT_EQ(code, page.errors[PageGrid::place(q, 0)])
+            << "parity " << parity << " point " << q.i << ", " << q.j << ", " << q.k;
       });
     }
   }

@@ -64,7 +64,7 @@ class PageTreeOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
 TEST_P(PageTreeOf, PagesHaveTheirPointsAndThoseOfCoarserLevels) {
   const PageGrid grid(GetParam());
   std::uint64_t loads = 0;
-  PageTree<std::uint16_t> tree(grid, 1 << 20,
+  PageTree<std::uint16_t> tree(grid, PageParts::kAll, 1 << 20,
                                [&](const PageId& id, const PageShape& shape,
                                    const Surroundings<std::uint16_t>&, Page<std::uint16_t>& page) {
                                  ++loads;
@@ -83,7 +83,7 @@ TEST_P(PageTreeOf, PagesHaveTheirPointsAndThoseOfCoarserLevels) {
 TEST_P(PageTreeOf, PagesThatLeftComeBack) {
   const PageGrid grid(GetParam());
   PageTree<std::uint16_t> tree(
-      grid, 0,
+      grid, PageParts::kAll, 0,
       [&](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>&,
           Page<std::uint16_t>& page) { return fill_own(id, shape, page); });
   for (const PageId& id : pages_in_random_order(grid)) {
@@ -97,7 +97,7 @@ TEST_P(PageTreeOf, PagesThatLeftComeBack) {
 TEST_P(PageTreeOf, SurroundingsAreThePointsOfTheNextLevel) {
   const PageGrid grid(GetParam());
   PageTree<std::uint16_t> tree(
-      grid, 1 << 20,
+      grid, PageParts::kAll, 1 << 20,
       [&](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>&,
           Page<std::uint16_t>& page) { return fill_own(id, shape, page); });
   for (const PageId& id : pages_in_random_order(grid)) {
@@ -126,7 +126,7 @@ TEST_P(PageTreeOf, ScratchKeepsOwnPoints) {
     scratch.put(id, page);
   }
   PageTree<std::uint16_t> tree(
-      grid, 100,
+      grid, PageParts::kAll, 100,
       [&](const PageId& id, const PageShape&, const Surroundings<std::uint16_t>&, Page<std::uint16_t>& page) {
         scratch.get(id, page);
         return true;
@@ -144,7 +144,7 @@ TEST(PageTree, WhatCannotBeHadTakesWhatIsPredictedFromItAlong) {
   const PageGrid grid({100, 100, 100});
   const PageId bad{1, {1, 1, 1}};
   PageTree<std::uint16_t> tree(
-      grid, 1 << 20,
+      grid, PageParts::kAll, 1 << 20,
       [&](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>&,
           Page<std::uint16_t>& page) { return id != bad && fill_own(id, shape, page); });
   EXPECT_EQ(tree.page(bad), nullptr);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "core/base/checksum.h"
@@ -73,6 +74,10 @@ class StoreOfRandomPages : public testing::Test {
         page.summary.low = static_cast<std::uint32_t>(random_() & 0xffffu);
         page.summary.high = static_cast<std::uint32_t>(random_() & 0xffffu);
         page.summary.error = static_cast<std::uint8_t>(random_() & 63u);
+        for (std::size_t n = 0; n < page.summary.part_count(); ++n) {
+          const int error = page.summary.error - static_cast<int>(random_() % (PageSummary::kSpan + 1));
+          if (random_() % 4 != 0) page.summary.part_errors[n] = static_cast<std::uint8_t>(std::max(1, error));
+        }
         writer.add_page(step, number, page.bytes, page.summary);
         pages_.push_back(std::move(page));
       }
@@ -114,9 +119,7 @@ TEST_F(StoreOfRandomPages, GivesThemBack) {
     for (const Written& page : pages_) {
       const auto entry = file.entry(page.step, page.id);
       ASSERT_TRUE(entry);
-      EXPECT_EQ(entry->low, page.summary.low);
-      EXPECT_EQ(entry->high, page.summary.high);
-      EXPECT_EQ(entry->error, page.summary.error);
+      EXPECT_EQ(static_cast<const PageSummary&>(*entry), page.summary);
       EXPECT_EQ(entry->copy != 0, page.id.level >= kCopiedLevel);
       EXPECT_TRUE(file.copy_is_whole(*entry));
       const StoreFile::Payload payload = file.read(page.step, page.id);

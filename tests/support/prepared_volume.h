@@ -20,7 +20,7 @@ class PreparedVolume {
   /// `samples`: i running fastest. Levels below `depth` have no values, as with subtrees.
   PreparedVolume(const std::array<std::uint64_t, 3>& dimensions, const std::vector<Sample>& samples,
                  Vec3 spacing = {1, 1, 1}, int depth = 0)
-      : tree_(PageGrid(dimensions), PageGrid(dimensions).page_count() + 1,
+      : tree_(PageGrid(dimensions), PageParts::kAll, PageGrid(dimensions).page_count() + 1,
               [this](const PageId& id, const PageShape& shape, const Surroundings<Word>&, Page<Word>& page) {
                 const Page<Word>& own = pages_.at(tree_.grid().number(id));
                 for (std::size_t at = 0; at < PageGrid::kPoints; ++at) {

@@ -1,5 +1,5 @@
-// Makes the seeds of the fuzz targets of codecs of samples and of gradients, and of the store's own bytes:
-// FOLDER is that of all seeds. To be run again where such bytes change.
+// Makes the seeds of the fuzz targets of codecs of samples, of values and of gradients, and of the store's
+// own bytes: FOLDER is that of all seeds. To be run again where such bytes change.
 
 #include <cmath>
 #include <filesystem>
@@ -11,7 +11,9 @@
 #include "core/base/checksum.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"
+#include "isosurface/compression/value_walk.h"
 #include "isosurface/storage/store_format.h"
+#include "tests/fuzz/value_targets.h"
 
 namespace adamas::fuzz {
 namespace {
@@ -94,6 +96,70 @@ void make_gradients(const std::filesystem::path& folder, const Seed& seed) {
   write(folder / "gradient_codec", seed.name, bytes);
 }
 
+/// Makes a page's values those that are expected, but for some of those that are coded.
+template <class Word>
+struct Expectations {
+  ValueFields<Word>& fields;
+  std::size_t met = 0;
+
+  [[nodiscard]] static bool needs_errors() { return true; }
+  [[nodiscard]] static bool needs_ranges() { return true; }
+  void errors(const ValueStage& stage) {
+    const auto parity = static_cast<std::size_t>(stage.parity);
+    for_each(stage, [&](std::size_t cell, bool other) {
+      fields.errors[parity][cell] = static_cast<std::uint8_t>((fields.predicted[parity][cell] + other) & 63);
+    });
+  }
+  void range(std::size_t side, const ValueStage& stage) {
+    for_each(stage, [&](std::size_t cell, bool other) {
+      const Word known = fields.known[side][cell];
+      fields.values[side][static_cast<std::size_t>(stage.parity)][cell] =
+          static_cast<Word>(known - (other && known > 0 ? met % 9 : 0));
+    });
+  }
+
+ private:
+  template <class Visit>
+  void for_each(const ValueStage& stage, Visit visit) {
+    const RowBytes* coded = stage.coded.data();
+    stage.box.for_each_row([&](std::size_t first, std::size_t, int count) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+        visit(first + i, (*coded >> 8 * i & 1) != 0 && ++met % 5 == 0);
+      ++coded;
+    });
+  }
+};
+
+/// `seed`: of the samples and of what is round the page. Without trust no value is as expected but by chance.
+template <class Word>
+void make_values(const std::filesystem::path& folder, const std::string& name, const PageShape& shape,
+                 std::uint8_t seed, bool trust) {
+  const ErrorGeometry geometry({1, 1, 1});
+  const auto around = std::make_unique<Surroundings<Word>>();
+  const auto page = std::make_unique<Page<Word>>();
+  seeded_page(seed, *page, *around);
+  const auto fields = std::make_unique<ValueFields<Word>>();
+  fields->load(shape, *around, *page);
+  Expectations<Word> expected{*fields};
+  if (shape.complete) {
+    walk_complete_values<Word>(*fields, shape, expected);
+  } else {
+    walk_values<Word>(*fields, geometry, shape, {trust, trust}, expected);
+  }
+  fields->store_values(shape, *page);
+  ValueSurvey<Word> survey({1, 1, 1});
+  survey.add(shape, *around, *page);
+  const ValueCodec<Word> codec(survey);
+  Bytes coded, bytes;
+  codec.encode(shape, *around, *page, coded);
+  put(bytes, 8 * sizeof(Word));
+  put_points(bytes, shape.count);
+  put(bytes, static_cast<std::size_t>(shape.level) | (shape.complete ? 128 : 0));
+  put(bytes, seed);
+  put_tables(bytes, codec.tables(), coded);
+  write(folder / "value_codec", name, bytes);
+}
+
 /// All of a store but its pages, which are of a few bytes each.
 void make_store(const std::filesystem::path& folder, const std::string& name, const VolumeGrid& grid,
                 std::uint32_t steps) {
@@ -111,6 +177,8 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
       if (count == 0) continue;
       PageEntry entry;
       entry.low = 3, entry.high = 200, entry.error = 40, entry.size = 20, entry.checksum = 77;
+      for (std::size_t n = 1; n < entry.part_count(); ++n)
+        entry.part_errors[n] = static_cast<std::uint8_t>(41 - n);
       const Bytes part = serialise_entries(std::vector(count, entry), sample_bytes(grid.type));
       root.chunks.push_back({step, first, prologue.root_offset, part.size(), crc32c(part), 32, 33});
       prologue.root_offset += part.size();
@@ -142,6 +210,12 @@ void make(const std::filesystem::path& folder) {
   make_samples<std::uint8_t>(folder, {"split_bytes", kEdge, {5, 4, 3}, false, 0});
   make_samples<std::uint8_t>(folder, {"split_complete", kEdge, {4, 4, 3}, true, 0});
   make_samples<std::uint32_t>(folder, {"split_words", kEdge, {4, 3, 3}, false, 3});
+  make_values<std::uint8_t>(folder, "bytes", {{9, 5, 7}, false, 1}, 5, false);
+  make_values<std::uint8_t>(folder, "sure", {{16, 5, 4}, false, 0}, 12, true);
+  make_values<std::uint8_t>(folder, "empty", {{16, 16, 16}, false, 0}, 0, true);
+  make_values<std::uint16_t>(folder, "shorts", {{6, 3, 5}, false, 0}, 20, true);
+  make_values<std::uint32_t>(folder, "words", {{4, 3, 3}, true, 2}, 60, false);
+  make_values<std::uint32_t>(folder, "floats", {{5, 4, 3}, false, 0}, 60, false);
   make_gradients(folder, {"page", kOurs, {6, 5, 3}, false, 2});
   make_gradients(folder, {"complete", kOurs, {4, 4, 4}, true, 2});
   make_gradients(folder, {"raw", kOurs, {3, 3, 3}, false, 1});

@@ -9,54 +9,12 @@
 
 namespace adamas {
 
-/// N numbers of a row, worked on together by the processor's instructions for 16 bytes: compilers unroll
-/// loops of so few steps before they see that.
-template <class T, std::size_t N>
-class RowLanes {
- public:
-  static constexpr std::size_t kPartBytes = N * sizeof(T) < 16 ? N * sizeof(T) : 16;
-  static constexpr std::size_t kParts = N * sizeof(T) / kPartBytes;
-  static constexpr std::size_t kStep = N / kParts;
-  using Part [[gnu::vector_size(kPartBytes)]] = T;
-
-  static Part load(const T* from) {
-    Part part;
-    std::memcpy(&part, from, kPartBytes);
-    return part;
-  }
-
-  explicit RowLanes(const T* from) {
-    for (std::size_t n = 0; n < kParts; ++n) parts_[n] = load(from + n * kStep);
-  }
-  void store(T* to) const {
-    for (std::size_t n = 0; n < kParts; ++n) std::memcpy(to + n * kStep, &parts_[n], kPartBytes);
-  }
-
-  /// Keeps the lesser numbers.
-  void take_least(const T* from) {
-    for (std::size_t n = 0; n < kParts; ++n) {
-      const Part other = load(from + n * kStep);
-      parts_[n] = other < parts_[n] ? other : parts_[n];
-    }
-  }
-  /// Keeps the greater ones.
-  void take_greatest(const T* from) {
-    for (std::size_t n = 0; n < kParts; ++n) {
-      const Part other = load(from + n * kStep);
-      parts_[n] = other > parts_[n] ? other : parts_[n];
-    }
-  }
-
- private:
-  Part parts_[kParts];
-};
-
-/// All bits of every other number of a row of 16, from that at 0 or at 1 on.
+/// All bits of every other of eight numbers.
 template <class T>
 inline constexpr auto kEveryOther = [] {
-  std::array<std::array<T, 16>, 2> masks{};
-  for (std::size_t n = 0; n < 16; ++n) masks[n & 1][n] = static_cast<T>(~T{0});
-  return masks;
+  std::array<T, 8> mask{};
+  for (std::size_t n = 0; n < mask.size(); n += 2) mask[n] = static_cast<T>(~T{0});
+  return mask;
 }();
 
 /// The next wider unsigned integer.
@@ -64,7 +22,8 @@ template <class T>
 using Wider = std::conditional_t<sizeof(T) == 1, std::uint16_t,
                                  std::conditional_t<sizeof(T) == 2, std::uint32_t, std::uint64_t>>;
 
-/// Eight numbers, in parts of at most 16 bytes.
+/// Eight numbers of a row, worked on together by the processor's instructions for 16 bytes at most: compilers
+/// unroll loops of so few steps before they see that.
 template <class T>
 struct EightLanes {
   static constexpr std::size_t kPartBytes = 8 * sizeof(T) < 16 ? 8 * sizeof(T) : 16;
@@ -98,7 +57,7 @@ struct EightLanes {
   }
   /// Of each lane with an even number that of the first, of the others that of the second.
   static EightLanes by_turns(const EightLanes& even, const EightLanes& odd) {
-    const EightLanes taken = load(kEveryOther<T>[0].data());
+    const EightLanes taken = load(kEveryOther<T>.data());
     EightLanes lanes;
     for (std::size_t n = 0; n < kParts; ++n)
       lanes.parts[n] = (even.parts[n] & taken.parts[n]) | (odd.parts[n] & ~taken.parts[n]);
@@ -116,17 +75,5 @@ struct EightLanes {
     }
   }
 };
-
-/// Copies every other number of a row of 16, from that at `first` (0 or 1) on; the numbers between them stay.
-template <class T>
-void copy_every_other(const T* from, T* to, std::size_t first) {
-  using Lanes = RowLanes<T, 16>;
-  using Part = typename Lanes::Part;
-  const Part taken = Lanes::load(kEveryOther<T>[first].data());
-  for (std::size_t n = 0; n < 16; n += Lanes::kStep) {
-    const Part result = (taken & Lanes::load(from + n)) | (~taken & Lanes::load(to + n));
-    std::memcpy(to + n, &result, Lanes::kPartBytes);
-  }
-}
 
 }  // namespace adamas

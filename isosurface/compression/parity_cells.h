@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/lattice/lattice_point.h"
+
+namespace adamas {
+
+/// Numbers of the points of one parity of a page and round it: 11^3 cells of 2^3 points, that of place c
+/// (Surroundings) with the points 2 (c - 1) and 2 (c - 1) + 1 along each axis, i running fastest. Bit `axis`
+/// of a parity tells that the coordinate along the axis is odd.
+template <class T>
+using ParityCells = std::array<T, 1331>;
+
+/// The numbers of all points, by parity.
+template <class T>
+using AllCells = std::array<ParityCells<T>, 8>;
+
+inline constexpr std::array<int, 3> kCellStrides{1, 11, 121};
+/// The page's own cells, and others between them.
+inline constexpr std::size_t kFirstCell = 133, kEndOfCells = 8 * 133 + 1;
+
+/// Where the neighbour of a point lies.
+struct CellNeighbour {
+  std::size_t parity = 0;
+  int offset = 0;  ///< from cell to cell
+};
+
+/// Of the points of a parity the neighbour at d, with steps from -1 to 1.
+constexpr CellNeighbour cell_neighbour(int parity, LatticePoint d) {
+  int other = 0, offset = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int odd = parity >> axis & 1, stride = kCellStrides[static_cast<std::size_t>(axis)];
+    other |= (d[axis] == 0 ? odd : 1 - odd) << axis;
+    if (d[axis] > 0 && odd == 1) offset += stride;
+    if (d[axis] < 0 && odd == 0) offset -= stride;
+  }
+  return {static_cast<std::size_t>(other), offset};
+}
+
+/// The points of one parity in a page: so many per axis, from place 1 on.
+struct ParityBox {
+  int ni = 0, nj = 0, nk = 0;
+
+  static constexpr ParityBox of(LatticePoint count, int parity) {
+    const auto along = [&](int axis) { return (count[axis] + 1 - (parity >> axis & 1)) / 2; };
+    return {along(0), along(1), along(2)};
+  }
+  [[nodiscard]] constexpr int size() const { return ni * nj * nk; }
+
+  /// f(cell, number of points before, points in the row) for each row, with the last one a constant where the
+  /// box is whole.
+  template <class F>
+  void for_each_row(F&& f) const {
+    if (size() == 512) {
+      rows(std::integral_constant<int, 8>(), 8, 8, f);
+    } else {
+      rows(ni, nj, nk, f);
+    }
+  }
+
+ private:
+  template <class Row, class F>
+  static void rows(Row row, int nj, int nk, F&& f) {
+    std::size_t before = 0;
+    for (int k = 1; k <= nk; ++k) {
+      for (int j = 1; j <= nj; ++j) {
+        f(static_cast<std::size_t>(1 + 11 * (j + 11 * k)), before, row);
+        before += static_cast<std::size_t>(row);
+      }
+    }
+  }
+};
+
+}  // namespace adamas
