@@ -144,6 +144,7 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   std::vector<std::size_t> ends;
   for (const double isovalue : isovalues) {
     request.isovalue = isovalue;
+    request.others_follow = ends.size() + 1 < isovalues.size();
     const ExtractedSurface found = extract(extractor, request, options.input.path, console);
     std::vector<Vec3> normals;
     if (!options.no_normals && !options.output.empty())

@@ -7,12 +7,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/base/large_pages.h"
+#include "core/base/large_blocks.h"
 
 namespace adamas {
 
 /// Many objects of one type that stay where they are until the end, not initialised: in a small block of
-/// memory and, where that does not suffice, in blocks that come in large pages.
+/// memory and, where that does not suffice, in large blocks.
 template <class T>
 class Arena {
  public:
@@ -31,30 +31,34 @@ class Arena {
  private:
   static constexpr std::size_t kFirstBytes = std::size_t{1} << 16;
   static constexpr std::size_t kInFirst = kFirstBytes < sizeof(T) ? 1 : kFirstBytes / sizeof(T);
-  static constexpr std::size_t kBlockBytes = (sizeof(T) + kLargePage - 1) / kLargePage * kLargePage;
-  static constexpr std::size_t kInBlock = kBlockBytes / sizeof(T);
+  static constexpr std::size_t kInBlock = kLargePage / sizeof(T);
+  static_assert(kInBlock > 0 && alignof(T) <= alignof(std::max_align_t));
   struct Free {
     void operator()(std::byte* memory) const { std::free(memory); }
   };
+  struct GiveBack {
+    void operator()(std::byte* memory) const { give_large_block(memory); }
+  };
 
   void grow() {
-    const bool is_first = blocks_.empty();
-    void* memory = is_first ? std::malloc(kInFirst * sizeof(T)) : std::aligned_alloc(kLargePage, kBlockBytes);
-    if (memory == nullptr) throw std::bad_alloc();
-    blocks_.emplace_back(static_cast<std::byte*>(memory));
-    if (!is_first) wish_for_large_pages(memory, kBlockBytes);
-    capacity_ += is_first ? kInFirst : kInBlock;
+    if (first_ == nullptr) {
+      first_.reset(static_cast<std::byte*>(std::malloc(kInFirst * sizeof(T))));
+      if (first_ == nullptr) throw std::bad_alloc();
+      capacity_ = kInFirst;
+    } else {
+      blocks_.emplace_back(take_large_block());
+      capacity_ += kInBlock;
+    }
   }
 
   [[nodiscard]] std::byte* place(std::size_t n) {
-    if (n < kInFirst) return blocks_.front().get() + sizeof(T) * n;
+    if (n < kInFirst) return first_.get() + sizeof(T) * n;
     n -= kInFirst;
-    return blocks_[1 + n / kInBlock].get() + sizeof(T) * (n % kInBlock);
+    return blocks_[n / kInBlock].get() + sizeof(T) * (n % kInBlock);
   }
 
-  static_assert(alignof(T) <= alignof(std::max_align_t));
-
-  std::vector<std::unique_ptr<std::byte, Free>> blocks_;
+  std::unique_ptr<std::byte, Free> first_;
+  std::vector<std::unique_ptr<std::byte, GiveBack>> blocks_;
   std::size_t size_ = 0, capacity_ = 0;
 };
 

@@ -30,6 +30,12 @@ class LatticeMap {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 
+  /// Makes room for so many, which will come.
+  void reserve(std::size_t size) {
+    const std::size_t capacity = 10 * size / (kCompact ? 7 : 6) + 1;
+    if (capacity > entries_.size()) grow(capacity);
+  }
+
   /// The value at p, or null.
   [[nodiscard]] Value* find(Key p) { return const_cast<Value*>(std::as_const(*this).find(p)); }
   [[nodiscard]] const Value* find(Key p) const {
@@ -53,7 +59,7 @@ class LatticeMap {
       if (entry.key == kEmpty.key) break;
     }
     if (10 * (size_ + 1) > (kCompact ? 7 : 6) * entries_.size()) {
-      grow();
+      grow(entries_.size() + entries_.size() / (kCompact ? 2 : 1));
       slot = free_slot(p);
     }
     ++size_;
@@ -112,8 +118,8 @@ class LatticeMap {
     while (entries_[slot].key != kEmpty.key) slot = next(slot);
     return slot;
   }
-  void grow() {
-    std::vector<Entry> old(entries_.size() + entries_.size() / (kCompact ? 2 : 1), kEmpty);
+  void grow(std::size_t capacity) {
+    std::vector<Entry> old(capacity, kEmpty);
     old.swap(entries_);
     for (const Entry& entry : old) {
       if (entry.key != kEmpty.key) entries_[free_slot(entry.key)] = entry;

@@ -18,6 +18,12 @@ class PointNumbers {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
+  /// Makes room for about so many, which will come.
+  void expect(std::size_t points) {
+    constexpr std::size_t kInBlock = 6;
+    blocks_.reserve(points / kInBlock);
+  }
+
   /// The number of p, to be changed at will, and whether it has none yet, being kNone then. Valid until the
   /// next call.
   std::pair<std::uint32_t*, bool> insert(LatticePoint p) {

@@ -130,10 +130,9 @@ std::size_t ContextDecoder::decode_most(std::size_t base, std::span<const std::u
       std::uint32_t symbol = 0;
       const std::uint32_t state = step(tables.entries(contexts[n + lane]), states[lane], symbol);
       // Without a branch, for which there is no telling: whether a word belongs to the state.
-      const bool low = state < ContextCoder::kLeastState;
-      const std::uint32_t longer = state << kWordBits | load_word(next);
-      states[lane] = low ? longer : state;
-      next += low ? 2 : 0;
+      const std::uint32_t low = state < ContextCoder::kLeastState ? ~0u : 0u;
+      states[lane] = state << (low & kWordBits) | (load_word(next) & low);
+      next += low & 2;
       if (symbol == ContextCoder::kEscape) [[unlikely]] {
         next_ = next;
         std::uint32_t escaped = states[lane];

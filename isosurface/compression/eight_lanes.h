@@ -63,6 +63,18 @@ struct EightLanes {
       lanes.parts[n] = (even.parts[n] & taken.parts[n]) | (odd.parts[n] & ~taken.parts[n]);
     return lanes;
   }
+  /// Reads 16 numbers, each in turn into one of them: the inverse.
+  static void load_by_turns(const T* from, EightLanes& even, EightLanes& odd) {
+    using Pairs [[gnu::vector_size(2 * kPartBytes)]] = Wider<T>;
+    constexpr bool kLittle = std::endian::native == std::endian::little;
+    EightLanes &low = kLittle ? even : odd, &high = kLittle ? odd : even;
+    for (std::size_t n = 0; n < kParts; ++n) {
+      Pairs pairs;
+      std::memcpy(&pairs, from + 2 * kStep * n, sizeof pairs);
+      low.parts[n] = __builtin_convertvector(pairs & static_cast<Wider<T>>(static_cast<T>(~T{0})), Part);
+      high.parts[n] = __builtin_convertvector(pairs >> 8 * sizeof(T), Part);
+    }
+  }
   /// Writes 16 numbers, one of each in turn.
   static void store_by_turns(const EightLanes& even, const EightLanes& odd, T* to) {
     using Pairs [[gnu::vector_size(2 * kPartBytes)]] = Wider<T>;

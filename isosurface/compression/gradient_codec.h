@@ -13,7 +13,7 @@
 namespace adamas {
 
 /// The directions of a page's gradients: OctahedralCode, as words with the first byte lowest.
-using GradientCodes = Page<std::uint16_t>::Points<std::uint16_t>;
+using GradientCodes = PagePoints<std::uint16_t>;
 /// Those round it.
 using GradientCodesAround = Surroundings<std::uint16_t>::Points<std::uint16_t>;
 

@@ -18,7 +18,7 @@ namespace adamas {
 template <class Word>
 class InterpolationPage {
  public:
-  using Samples = typename Page<Word>::template Points<Word>;
+  using Samples = PagePoints<Word>;
   using Around = typename Surroundings<Word>::template Points<Word>;
   using Cells = InterpolationCells<Word>;
   using Value = typename Cells::Value;

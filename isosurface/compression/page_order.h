@@ -43,7 +43,7 @@ void for_each_own_point(const PageShape& shape, F&& f) {
 /// Fills the points of coarser levels.
 template <class Word>
 void take_coarser(const typename Surroundings<Word>::template Points<Word>& around,
-                  typename Page<Word>::template Points<Word>& samples) {
+                  PagePoints<Word>& samples) {
   for (std::int32_t k = 0; k < PageGrid::kSide; k += 2) {
     for (std::int32_t j = 0; j < PageGrid::kSide; j += 2) {
       const Word* from = around.data() + surrounding_place({0, j, k});
@@ -55,8 +55,7 @@ void take_coarser(const typename Surroundings<Word>::template Points<Word>& arou
 
 /// The prediction of a point of a complete page from points that come before it in hierarchical z-order.
 template <class Word>
-Word predicted_inside(LatticePoint q, const PageShape& shape,
-                      const typename Page<Word>::template Points<Word>& samples) {
+Word predicted_inside(LatticePoint q, const PageShape& shape, const PagePoints<Word>& samples) {
   if (q == LatticePoint{0, 0, 0}) return 0;
   const auto [a, b] = predictors(q, {shape.count.i, shape.count.j, shape.count.k});
   return static_cast<Word>(predicted(samples[PageGrid::place(a, 0)], samples[PageGrid::place(b, 0)]));
@@ -64,8 +63,7 @@ Word predicted_inside(LatticePoint q, const PageShape& shape,
 
 /// Writes a page raw, its kind included.
 template <class Word>
-void write_raw(const PageShape& shape, const typename Page<Word>::template Points<Word>& samples,
-               std::vector<std::byte>& out) {
+void write_raw(const PageShape& shape, const PagePoints<Word>& samples, std::vector<std::byte>& out) {
   out.push_back(static_cast<std::byte>(PageKind::kRaw));
   for_each_own_point(shape, [&](LatticePoint q, std::uint64_t) {
     const Word sample = samples[PageGrid::place(q, 0)];
@@ -76,8 +74,7 @@ void write_raw(const PageShape& shape, const typename Page<Word>::template Point
 
 /// The inverse, of what follows the kind; false where it has another size.
 template <class Word>
-bool read_raw(std::span<const std::byte> bytes, const PageShape& shape,
-              typename Page<Word>::template Points<Word>& samples) {
+bool read_raw(std::span<const std::byte> bytes, const PageShape& shape, PagePoints<Word>& samples) {
   if (bytes.size() != own_points(shape) * sizeof(Word)) return false;
   const std::byte* next = bytes.data();
   for_each_own_point(shape, [&](LatticePoint q, std::uint64_t) {

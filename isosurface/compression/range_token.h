@@ -39,15 +39,18 @@ struct RangeToken {
     return symbol < kFirstOpen ? 0 : (symbol - kFirstOpen) / 2 + 1;
   }
 
+  /// The least distance of a symbol from kFirstOpen to before kBehind; its lowest bits are the extra ones.
+  static constexpr std::uint32_t lead(std::uint8_t symbol) {
+    const int number = symbol - kFirstOpen;
+    return (2u | static_cast<std::uint32_t>(number & 1)) << (number / 2 + 1);
+  }
+
   /// The word from a symbol from kFirst on. Another token may stand for it too, or none if the symbol is not
   /// one that `of` gives.
   [[nodiscard]] constexpr Word value(Word predicted) const {
     if (symbol == kBehind) return static_cast<Word>(extra);
-    const int number = symbol - kFirst;
-    if (number < 3) return static_cast<Word>(predicted - number - 1);
-    const int bits = (number - 3) / 2 + 3;
-    const auto lead = static_cast<std::uint32_t>(2 + ((number - 3) & 1)) << (bits - 2);
-    return static_cast<Word>(predicted - (lead | extra));
+    if (symbol < kFirstOpen) return static_cast<Word>(predicted - (symbol - kFirst) - 1);
+    return static_cast<Word>(predicted - (lead(symbol) | extra));
   }
 };
 

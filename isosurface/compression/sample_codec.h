@@ -22,7 +22,7 @@ enum class SampleCoding : std::uint8_t {
 template <class Word>
 class SampleCodec {
  public:
-  using Samples = typename Page<Word>::template Points<Word>;
+  using Samples = PagePoints<Word>;
   using Around = typename Surroundings<Word>::template Points<Word>;
 
   virtual ~SampleCodec() = default;

@@ -79,7 +79,7 @@ class ValueReader {
       });
       summary_.any_other |= all != 0;
       good_ = good_ && put_near<bytes()>(symbols, fields_.known[side], fields_.bounds[side], words);
-      for_each_row<false>(stage, [&](std::size_t cell, RowBytes, auto count) {
+      stage.box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
         std::copy_n(words.data() + cell, static_cast<int>(count), values + cell);
       });
       if (open != 0) put_far(stage.box, symbols, side, values);
@@ -163,26 +163,41 @@ class ValueReader {
   /// The words for these.
   void put_far(const ParityBox& box, const ParityCells<std::uint8_t>& symbols, std::size_t side,
                Word* values) {
+    std::array<std::uint16_t, ValueStage::kMost> cells;
+    std::size_t count = 0;
     box.for_each_row([&](std::size_t first, std::size_t, int) {
-      for (RowBytes open = open_symbols(load_row(symbols.data() + first)); open != 0; open &= open - 1) {
-        const std::size_t cell = first + static_cast<std::size_t>(std::countr_zero(open)) / 8;
-        values[cell] = word(symbols[cell], fields_.known[side][cell], fields_.bounds[side][cell]);
-      }
+      for (RowBytes open = open_symbols(load_row(symbols.data() + first)); open != 0; open &= open - 1)
+        cells[count++] =
+            static_cast<std::uint16_t>(first + static_cast<std::size_t>(std::countr_zero(open)) / 8);
     });
+    constexpr std::size_t kBetweenRefills = sizeof(Word) < 4 ? 4 / sizeof(Word) : 1;
+    static_assert(kBetweenRefills * Token::kBits <= BitReader::kRefilled);
+    BitReader extras = extras_;
+    bool good = true;
+    for (std::size_t n = 0; n < count; ++n) {
+      if (n % kBetweenRefills == 0) extras.refill();
+      const std::size_t cell = cells[n];
+      const std::uint8_t symbol = std::min(symbols[cell], Token::kBehind);
+      const Word predicted = fields_.known[side][cell];
+      const auto extra = static_cast<std::uint32_t>(extras.take(kExtraBits[symbol]));
+      const Word value = symbol == Token::kBehind
+                             ? static_cast<Word>(extra)
+                             : static_cast<Word>(predicted - (Token::lead(symbol) | extra));
+      // Else another token would stand for it.
+      good &= symbols[cell] == symbol && value != fields_.bounds[side][cell] &&
+              (value > predicted) == (symbol == Token::kBehind);
+      values[cell] = value;
+    }
+    extras_ = extras;
+    good_ = good_ && good;
   }
 
-  Word word(std::uint8_t symbol, Word predicted, Word bound) {
-    if (symbol > Token::kBehind) {
-      good_ = false;
-      return predicted;
-    }
-    extras_.refill();
-    const auto extra = static_cast<std::uint32_t>(extras_.take(Token::extra_bits(symbol)));
-    const Word value = Token{symbol, extra}.value(predicted);
-    // Else another token would stand for it.
-    good_ = good_ && value != bound && (value > predicted) == (symbol == Token::kBehind);
-    return value;
-  }
+  static constexpr auto kExtraBits = [] {
+    std::array<std::uint8_t, Token::kSymbols> bits{};
+    for (std::size_t n = 0; n < bits.size(); ++n)
+      bits[n] = static_cast<std::uint8_t>(Token::extra_bits(static_cast<std::uint8_t>(n)));
+    return bits;
+  }();
 
   PageShape shape_;
   ErrorMode error_mode_;
@@ -254,7 +269,8 @@ void ValueCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& 
 
 template <class Word>
 bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape& shape,
-                              const Surroundings<Word>& around, Page<Word>& page) const {
+                              const Surroundings<Word>& around, const PageSamples<Word>& samples,
+                              PageValues<Word>& values) const {
   if (bytes.empty()) return false;
   const auto modes = std::to_integer<std::uint8_t>(bytes[0]);
   const auto errors = static_cast<ErrorMode>(modes & 3);
@@ -280,7 +296,7 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
     return false;
   }
   ValueFields<Word> fields;
-  fields.load(shape, around, page);
+  fields.load(shape, around, samples);
   if (!is_coded(errors)) fields.fill_errors(shape, error);
   ValueReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), shape, errors, ranges, fields);
   if (shape.complete) {
@@ -289,7 +305,7 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
     const ValueTrust trust{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
     walk_values<Word>(fields, geometry_, shape, trust, reader);
   }
-  fields.store_values(shape, page);
+  fields.store_values(shape, values);
   return reader.finish();
 }
 

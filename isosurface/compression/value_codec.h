@@ -55,10 +55,11 @@ class ValueCodec {
   void encode(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page,
               std::vector<std::byte>& out) const;
   /// Fills the errors and ranges of all places that have points, those of coarser levels from `around`; the
-  /// samples are those with which the page was encoded. Returns false, and leaves anything in the errors and
-  /// ranges, where the bytes are not what `encode` of some page gives.
+  /// samples are those with which the page was encoded. Returns false, and leaves anything in `values`, where
+  /// the bytes are not what `encode` of some page gives.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape,
-                            const Surroundings<Word>& around, Page<Word>& page) const;
+                            const Surroundings<Word>& around, const PageSamples<Word>& samples,
+                            PageValues<Word>& values) const;
 
  private:
   ValueCodec(const ErrorGeometry& geometry, ContextCoder coder)

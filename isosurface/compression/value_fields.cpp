@@ -113,7 +113,7 @@ void for_each_row(const PageShape& shape, int parity, Visit visit) {
 
 template <class Word>
 void ValueFields<Word>::load(const PageShape& shape, const Surroundings<Word>& around,
-                             const Page<Word>& page) {
+                             const PageSamples<Word>& page) {
   with_wide_lanes([&](auto) {
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t parity = 0; parity < 8; ++parity) {
@@ -131,7 +131,9 @@ void ValueFields<Word>::load(const PageShape& shape, const Surroundings<Word>& a
 }
 
 template <class Word>
-void ValueFields<Word>::load_points(const PageShape& shape, const Page<Word>& page) {
+void ValueFields<Word>::load_points(const PageShape& shape, const PageSamples<Word>& page) {
+  if (sizeof(Word) < sizeof(float) && !shape.complete && shape.count == LatticePoint{16, 16, 16})
+    return load_whole(page);
   for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
     Word* const least = samples[0][static_cast<std::size_t>(parity)].data();
     Word* const greatest = samples[1][static_cast<std::size_t>(parity)].data();
@@ -148,22 +150,44 @@ void ValueFields<Word>::load_points(const PageShape& shape, const Page<Word>& pa
   }
 }
 
+/// The same of a page with all points, whose samples are all finite.
+template <class Word>
+void ValueFields<Word>::load_whole(const PageSamples<Word>& page) {
+  using Lanes = EightLanes<Word>;
+  for (std::int32_t k = 0; k < PageGrid::kSide; ++k) {
+    for (std::int32_t j = 0; j < PageGrid::kSide; ++j) {
+      const auto even = static_cast<std::size_t>((j & 1) << 1 | (k & 1) << 2);
+      const std::size_t cell = surrounding_place({0, j & ~1, k & ~1});
+      std::array<Lanes, 2> lanes;
+      Lanes::load_by_turns(page.samples.data() + PageGrid::place({0, j, k}, 0), lanes[0], lanes[1]);
+      for (std::size_t odd = even == 0 ? 1 : 0; odd < 2; ++odd) {
+        lanes[odd].store(samples[0][even + odd].data() + cell);
+        lanes[odd].inverted().store(samples[1][even + odd].data() + cell);
+      }
+    }
+  }
+}
+
 /// What is known of the points whose coordinates are all even.
 template <class Word>
 void ValueFields<Word>::load_coarser(const Surroundings<Word>& around) {
+  Word* const least = samples[0][0].data();
+  Word* const greatest = samples[1][0].data();
+  Word* const high = values[1][0].data();
+  ADAMAS_INDEPENDENT
   for (std::size_t n = 0; n < around.samples.size(); ++n) {
     const Word word = around.samples[n];
-    samples[0][0][n] = is_finite(word) ? word : kUnknown;
-    samples[1][0][n] = is_finite(word) ? static_cast<Word>(~word) : kUnknown;
-    values[0][0][n] = around.low[n];
-    values[1][0][n] = static_cast<Word>(~around.high[n]);
+    least[n] = is_finite(word) ? word : kUnknown;
+    greatest[n] = is_finite(word) ? static_cast<Word>(~word) : kUnknown;
+    high[n] = static_cast<Word>(~around.high[n]);
   }
+  values[0][0] = around.low;
   errors[0] = around.errors;
 }
 
 template <class Word>
 void ValueFields<Word>::load_heights(const PageShape& shape, const Surroundings<Word>& around,
-                                     const Page<Word>& page) {
+                                     const PageSamples<Word>& page) {
   const LatticePoint count = shape.count;
   if (count != LatticePoint{16, 16, 16}) heights.fill(0);
   for (std::int32_t k = 0; k < count.k; ++k) {
@@ -245,7 +269,7 @@ void ValueFields<Word>::load_parents(const PageShape& shape, const Surroundings<
 }
 
 template <class Word>
-void ValueFields<Word>::load_values(const PageShape& shape, const Page<Word>& page) {
+void ValueFields<Word>::load_values(const PageShape& shape, const PageValues<Word>& page) {
   for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
     const auto p = static_cast<std::size_t>(parity);
     for_each_row(shape, parity, [&](std::size_t cell, std::size_t place, int count) {
@@ -269,7 +293,7 @@ void ValueFields<Word>::fill_errors(const PageShape& shape, std::uint8_t code) {
 }
 
 template <class Word>
-void ValueFields<Word>::store_values(const PageShape& shape, Page<Word>& page) const {
+void ValueFields<Word>::store_values(const PageShape& shape, PageValues<Word>& page) const {
   with_wide_lanes([&](auto) {
     for (std::int32_t k = 0; k < shape.count.k; ++k) {
       for (std::int32_t j = 0; j < shape.count.j; ++j) {

@@ -17,13 +17,13 @@ struct ValueFields {
   static constexpr Word kUnknown = static_cast<Word>(~Word{0});
 
   /// What is known before any value; of a complete page its samples alone.
-  void load(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
+  void load(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
   /// The page's own values, for an encoder.
-  void load_values(const PageShape& shape, const Page<Word>& page);
+  void load_values(const PageShape& shape, const PageValues<Word>& page);
   /// Gives all own points the same error.
   void fill_errors(const PageShape& shape, std::uint8_t code);
   /// The values of all places of the page.
-  void store_values(const PageShape& shape, Page<Word>& page) const;
+  void store_values(const PageShape& shape, PageValues<Word>& page) const;
 
   std::array<AllCells<Word>, 2> samples;  ///< words of finite samples
   std::array<AllCells<Word>, 2> values;   ///< the ranges found so far, and those of coarser levels
@@ -43,8 +43,9 @@ struct ValueFields {
   AllCells<std::uint8_t> predicted;         ///< own errors, of which ErrorStages makes what is expected
 
  private:
-  void load_points(const PageShape& shape, const Page<Word>& page);
-  void load_heights(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
+  void load_points(const PageShape& shape, const PageSamples<Word>& page);
+  void load_whole(const PageSamples<Word>& page);
+  void load_heights(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
   void load_coarser(const Surroundings<Word>& around);
   void load_parents(const PageShape& shape, const Surroundings<Word>& around);
   template <int Axis>

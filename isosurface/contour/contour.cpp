@@ -64,10 +64,12 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
 }
 
 void ContourBuilder::expect(std::size_t triangles) {
-  // Closed surfaces have half as many points.
+  // Closed surfaces have half as many points and two for each of their parts, open ones a few more.
+  const std::size_t points = triangles / 2 + triangles / 32;
   reserve_in_large_pages(contour_.triangles, triangles);
-  reserve_in_large_pages(contour_.points, triangles / 2);
-  reserve_in_large_pages(contour_.edge_points, triangles / 2);
+  reserve_in_large_pages(contour_.points, points);
+  reserve_in_large_pages(contour_.edge_points, points);
+  numbers_.expect(points);
 }
 
 Contour ContourBuilder::finish() {
@@ -108,6 +110,7 @@ DiamondsInSpace::DiamondsInSpace(const IndexedHierarchy& hierarchy,
                                  const std::optional<LatticePoint>& last_sample)
     : shift_(kRootBits - 1 - hierarchy.levels()) {
   std::uint64_t last = 0;
+  reserve_in_large_pages(diamonds_, hierarchy.diamond_count());
   hierarchy.for_each_diamond([&](const Diamond& diamond, std::uint8_t slots) {
     if (last_sample && is_beyond(diamond, *last_sample)) return;
     const LatticePoint p = diamond.point();
@@ -116,7 +119,9 @@ DiamondsInSpace::DiamondsInSpace(const IndexedHierarchy& hierarchy,
   });
   // By some bits after others, from the lowest on.
   constexpr int kDigitBits = 11;
-  std::vector<PlacedDiamond> sorted(diamonds_.size());
+  std::vector<PlacedDiamond> sorted;
+  reserve_in_large_pages(sorted, diamonds_.size());
+  sorted.resize(diamonds_.size());
   for (int bit = 0; bit < static_cast<int>(std::bit_width(last)); bit += kDigitBits) {
     std::array<std::size_t, (1u << kDigitBits) + 1> begin{};
     const auto digit = [bit](const PlacedDiamond& d) { return d.place >> bit & ((1u << kDigitBits) - 1); };

@@ -1,6 +1,6 @@
 #include "isosurface/extraction/diamond_stencil.h"
 
-#include "isosurface/extraction/padded_grid.h"
+#include "core/geometry/tetrahedron_contour.h"
 
 namespace adamas {
 
@@ -36,6 +36,11 @@ DiamondStencil stencil_of(const DiamondType& type) {
         half.vertices[v] = static_cast<std::uint8_t>(corners(from.slot)[from.vertices[v]]);
         half.members |= 1u << half.vertices[v];
       }
+      for (std::size_t edge = 0; edge < half.edges.size(); ++edge) {
+        const auto [a, b] = kTetrahedronEdges[edge];
+        half.edges[edge] =
+            DiamondStencil::edge_place(stencil.offsets[half.vertices[a]] + stencil.offsets[half.vertices[b]]);
+      }
     }
   }
   for (std::size_t m = 0; m < stencil.count; ++m)
@@ -63,13 +68,13 @@ int DiamondStencil::added_in(unsigned slots, Members above) const {
   return more;
 }
 
-const DiamondStencil& DiamondStencil::at(LatticePoint q) {
+const DiamondStencil* DiamondStencil::all() {
   static const auto kAll = [] {
     std::array<DiamondStencil, kDiamondTypeCount> all;
     for (std::size_t type = 0; type < all.size(); ++type) all[type] = stencil_of(kDiamondTypes[type]);
     return all;
   }();
-  return kAll[static_cast<std::size_t>(diamond_type(q, 0))];
+  return kAll.data();
 }
 
 }  // namespace adamas

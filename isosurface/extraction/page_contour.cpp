@@ -28,7 +28,8 @@ PageContour<Sample>::PageContour(StoredDiamonds<Sample>& diamonds, const SplitPa
       limits_(limits),
       builder_(builder),
       page_(diamonds),
-      edge_points_(std::size_t{kEdgeSide} * kEdgeSide * kEdgeSide, kNone) {}
+      edge_points_(static_cast<std::size_t>(DiamondStencil::edge_place({0, 0, DiamondStencil::kEdgeSide})),
+                   kNone) {}
 
 template <class Sample>
 typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int level,
@@ -38,8 +39,8 @@ typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int lev
     for (std::int32_t dj = -1; dj <= 1; ++dj) {
       for (std::int32_t di = -1; di <= 1; ++di) {
         const PageOfLevel* page = pages_.page(level, block + LatticePoint{di, dj, dk});
-        if (page == nullptr || page->mask == SplitPages<Sample>::kNone) continue;
-        found[neighbour(PageGrid::kSide * LatticePoint{di, dj, dk})] = &pages_.mask(level, *page);
+        if (page == nullptr) continue;
+        found[neighbour(PageGrid::kSide * LatticePoint{di, dj, dk})] = page->split;
       }
     }
   }
@@ -48,7 +49,7 @@ typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int lev
 
 template <class Sample>
 void PageContour<Sample>::add(int level, const PageOfLevel& page) {
-  const PageMask& split = pages_.mask(level, page);
+  const PageMask& split = *page.split;
   page_.load(level, page.block, split);
   same_ = neighbours(level, page.block);
   // A page's next finer ones are two along each axis; but the coarsest one has all coarser levels too.
@@ -93,28 +94,31 @@ void PageContour<Sample>::note_lost_children(const Diamond& diamond) {
 template <class Sample>
 void PageContour<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q,
                                    const DiamondStencil::Half& half, Members above) {
-  std::array<LatticePoint, 4> vertices;
   unsigned bits = 0;
-  for (std::size_t v = 0; v < 4; ++v) {
-    vertices[v] = q + stencil.offsets[half.vertices[v]];
-    bits |= (above >> half.vertices[v] & 1) << v;
-    if (std::is_floating_point_v<Sample> && !std::isfinite(page_.value(vertices[v]))) return;
-  }
-  if (!page_.is_inside()) {
+  for (std::size_t v = 0; v < 4; ++v) bits |= (above >> half.vertices[v] & 1) << v;
+  if (std::is_floating_point_v<Sample> || !page_.is_inside()) {
     std::array<LatticePoint, 4> in_lattice;
-    for (std::size_t v = 0; v < 4; ++v) in_lattice[v] = page_.in_lattice(vertices[v]);
-    if (is_beyond(in_lattice, diamonds_.last_sample())) return;
+    for (std::size_t v = 0; v < 4; ++v) {
+      const LatticePoint p = q + stencil.offsets[half.vertices[v]];
+      if (std::is_floating_point_v<Sample> && !std::isfinite(page_.value(p))) return;
+      in_lattice[v] = page_.in_lattice(p);
+    }
+    if (!page_.is_inside() && is_beyond(in_lattice, diamonds_.last_sample())) return;
   }
   const TetrahedronContour& contour = kTetrahedronContours[bits];
-  std::array<std::uint32_t, 6> points;
-  points.fill(kNone);
+  const std::int32_t middle = DiamondStencil::edge_place(2 * (q + LatticePoint{1, 1, 1}));
   for (std::size_t n = 0; n < contour.triangle_count; ++n) {
     std::array<std::uint32_t, 3> triangle;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint8_t edge = contour.triangles[n][c];
-      if (points[edge] == kNone)
-        points[edge] = edge_point(vertices[kTetrahedronEdges[edge][0]], vertices[kTetrahedronEdges[edge][1]]);
-      triangle[c] = points[edge];
+      const auto at = static_cast<std::uint32_t>(middle + half.edges[edge]);
+      std::uint32_t& point = edge_points_[at];
+      if (point == kNone) {
+        const auto [a, b] = kTetrahedronEdges[edge];
+        point = edge_point(q + stencil.offsets[half.vertices[a]], q + stencil.offsets[half.vertices[b]]);
+        used_.push_back(at);
+      }
+      triangle[c] = point;
     }
     builder_.add_triangle(triangle);
   }
@@ -122,14 +126,7 @@ void PageContour<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q
 
 template <class Sample>
 std::uint32_t PageContour<Sample>::edge_point(LatticePoint a, LatticePoint b) {
-  const LatticePoint sum = a + b + LatticePoint{2, 2, 2};
-  const auto at = static_cast<std::uint32_t>(sum.i + kEdgeSide * (sum.j + kEdgeSide * sum.k));
-  std::uint32_t& point = edge_points_[at];
-  if (point == kNone) {
-    point = builder_.edge_point(page_.in_lattice(a), page_.in_lattice(b), page_.value(a), page_.value(b));
-    used_.push_back(at);
-  }
-  return point;
+  return builder_.edge_point(page_.in_lattice(a), page_.in_lattice(b), page_.value(a), page_.value(b));
 }
 
 template <class Sample>

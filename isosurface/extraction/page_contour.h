@@ -48,9 +48,7 @@ class PageContour {
   ContourBuilder& builder_;
   PageDiamonds<Sample> page_;
   Neighbours same_{}, finer_{};  ///< of the page's level and the next finer one
-  /// Numbers of the points on edges with both ends on or round the page, by the sum of the ends; `used_` are
-  /// those that have one.
-  static constexpr std::int32_t kEdgeSide = 35;
+  /// Numbers of the points on edges, by DiamondStencil::edge_place; `used_` are those that have one.
   std::vector<std::uint32_t> edge_points_;
   std::vector<std::uint32_t> used_;
   std::uint64_t tetrahedra_ = 0;

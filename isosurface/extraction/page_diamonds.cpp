@@ -15,6 +15,23 @@ std::uint32_t bit_of_page(LatticePoint q) {
 }
 constexpr std::uint32_t kOwnPage = 1u << 13, kAllPages = (1u << 27) - 1;
 
+/// By axis and step from -1 to 1: the pages that lie such a step away, as bits.
+constexpr auto kPagesAt = [] {
+  std::array<std::array<std::uint32_t, 3>, 3> pages{};
+  for (unsigned n = 0; n < 27; ++n) {
+    pages[0][n % 3] |= 1u << n;
+    pages[1][n / 3 % 3] |= 1u << n;
+    pages[2][n / 9] |= 1u << n;
+  }
+  return pages;
+}();
+
+/// The pages that have the points from one before a coordinate to one behind it, as bits.
+constexpr std::uint32_t pages_round(std::int32_t x, std::size_t axis) {
+  const auto& [before, own, behind] = kPagesAt[axis];
+  return own | (x == 0 ? before : 0) | (x == kLast ? behind : 0);
+}
+
 }  // namespace
 
 template <class Sample>
@@ -29,10 +46,10 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
     const std::int64_t end = std::int64_t{corner_[axis] + PageGrid::kSide} << level;
     inside_ = inside_ && block[axis] > 0 && end <= last[axis];
   }
-  known_ = 0;
+  known_ = known_coarser_ = 0;
   // Of coarser levels than the coarsest page's own no page has the points side by side.
   if (level <= diamonds_.grid().top()) {
-    const auto& samples = diamonds_.page({level, block}).samples;
+    const auto& samples = diamonds_.samples({level, block});
     for (std::int32_t k = 0; k <= kLast; ++k) {
       for (std::int32_t j = 0; j <= kLast; ++j)
         std::copy_n(samples.data() + PageGrid::place({0, j, k}, 0), PageGrid::kSide, words_.at({0, j, k}));
@@ -40,19 +57,38 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
     known_ = kOwnPage;
     get_from_neighbours();
   }
+  reaching_others(split).for_each([this](LatticePoint q) { get_others(q); });
   finite_ = true;
-  const bool is_all_there = inside_ && known_ == kAllPages;
-  if (is_all_there && !std::is_floating_point_v<Sample>) return;
-  split.for_each([&](LatticePoint q) {
-    const bool near_border =
-        !inside_ || known_ == 0 || std::min({q.i, q.j, q.k}) == 0 || std::max({q.i, q.j, q.k}) == kLast;
-    if (near_border && !is_all_there) get_others(q);
-    if constexpr (std::is_floating_point_v<Sample>) {
+  if constexpr (std::is_floating_point_v<Sample>) {
+    split.for_each([this](LatticePoint q) {
       const DiamondStencil& stencil = DiamondStencil::at(q);
       for (std::size_t m = 0; m < stencil.count; ++m)
         finite_ = finite_ && std::isfinite(value(q + stencil.offsets[m]));
+    });
+  }
+}
+
+template <class Sample>
+PageMask PageDiamonds<Sample>::reaching_others(const PageMask& split) const {
+  // Where the data end on or before the page, not all of its points and of those round it are there.
+  const LatticePoint end = diamonds_.grid().extent(level_);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (corner_[axis] + PageGrid::kSide > end[axis]) return split;
+  }
+  PageMask found;
+  const std::uint32_t missing = kAllPages & ~known_;
+  for (std::int32_t k = 0; k <= kLast; ++k) {
+    for (std::int32_t j = 0; j <= kLast; ++j) {
+      const std::uint32_t in_row = missing & pages_round(j, 1) & pages_round(k, 2);
+      unsigned reaching = 0;
+      if ((in_row & pages_round(0, 0)) != 0) reaching |= 1;
+      if ((in_row & pages_round(kLast, 0)) != 0) reaching |= 1u << kLast;
+      if ((in_row & pages_round(1, 0)) != 0) reaching = 0xffff;
+      const auto row = static_cast<std::size_t>(j + PageGrid::kSide * k);
+      found.rows[row] = static_cast<std::uint16_t>(split.rows[row] & reaching);
     }
-  });
+  }
+  return found;
 }
 
 template <class Sample>
@@ -63,8 +99,11 @@ void PageDiamonds<Sample>::get_from_neighbours() {
     if (step == LatticePoint{} || std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i ||
         block.j >= blocks.j || block.k >= blocks.k)
       continue;
-    const Page<Word>* page = diamonds_.held_page({level_, block});
-    if (page == nullptr) continue;
+    const PageSamples<Word>* page = diamonds_.held_samples({level_, block});
+    if (page == nullptr) {
+      get_coarser(step);
+      continue;
+    }
     known_ |= 1u << n;
     // One plane of the page, one edge or one corner.
     LatticePoint first, last;
@@ -87,10 +126,36 @@ void PageDiamonds<Sample>::get_from_neighbours() {
 }
 
 template <class Sample>
+void PageDiamonds<Sample>::get_coarser(LatticePoint step) {
+  // Points one before the page are odd ones.
+  if (std::min({step.i, step.j, step.k}) < 0 || level_ == diamonds_.grid().top()) return;
+  const LatticePoint block = block_ + step;
+  const PageSamples<Word>* page =
+      diamonds_.held_samples({level_ + 1, {block.i / 2, block.j / 2, block.k / 2}});
+  if (page == nullptr) return;
+  known_coarser_ |= bit_of_page(PageGrid::kSide * step);
+  const LatticePoint first = PageGrid::kSide * step;
+  const auto end = [&](int axis) { return step[axis] > 0 ? first[axis] : kLast; };
+  for (LatticePoint q = first; q.k <= end(2); q.k += 2) {
+    for (q.j = first.j; q.j <= end(1); q.j += 2) {
+      for (q.i = first.i; q.i <= end(0); q.i += 2) {
+        const LatticePoint u = corner_ + q;
+        *words_.at(q) = page->samples[PageGrid::place({u.i / 2, u.j / 2, u.k / 2}, 0)];
+      }
+    }
+  }
+}
+
+template <class Sample>
 bool PageDiamonds<Sample>::is_there(LatticePoint q) const {
-  if ((known_ & bit_of_page(q)) == 0) return false;
-  const LatticePoint u = corner_ + q, extent = diamonds_.grid().extent(level_);
-  return u.i <= extent.i && u.j <= extent.j && u.k <= extent.k;
+  const LatticePoint u = corner_ + q;
+  const auto is_within = [u](LatticePoint extent, int step) {
+    return u.i <= step * extent.i && u.j <= step * extent.j && u.k <= step * extent.k;
+  };
+  const std::uint32_t page = bit_of_page(q);
+  if ((known_ & page) != 0) return is_within(diamonds_.grid().extent(level_), 1);
+  return (known_coarser_ & page) != 0 && ((q.i | q.j | q.k) & 1) == 0 &&
+         is_within(diamonds_.grid().extent(level_ + 1), 2);
 }
 
 template <class Sample>

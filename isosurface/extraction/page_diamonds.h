@@ -39,32 +39,41 @@ class PageDiamonds {
   /// Of a diamond's members, those that are not below the isovalue.
   [[nodiscard]] DiamondStencil::Members above(const DiamondStencil& stencil, LatticePoint q) const {
     const Word* at = words_.at(q);
-    DiamondStencil::Members result = 0;
-    for (std::size_t m = 0; m < stencil.count; ++m) {
-      result |= DiamondStencil::Members{diamonds_.is_above(at[stencil.places[m]])} << m;
-    }
-    return result;
+    // Of constant numbers no loop is left.
+    if (stencil.phase == 0) return above_of<DiamondStencil::kRing + 6>(stencil, at);
+    if (stencil.phase == 1) return above_of<DiamondStencil::kRing + 4>(stencil, at);
+    return above_of<DiamondStencil::kRing + 8>(stencil, at);
   }
   /// How many more triangles a contour has once the diamond is split.
   [[nodiscard]] int triangles_added(const DiamondStencil& stencil, LatticePoint q) const {
     const DiamondStencil::Members members = above(stencil, q);
-    return inside_ ? stencil.added[members] : stencil.added_in(slots(stencil, q), members);
+    const unsigned in_domain = slots(stencil, q);
+    return in_domain == stencil.all_slots() ? stencil.added[members] : stencil.added_in(in_domain, members);
   }
   /// The slots of a diamond's tetrahedra in the domain, as bits.
   [[nodiscard]] unsigned slots(const DiamondStencil& stencil, LatticePoint q) const {
-    const unsigned all = (1u << stencil.tetrahedron_count) - 1;
-    if (inside_ || diamonds_.domain().boundary_count(in_lattice(q)) == 0) return all;
+    if (inside_ || diamonds_.domain().boundary_count(in_lattice(q)) == 0) return stencil.all_slots();
     unsigned found = 0;
     for (const int slot : diamond(q).tetrahedra(diamonds_.domain())) found |= 1u << slot;
     return found;
   }
 
  private:
+  template <std::size_t Count>
+  [[nodiscard]] DiamondStencil::Members above_of(const DiamondStencil& stencil, const Word* at) const {
+    DiamondStencil::Members result = 0;
+    for (std::size_t m = 0; m < Count; ++m)
+      result |= DiamondStencil::Members{diamonds_.is_above(at[stencil.places[m]])} << m;
+    return result;
+  }
   /// Copies what the pages round the page have of the points round it, as far as they are in memory.
   void get_from_neighbours();
-  /// Gets those members of a diamond that are not on a page in memory.
+  /// Of a page that is not in memory, one step from -1 to 1 away: copies those points that are coarser ones.
+  void get_coarser(LatticePoint step);
+  /// Of split diamonds, those that may have members which were not got together with the others.
+  [[nodiscard]] PageMask reaching_others(const PageMask& split) const;
+  /// Gets those members of a diamond.
   void get_others(LatticePoint q);
-  /// Whether a member of a page's point was got together with the others.
   [[nodiscard]] bool is_there(LatticePoint q) const;
 
   StoredDiamonds<Sample>& diamonds_;
@@ -74,8 +83,8 @@ class PageDiamonds {
   bool inside_ = false, finite_ = true;
   PaddedGrid<Word> words_;
   /// Of the pages round the page, by steps from -1 to 1 along each axis, i running fastest: those whose
-  /// points are there, as bits.
-  std::uint32_t known_ = 0;
+  /// points are there, as bits; and those of which the coarser ones are.
+  std::uint32_t known_ = 0, known_coarser_ = 0;
 };
 
 extern template class PageDiamonds<std::uint8_t>;

@@ -13,21 +13,6 @@ namespace adamas {
 namespace {
 
 constexpr std::int32_t kSide = PageGrid::kSide;
-constexpr std::uint16_t kOdd = 0xaaaa, kEven = 0x5555;
-
-/// Which of eight codes below 128 are not less than `least`, as bits; 0 < least <= 128.
-unsigned not_less(const std::uint8_t* codes, unsigned least) {
-  constexpr std::uint64_t kOnes = 0x0101010101010101ull, kGather = 0x0002040810204081ull;
-  std::uint64_t eight;
-  std::memcpy(&eight, codes, sizeof eight);
-  const std::uint64_t high = (eight + kOnes * (128 - least)) & (kOnes << 7);
-  return static_cast<unsigned>(high * kGather >> 56);
-}
-
-/// The same of a row.
-unsigned row_not_less(const std::uint8_t* codes, unsigned least) {
-  return not_less(codes, least) | not_less(codes + 8, least) << 8;
-}
 
 /// Whether no diamond of a row is crossed with an error.
 bool is_zero(const std::uint8_t* codes) {
@@ -35,53 +20,6 @@ bool is_zero(const std::uint8_t* codes) {
   std::memcpy(row.data(), codes, sizeof row);
   return (row[0] | row[1]) == 0;
 }
-
-/// A row of points of a page that is no complete one, seen as phases of its diamonds: -1 where the points are
-/// coarser ones.
-struct RowPhases {
-  int odd, even;  ///< of points with an odd coordinate i, and an even one
-
-  RowPhases(std::int32_t j, std::int32_t k)
-      : odd(2 - (j & 1) - (k & 1)), even((j | k) & 1 ? 3 - (j & 1) - (k & 1) : -1) {}
-};
-
-/// Of the diamonds of a level's page, those that a cut splits.
-class CutOfPage {
- public:
-  /// `order`: the page's in z-order; `generation`: that of the level's cubes.
-  CutOfPage(const SurfaceCut& cut, int level, int generation, std::uint64_t order) : place_(cut.place) {
-    for (int phase = 0; phase < 3; ++phase) {
-      int rank = cut.least_rank(generation + phase);
-      if (generation + phase == cut.generation && order < cut.page) rank = cut.rank;
-      if (generation + phase == cut.generation && order == cut.page) last_phase_ = phase;
-      least_[static_cast<std::size_t>(phase)] = code(rank, level);
-    }
-    last_least_ = code(cut.rank, level);
-  }
-
-  /// Of a row of codes, as bits.
-  [[nodiscard]] unsigned split(const std::uint8_t* codes, const RowPhases& phases, std::size_t row) const {
-    unsigned bits = row_not_less(codes, least_[static_cast<std::size_t>(phases.odd)]) & kOdd;
-    if (phases.even >= 0) bits |= row_not_less(codes, least_[static_cast<std::size_t>(phases.even)]) & kEven;
-    if (last_phase_ < 0) return bits;
-    const unsigned of_phase =
-        (phases.odd == last_phase_ ? kOdd : 0u) | (phases.even == last_phase_ ? kEven : 0u);
-    const auto before = static_cast<std::ptrdiff_t>(place_) - static_cast<std::ptrdiff_t>(kSide * row);
-    const unsigned places = before <= 0 ? 0u : before >= kSide ? 0xffffu : (1u << before) - 1;
-    return bits | (row_not_less(codes, last_least_) & of_phase & places);
-  }
-
- private:
-  /// The least code of a level that has the rank; beyond all codes where none has.
-  static unsigned code(int rank, int level) {
-    return static_cast<unsigned>(std::clamp(rank - 4 * level, 1, 128));
-  }
-
-  std::array<unsigned, 3> least_;  ///< by phase: codes that are split
-  int last_phase_ = -1;            ///< where a phase's diamonds are split up to a place, from this code on
-  unsigned last_least_;
-  std::size_t place_;
-};
 
 /// Where along an axis the children of a point of phase 2 lie, in pages of the next finer level: from the one
 /// before the point's page to the last one in it, as three bits.
@@ -95,7 +33,7 @@ std::array<unsigned, 9> pages_of_children(const PageMask& split) {
     for (std::int32_t j = 0; j < kSide; ++j) {
       const RowPhases phases(j, k);
       const unsigned bits = split.rows[static_cast<std::size_t>(j + kSide * k)] &
-                            ((phases.odd == 2 ? kOdd : 0u) | (phases.even == 2 ? kEven : 0u));
+                            ((phases.odd == 2 ? kOddPoints : 0u) | (phases.even == 2 ? kEvenPoints : 0u));
       if (bits == 0) continue;
       const unsigned along_i =
           ((bits & 1) != 0 ? 1u : 0u) | ((bits & 0x1ff) != 0 ? 2u : 0u) | ((bits & 0xff00) != 0 ? 4u : 0u);
@@ -113,7 +51,7 @@ template <class Sample>
 std::size_t SplitPages<Sample>::count() const {
   std::size_t sum = 0;
   for (const Level& level : levels_) {
-    for (const PageMask& mask : level.masks) sum += mask.count();
+    for (const PageOfLevel& page : level.pages) sum += page.split == nullptr ? 0 : page.split->count();
   }
   return sum;
 }
@@ -133,8 +71,8 @@ bool SplitPages<Sample>::is_split(LatticePoint p) const {
   const LatticePoint s = diamonds_.in_samples(p);
   const LatticePoint u{s.i >> level, s.j >> level, s.k >> level};
   const PageOfLevel* found = page(level, {u.i / kSide, u.j / kSide, u.k / kSide});
-  return found != nullptr && found->mask != kNone &&
-         mask(level, *found).has({u.i % kSide, u.j % kSide, u.k % kSide});
+  return found != nullptr && found->split != nullptr &&
+         found->split->has({u.i % kSide, u.j % kSide, u.k % kSide});
 }
 
 template <class Sample>
@@ -163,9 +101,9 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int level) {
     found.emplace_back(ZOrder::interleave(block), block);
   };
   for (const PageOfLevel& parent : pages(level + 1)) {
-    if (parent.mask == kNone) continue;
+    if (parent.split == nullptr) continue;
     const std::array<unsigned, 9> rows =
-        limits_.any() ? allowed_children(level + 1, parent) : pages_of_children(mask(level + 1, parent));
+        limits_.any() ? allowed_children(level + 1, parent) : pages_of_children(*parent.split);
     for (std::int32_t n = 0; n < 27; ++n) {
       if ((rows[static_cast<std::size_t>(n / 3)] >> n % 3 & 1) != 0)
         add(2 * parent.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
@@ -190,7 +128,7 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int level) {
 template <class Sample>
 std::array<unsigned, 9> SplitPages<Sample>::allowed_children(int level, const PageOfLevel& parent) const {
   std::array<unsigned, 9> found{};
-  mask(level, parent).for_each([&](LatticePoint q) {
+  parent.split->for_each([&](LatticePoint q) {
     const DiamondStencil& stencil = DiamondStencil::at(q);
     if (stencil.phase != 2) return;
     for (const LatticePoint offset : stencil.children) {
@@ -207,50 +145,108 @@ template <class Sample>
 bool SplitPages<Sample>::may_split(int level, LatticePoint block) const {
   if (!limits_.any()) return true;
   PageMask all;
-  all.rows.fill(kOdd | kEven);
+  all.rows.fill(kOddPoints | kEvenPoints);
   limit(level, block, all);
-  return std::any_of(all.rows.begin(), all.rows.end(), [](std::uint16_t row) { return row != 0; });
+  return all.any();
 }
 
 template <class Sample>
-typename SplitPages<Sample>::PageOfLevel SplitPages<Sample>::look_into(int level, LatticePoint block,
-                                                                       const SurfaceCut& cut) {
+const typename StoredDiamonds<Sample>::Codes& SplitPages<Sample>::codes(int level, LatticePoint block) {
+  const PageId where = id(level, block);
+  if (codes_of_ != where) {
+    codes_of_ = {-1, {}};
+    if (where.level == 0) {
+      find_finest_codes(where);
+    } else {
+      diamonds_.find_crossed(where, codes_);
+    }
+    codes_of_ = where;
+  }
+  return codes_;
+}
+
+template <class Sample>
+void SplitPages<Sample>::find_finest_codes(const PageId& page) {
+  const auto place_of = [](LatticePoint q) { return PageGrid::place(q, 0); };
+  if (const std::uint32_t* index = finest_.indices.find(page.block)) {
+    const CrossedCodes& known = finest_.pages[*index];
+    codes_.fill(0);
+    const std::uint8_t* next = known.codes.data();
+    known.crossed.for_each([&](LatticePoint q) { codes_[place_of(q)] = *next++; });
+    return;
+  }
+  diamonds_.find_crossed(page, codes_);
+  diamonds_.drop_values(page);
+  if (!several_cuts_) return;
+  *finest_.indices.insert(page.block).first = static_cast<std::uint32_t>(finest_.pages.size());
+  CrossedCodes& found = finest_.pages.emplace_back();
+  const LatticePoint count = diamonds_.grid().count(page);
+  for (std::int32_t k = 0; k < count.k; ++k) {
+    for (std::int32_t j = 0; j < count.j; ++j)
+      found.crossed.rows[static_cast<std::size_t>(j + kSide * k)] =
+          static_cast<std::uint16_t>(row_not_less(codes_.data() + place_of({0, j, k}), 1));
+  }
+  found.codes.reserve(found.crossed.count());
+  found.crossed.for_each([&](LatticePoint q) { found.codes.push_back(codes_[place_of(q)]); });
+}
+
+template <class Sample>
+std::vector<LatticePoint> SplitPages<Sample>::blocks_of(const Level& level) {
+  std::vector<LatticePoint> blocks;
+  blocks.reserve(level.pages.size());
+  for (const PageOfLevel& page : level.pages) blocks.push_back(page.block);
+  return blocks;
+}
+
+template <class Sample>
+bool SplitPages<Sample>::look_into(int level, LatticePoint block, const SurfaceCut& cut,
+                                   const Level& before) {
   Level& of = levels_[static_cast<std::size_t>(level)];
   *of.indices.insert(block).first = static_cast<std::uint32_t>(of.pages.size());
-  PageOfLevel& page = of.pages.emplace_back();
-  page.block = block;
-  const PageId where = id(level, block);
-  if (level < diamonds_.grid().top()) {
-    const int greatest = diamonds_.greatest_rank(where);
-    if (greatest < cut.rank || greatest == 0) {
-      greatest_left_ = std::max(greatest_left_, greatest);
-      return page;
+  const int generation = 3 * (levels() - 1 - level);
+  PageOfLevel page{.block = block, .cut = {cut, level, generation, ZOrder::interleave(block)}};
+  // What is not split has no greater rank than this, and mostly just that.
+  const bool look_at_left = greatest_left_ < (cut.generation < generation + 3 ? cut.rank : cut.rank - 1);
+  const std::uint32_t* index = before.indices.find(block);
+  const PageOfLevel* last = index == nullptr ? nullptr : &before.pages[*index];
+  const bool is_as_before =
+      last != nullptr && last->cut == page.cut && (last->greatest_left != kUnknown || !look_at_left);
+  if (is_as_before) {
+    page = *last;
+  } else {
+    const PageMask split = split_of(level, look_at_left, page);
+    if (split.any()) {
+      PageMask* const kept = masks_.add();
+      *kept = split;
+      page.split = kept;
     }
   }
-  diamonds_.find_crossed(where, codes_);
-  const PageMask split = split_of(level, block, cut);
-  if (std::any_of(split.rows.begin(), split.rows.end(), [](std::uint16_t row) { return row != 0; })) {
-    page.mask = static_cast<std::uint32_t>(of.masks.size());
-    of.masks.push_back(split);
-  }
-  return page;
+  greatest_left_ = std::max(greatest_left_, page.greatest_left);
+  of.pages.push_back(page);
+  return is_as_before;
 }
 
 template <class Sample>
-PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const SurfaceCut& cut) {
+PageMask SplitPages<Sample>::split_of(int level, bool look_at_left, PageOfLevel& page) {
+  if (level < diamonds_.grid().top()) {
+    const int greatest = diamonds_.greatest_rank(id(level, page.block));
+    if (greatest < static_cast<int>(page.cut.least()) + 4 * level) {
+      page.greatest_left = greatest;
+      return {};
+    }
+  }
   const LatticePoint reach = diamonds_.grid().reach(level);
   LatticePoint count;
-  for (int axis = 0; axis < 3; ++axis) count[axis] = std::min(reach[axis] - kSide * block[axis] + 1, kSide);
+  for (int axis = 0; axis < 3; ++axis)
+    count[axis] = std::min(reach[axis] - kSide * page.block[axis] + 1, kSide);
   const auto in_row = static_cast<std::uint16_t>((1u << count.i) - 1);
-  const int generation = 3 * (levels() - 1 - level), step = 1 << levels_below(level);
-  const CutOfPage in_page(cut, level, generation, ZOrder::interleave(block));
-  // What is not split has no greater rank than this, and mostly just that.
-  const bool look_at_left = greatest_left_ < (cut.generation < generation + 3 ? cut.rank : cut.rank - 1);
+  const int step = 1 << levels_below(level);
+  const auto& all = codes(level, page.block);
   PageMask mask, left;
   for (std::int32_t k = 0; k < count.k; ++k) {
     for (std::int32_t j = 0; j < count.j; ++j) {
       const RowPhases phases(j, k);
-      const std::uint8_t* row = codes_.data() + place(level, {0, j, k});
+      const std::uint8_t* row = all.data() + place(level, {0, j, k});
       std::array<std::uint8_t, kSide> spread;
       if (step > 1) {
         for (std::int32_t i = 0; i < kSide; ++i)
@@ -259,19 +255,20 @@ PageMask SplitPages<Sample>::split_of(int level, LatticePoint block, const Surfa
       }
       if (is_zero(row)) continue;
       const std::size_t at = static_cast<std::size_t>(j + kSide * k);
-      const unsigned own = in_row & (phases.even < 0 ? kOdd : kOdd | kEven);
-      const unsigned split = in_page.split(row, phases, at);
+      const unsigned own = in_row & (phases.even < 0 ? kOddPoints : kOddPoints | kEvenPoints);
+      const unsigned split = page.cut.split(row, phases, at);
       mask.rows[at] = static_cast<std::uint16_t>(split & own);
       if (look_at_left) left.rows[at] = static_cast<std::uint16_t>(row_not_less(row, 1) & own & ~split);
     }
   }
   if (limits_.any()) {
-    limit(level, block, mask);
-    limit(level, block, left);
+    limit(level, page.block, mask);
+    limit(level, page.block, left);
   }
   if (look_at_left) {
+    page.greatest_left = 0;
     left.for_each([&](LatticePoint q) {
-      greatest_left_ = std::max(greatest_left_, codes_[place(level, q)] + 4 * level);
+      page.greatest_left = std::max(page.greatest_left, all[place(level, q)] + 4 * level);
     });
   }
   return mask;

@@ -1,17 +1,20 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
+#include "core/base/arena.h"
 #include "core/lattice/lattice_map.h"
+#include "isosurface/extraction/cut_of_page.h"
 #include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/stored_diamonds.h"
-#include "isosurface/extraction/surface_cut.h"
 
 namespace adamas {
 
@@ -24,6 +27,9 @@ struct PageMask {
   }
   void add(LatticePoint q) {
     rows[static_cast<std::size_t>(q.j + PageGrid::kSide * q.k)] |= static_cast<std::uint16_t>(1u << q.i);
+  }
+  [[nodiscard]] bool any() const {
+    return std::any_of(rows.begin(), rows.end(), [](std::uint16_t row) { return row != 0; });
   }
   [[nodiscard]] std::size_t count() const {
     // Bits are counted in parts of two, four and eight bits, and summed up in 16, which they fit in.
@@ -59,27 +65,46 @@ class SplitPages {
 
   struct PageOfLevel {
     LatticePoint block;
-    std::uint32_t mask = kNone;  ///< number of its PageMask
+    const PageMask* split = nullptr;  ///< null where nothing is
+    CutOfPage cut;                    ///< which the mask is of
+    int greatest_left = kUnknown;
   };
 
-  /// `limits` may change between calls of `find`. Both must outlive this.
+  /// Both must outlive this.
   SplitPages(StoredDiamonds<Sample>& diamonds, const SplitLimits& limits)
       : diamonds_(diamonds), limits_(limits), levels_(static_cast<std::size_t>(diamonds.levels())) {}
 
-  /// Finds the split diamonds, from the coarsest level on, and calls visit(level, page, mask, codes) for each
-  /// page that has some: codes[place(level, q)] is that of a diamond's error. The cut may rise meanwhile: it
-  /// is looked at again for each page. Throws PageLost.
+  /// Finds the split diamonds, from the coarsest level on, and calls visit(level, page) for each page that
+  /// has some. The cut may rise meanwhile: it is looked at again for each page. Pages of which it splits
+  /// what the cut before did are not looked into again. Throws PageLost.
   template <class Visit>
   void find(const SurfaceCut& cut, Visit&& visit) {
     greatest_left_ = 0;
+    bool is_as_before = false;
     for (int level = diamonds_.levels() - 1; level >= 0; --level) {
-      levels_[static_cast<std::size_t>(level)] = {};
-      for (const LatticePoint block : candidates(level)) {
-        const PageOfLevel found = look_into(level, block, cut);
-        if (found.mask != kNone) visit(level, found, mask(level, found), codes_);
+      Level& of = levels_[static_cast<std::size_t>(level)];
+      const Level before = std::exchange(of, {});
+      const std::vector<LatticePoint> blocks = is_as_before ? blocks_of(before) : candidates(level);
+      is_as_before = blocks.size() == before.pages.size();
+      for (const LatticePoint block : blocks) {
+        is_as_before = look_into(level, block, cut, before) && is_as_before;
+        if (of.pages.back().split != nullptr) visit(level, of.pages.back());
       }
     }
   }
+  /// Forgets what was found: before the contour or the limits change. `several_cuts`: `find` will be called
+  /// more than once.
+  void forget(bool several_cuts) {
+    levels_.assign(levels_.size(), {});
+    masks_ = {};
+    codes_of_ = {-1, {}};
+    several_cuts_ = several_cuts;
+    finest_ = {};
+  }
+
+  /// The error codes of a page's crossed diamonds, 0 of others: that of q at place(level, q). Valid until the
+  /// next call of anything. Throws PageLost.
+  const typename StoredDiamonds<Sample>::Codes& codes(int level, LatticePoint block);
 
   [[nodiscard]] int levels() const { return diamonds_.levels(); }
   /// Pages of a level that were met, in z-order.
@@ -93,9 +118,6 @@ class SplitPages {
     const std::uint32_t* index = of.indices.find(block);
     return index == nullptr ? nullptr : &of.pages[*index];
   }
-  [[nodiscard]] const PageMask& mask(int level, const PageOfLevel& page) const {
-    return levels_[static_cast<std::size_t>(level)].masks[page.mask];
-  }
   /// How many diamonds are split.
   [[nodiscard]] std::size_t count() const;
   /// Calls visit(level, page, part) for each page that has split diamonds, from the coarsest level on, in
@@ -105,7 +127,7 @@ class SplitPages {
     for (int level = levels() - 1; level >= 0; --level) {
       const auto& all = pages(level);
       for (std::size_t n = 0; n < all.size(); ++n) {
-        if (all[n].mask == kNone) continue;
+        if (all[n].split == nullptr) continue;
         const double in_level = static_cast<double>(n) / static_cast<double>(all.size());
         visit(level, all[n], (levels() - 1 - level + in_level) / levels());
       }
@@ -134,13 +156,22 @@ class SplitPages {
     return PageGrid::place((1 << levels_below(level)) * q, 0);
   }
 
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
  private:
-  using Codes = typename StoredDiamonds<Sample>::Codes;
+  static constexpr int kUnknown = -1;
+
   struct Level {
     std::vector<PageOfLevel> pages;
-    std::vector<PageMask> masks;
+    LatticeMap<std::uint32_t> indices;  ///< into pages, by block
+  };
+
+  /// Of a page: the codes of its crossed diamonds.
+  struct CrossedCodes {
+    PageMask crossed;
+    std::vector<std::uint8_t> codes;  ///< of these, i running fastest
+  };
+  /// Of pages of the finest level, whose values nothing is predicted from and which are not kept.
+  struct FinestCodes {
+    std::vector<CrossedCodes> pages;
     LatticeMap<std::uint32_t> indices;  ///< into pages, by block
   };
 
@@ -159,16 +190,24 @@ class SplitPages {
   [[nodiscard]] std::array<unsigned, 9> allowed_children(int level, const PageOfLevel& parent) const;
   /// Whether the limits allow any diamond of the page.
   [[nodiscard]] bool may_split(int level, LatticePoint block) const;
-  PageOfLevel look_into(int level, LatticePoint block, const SurfaceCut& cut);
-  /// Those of a page, of level `level`, whose codes are at hand.
-  PageMask split_of(int level, LatticePoint block, const SurfaceCut& cut);
+  static std::vector<LatticePoint> blocks_of(const Level& level);
+  void find_finest_codes(const PageId& page);
+  /// Adds a page to its level. Whether it is as it was before.
+  bool look_into(int level, LatticePoint block, const SurfaceCut& cut, const Level& before);
+  /// The diamonds of a page that its cut splits; and, where it is to be looked at, the greatest rank that is
+  /// left.
+  PageMask split_of(int level, bool look_at_left, PageOfLevel& page);
   /// Takes out what the limits keep from being split.
   void limit(int level, LatticePoint block, PageMask& mask) const;
 
   StoredDiamonds<Sample>& diamonds_;
   const SplitLimits& limits_;
   std::vector<Level> levels_;
-  Codes codes_;  ///< of the page that was looked into last
+  Arena<PageMask> masks_;
+  typename StoredDiamonds<Sample>::Codes codes_;  ///< of the page that was looked into last
+  PageId codes_of_{-1, {}};
+  bool several_cuts_ = false;
+  FinestCodes finest_;  ///< where there are several cuts
   int greatest_left_ = 0;
 };
 

@@ -20,8 +20,7 @@ Domain domain_of(const VolumeGrid& volume, int depth) {
 
 /// Makes `codes` those of the diamonds with a range that is not all on one side of `least`, and 0 of others.
 template <class Word>
-void select_crossed(const Page<Word>& page, Word least,
-                    typename Page<Word>::template Points<std::uint8_t>& codes) {
+void select_crossed(const PageValues<Word>& page, Word least, PagePoints<std::uint8_t>& codes) {
   with_wide_lanes([&](auto bytes) {
     using Lanes = WideLanes<Word, bytes()>;
     using Codes [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
@@ -85,13 +84,27 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
   if (level < 0 || level > grid_.top()) return false;
   const LatticePoint at = in_samples(p), last = grid_.last();
   const LatticePoint first{(at.i >> level) - 1, (at.j >> level) - 1, (at.k >> level) - 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (first[axis] < 0 || first[axis] + 2 > last[axis] >> level) return false;
+  }
+  const LatticePoint block{first.i / kSide, first.j / kSide, first.k / kSide};
+  if (std::max({first.i % kSide, first.j % kSide, first.k % kSide}) <= kSide - 3) {
+    const PageSamples<Word>* page = pages_.held({level, block});
+    if (page == nullptr) return false;
+    const Word* from = page->samples.data() + PageGrid::place(first, 0);
+    double* to = samples.data();
+    for (int k = 0; k < 3; ++k, from += kSide * kSide - 3 * kSide) {
+      for (int j = 0; j < 3; ++j, from += kSide, to += 3)
+        to[0] = value(from[0]), to[1] = value(from[1]), to[2] = value(from[2]);
+    }
+    return true;
+  }
   // Along each axis: where the three places lie in their pages, and how many of them in the first one.
   std::array<std::array<std::size_t, 3>, 3> offsets;
   LatticePoint in_first{};
   std::size_t stride = 1;
   for (int axis = 0; axis < 3; ++axis, stride *= kSide) {
     const std::int32_t x = first[axis];
-    if (x < 0 || x + 2 > last[axis] >> level) return false;
     for (std::int32_t n = 0; n < 3; ++n)
       offsets[static_cast<std::size_t>(axis)][static_cast<std::size_t>(n)] =
           stride * static_cast<std::size_t>((x + n) % kSide);
@@ -99,7 +112,6 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
   }
   // By whether places lie in the second page along each axis, as bits.
   std::array<const Word*, 8> pages;
-  const LatticePoint block{first.i / kSide, first.j / kSide, first.k / kSide};
   for (int second = 0; second < 8; ++second) {
     LatticePoint of = block;
     bool is_used = true;
@@ -109,7 +121,7 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
       is_used = is_used && in_first[axis] < 3;
     }
     if (!is_used) continue;
-    const Page<Word>* from = pages_.held({level, of});
+    const PageSamples<Word>* from = pages_.held({level, of});
     if (from == nullptr) return false;
     pages[static_cast<std::size_t>(second)] = from->samples.data();
   }
@@ -144,7 +156,7 @@ void StoredDiamonds<Sample>::set_contour(double isovalue) {
 
 template <class Sample>
 void StoredDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
-  const Page<Word>& found = page(id);
+  const PageValues<Word>& found = values(id);
   if (greatest_rank(id) == 0) {
     codes.fill(0);
   } else {
@@ -165,7 +177,7 @@ int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
   const LatticePoint at = in_samples(p);
   const PageId id = grid_.page(at);
   if (pages_.held(id) == nullptr && id.level < grid_.top() && greatest_rank(id) == 0) return 0;
-  const Page<Word>& found = page(id);
+  const PageValues<Word>& found = values(id);
   const std::size_t place = PageGrid::place(at, id.level);
   const int code = crosses(found.low[place], found.high[place]) ? found.errors[place] : 0;
   return code == 0 ? 0 : code + 4 * level(p);

@@ -49,14 +49,14 @@ class StoredDiamonds {
     return s.i <= e.i && s.j <= e.j && s.k <= e.k;
   }
 
-  /// Valid until the next one is asked for. Throws PageLost.
-  const Page<Word>& page(const PageId& id) {
-    const Page<Word>* found = pages_.page(id);
+  /// Of a page; valid until the next one is asked for. Throws PageLost.
+  const PagePoints<Word>& samples(const PageId& id) {
+    const PageSamples<Word>* found = pages_.samples(id);
     if (found == nullptr) throw PageLost{id, pages_.last_damaged()};
-    return *found;
+    return found->samples;
   }
   /// Null where the page is not in memory. Valid until the next one is asked for.
-  const Page<Word>* held_page(const PageId& id) { return pages_.held(id); }
+  const PageSamples<Word>* held_samples(const PageId& id) { return pages_.held(id); }
 
   /// The sample at a lattice point; beyond the data the nearest one. Throws PageLost.
   double sample(LatticePoint p) { return value(word(in_samples(p))); }
@@ -68,7 +68,7 @@ class StoredDiamonds {
     const LatticePoint end = ends_[static_cast<std::size_t>(l)];
     for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], end[axis]);
     const PageId id = grid_.page(at);
-    return page(id).samples[PageGrid::place(at, id.level)];
+    return samples(id)[PageGrid::place(at, id.level)];
   }
 
   /// The samples at a lattice point and its 26 neighbours `step` lattice units away, i running fastest, as
@@ -93,9 +93,12 @@ class StoredDiamonds {
   /// coarsest page, which has diamonds of several levels. Throws PageLost.
   int greatest_rank(const PageId& id);
   /// Of a page's diamonds: the error codes of those that the contour crosses, 0 of the others.
-  using Codes = typename Page<Word>::template Points<std::uint8_t>;
+  using Codes = PagePoints<std::uint8_t>;
   /// Throws PageLost.
   void find_crossed(const PageId& id, Codes& codes);
+  /// The page, or all, will hardly be asked again for what diamonds are like.
+  void drop_values(const PageId& id) { pages_.drop_values(id); }
+  void drop_values() { pages_.drop_values(); }
 
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
 
@@ -104,6 +107,11 @@ class StoredDiamonds {
 
  private:
   const PageEntry& entry(const PageId& id);
+  const PageValues<Word>& values(const PageId& id) {
+    const PageValues<Word>* found = pages_.values(id);
+    if (found == nullptr) throw PageLost{id, pages_.last_damaged()};
+    return *found;
+  }
   /// The contour crosses what has a range with low < least_above_ <= high, as ordered words.
   [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {
     return low <= high && low < least_above_ && least_above_ <= high;

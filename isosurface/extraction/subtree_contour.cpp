@@ -92,9 +92,8 @@ ExtractedSurface contour_of_subtrees(StoredDiamonds<Sample>& diamonds, SplitPage
   }
   pages.for_each_page([&](int level, const auto& page, double part) {
     progress.step("extracting", part);
-    pages.mask(level, page).for_each([&](LatticePoint q) {
-      subtrees.add(Diamond(pages.in_lattice(level, page.block, q)));
-    });
+    page.split->for_each(
+        [&](LatticePoint q) { subtrees.add(Diamond(pages.in_lattice(level, page.block, q))); });
   });
   surface.diamonds = pages.count();
   surface.max_error = subtrees.greatest_error();

@@ -28,13 +28,14 @@ ContourOptions SurfaceExtractor<Sample>::options() const {
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Progress& progress) {
-  pages_.find(cut, [&](int level, const auto&, const auto&, const auto&) {
-    progress.step("reading", 1 - (level + 1.0) / pages_.levels());
-  });
+  pages_.find(cut,
+              [&](int level, const auto&) { progress.step("reading", 1 - (level + 1.0) / pages_.levels()); });
   ExtractedSurface surface;
   if (subtree_bisections_ > 0) {
     surface = contour_of_subtrees(diamonds_, pages_, request_, subtree_bisections_, progress);
   } else {
+    // What is split is known, and no more is asked of them.
+    if (!request_.others_follow) diamonds_.drop_values();
     surface = pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   }
   if (request_.region) clip_contour(surface.contour, *request_.region);
@@ -59,7 +60,8 @@ template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
   ContourBuilder builder(domain(), request_.isovalue, options());
   // A little more than surfaces have for each split diamond.
-  builder.expect(pages_.count() * 3 / 2);
+  const std::uint64_t about = std::uint64_t{pages_.count()} * 3 / 2;
+  builder.expect(static_cast<std::size_t>(std::min(about, request_.max_triangles.value_or(about))));
   PageContour<Sample> contour(diamonds_, pages_, limits_, builder);
   pages_.for_each_page([&](int level, const auto& page, double part) {
     progress.step("extracting", part);
@@ -118,6 +120,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
   }
   std::vector<PageId> lost;
   for (;;) {
+    pages_.forget(request.max_triangles.has_value());
     try {
       ExtractedSurface surface = extract_once(progress);
       surface.lost = lost;

@@ -4,9 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "core/base/arena.h"
 #include "core/base/large_pages.h"
-#include "core/lattice/point_numbers.h"
+#include "core/lattice/lattice_map.h"
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/storage/stored_gradients.h"
 
@@ -23,7 +22,8 @@ Vec3 downwards(const Vec3& gradient) {
   return length > 0 && std::isfinite(length) ? -1 / length * gradient : Vec3{};
 }
 
-/// Gradients at lattice points, each worked out once: directions alone where the store has them.
+/// Gradients at lattice points, directions alone where the store has them. Those that were asked for lately
+/// are not worked out again: points follow each other as they lie in space.
 template <class Sample>
 class VertexGradients {
  public:
@@ -33,15 +33,11 @@ class VertexGradients {
 
   /// The stored one, or from neighbours `step` away.
   Vec3 at(LatticePoint p, std::int32_t step) {
+    KnownGradient& known = known_[hash_value(p) >> (64 - kKnownBits)];
     // Vertices of a finer mesh than this one have a gradient of their own.
-    const auto [number, is_new] = numbers_.insert(p);
-    if (!is_new && gradients_[*number].step == step) return gradients_[*number].gradient;
-    const Vec3 gradient = stored_ ? stored(p, step) : estimate(p, step);
-    if (is_new) {
-      *number = static_cast<std::uint32_t>(gradients_.size());
-      *gradients_.add() = {gradient, step};
-    }
-    return gradient;
+    if (known.point != p || known.step != step)
+      known = {p, step, stored_ ? stored(p, step) : estimate(p, step)};
+    return known.gradient;
   }
 
   /// How far away neighbours are in a mesh that has the edge.
@@ -98,15 +94,16 @@ class VertexGradients {
   }
 
   struct KnownGradient {
+    LatticePoint point = kNoKey<LatticePoint>;
+    std::int32_t step = 0;  ///< from neighbours so far away
     Vec3 gradient;
-    std::int32_t step;  ///< from neighbours so far away
   };
+  static constexpr int kKnownBits = 12;
 
   StoredDiamonds<Sample> diamonds_;
   std::optional<StoredGradients> stored_;
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
-  PointNumbers numbers_;
-  Arena<KnownGradient> gradients_;
+  std::vector<KnownGradient> known_ = std::vector<KnownGradient>(std::size_t{1} << kKnownBits);
 };
 
 }  // namespace

@@ -24,6 +24,8 @@ struct SurfaceRequest {
   double least_parameter = 1.0 / 1024;
   /// Pages that cannot be had are an Error, not a coarser surface.
   bool strict = false;
+  /// Other surfaces will be asked for after this one: what was read of errors and ranges is kept.
+  bool others_follow = false;
 };
 
 /// A surface and what it took to get it.

@@ -31,32 +31,49 @@ TriangleBudget<Sample>::TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPa
       page_(diamonds) {}
 
 template <class Sample>
-template <class Visit>
-void TriangleBudget<Sample>::visit_page(int level, LatticePoint block, const PageMask& mask,
-                                        const std::uint8_t* codes, int low, int high, Visit&& visit) {
-  struct Found {
-    LatticePoint q;
-    int rank;
-  };
-  PageMask wanted;
-  std::vector<Found> found;
-  mask.for_each([&](LatticePoint q) {
-    const int rank = codes[pages_.place(level, q)] + 4 * level;
-    if (rank < low || rank >= high) return;
-    wanted.add(q);
-    found.push_back({q, rank});
-  });
-  if (found.empty()) return;
-  page_.load(level, block, wanted);
-  const bool simple = bisections_ == 0 && page_.all_finite();
-  for (const auto& [q, rank] : found) {
-    const DiamondStencil& stencil = DiamondStencil::at(q);
-    const Diamond diamond = page_.diamond(q);
-    // What is clipped is worked out.
-    const bool whole = simple && ((page_.is_inside() && !request_.region) || counter_.is_inside(diamond));
-    const std::int64_t more = whole ? page_.triangles_added(stencil, q) : counter_.added_by_split(diamond);
-    visit(q, rank, 3 * (pages_.levels() - 1 - level) + stencil.phase, more);
+PageMask TriangleBudget<Sample>::of_ranks(int level, const PageOfLevel& page, int low, int high) {
+  PageMask found = *page.split;
+  const int least = std::max(low - 4 * level, 1), end = std::clamp(high - 4 * level, 1, 128);
+  if (static_cast<int>(page.cut.least()) >= end) return {};
+  const auto& codes = pages_.codes(level, page.block);
+  if (level > diamonds_.grid().top()) {
+    // Of coarser levels than the coarsest page's own no rows of codes lie side by side.
+    PageMask wanted;
+    found.for_each([&](LatticePoint q) {
+      const int code = codes[pages_.place(level, q)];
+      if (code >= least && code < end) wanted.add(q);
+    });
+    return wanted;
   }
+  for (std::size_t row = 0; row < found.rows.size(); ++row) {
+    if (found.rows[row] == 0) continue;
+    const std::uint8_t* of_row = codes.data() + PageGrid::kSide * row;
+    const unsigned wanted = row_not_less(of_row, static_cast<unsigned>(std::min(least, 128))) &
+                            ~row_not_less(of_row, static_cast<unsigned>(end));
+    found.rows[row] = static_cast<std::uint16_t>(found.rows[row] & wanted);
+  }
+  return found;
+}
+
+template <class Sample>
+template <class Visit>
+void TriangleBudget<Sample>::visit_page(int level, const PageOfLevel& page, int low, int high,
+                                        Visit&& visit) {
+  const PageMask wanted = of_ranks(level, page, low, high);
+  if (!wanted.any()) return;
+  page_.load(level, page.block, wanted);
+  const auto& codes = pages_.codes(level, page.block);
+  const bool simple = bisections_ == 0 && page_.all_finite();
+  wanted.for_each([&](LatticePoint q) {
+    const DiamondStencil& stencil = DiamondStencil::at(q);
+    // What is clipped is worked out.
+    const bool whole =
+        simple && ((page_.is_inside() && !request_.region) || counter_.is_inside(page_.diamond(q)));
+    const std::int64_t more =
+        whole ? page_.triangles_added(stencil, q) : counter_.added_by_split(page_.diamond(q));
+    visit(q, codes[pages_.place(level, q)] + 4 * level, 3 * (pages_.levels() - 1 - level) + stencil.phase,
+          more);
+  });
 }
 
 template <class Sample>
@@ -87,13 +104,12 @@ SurfaceCut TriangleBudget<Sample>::count(int low, int high, std::int64_t room, P
   added_.assign(static_cast<std::size_t>(StoredDiamonds<Sample>::kRanks * generations()), 0);
   SurfaceCut cut{.rank = low};
   std::int64_t sum = 0;
-  pages_.find(cut, [&](int level, const auto& page, const PageMask& mask, const auto& codes) {
+  pages_.find(cut, [&](int level, const PageOfLevel& page) {
     progress.step("choosing", 1 - (level + 1.0) / pages_.levels());
-    visit_page(level, page.block, mask, codes.data(), low, high,
-               [&](LatticePoint, int rank, int generation, std::int64_t more) {
-                 added(rank, generation) += more;
-                 sum += more;
-               });
+    visit_page(level, page, low, high, [&](LatticePoint, int rank, int generation, std::int64_t more) {
+      added(rank, generation) += more;
+      sum += more;
+    });
     // What comes after the first diamond that there is no room for does not matter.
     if (sum > room) tighten(high, room, cut);
   });
@@ -109,9 +125,9 @@ SurfaceCut TriangleBudget<Sample>::find_place(SurfaceCut cut, std::int64_t room)
   };
   const int generation = cut.generation - 1;
   std::vector<Added> all;
-  pages_.find(cut, [&](int level, const auto& page, const PageMask& mask, const auto& codes) {
+  pages_.find(cut, [&](int level, const PageOfLevel& page) {
     if (level != pages_.levels() - 1 - generation / 3) return;
-    visit_page(level, page.block, mask, codes.data(), cut.rank, cut.rank + 1,
+    visit_page(level, page, cut.rank, cut.rank + 1,
                [&](LatticePoint q, int, int of_generation, std::int64_t more) {
                  if (of_generation == generation)
                    all.push_back({ZOrder::interleave(page.block), PageGrid::place(q, 0), more});

@@ -24,6 +24,7 @@ class TriangleBudget {
   SurfaceCut find(std::uint64_t triangles, int least_rank, const Diamond& root, Progress& progress);
 
  private:
+  using PageOfLevel = typename SplitPages<Sample>::PageOfLevel;
   using Counts = std::vector<std::int64_t>;
 
   [[nodiscard]] int generations() const { return 3 * pages_.levels(); }
@@ -39,10 +40,11 @@ class TriangleBudget {
   std::int64_t added_before_last(int high, const SurfaceCut& cut);
   /// Where in its generation the room of a cut ends.
   SurfaceCut find_place(SurfaceCut cut, std::int64_t room);
-  /// Calls visit(q, rank, generation, added) for a page's diamonds of ranks from low to high - 1.
+  /// The split diamonds of a page of ranks from low to high - 1.
+  PageMask of_ranks(int level, const PageOfLevel& page, int low, int high);
+  /// Calls visit(q, rank, generation, added) for each of them.
   template <class Visit>
-  void visit_page(int level, LatticePoint block, const PageMask& mask, const std::uint8_t* codes, int low,
-                  int high, Visit&& visit);
+  void visit_page(int level, const PageOfLevel& page, int low, int high, Visit&& visit);
 
   StoredDiamonds<Sample>& diamonds_;
   SplitPages<Sample>& pages_;

@@ -16,32 +16,46 @@ template <class Sample>
 using OrderedWord = std::conditional_t<sizeof(Sample) == 1, std::uint8_t,
                                        std::conditional_t<sizeof(Sample) == 2, std::uint16_t, std::uint32_t>>;
 
-/// What of pages is there: samples alone leave errors and ranges undefined.
-enum class PageParts : std::uint8_t { kAll, kSamples };
+/// Something of a page's points: of all 16^3 of its cube, those of coarser levels too, by place (i running
+/// fastest). Places beyond PageGrid::count hold anything.
+template <class T>
+using PagePoints = std::array<T, PageGrid::kPoints>;
 
-/// What is known of a page's points: of all 16^3 of its cube, those of coarser levels too, by place (i
-/// running fastest). Places beyond PageGrid::count hold anything. Word: OrderedWord of the samples' type.
+/// Word: OrderedWord of the samples' type.
 template <class Word>
-struct Page {
-  template <class T>
-  using Points = std::array<T, PageGrid::kPoints>;
-
-  Points<Word> samples;
-  /// Of the point's diamond: least and greatest sample in and on it, NaN and infinities left out; low > high
-  /// where nothing is left.
-  Points<Word> low, high;
-  /// Of the diamond: its isosurface error, as a code of its level's ErrorScale.
-  Points<std::uint8_t> errors;
+struct PageSamples {
+  PagePoints<Word> samples;
 };
+
+/// What is known of the points' diamonds.
+template <class Word>
+struct PageValues {
+  /// The least and the greatest sample in and on it, NaN and infinities left out; low > high where nothing is
+  /// left.
+  PagePoints<Word> low, high;
+  /// Its isosurface error, as a code of its level's ErrorScale.
+  PagePoints<std::uint8_t> errors;
+};
+
+template <class Word>
+struct Page : PageSamples<Word>, PageValues<Word> {};
+
+enum class PageParts : std::uint8_t { kSamples = 1, kValues = 2, kAll = 3 };
+
+constexpr bool has_part(PageParts parts, PageParts part) {
+  return (static_cast<int>(parts) & static_cast<int>(part)) != 0;
+}
 
 /// What the points of a page are predicted from: those of the next coarser level, round the page. Along each
 /// axis the place c from 0 to kSide - 1 is the point 16 block + 2 (c - 1) of the page's level: one before the
 /// page to two behind its last even point. Points beyond the data's extent repeat the last one before them.
-/// i runs fastest.
+/// i runs fastest. Of errors and ranges those of the places from 1 to 9 are known, as far as one page has all
+/// of them, that with the page's own points; elsewhere stands what bounds nothing.
 template <class Word>
 struct Surroundings {
   static constexpr int kSide = 11;
   static constexpr std::size_t kPoints = 1331;
+  static constexpr std::uint8_t kNoBound = 63;  ///< as a code of an error
   template <class T>
   using Points = std::array<T, kPoints>;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/base/assert.h"
 #include "isosurface/compression/eight_lanes.h"
@@ -10,11 +11,13 @@ namespace adamas {
 
 namespace {
 
-/// Where along an axis the 11 places of Surroundings lie in the pages of the next coarser level.
+constexpr std::int32_t kAround = Surroundings<std::uint8_t>::kSide;
+
+/// Where along an axis places of Surroundings lie in the pages of the next coarser level.
 struct AxisPlaces {
   std::array<std::int32_t, 2> blocks{};
   int block_count = 0;
-  std::array<std::uint8_t, Surroundings<std::uint8_t>::kSide> place{};
+  std::array<std::uint8_t, kAround> place{};
   /// Those in each block: the first, how many, and whether their places follow each other.
   struct Run {
     std::size_t first = 0, count = 0;
@@ -22,8 +25,9 @@ struct AxisPlaces {
   };
   std::array<Run, 2> runs{};
 
-  AxisPlaces(std::int32_t block, std::int32_t extent) {
-    for (std::int32_t c = 0; c < Surroundings<std::uint8_t>::kSide; ++c) {
+  /// Of the places from `first` to `last`.
+  AxisPlaces(std::int32_t block, std::int32_t extent, std::int32_t first, std::int32_t last) {
+    for (std::int32_t c = first; c <= last; ++c) {
       const std::int32_t at = std::clamp(8 * block + c - 1, 0, extent);
       const std::int32_t parent = at / PageGrid::kSide;
       if (block_count == 0 || blocks[static_cast<std::size_t>(block_count - 1)] != parent)
@@ -37,58 +41,61 @@ struct AxisPlaces {
   }
 };
 
-/// Of a page round which something is: the part of Surroundings that one page of the next coarser level has.
-struct Part {
-  const AxisPlaces &x, &y, &z;
-  std::array<int, 3> blocks;  ///< which of those of the axes
+/// The same along all axes.
+struct BoxPlaces {
+  AxisPlaces x, y, z;
+
+  BoxPlaces(LatticePoint block, LatticePoint extent, std::int32_t first, std::int32_t last)
+      : x(block.i, extent.i, first, last),
+        y(block.j, extent.j, first, last),
+        z(block.k, extent.k, first, last) {}
 };
 
-/// Copies what is known of it, for rows of N points side by side; of any, one by one, where N is 0.
-template <std::size_t N, PageParts Parts, class Word>
-void copy_part(const Part& part, const Page<Word>& page, Surroundings<Word>& around) {
-  constexpr std::size_t kSide = Surroundings<Word>::kSide;
-  const auto run = [&part](const AxisPlaces& places, std::size_t axis) {
-    return places.runs[static_cast<std::size_t>(part.blocks[axis])];
-  };
-  const AxisPlaces::Run xs = run(part.x, 0), ys = run(part.y, 1), zs = run(part.z, 2);
-  const auto copy = [&](const auto& from, auto& to) {
-    for (std::size_t k = zs.first; k < zs.first + zs.count; ++k) {
-      for (std::size_t j = ys.first; j < ys.first + ys.count; ++j) {
-        const auto* row = from.data() + PageGrid::kSide * (part.y.place[j] +
-                                                           std::size_t{PageGrid::kSide} * part.z.place[k]);
-        auto* at = to.data() + kSide * (j + kSide * k);
-        if constexpr (N > 0) {
-          std::copy_n(row + part.x.place[xs.first], N, at + xs.first);
-        } else {
-          for (std::size_t c = xs.first; c < xs.first + xs.count; ++c) at[c] = row[part.x.place[c]];
-        }
+/// Of a page round which something is: the part of Surroundings that one page of the next coarser level has.
+struct Part {
+  const BoxPlaces& places;
+  std::array<int, 3> blocks;  ///< which of those of the axes
+
+  [[nodiscard]] AxisPlaces::Run run(const AxisPlaces& axis, std::size_t n) const {
+    return axis.runs[static_cast<std::size_t>(blocks[n])];
+  }
+};
+
+/// Copies numbers of it, for rows of N points side by side; of any, one by one, where N is 0.
+template <std::size_t N, class T>
+void copy_part(const Part& part, const PagePoints<T>& from, std::array<T, kAround * kAround * kAround>& to) {
+  const auto& [x, y, z] = part.places;
+  const AxisPlaces::Run xs = part.run(x, 0), ys = part.run(y, 1), zs = part.run(z, 2);
+  for (std::size_t k = zs.first; k < zs.first + zs.count; ++k) {
+    for (std::size_t j = ys.first; j < ys.first + ys.count; ++j) {
+      const T* row = from.data() + PageGrid::kSide * (y.place[j] + std::size_t{PageGrid::kSide} * z.place[k]);
+      T* at = to.data() + kAround * (j + kAround * k);
+      if constexpr (N > 0) {
+        std::copy_n(row + x.place[xs.first], N, at + xs.first);
+      } else {
+        for (std::size_t c = xs.first; c < xs.first + xs.count; ++c) at[c] = row[x.place[c]];
       }
     }
-  };
-  copy(page.samples, around.samples);
-  if constexpr (Parts == PageParts::kAll) {
-    copy(page.low, around.low);
-    copy(page.high, around.high);
-    copy(page.errors, around.errors);
   }
 }
 
-template <PageParts Parts, class Word>
-void copy_part(const Part& part, const Page<Word>& page, Surroundings<Word>& around) {
+template <class T>
+void copy_part(const Part& part, const PagePoints<T>& from, std::array<T, kAround * kAround * kAround>& to) {
   // Away from the data's ends the numbers of points are these, and they lie side by side.
-  const AxisPlaces::Run xs = part.x.runs[static_cast<std::size_t>(part.blocks[0])];
-  if (xs.is_run && xs.count == 1) return copy_part<1, Parts>(part, page, around);
-  if (xs.is_run && xs.count == 2) return copy_part<2, Parts>(part, page, around);
-  if (xs.is_run && xs.count == 9) return copy_part<9, Parts>(part, page, around);
-  if (xs.is_run && xs.count == 10) return copy_part<10, Parts>(part, page, around);
-  copy_part<0, Parts>(part, page, around);
+  const AxisPlaces::Run xs = part.run(part.places.x, 0);
+  if (xs.is_run && xs.count == 1) return copy_part<1>(part, from, to);
+  if (xs.is_run && xs.count == 2) return copy_part<2>(part, from, to);
+  if (xs.is_run && xs.count == 8) return copy_part<8>(part, from, to);
+  if (xs.is_run && xs.count == 9) return copy_part<9>(part, from, to);
+  if (xs.is_run && xs.count == 10) return copy_part<10>(part, from, to);
+  copy_part<0>(part, from, to);
 }
 
 }  // namespace
 
 template <class Word>
-PageTree<Word>::PageTree(const PageGrid& grid, PageParts parts, std::size_t capacity, Loader loader)
-    : grid_(grid), parts_(parts), capacity_(std::max(capacity, kLeast)), loader_(std::move(loader)) {
+PageTree<Word>::PageTree(const PageGrid& grid, std::size_t memory, Loader loader)
+    : grid_(grid), memory_(memory), loader_(std::move(loader)) {
   for (int level = 0; level <= grid_.top(); ++level) {
     const LatticePoint n = grid_.blocks(level);
     const auto row = static_cast<std::size_t>(n.i), plane = row * static_cast<std::size_t>(n.j);
@@ -97,61 +104,101 @@ PageTree<Word>::PageTree(const PageGrid& grid, PageParts parts, std::size_t capa
 }
 
 template <class Word>
-const Page<Word>* PageTree<Word>::page(const PageId& id, bool wanted) {
+const typename PageTree<Word>::Slot* PageTree<Word>::get(const PageId& id, PageParts parts, bool wanted) {
   const std::uint32_t found = slot_of(id);
-  if (found != kNone) {
-    Slot& slot = slots_[found];
-    if (wanted && !slot.wanted) {
-      slot.wanted = true;
-      --predictors_;
-    }
-    slot.used = true;
-    return slot.page;
+  if (found == kNone) return load(id, parts, wanted);
+  Slot& slot = slots_[found];
+  slot.used = true;
+  if (wanted && !slot.wanted) {
+    slot.wanted = true;
+    --predictors_;
   }
-  Surroundings<Word> around;
-  if (!surroundings(id, around)) return nullptr;
-  // Not before: what predicts the page may have pushed others out.
-  const std::uint32_t fresh = free_slot();
-  Slot& slot = slots_[fresh];
-  const PageShape shape = page_shape(grid_, id);
-  if (!shape.complete) fill_coarser(shape, around, *slot.page);
-  // A cube whose only point is a coarser one has no page.
-  if (grid_.contains(id)) {
-    if (!loader_(id, shape, around, *slot.page)) {
-      free_.push_back(fresh);
-      return nullptr;
-    }
-    ++loaded_;
-    predictors_ += wanted ? 0 : 1;
-  } else {
-    wanted = true;
-  }
-  slot.id = id;
-  slot.held = slot.used = true;
-  slot.wanted = wanted;
-  slot_of(id) = fresh;
-  return slot.page;
+  return slot.values == nullptr && has_part(parts, PageParts::kValues) ? load(id, parts, wanted) : &slot;
 }
 
 template <class Word>
-bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around) {
+const typename PageTree<Word>::Slot* PageTree<Word>::load(const PageId& id, PageParts parts, bool wanted) {
+  Surroundings<Word> around;
+  if (!surroundings(id, around, parts)) return nullptr;
+  // Not before: what predicts the page may have pushed others out. That may happen here, too, to the page
+  // itself where its samples were there.
+  PageValues<Word>* values = has_part(parts, PageParts::kValues) ? room_for(values_) : nullptr;
+  const std::uint32_t known = slot_of(id);
+  PageSamples<Word>* samples = known != kNone ? slots_[known].samples : room_for(samples_);
+  const PageParts missing = known == kNone ? parts : PageParts::kValues;
+  const PageShape shape = page_shape(grid_, id);
+  if (!shape.complete) fill_coarser(shape, around, missing, *samples, values);
+  // A cube whose only point is a coarser one has no page.
+  const bool is_stored = grid_.contains(id);
+  if (is_stored && !loader_(id, shape, around, missing, *samples, values)) {
+    if (known == kNone) samples_.free.push_back(samples);
+    if (values != nullptr) values_.free.push_back(values);
+    return nullptr;
+  }
+  if (known != kNone) {
+    slots_[known].values = values;
+    return &slots_[known];
+  }
+  if (is_stored) {
+    ++loaded_;
+    predictors_ += wanted ? 0 : 1;
+  }
+  const std::uint32_t fresh = free_slot();
+  slot_of(id) = fresh;
+  slots_[fresh] = {id, samples, values, true, wanted || !is_stored};
+  return &slots_[fresh];
+}
+
+template <class Word>
+bool PageTree<Word>::copy(const PageId& id, Page<Word>& page) {
+  const Slot* slot = get(id, PageParts::kAll, true);
+  if (slot == nullptr) return false;
+  static_cast<PageSamples<Word>&>(page) = *slot->samples;
+  static_cast<PageValues<Word>&>(page) = *slot->values;
+  return true;
+}
+
+template <class Word>
+void PageTree<Word>::drop_values(const PageId& id) {
+  const std::uint32_t found = slot_of(id);
+  if (found == kNone || slots_[found].values == nullptr) return;
+  values_.free.push_back(std::exchange(slots_[found].values, nullptr));
+}
+
+template <class Word>
+void PageTree<Word>::drop_values() {
+  for (Slot& slot : slots_) slot.values = nullptr;
+  values_ = {};
+}
+
+template <class Word>
+bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around, PageParts parts) {
   if (grid_.is_complete(id)) return true;
   const LatticePoint extent = grid_.extent(id.level + 1);
-  const AxisPlaces x(id.block.i, extent.i), y(id.block.j, extent.j), z(id.block.k, extent.k);
-  for (int bz = 0; bz < z.block_count; ++bz) {
-    for (int by = 0; by < y.block_count; ++by) {
-      for (int bx = 0; bx < x.block_count; ++bx) {
+  const BoxPlaces all(id.block, extent, 0, kAround - 1), inner(id.block, extent, 1, kAround - 2);
+  const LatticePoint parent{id.block.i / 2, id.block.j / 2, id.block.k / 2};
+  if (has_part(parts, PageParts::kValues)) {
+    around.low.fill(0);
+    around.high.fill(static_cast<Word>(~Word{0}));
+    around.errors.fill(Surroundings<Word>::kNoBound);
+  }
+  for (int bz = 0; bz < all.z.block_count; ++bz) {
+    for (int by = 0; by < all.y.block_count; ++by) {
+      for (int bx = 0; bx < all.x.block_count; ++bx) {
         const auto block = [](const AxisPlaces& axis, int b) {
           return axis.blocks[static_cast<std::size_t>(b)];
         };
-        const Page<Word>* from = page({id.level + 1, {block(x, bx), block(y, by), block(z, bz)}}, false);
+        const LatticePoint of{block(all.x, bx), block(all.y, by), block(all.z, bz)};
+        const bool with_values = has_part(parts, PageParts::kValues) && of == parent;
+        const Slot* from =
+            get({id.level + 1, of}, with_values ? PageParts::kAll : PageParts::kSamples, false);
         if (from == nullptr) return false;
-        const Part part{x, y, z, {bx, by, bz}};
-        if (parts_ == PageParts::kSamples) {
-          copy_part<PageParts::kSamples>(part, *from, around);
-        } else {
-          copy_part<PageParts::kAll>(part, *from, around);
-        }
+        copy_part(Part{all, {bx, by, bz}}, from->samples->samples, around.samples);
+        if (!with_values) continue;
+        const Part inner_part{inner, {0, 0, 0}};
+        copy_part(inner_part, from->values->low, around.low);
+        copy_part(inner_part, from->values->high, around.high);
+        copy_part(inner_part, from->values->errors, around.errors);
       }
     }
   }
@@ -159,8 +206,8 @@ bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around) 
 }
 
 template <class Word>
-void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Word>& around,
-                                  Page<Word>& page) const {
+void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
+                                  PageSamples<Word>& samples, PageValues<Word>* values) const {
   for (std::int32_t k = 0; k < shape.count.k; k += 2) {
     for (std::int32_t j = 0; j < shape.count.j; j += 2) {
       const std::size_t to = PageGrid::place({0, j, k}, 0), from = surrounding_place({0, j, k});
@@ -169,37 +216,52 @@ void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Wor
         const Lanes lanes = Lanes::load(coarser.data() + from);
         Lanes::store_by_turns(lanes, lanes, numbers.data() + to);
       };
-      fill(around.samples, page.samples);
-      if (parts_ == PageParts::kSamples) continue;
-      fill(around.low, page.low);
-      fill(around.high, page.high);
-      fill(around.errors, page.errors);
+      if (has_part(parts, PageParts::kSamples)) fill(around.samples, samples.samples);
+      if (values == nullptr) continue;
+      fill(around.low, values->low);
+      fill(around.high, values->high);
+      fill(around.errors, values->errors);
     }
   }
 }
 
 template <class Word>
-std::uint32_t PageTree<Word>::free_slot() {
-  if (!free_.empty()) {
-    const std::uint32_t slot = free_.back();
-    free_.pop_back();
-    return slot;
-  }
-  if (slots_.size() < capacity_) {
-    slots_.push_back({{}, arena_.add()});
-    return static_cast<std::uint32_t>(slots_.size() - 1);
-  }
+template <class PartOf>
+PartOf* PageTree<Word>::room_for(Parts<PartOf>& parts) {
+  const std::size_t taken =
+      samples_.all.size() * sizeof(PageSamples<Word>) + values_.all.size() * sizeof(PageValues<Word>);
+  if (parts.free.empty() && (taken + sizeof(PartOf) <= memory_ || parts.all.size() < kLeast))
+    return parts.all.add();
+  while (parts.free.empty()) leave();
+  PartOf* const part = parts.free.back();
+  parts.free.pop_back();
+  return part;
+}
+
+template <class Word>
+void PageTree<Word>::leave() {
   for (;; considered_ = considered_ + 1 == slots_.size() ? 0 : considered_ + 1) {
     Slot& slot = slots_[considered_];
-    if (!slot.held) continue;  // being loaded
-    if (slot.used) {
-      slot.used = false;
-      continue;
-    }
-    slot.held = false;
+    if (slot.samples == nullptr) continue;
+    if (std::exchange(slot.used, false)) continue;
+    samples_.free.push_back(slot.samples);
+    if (slot.values != nullptr) values_.free.push_back(slot.values);
     slot_of(slot.id) = kNone;
-    return static_cast<std::uint32_t>(considered_);
+    free_.push_back(static_cast<std::uint32_t>(considered_));
+    slot = {};
+    return;
   }
+}
+
+template <class Word>
+std::uint32_t PageTree<Word>::free_slot() {
+  if (free_.empty()) {
+    slots_.emplace_back();
+    return static_cast<std::uint32_t>(slots_.size() - 1);
+  }
+  const std::uint32_t slot = free_.back();
+  free_.pop_back();
+  return slot;
 }
 
 template class PageTree<std::uint8_t>;

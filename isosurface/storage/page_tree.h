@@ -10,39 +10,52 @@
 
 namespace adamas {
 
-/// Pages of one volume in memory. Those leave first that nobody asked for since they were last considered
-/// (second chance, an approximation of least recently used). A page needs those of the next coarser level
-/// round it, which are got in the same way.
+/// Pages of one volume in memory: the samples of those that were asked for, and the values of those of which
+/// values were. Those leave first that nobody asked for since they were last considered (second chance, an
+/// approximation of least recently used). Each part of a page needs the same of those of the next coarser
+/// level round it, which are got in the same way.
 template <class Word>
 class PageTree {
  public:
-  /// Fills the page's own points; those of coarser levels are there already. Returns false where it cannot
-  /// be had.
-  using Loader = std::function<bool(const PageId&, const PageShape&, const Surroundings<Word>&, Page<Word>&)>;
+  /// Fills parts of the page's own points; those of coarser levels are there already, and the samples too
+  /// where values are all that is wanted. `values` is null where they are not. Returns false where a part
+  /// cannot be had.
+  using Loader = std::function<bool(const PageId&, const PageShape&, const Surroundings<Word>&,
+                                    PageParts parts, PageSamples<Word>& samples, PageValues<Word>* values)>;
 
-  /// Keeps `capacity` pages at most, but never less than kLeast. `parts`: what of pages is there.
-  PageTree(const PageGrid& grid, PageParts parts, std::size_t capacity, Loader loader);
+  /// Keeps pages of so many bytes at most, but never less than kLeast.
+  PageTree(const PageGrid& grid, std::size_t memory, Loader loader);
   static constexpr std::size_t kLeast = 64;
 
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
 
-  /// The page, or null where it or one that it is predicted from cannot be had. Valid until the next call.
-  /// `wanted`: the page is asked for itself, not to predict another.
-  const Page<Word>* page(const PageId& id, bool wanted = true);
-  /// The same for a page that is in memory; null for others.
-  const Page<Word>* find(const PageId& id) {
+  /// A part of a page, or null where it or one that it is predicted from cannot be had. Valid until the next
+  /// call.
+  const PageSamples<Word>* samples(const PageId& id) {
+    const Slot* slot = get(id, PageParts::kSamples, true);
+    return slot == nullptr ? nullptr : slot->samples;
+  }
+  const PageValues<Word>* values(const PageId& id) {
+    const Slot* slot = get(id, PageParts::kAll, true);
+    return slot == nullptr ? nullptr : slot->values;
+  }
+  /// The samples of a page that is in memory; null for others. Valid until the next call.
+  const PageSamples<Word>* find(const PageId& id) {
     const std::uint32_t found = slot_of(id);
     if (found == kNone || !slots_[found].wanted) return nullptr;
     slots_[found].used = true;
-    return slots_[found].page;
+    return slots_[found].samples;
   }
+  /// All of a page. Returns false where it cannot be had.
+  bool copy(const PageId& id, Page<Word>& page);
+  /// The values of the page will hardly be asked for again.
+  void drop_values(const PageId& id);
+  /// The same of all pages: their memory is free for others.
+  void drop_values();
 
-  /// What is known round a page of the next coarser level. Returns false where something cannot be had. Does
-  /// nothing for a complete page.
-  bool surroundings(const PageId& id, Surroundings<Word>& around);
-
-  /// Copies the points of coarser levels into a page.
-  void fill_coarser(const PageShape& shape, const Surroundings<Word>& around, Page<Word>& page) const;
+  /// What is known round a page of the next coarser level, or parts of it. Returns false where something
+  /// cannot be had. Does nothing for a complete page.
+  bool surroundings(const PageId& id, Surroundings<Word>& around, PageParts parts = PageParts::kAll);
 
   /// Number of pages that were loaded, again where they had left; and of those that only predicted others.
   [[nodiscard]] std::uint64_t loaded() const { return loaded_; }
@@ -52,13 +65,20 @@ class PageTree {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Slot {
     PageId id;
-    Page<Word>* page = nullptr;
-    bool held = false, used = false, wanted = false;
+    PageSamples<Word>* samples = nullptr;  ///< null where the slot is free
+    PageValues<Word>* values = nullptr;    ///< null where they are not there
+    bool used = false, wanted = false;
   };
   /// Slots of the pages of a level, i running fastest.
   struct Level {
     std::size_t row, plane;
     std::vector<std::uint32_t> slots;
+  };
+  /// Parts of pages, and those of them that have left.
+  template <class Part>
+  struct Parts {
+    Arena<Part> all;
+    std::vector<Part*> free;
   };
 
   [[nodiscard]] std::uint32_t& slot_of(const PageId& id) {
@@ -66,17 +86,28 @@ class PageTree {
     const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
     return level.slots[at(id.block.i) + level.row * at(id.block.j) + level.plane * at(id.block.k)];
   }
+  /// `wanted`: the page is asked for itself, not to predict another. Null where it cannot be had.
+  const Slot* get(const PageId& id, PageParts parts, bool wanted);
+  const Slot* load(const PageId& id, PageParts parts, bool wanted);
+  /// Copies the points of coarser levels into parts of a page.
+  void fill_coarser(const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
+                    PageSamples<Word>& samples, PageValues<Word>* values) const;
+  /// Room for a part, for which pages leave if need be.
+  template <class Part>
+  Part* room_for(Parts<Part>& parts);
+  /// Makes the page leave that is the next in turn.
+  void leave();
   std::uint32_t free_slot();
 
   PageGrid grid_;
-  PageParts parts_;
-  std::size_t capacity_;
+  std::size_t memory_;
   Loader loader_;
   std::vector<Level> levels_;
-  Arena<Page<Word>> arena_;
+  Parts<PageSamples<Word>> samples_;
+  Parts<PageValues<Word>> values_;
   std::vector<Slot> slots_;
-  std::vector<std::uint32_t> free_;
-  std::size_t considered_ = 0;  ///< the slot whose page is the next that may leave
+  std::vector<std::uint32_t> free_;  ///< slots
+  std::size_t considered_ = 0;       ///< the slot whose page is the next that may leave
   std::uint64_t loaded_ = 0, predictors_ = 0;
 };
 

@@ -34,7 +34,7 @@ std::size_t working_set(const PageGrid& grid, const RestoredPart& part) {
     };
     pages += level == part.level ? along(0) : 3 * along(0) * along(1);
   }
-  return 2 * pages * sizeof(Page<Word>);
+  return 2 * pages * sizeof(PageSamples<Word>);
 }
 
 template <class Sample>
@@ -45,7 +45,7 @@ class Restorer {
   Restorer(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory)
       : file_(file),
         part_(part),
-        pages_(file, step, std::min(memory, working_set<Word>(file.grid(), part)), PageParts::kSamples) {}
+        pages_(file, step, std::min(memory, working_set<Word>(file.grid(), part))) {}
 
   PageCounts run(const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
     const std::size_t plane = part_.grid.plane_samples();
@@ -70,7 +70,7 @@ class Restorer {
  private:
   /// Copies what a page has of the part to the planes, the first of which is k = `base`.
   void copy(const PageId& id, std::int32_t base, std::vector<Sample>& planes) {
-    const Page<Word>* page = pages_.page(id);
+    const PageSamples<Word>* page = pages_.samples(id);
     if (page == nullptr)
       fail("{}: {} is damaged, or one that it is predicted from", file_.name(), page_name(id));
     const BlockSpan x(id.block.i, part_.first.i, part_.last.i), y(id.block.j, part_.first.j, part_.last.j),

@@ -78,7 +78,7 @@ void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
     });
   };
   append(page.samples);
-  if (parts_ == PageParts::kAll) {
+  if (has_part(parts_, PageParts::kValues)) {
     append(page.low);
     append(page.high);
     append(page.errors);
@@ -97,7 +97,8 @@ void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
 }
 
 template <class Word>
-void ScratchPages<Word>::get(const PageId& id, Page<Word>& page) {
+void ScratchPages<Word>::get(const PageId& id, PageParts parts, PageSamples<Word>& samples,
+                             PageValues<Word>* values) {
   const PageShape shape = page_shape(grid_, id);
   std::size_t points = 0;
   for_each_own_row(shape, [&](std::size_t, std::size_t count, std::size_t) { points += count; });
@@ -110,21 +111,24 @@ void ScratchPages<Word>::get(const PageId& id, Page<Word>& page) {
     done += static_cast<std::size_t>(got);
   }
   const std::byte* from = buffer_.data();
-  const auto take = [&](auto& values) {
+  const auto take = [&](auto& numbers) {
     for_each_own_row(shape, [&](std::size_t first, std::size_t count, std::size_t step) {
       for (std::size_t n = 0; n < count; ++n) {
-        auto& value = values[first + n * step];
+        auto& value = numbers[first + n * step];
         std::memcpy(&value, from, sizeof(value));
         from += sizeof(value);
       }
     });
   };
-  take(page.samples);
-  if (parts_ == PageParts::kAll) {
-    take(page.low);
-    take(page.high);
-    take(page.errors);
+  if (has_part(parts, PageParts::kSamples)) {
+    take(samples.samples);
+  } else {
+    from += points * sizeof(Word);
   }
+  if (values == nullptr) return;
+  take(values->low);
+  take(values->high);
+  take(values->errors);
 }
 
 template class ScratchPages<std::uint8_t>;

@@ -21,14 +21,14 @@ class ScratchPages {
 
   /// Each page once. Throws Error where the disk is full.
   void put(const PageId& id, const Page<Word>& page);
-  /// Fills the own points of a page that was put.
-  void get(const PageId& id, Page<Word>& page);
+  /// Fills parts of the own points of a page that was put; `values` is null where they are not wanted.
+  void get(const PageId& id, PageParts parts, PageSamples<Word>& samples, PageValues<Word>* values);
 
  private:
   std::uint64_t& offset(const PageId& id);
 
   [[nodiscard]] std::size_t point_bytes() const {
-    return parts_ == PageParts::kAll ? 3 * sizeof(Word) + 1 : sizeof(Word);
+    return has_part(parts_, PageParts::kValues) ? 3 * sizeof(Word) + 1 : sizeof(Word);
   }
 
   PageGrid grid_;

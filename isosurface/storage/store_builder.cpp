@@ -116,18 +116,18 @@ class GradientScratch {
  public:
   GradientScratch(const std::filesystem::path& folder, const PageGrid& grid)
       : scratch_(folder, grid, PageParts::kSamples),
-        tree_(grid, PageParts::kSamples, kMemory / sizeof(Page<std::uint16_t>),
-              [this](const PageId& id, const PageShape&, const Surroundings<std::uint16_t>&,
-                     Page<std::uint16_t>& page) {
-                scratch_.get(id, page);
+        tree_(grid, kMemory,
+              [this](const PageId& id, const PageShape&, const Surroundings<std::uint16_t>&, PageParts parts,
+                     PageSamples<std::uint16_t>& samples, PageValues<std::uint16_t>* values) {
+                scratch_.get(id, parts, samples, values);
                 return true;
               }) {}
 
   void put(const PageId& id, const Page<std::uint16_t>& page) { scratch_.put(id, page); }
   void get(const PageId& id, GradientCodes& codes, GradientCodesAround& around) {
-    tree_.surroundings(id, around_);
+    tree_.surroundings(id, around_, PageParts::kSamples);
     around = around_.samples;
-    codes = tree_.page(id)->samples;
+    codes = tree_.samples(id)->samples;
   }
 
  private:
@@ -147,9 +147,10 @@ class StoreBuilder {
         options_(options),
         progress_(progress),
         scratch_(options.scratch, grid_),
-        tree_(grid_, PageParts::kAll, kMemory / sizeof(Page<Word>),
-              [this](const PageId& id, const PageShape&, const Surroundings<Word>&, Page<Word>& page) {
-                scratch_.get(id, page);
+        tree_(grid_, kMemory,
+              [this](const PageId& id, const PageShape&, const Surroundings<Word>&, PageParts parts,
+                     PageSamples<Word>& samples, PageValues<Word>* values) {
+                scratch_.get(id, parts, samples, values);
                 return true;
               }) {
     if (options.gradients) gradients_ = std::make_unique<GradientScratch>(options.scratch, grid_);
@@ -185,7 +186,7 @@ class StoreBuilder {
         const PageId id = grid_.page(job.number);
         job.shape = page_shape(grid_, id);
         tree_.surroundings(id, job.around);
-        job.page = *tree_.page(id);
+        tree_.copy(id, job.page);
         if (gradients_ != nullptr) gradients_->get(id, job.gradients, job.gradients_around);
       }
       fn(std::span<const Job<Word>>(jobs_).first(count));

@@ -22,9 +22,10 @@ StoredGradients::StoredGradients(StoreFile& file, std::uint32_t step, std::size_
     : file_(file),
       step_(step),
       codec_(codec_of(file)),
-      tree_(file.grid(), PageParts::kSamples, memory / sizeof(Page<std::uint16_t>),
+      tree_(file.grid(), memory,
             [this](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>& around,
-                   Page<std::uint16_t>& page) { return load(id, shape, around.samples, page.samples); }) {}
+                   PageParts, PageSamples<std::uint16_t>& page,
+                   PageValues<std::uint16_t>*) { return load(id, shape, around.samples, page.samples); }) {}
 
 bool StoredGradients::load(const PageId& id, const PageShape& shape, const GradientCodesAround& around,
                            GradientCodes& codes) {
@@ -39,8 +40,7 @@ std::optional<Vec3> StoredGradients::direction(LatticePoint p) {
   // Not all points beyond the data are among those that pages have.
   for (int axis = 0; axis < 3; ++axis) p[axis] = std::min(p[axis], grid.last()[axis]);
   const PageId id = grid.page(p);
-  const Page<std::uint16_t>* found = tree_.find(id);
-  if (found == nullptr) found = tree_.page(id);
+  const PageSamples<std::uint16_t>* found = tree_.samples(id);
   if (found == nullptr) return {};
   const unsigned code = found->samples[PageGrid::place(p, id.level)];
   return decode_direction(DirectionCode::kOctahedral,

@@ -25,32 +25,44 @@ bool split_payload(std::span<const std::byte> bytes, PagePayload& parts) {
 }
 
 template <class Word>
-StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory, PageParts parts)
+StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory)
     : file_(file),
       step_(step),
-      samples_(parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())),
-      tree_(file.grid(), parts, memory / sizeof(Page<Word>),
+      sample_codec_(parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())),
+      tree_(file.grid(), memory,
             [this](const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
-                   Page<Word>& page) { return load(id, shape, around, page); }) {
-  if (parts == PageParts::kAll)
-    values_ = ValueCodec<Word>::parse(file.header().value_tables, file.header().grid.spacing, file.name());
-}
+                   PageParts parts, PageSamples<Word>& samples,
+                   PageValues<Word>* values) { return load(id, shape, around, parts, samples, values); }) {}
 
 template <class Word>
 bool StoredPages<Word>::load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
-                             Page<Word>& page) {
+                             PageParts parts, PageSamples<Word>& samples, PageValues<Word>* values) {
   last_damaged_ = id;
   if (std::find(damaged_.begin(), damaged_.end(), id) != damaged_.end()) return false;
   const StoreFile::Payload payload = file_.read(step_, id);
-  PagePayload parts;
-  if (payload.state == PageState::kDamaged || !split_payload(payload.bytes, parts) ||
-      !samples_->decode(parts.samples, shape, around.samples, page.samples) ||
-      (values_ && !values_->decode(parts.values, shape, around, page))) {
+  if (payload.state == PageState::kDamaged || !decode(payload.bytes, shape, around, parts, samples, values)) {
     damaged_.push_back(id);
     return false;
   }
-  copies_ += payload.state == PageState::kCopied ? 1 : 0;
+  if (has_part(parts, PageParts::kSamples)) copies_ += payload.state == PageState::kCopied ? 1 : 0;
   return true;
+}
+
+template <class Word>
+bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageShape& shape,
+                               const Surroundings<Word>& around, PageParts wanted, PageSamples<Word>& samples,
+                               PageValues<Word>* values) {
+  PagePayload parts;
+  if (!split_payload(payload, parts)) return false;
+  if (has_part(wanted, PageParts::kSamples) &&
+      !sample_codec_->decode(parts.samples, shape, around.samples, samples.samples))
+    return false;
+  if (values == nullptr) return true;
+  if (!value_codec_) {
+    const StoreHeader& header = file_.header();
+    value_codec_ = ValueCodec<Word>::parse(header.value_tables, header.grid.spacing, file_.name());
+  }
+  return value_codec_->decode(parts.values, shape, around, samples, *values);
 }
 
 template <class Word>

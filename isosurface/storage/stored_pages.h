@@ -37,21 +37,27 @@ std::vector<std::byte> join_payload(const PagePayload& parts);
 template <class Word>
 class StoredPages {
  public:
-  /// `memory`: bytes that decoded pages may take; `parts`: what of them is decoded. Throws Error where the
-  /// tables are damaged. The file must outlive this.
-  StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory, PageParts parts = PageParts::kAll);
+  /// `memory`: bytes that decoded pages may take. Throws Error where the tables are damaged, those of values
+  /// not before any are asked for. The file must outlive this.
+  StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
 
   [[nodiscard]] StoreFile& file() { return file_; }
   [[nodiscard]] std::uint32_t step() const { return step_; }
   [[nodiscard]] const PageGrid& grid() const { return file_.grid(); }
 
-  /// The page, or null where it is damaged or predicted from one that is. Valid until the next call.
-  const Page<Word>* page(const PageId& id) {
-    const Page<Word>* found = tree_.find(id);
-    return found != nullptr ? found : tree_.page(id);
+  /// A part of a page, or null where it is damaged or predicted from one that is. Valid until the next call.
+  const PageSamples<Word>* samples(const PageId& id) {
+    const PageSamples<Word>* found = tree_.find(id);
+    return found != nullptr ? found : tree_.samples(id);
   }
-  /// The same for a page that is in memory; null for others.
-  const Page<Word>* held(const PageId& id) { return tree_.find(id); }
+  const PageValues<Word>* values(const PageId& id) { return tree_.values(id); }
+  /// The samples of a page that is in memory; null for others.
+  const PageSamples<Word>* held(const PageId& id) { return tree_.find(id); }
+  /// All of a page; false where it cannot be had.
+  bool copy(const PageId& id, Page<Word>& page) { return tree_.copy(id, page); }
+  /// The values of the page, or of all, will hardly be asked for again.
+  void drop_values(const PageId& id) { tree_.drop_values(id); }
+  void drop_values() { tree_.drop_values(); }
   /// What is known round a page; false where something cannot be had.
   bool surroundings(const PageId& id, Surroundings<Word>& around) { return tree_.surroundings(id, around); }
   /// What the directory says of it; nothing where that is damaged.
@@ -63,12 +69,15 @@ class StoredPages {
   [[nodiscard]] PageCounts counts() const;
 
  private:
-  bool load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around, Page<Word>& page);
+  bool load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
+            PageSamples<Word>& samples, PageValues<Word>* values);
+  bool decode(std::span<const std::byte> payload, const PageShape& shape, const Surroundings<Word>& around,
+              PageParts parts, PageSamples<Word>& samples, PageValues<Word>* values);
 
   StoreFile& file_;
   std::uint32_t step_;
-  std::unique_ptr<SampleCodec<Word>> samples_;
-  std::optional<ValueCodec<Word>> values_;  ///< none where samples are all that is wanted
+  std::unique_ptr<SampleCodec<Word>> sample_codec_;
+  std::optional<ValueCodec<Word>> value_codec_;  ///< none before values are asked for
   PageTree<Word> tree_;
   std::vector<PageId> damaged_;
   PageId last_damaged_;

@@ -57,11 +57,10 @@ class Verifier {
       ++result_.bad_copies;
       problem(id, "one of its two copies is damaged");
     }
-    const Page<Word>* page = pages_.page(id);
-    if (page == nullptr) {
+    if (!pages_.copy(id, page_)) {
       ++result_.bad_pages;
       problem(id, payload.state == PageState::kDamaged ? "is damaged" : "is predicted from a damaged one");
-    } else if (const char* what = fault(id, *page, entry, has_gradients)) {
+    } else if (const char* what = fault(id, page_, entry, has_gradients)) {
       ++result_.bad_pages;
       problem(id, what);
     }
@@ -136,6 +135,7 @@ class Verifier {
   StoreFile& file_;
   std::uint32_t step_;
   StoredPages<Word> pages_;
+  Page<Word> page_;
   std::optional<StoredGradients> gradients_;
   VerifiedStore& result_;
 };

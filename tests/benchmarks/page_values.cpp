@@ -68,7 +68,7 @@ Figures measure(StoreFile& file, int level, double isovalue, std::size_t most) {
     coded.id = id;
     coded.shape = page_shape(file.grid(), id);
     if (!pages.surroundings(id, coded.around)) throw std::runtime_error("a page is damaged");
-    coded.page = *pages.page(id);
+    if (!pages.copy(id, coded.page)) throw std::runtime_error("a page is damaged");
     PagePayload parts;
     if (!split_payload(file.read(0, id).bytes, parts)) throw std::runtime_error("no payload");
     coded.values.assign(parts.values.begin(), parts.values.end());
@@ -86,7 +86,7 @@ Figures measure(StoreFile& file, int level, double isovalue, std::size_t most) {
       double begin = thread_seconds();
       for (std::size_t n = 0; n < size; ++n) {
         Coded<Word>& coded = batch[n];
-        if (!codec.decode(coded.values, coded.shape, coded.around, coded.page))
+        if (!codec.decode(coded.values, coded.shape, coded.around, coded.page, coded.page))
           throw std::runtime_error("a page was not decoded");
       }
       found.decode += thread_seconds() - begin;

@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
+#include <set>
+#include <thread>
 #include <vector>
 
 namespace adamas {
@@ -30,9 +33,33 @@ void fill(std::size_t count) {
 TEST(Arena, KeepsWhatIsPutIntoIt) {
   fill<1>(2'000'000);
   fill<64>(40'000);
-  fill<5000>(700);     // of which the first block has three
-  fill<200'000>(20);   // each greater than the first block
-  fill<1'000'000>(3);  // and than a large page
+  fill<5000>(700);    // of which the first block has three
+  fill<200'000>(20);  // each greater than the first block
+}
+
+TEST(LargeBlocks, AreTakenAgainByOthers) {
+  std::vector<std::byte*> taken;
+  std::set<std::byte*> different;
+  for (int n = 0; n < 40; ++n) {
+    taken.push_back(take_large_block());
+    std::memset(taken.back(), n, kLargePage);
+    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(taken.back()) % kLargePage, 0u);
+    ASSERT_TRUE(different.insert(taken.back()).second);
+  }
+  for (int n = 0; n < 40; ++n) ASSERT_EQ(static_cast<int>(taken[static_cast<std::size_t>(n)][12345]), n);
+  for (std::byte* const block : taken) give_large_block(block);
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([t] {
+      for (int n = 0; n < 100; ++n) {
+        std::byte* const mine = take_large_block();
+        std::memset(mine, t, 1000);
+        for (int at = 0; at < 1000; ++at) ASSERT_EQ(static_cast<int>(mine[at]), t);
+        give_large_block(mine);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
 }
 
 }  // namespace

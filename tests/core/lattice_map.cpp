@@ -12,6 +12,7 @@ template <class Table>
 void expect_agreement_with_an_ordered_map() {
   std::mt19937 random(7);
   Table table;
+  table.reserve(500);
   std::map<LatticePoint, int> expected;
   for (int step = 0; step < 200000; ++step) {
     // Few distinct points at several scales, so that they collide and come again; fewer and fewer are kept at

@@ -51,7 +51,7 @@ void value_page(std::span<const std::byte> tables, std::span<const std::byte> by
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
   seeded_page(seed, *page, *around);
-  if (!codec.decode(bytes, shape, *around, *page)) fail("expected a page, found other bytes");
+  if (!codec.decode(bytes, shape, *around, *page, *page)) fail("expected a page, found other bytes");
   std::vector<std::byte> again;
   codec.encode(shape, *around, *page, again);
   require(std::ranges::equal(again, bytes), "another page");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <random>
 
 #include "isosurface/storage/scratch_pages.h"
@@ -13,38 +14,60 @@ namespace {
 /// Any function of a point of a level that the tree may not know beforehand.
 std::uint16_t sample_at(LatticePoint p) { return static_cast<std::uint16_t>(hash_value(p) >> 40); }
 
-/// Fills the own points of a page.
-bool fill_own(const PageId& id, const PageShape& shape, Page<std::uint16_t>& page) {
+using Word = std::uint16_t;
+
+/// Fills parts of a page's own points.
+bool fill_own(const PageId& id, const PageShape& shape, PageParts parts, PageSamples<Word>& samples,
+              PageValues<Word>* values) {
   LatticePoint q{};
   for (q.k = 0; q.k < shape.count.k; ++q.k)
     for (q.j = 0; q.j < shape.count.j; ++q.j)
       for (q.i = 0; q.i < shape.count.i; ++q.i) {
         if (!shape.owns(q)) continue;
         const std::size_t place = PageGrid::place(q, 0);
-        page.samples[place] = sample_at((1 << id.level) * (PageGrid::kSide * id.block + q));
-        page.low[place] = static_cast<std::uint16_t>(page.samples[place] ^ 1);
-        page.high[place] = static_cast<std::uint16_t>(page.samples[place] ^ 2);
-        page.errors[place] = static_cast<std::uint8_t>(page.samples[place] & 63);
+        const Word sample = sample_at((1 << id.level) * (PageGrid::kSide * id.block + q));
+        if (has_part(parts, PageParts::kSamples)) samples.samples[place] = sample;
+        EXPECT_EQ(samples.samples[place], sample);
+        EXPECT_EQ(values != nullptr, has_part(parts, PageParts::kValues));
+        if (values == nullptr) continue;
+        values->low[place] = static_cast<Word>(sample ^ 1);
+        values->high[place] = static_cast<Word>(sample ^ 2);
+        values->errors[place] = static_cast<std::uint8_t>(sample & 63);
       }
   return true;
 }
 
+/// A tree of pages that are filled so; `fill` may do more.
+template <class Fill>
+PageTree<Word> tree_of(const PageGrid& grid, std::size_t memory, Fill fill) {
+  return {grid, memory,
+          [fill](const PageId& id, const PageShape& shape, const Surroundings<Word>&, PageParts parts,
+                 PageSamples<Word>& samples, PageValues<Word>* values) {
+            return fill(id, parts) && fill_own(id, shape, parts, samples, values);
+          }};
+}
+PageTree<Word> tree_of(const PageGrid& grid, std::size_t memory) {
+  return tree_of(grid, memory, [](const PageId&, PageParts) { return true; });
+}
+
 class PageTreeOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
  protected:
-  /// Whether all points of the page are right, those of coarser levels too.
-  static void check(const PageGrid& grid, const PageId& id, const Page<std::uint16_t>& page) {
-    const LatticePoint n = grid.count(id);
-    LatticePoint q{};
-    for (q.k = 0; q.k < n.k; ++q.k)
-      for (q.j = 0; q.j < n.j; ++q.j)
-        for (q.i = 0; q.i < n.i; ++q.i) {
-          const std::size_t place = PageGrid::place(q, 0);
-          const std::uint16_t expected = sample_at((1 << id.level) * (PageGrid::kSide * id.block + q));
-          ASSERT_EQ(page.samples[place], expected);
-          ASSERT_EQ(page.low[place], expected ^ 1);
-          ASSERT_EQ(page.high[place], expected ^ 2);
-          ASSERT_EQ(page.errors[place], expected & 63);
-        }
+  /// Whether the samples or the values of all points of the page are right, those of coarser levels too.
+  static void check_samples(const PageGrid& grid, const PageId& id, const PagePoints<Word>& samples) {
+    for_each_point(grid, id, [&](std::size_t place, Word expected) { ASSERT_EQ(samples[place], expected); });
+  }
+  static void check_values(const PageGrid& grid, const PageId& id, const PageValues<Word>& values) {
+    for_each_point(grid, id, [&](std::size_t place, Word expected) {
+      ASSERT_EQ(values.low[place], expected ^ 1);
+      ASSERT_EQ(values.high[place], expected ^ 2);
+      ASSERT_EQ(values.errors[place], expected & 63);
+    });
+  }
+  static void check(const PageGrid& grid, const PageId& id, PageTree<Word>& tree) {
+    const auto page = std::make_unique<Page<Word>>();
+    ASSERT_TRUE(tree.copy(id, *page));
+    check_samples(grid, id, page->samples);
+    check_values(grid, id, *page);
   }
 
   static std::vector<PageId> pages_in_random_order(const PageGrid& grid) {
@@ -59,50 +82,84 @@ class PageTreeOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
     std::shuffle(pages.begin(), pages.end(), random);
     return pages;
   }
+
+ private:
+  template <class Visit>
+  static void for_each_point(const PageGrid& grid, const PageId& id, Visit visit) {
+    const LatticePoint n = grid.count(id);
+    LatticePoint q{};
+    for (q.k = 0; q.k < n.k; ++q.k)
+      for (q.j = 0; q.j < n.j; ++q.j)
+        for (q.i = 0; q.i < n.i; ++q.i)
+          visit(PageGrid::place(q, 0), sample_at((1 << id.level) * (PageGrid::kSide * id.block + q)));
+  }
 };
 
 TEST_P(PageTreeOf, PagesHaveTheirPointsAndThoseOfCoarserLevels) {
   const PageGrid grid(GetParam());
   std::uint64_t loads = 0;
-  PageTree<std::uint16_t> tree(grid, PageParts::kAll, 1 << 20,
-                               [&](const PageId& id, const PageShape& shape,
-                                   const Surroundings<std::uint16_t>&, Page<std::uint16_t>& page) {
-                                 ++loads;
-                                 return fill_own(id, shape, page);
-                               });
-  for (const PageId& id : pages_in_random_order(grid)) {
-    const Page<std::uint16_t>* page = tree.page(id);
-    ASSERT_NE(page, nullptr);
-    check(grid, id, *page);
-  }
+  auto tree = tree_of(grid, std::size_t{1} << 40, [&loads](const PageId&, PageParts parts) {
+    loads += has_part(parts, PageParts::kSamples) ? 1 : 0;
+    return true;
+  });
+  for (const PageId& id : pages_in_random_order(grid)) check(grid, id, tree);
   EXPECT_EQ(loads, grid.page_count());
   EXPECT_EQ(tree.loaded(), grid.page_count());
   EXPECT_EQ(tree.loaded_as_predictors(), 0u);
 }
 
-TEST_P(PageTreeOf, PagesThatLeftComeBack) {
+TEST_P(PageTreeOf, SamplesAloneNeedNoValues) {
   const PageGrid grid(GetParam());
-  PageTree<std::uint16_t> tree(
-      grid, PageParts::kAll, 0,
-      [&](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>&,
-          Page<std::uint16_t>& page) { return fill_own(id, shape, page); });
+  auto tree = tree_of(grid, std::size_t{1} << 40,
+                      [](const PageId&, PageParts parts) { return parts == PageParts::kSamples; });
   for (const PageId& id : pages_in_random_order(grid)) {
-    const Page<std::uint16_t>* page = tree.page(id);
+    const PageSamples<Word>* page = tree.samples(id);
     ASSERT_NE(page, nullptr);
-    check(grid, id, *page);
+    check_samples(grid, id, page->samples);
   }
-  EXPECT_GE(tree.loaded(), grid.page_count());
+  EXPECT_EQ(tree.loaded(), grid.page_count());
+}
+
+TEST_P(PageTreeOf, PartsThatLeftComeBack) {
+  const PageGrid grid(GetParam());
+  for (const std::size_t memory : {std::size_t{0}, 100 * sizeof(Page<Word>), std::size_t{1} << 40}) {
+    auto tree = tree_of(grid, memory);
+    std::mt19937 random(3);
+    std::vector<PageId> pages = pages_in_random_order(grid);
+    for (int step = 0; step < 3000; ++step) {
+      const PageId& id = pages[random() % pages.size()];
+      switch (random() % 8) {
+        case 0:
+          tree.drop_values(id);
+          break;
+        case 1:
+          check(grid, id, tree);
+          break;
+        case 2:
+          if (random() % 64 == 0) tree.drop_values();
+          break;
+        case 3:
+          if (const PageSamples<Word>* found = tree.find(id)) check_samples(grid, id, found->samples);
+          break;
+        case 4:
+        case 5:
+          check_samples(grid, id, tree.samples(id)->samples);
+          break;
+        default:
+          check_values(grid, id, *tree.values(id));
+      }
+      if (HasFatalFailure()) return;
+    }
+    EXPECT_GE(tree.loaded(), tree.loaded_as_predictors());
+  }
 }
 
 TEST_P(PageTreeOf, SurroundingsAreThePointsOfTheNextLevel) {
   const PageGrid grid(GetParam());
-  PageTree<std::uint16_t> tree(
-      grid, PageParts::kAll, 1 << 20,
-      [&](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>&,
-          Page<std::uint16_t>& page) { return fill_own(id, shape, page); });
+  auto tree = tree_of(grid, std::size_t{1} << 24);
   for (const PageId& id : pages_in_random_order(grid)) {
     if (grid.is_complete(id)) continue;
-    Surroundings<std::uint16_t> around;
+    Surroundings<Word> around;
     ASSERT_TRUE(tree.surroundings(id, around));
     const LatticePoint extent = grid.extent(id.level + 1);
     for (std::int32_t c = 0; c < 11; ++c)
@@ -111,27 +168,37 @@ TEST_P(PageTreeOf, SurroundingsAreThePointsOfTheNextLevel) {
           LatticePoint p{8 * id.block.i + a - 1, 8 * id.block.j + b - 1, 8 * id.block.k + c - 1};
           const std::size_t place = surrounding_place({2 * (a - 1), 2 * (b - 1), 2 * (c - 1)});
           for (int axis = 0; axis < 3; ++axis) p[axis] = std::clamp(p[axis], 0, extent[axis]);
-          ASSERT_EQ(around.samples[place], sample_at((2 << id.level) * p));
+          const Word expected = sample_at((2 << id.level) * p);
+          ASSERT_EQ(around.samples[place], expected);
+          const bool is_on_parent = p.i / 16 == id.block.i / 2 && p.j / 16 == id.block.j / 2 &&
+                                    p.k / 16 == id.block.k / 2 && std::min({a, b, c}) >= 1 &&
+                                    std::max({a, b, c}) <= 9;
+          ASSERT_EQ(around.low[place], is_on_parent ? expected ^ 1 : 0);
+          ASSERT_EQ(around.high[place], is_on_parent ? expected ^ 2 : 0xffff);
+          ASSERT_EQ(around.errors[place], is_on_parent ? expected & 63 : 63);
         }
   }
 }
 
 TEST_P(PageTreeOf, ScratchKeepsOwnPoints) {
   const PageGrid grid(GetParam());
-  ScratchPages<std::uint16_t> scratch(std::filesystem::temp_directory_path(), grid);
+  ScratchPages<Word> scratch(std::filesystem::temp_directory_path(), grid);
   for (const PageId& id : pages_in_random_order(grid)) {
     if (!grid.contains(id)) continue;
-    Page<std::uint16_t> page{};
-    fill_own(id, {grid.count(id), grid.is_complete(id), id.level}, page);
+    Page<Word> page{};
+    fill_own(id, page_shape(grid, id), PageParts::kAll, page, &page);
     scratch.put(id, page);
   }
-  PageTree<std::uint16_t> tree(
-      grid, PageParts::kAll, 100,
-      [&](const PageId& id, const PageShape&, const Surroundings<std::uint16_t>&, Page<std::uint16_t>& page) {
-        scratch.get(id, page);
-        return true;
-      });
-  for (const PageId& id : pages_in_random_order(grid)) check(grid, id, *tree.page(id));
+  PageTree<Word> tree(grid, 100,
+                      [&](const PageId& id, const PageShape&, const Surroundings<Word>&, PageParts parts,
+                          PageSamples<Word>& samples, PageValues<Word>* values) {
+                        scratch.get(id, parts, samples, values);
+                        return true;
+                      });
+  for (const PageId& id : pages_in_random_order(grid)) {
+    check_samples(grid, id, tree.samples(id)->samples);
+    check(grid, id, tree);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, PageTreeOf,
@@ -143,16 +210,26 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, PageTreeOf,
 TEST(PageTree, WhatCannotBeHadTakesWhatIsPredictedFromItAlong) {
   const PageGrid grid({100, 100, 100});
   const PageId bad{1, {1, 1, 1}};
-  PageTree<std::uint16_t> tree(
-      grid, PageParts::kAll, 1 << 20,
-      [&](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>&,
-          Page<std::uint16_t>& page) { return id != bad && fill_own(id, shape, page); });
-  EXPECT_EQ(tree.page(bad), nullptr);
-  EXPECT_EQ(tree.page({0, {2, 2, 2}}), nullptr);
-  EXPECT_NE(tree.page({0, {0, 0, 0}}), nullptr);
-  EXPECT_EQ(tree.page({0, {1, 1, 1}}), nullptr);  // one coarse point beyond its end
-  EXPECT_NE(tree.page({0, {5, 0, 0}}), nullptr);
+  auto tree = tree_of(grid, std::size_t{1} << 24, [bad](const PageId& id, PageParts) { return id != bad; });
+  EXPECT_EQ(tree.samples(bad), nullptr);
+  EXPECT_EQ(tree.samples({0, {2, 2, 2}}), nullptr);
+  EXPECT_NE(tree.samples({0, {0, 0, 0}}), nullptr);
+  EXPECT_EQ(tree.samples({0, {1, 1, 1}}), nullptr);  // one coarse point beyond its end
+  EXPECT_NE(tree.samples({0, {5, 0, 0}}), nullptr);
   EXPECT_GT(tree.loaded_as_predictors(), 0u);
+}
+
+TEST(PageTree, ValuesThatCannotBeHadLeaveSamples) {
+  const PageGrid grid({100, 100, 100});
+  const PageId bad{1, {1, 1, 1}};
+  auto tree = tree_of(grid, std::size_t{1} << 24, [bad](const PageId& id, PageParts parts) {
+    return id != bad || parts == PageParts::kSamples;
+  });
+  EXPECT_NE(tree.samples(bad), nullptr);
+  EXPECT_EQ(tree.values(bad), nullptr);
+  EXPECT_EQ(tree.values({0, {2, 2, 2}}), nullptr);
+  EXPECT_NE(tree.samples({0, {2, 2, 2}}), nullptr);
+  EXPECT_NE(tree.values({0, {0, 0, 0}}), nullptr);
 }
 
 }  // namespace

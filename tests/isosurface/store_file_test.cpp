@@ -28,6 +28,16 @@ TEST(Checksum, IsCastagnolis) {
   EXPECT_EQ(crc32c({}), 0u);
 }
 
+TEST(Checksum, IsThatOfItsBytesOneByOne) {
+  std::mt19937 random(2);
+  for (std::size_t size = 0; size < 70; ++size) {
+    const std::vector<std::byte> bytes = random_bytes(random, size);
+    std::uint32_t one_by_one = 0;
+    for (const std::byte& b : bytes) one_by_one = crc32c({&b, 1}, one_by_one);
+    ASSERT_EQ(crc32c(bytes), one_by_one);
+  }
+}
+
 TEST(ByteStream, VarintsAreTheShortest) {
   for (const std::uint64_t value : {0ull, 1ull, 127ull, 128ull, 300ull, 1ull << 35, ~0ull}) {
     std::vector<std::byte> bytes;

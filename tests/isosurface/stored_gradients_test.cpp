@@ -107,7 +107,7 @@ void expect_stored(const Stored<Sample>& volume) {
         for (q.i = 0; q.i <= n.i; ++q.i) {
           const PageId id{level, {q.i / 16, q.j / 16, q.k / 16}};
           if (!grid.contains(id)) continue;
-          const Page<std::uint16_t>* page = gradients.page(id);
+          const PageSamples<std::uint16_t>* page = gradients.page(id);
           ASSERT_NE(page, nullptr);
           const auto [first, second] = code_at((1 << level) * q);
           wrong += page->samples[PageGrid::place(q, 0)] != (first | second << 8) ? 1 : 0;

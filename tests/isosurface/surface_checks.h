@@ -74,7 +74,7 @@ class DiamondTable {
             const PageId id = grid.page(p);
             const LatticePoint q{p.i >> id.level, p.j >> id.level, p.k >> id.level};
             if (PageShape{grid.count(id), true, id.level}.owns(q - PageGrid::kSide * id.block)) {
-              diamonds_[p] = values_in(*pages.page(id), p, level, id.level);
+              diamonds_[p] = values_in(*pages.values(id), p, level, id.level);
             } else {
               beyond.push_back(p);
             }
@@ -116,7 +116,7 @@ class DiamondTable {
     return result;
   }
 
-  Values values_in(const Page<OrderedWord<Sample>>& page, LatticePoint p, int level, int page_level) {
+  Values values_in(const PageValues<OrderedWord<Sample>>& page, LatticePoint p, int level, int page_level) {
     const std::size_t at = PageGrid::place(p, page_level);
     Values values{level_error_scale(spacing(), level).decode(page.errors[at])};
     if (page.low[at] <= page.high[at]) {

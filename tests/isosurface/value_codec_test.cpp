@@ -56,7 +56,7 @@ template <class Word>
 void expect_there_and_back(const ValueCodec<Word>& codec, const Case<Word>& c) {
   const Bytes bytes = encoded(codec, c);
   const auto found = samples_of(c);
-  ASSERT_TRUE(codec.decode(bytes, c.shape, c.around, *found));
+  ASSERT_TRUE(codec.decode(bytes, c.shape, c.around, *found, *found));
   for (LatticePoint q{0, 0, 0}; q.k < c.shape.count.k; ++q.k) {
     for (q.j = 0; q.j < c.shape.count.j; ++q.j) {
       for (q.i = 0; q.i < c.shape.count.i; ++q.i) {
@@ -173,6 +173,28 @@ TEST(ValueCodec, CodesLevelsWithoutValuesInAByteOrTwo) {
   }
 }
 
+TYPED_TEST(ValueCodecOf, KnowsNothingOfValuesBeforeAndFarBehindThePage) {
+  using Word = TypeParam;
+  std::mt19937_64 random(9);
+  for (const LatticePoint count : {LatticePoint{16, 16, 16}, LatticePoint{16, 9, 1}}) {
+    for (const int level : {0, 1}) {
+      Case<Word> c = any_case<Word>(random, {count, false, level});
+      const ValueCodec<Word> codec = codec_of<Word>({c});
+      const Bytes expected = encoded(codec, c);
+      const Case<Word> other = any_case<Word>(random, c.shape);
+      for (std::size_t n = 0; n < Surroundings<Word>::kPoints; ++n) {
+        if (n % 11 % 10 != 0 && n / 11 % 11 % 10 != 0 && n / 121 % 10 != 0) continue;
+        c.around.low[n] = other.around.low[n];
+        c.around.high[n] = other.around.high[n];
+        c.around.errors[n] = other.around.errors[n];
+      }
+      ASSERT_EQ(codec_of<Word>({c}).tables(), codec.tables());
+      ASSERT_EQ(encoded(codec, c), expected);
+      expect_there_and_back(codec, c);
+    }
+  }
+}
+
 TEST(ValueCodec, CodesAConstantInAByte) {
   const test::PreparedVolume<std::uint16_t> reference(kDimensions,
                                                       std::vector<std::uint16_t>(41 * 35 * 30, 9));
@@ -276,10 +298,10 @@ TYPED_TEST(ValueCodecOf, RefusesPagesThatAreCutOrTooLong) {
   Bytes bytes = encoded(codec, c);
   const auto page = samples_of(c);
   for (std::size_t length = 0; length < bytes.size(); ++length) {
-    ASSERT_FALSE(codec.decode(std::span(bytes).first(length), c.shape, c.around, *page)) << length;
+    ASSERT_FALSE(codec.decode(std::span(bytes).first(length), c.shape, c.around, *page, *page)) << length;
   }
   bytes.push_back(std::byte{0});
-  EXPECT_FALSE(codec.decode(bytes, c.shape, c.around, *page));
+  EXPECT_FALSE(codec.decode(bytes, c.shape, c.around, *page, *page));
 }
 
 TYPED_TEST(ValueCodecOf, AnswersToFlippedBits) {
@@ -291,7 +313,7 @@ TYPED_TEST(ValueCodecOf, AnswersToFlippedBits) {
     Bytes corrupt = bytes;
     corrupt[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
     auto page = samples_of(c);
-    if (!codec.decode(corrupt, c.shape, c.around, *page)) continue;
+    if (!codec.decode(corrupt, c.shape, c.around, *page, *page)) continue;
     const auto other = std::make_unique<Case<TypeParam>>(Case<TypeParam>{c.shape, c.around, *page});
     ASSERT_EQ(encoded(codec, *other), corrupt) << bit;
   }

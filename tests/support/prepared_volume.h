@@ -20,15 +20,17 @@ class PreparedVolume {
   /// `samples`: i running fastest. Levels below `depth` have no values, as with subtrees.
   PreparedVolume(const std::array<std::uint64_t, 3>& dimensions, const std::vector<Sample>& samples,
                  Vec3 spacing = {1, 1, 1}, int depth = 0)
-      : tree_(PageGrid(dimensions), PageParts::kAll, PageGrid(dimensions).page_count() + 1,
-              [this](const PageId& id, const PageShape& shape, const Surroundings<Word>&, Page<Word>& page) {
+      : tree_(PageGrid(dimensions), std::size_t{1} << 40,
+              [this](const PageId& id, const PageShape& shape, const Surroundings<Word>&, PageParts parts,
+                     PageSamples<Word>& found, PageValues<Word>* values) {
                 const Page<Word>& own = pages_.at(tree_.grid().number(id));
                 for (std::size_t at = 0; at < PageGrid::kPoints; ++at) {
                   if (!shape.owns(point_at(at))) continue;
-                  page.samples[at] = own.samples[at];
-                  page.low[at] = own.low[at];
-                  page.high[at] = own.high[at];
-                  page.errors[at] = own.errors[at];
+                  if (has_part(parts, PageParts::kSamples)) found.samples[at] = own.samples[at];
+                  if (values == nullptr) continue;
+                  values->low[at] = own.low[at];
+                  values->high[at] = own.high[at];
+                  values->errors[at] = own.errors[at];
                 }
                 return true;
               }) {
@@ -50,7 +52,11 @@ class PreparedVolume {
     return {grid().count(id), grid().is_complete(id), id.level};
   }
   /// With the points of coarser levels.
-  [[nodiscard]] Page<Word> page(const PageId& id) const { return *tree_.page(id); }
+  [[nodiscard]] Page<Word> page(const PageId& id) const {
+    Page<Word> found{};
+    tree_.copy(id, found);
+    return found;
+  }
   [[nodiscard]] Surroundings<Word> around(const PageId& id) const {
     Surroundings<Word> result{};
     tree_.surroundings(id, result);

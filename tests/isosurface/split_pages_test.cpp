@@ -1,0 +1,100 @@
+#include "isosurface/extraction/split_pages.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/support/volume_store.h"
+
+namespace adamas {
+namespace {
+
+using Word = std::uint8_t;
+
+test::MemoryVolume<Word> hilly_volume() {
+  return {{70, 45, 38}, [](LatticePoint p) {
+            return 120 + 60 * std::sin(0.21 * p.i) * std::cos(0.17 * p.j + 0.1 * p.k) +
+                   30 * std::sin(0.9 * p.k);
+          }};
+}
+
+/// What is split, with what is left.
+struct Found {
+  std::vector<LatticePoint> split;  ///< lattice points, in the order of pages
+  int greatest_left = 0;
+  bool operator==(const Found&) const = default;
+};
+
+Found found_by(SplitPages<Word>& pages, const SurfaceCut& cut) {
+  Found found;
+  std::size_t visited = 0;
+  pages.find(cut, [&](int, const auto& page) { visited += page.split->count(); });
+  pages.for_each_page([&](int level, const auto& page, double) {
+    page.split->for_each(
+        [&](LatticePoint q) { found.split.push_back(pages.in_lattice(level, page.block, q)); });
+  });
+  EXPECT_EQ(visited, pages.count());
+  EXPECT_EQ(found.split.size(), pages.count());
+  found.greatest_left = pages.greatest_left();
+  return found;
+}
+
+SurfaceCut any_cut(std::mt19937& random, int levels) {
+  SurfaceCut cut;
+  cut.rank = static_cast<int>(1 + random() % static_cast<unsigned>(4 * levels + 24));
+  if (random() % 3 == 0) return cut;
+  cut.generation = static_cast<int>(random() % static_cast<unsigned>(3 * levels + 1));
+  if (random() % 2 == 0) return cut;
+  cut.page = random() % 64;
+  cut.place = random() % PageGrid::kPoints;
+  return cut;
+}
+
+TEST(SplitPages, OneCutAfterAnotherFindsWhatEachDoesAlone) {
+  test::OpenStore<Word> store(hilly_volume());
+  StoredDiamonds<Word> diamonds(store.pages());
+  std::mt19937 random(5);
+  for (const double isovalue : {100.0, 150.0}) {
+    diamonds.set_contour(isovalue);
+    SplitLimits limits;
+    for (const bool in_region : {false, true}) {
+      if (in_region) limits.region = {Vec3{10, 0, 5}, Vec3{40, 30, 20}};
+      SplitPages<Word> in_turn(diamonds, limits);
+      in_turn.forget(true);
+      for (int step = 0; step < 60; ++step) {
+        const SurfaceCut cut = any_cut(random, diamonds.levels());
+        SplitPages<Word> alone(diamonds, limits);
+        const Found expected = found_by(alone, cut);
+        const Found found = found_by(in_turn, cut);
+        ASSERT_EQ(found.split, expected.split);
+        ASSERT_EQ(found.greatest_left, expected.greatest_left);
+        for (const LatticePoint p : found.split) ASSERT_TRUE(in_turn.is_split(p));
+      }
+    }
+  }
+}
+
+TEST(SplitPages, SplitWhatTheCutComesTo) {
+  test::OpenStore<Word> store(hilly_volume());
+  StoredDiamonds<Word> diamonds(store.pages());
+  diamonds.set_contour(120);
+  const SplitLimits limits;
+  SplitPages<Word> pages(diamonds, limits);
+  pages.forget(true);
+  const Found all = found_by(pages, {.rank = 1});
+  ASSERT_GT(all.split.size(), 10'000u);
+  EXPECT_EQ(all.greatest_left, 0);
+  std::mt19937 random(6);
+  for (int step = 0; step < 40; ++step) {
+    const SurfaceCut cut{.rank = static_cast<int>(1 + random() % 40)};
+    std::vector<LatticePoint> expected;
+    std::copy_if(all.split.begin(), all.split.end(), std::back_inserter(expected),
+                 [&](LatticePoint p) { return diamonds.rank_if_crossed(p) >= cut.rank; });
+    EXPECT_EQ(found_by(pages, cut).split, expected);
+  }
+}
+
+}  // namespace
+}  // namespace adamas
