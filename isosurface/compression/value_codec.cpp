@@ -172,31 +172,38 @@ class ValueReader {
     });
     constexpr std::size_t kBetweenRefills = sizeof(Word) < 4 ? 4 / sizeof(Word) : 1;
     static_assert(kBetweenRefills * Token::kBits <= BitReader::kRefilled);
+    const Word* const known = fields_.known[side].data();
+    const Word* const bounds = fields_.bounds[side].data();
     BitReader extras = extras_;
     bool good = true;
     for (std::size_t n = 0; n < count; ++n) {
       if (n % kBetweenRefills == 0) extras.refill();
       const std::size_t cell = cells[n];
-      const std::uint8_t symbol = std::min(symbols[cell], Token::kBehind);
-      const Word predicted = fields_.known[side][cell];
-      const auto extra = static_cast<std::uint32_t>(extras.take(kExtraBits[symbol]));
-      const Word value = symbol == Token::kBehind
-                             ? static_cast<Word>(extra)
-                             : static_cast<Word>(predicted - (Token::lead(symbol) | extra));
+      const std::uint8_t symbol = symbols[cell];
+      const Far far = kFar[std::min(symbol, Token::kBehind)];
+      const auto extra = static_cast<std::uint32_t>(extras.take(far.extra_bits));
+      const Word predicted = known[cell];
+      const bool behind = symbol == Token::kBehind;
+      const auto value = static_cast<Word>(behind ? extra : predicted - (far.lead | extra));
       // Else another token would stand for it.
-      good &= symbols[cell] == symbol && value != fields_.bounds[side][cell] &&
-              (value > predicted) == (symbol == Token::kBehind);
+      good &= symbol <= Token::kBehind && value != bounds[cell] && (value > predicted) == behind;
       values[cell] = value;
     }
     extras_ = extras;
     good_ = good_ && good;
   }
 
-  static constexpr auto kExtraBits = [] {
-    std::array<std::uint8_t, Token::kSymbols> bits{};
-    for (std::size_t n = 0; n < bits.size(); ++n)
-      bits[n] = static_cast<std::uint8_t>(Token::extra_bits(static_cast<std::uint8_t>(n)));
-    return bits;
+  /// What a symbol that leaves bits open stands for.
+  struct Far {
+    Word lead = 0;
+    std::uint8_t extra_bits = 0;
+  };
+  static constexpr auto kFar = [] {
+    std::array<Far, Token::kSymbols> far{};
+    for (std::uint8_t symbol = Token::kFirstOpen; symbol < far.size(); ++symbol)
+      far[symbol] = {static_cast<Word>(Token::lead(symbol)),
+                     static_cast<std::uint8_t>(Token::extra_bits(symbol))};
+    return far;
   }();
 
   PageShape shape_;
