@@ -1,7 +1,6 @@
 #include "isosurface/compression/value_fields.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -83,17 +82,15 @@ std::int32_t last_even(std::int32_t count) { return count & ~1; }
 /// Heights of a row of 16 samples that are all finite, by the parity of their coordinates.
 template <class Word>
 void load_whole_row(const Word* row, float* even, float* odd) {
-  using Pairs [[gnu::vector_size(16 * sizeof(Word))]] = Wider<Word>;
+  using Lanes = EightLanes<Word>;
   using Heights [[gnu::vector_size(8 * sizeof(float))]] = float;
-  constexpr int kBits = 8 * sizeof(Word);
-  Pairs pairs;
-  std::memcpy(&pairs, row, sizeof pairs);
-  constexpr bool kLittle = std::endian::native == std::endian::little;
-  const Heights low = __builtin_convertvector(pairs & static_cast<Wider<Word>>(static_cast<Word>(~Word{0})),
-                                              Heights),
-                high = __builtin_convertvector(pairs >> kBits, Heights);
-  std::memcpy(even, kLittle ? &low : &high, sizeof low);
-  std::memcpy(odd, kLittle ? &high : &low, sizeof high);
+  std::array<Lanes, 2> lanes;
+  Lanes::load_by_turns(row, lanes[0], lanes[1]);
+  // Of words that are no longer than two bytes all eight are in one part.
+  const Heights first = __builtin_convertvector(lanes[0].parts[0], Heights),
+                second = __builtin_convertvector(lanes[1].parts[0], Heights);
+  std::memcpy(even, &first, sizeof first);
+  std::memcpy(odd, &second, sizeof second);
 }
 
 /// Calls visit(parity, cell, place, number of points) for each row of a page's points of one parity, with the
@@ -193,11 +190,13 @@ void ValueFields<Word>::load_heights(const PageShape& shape, const Surroundings<
   for (std::int32_t k = 0; k < count.k; ++k) {
     for (std::int32_t j = 0; j < count.j; ++j) {
       const Word* row = page.samples.data() + PageGrid::place({0, j, k}, 0);
-      if (sizeof(Word) < sizeof(float) && count.i == PageGrid::kSide) {
-        load_whole_row(row, heights.at({0, j, k}), heights.at({1, j, k}));
-      } else {
-        for (std::int32_t i = 0; i < count.i; ++i) *heights.at({i, j, k}) = height(row[i]);
+      if constexpr (sizeof(Word) < sizeof(float)) {
+        if (count.i == PageGrid::kSide) {
+          load_whole_row(row, heights.at({0, j, k}), heights.at({1, j, k}));
+          continue;
+        }
       }
+      for (std::int32_t i = 0; i < count.i; ++i) *heights.at({i, j, k}) = height(row[i]);
     }
   }
   // Behind the page, where the samples of coarser levels are known.

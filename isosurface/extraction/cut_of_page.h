@@ -56,6 +56,11 @@ class CutOfPage {
 
   bool operator==(const CutOfPage&) const = default;
 
+  /// The least code of a level that has the rank; beyond all codes where none has.
+  static unsigned code(int rank, int level) {
+    return static_cast<unsigned>(std::clamp(rank - 4 * level, 1, 128));
+  }
+
   /// No lesser code is split.
   [[nodiscard]] unsigned least() const {
     const unsigned of_phases = *std::min_element(least_.begin(), least_.end());
@@ -77,11 +82,6 @@ class CutOfPage {
   }
 
  private:
-  /// The least code of a level that has the rank; beyond all codes where none has.
-  static unsigned code(int rank, int level) {
-    return static_cast<unsigned>(std::clamp(rank - 4 * level, 1, 128));
-  }
-
   std::array<unsigned, 3> least_{128, 128, 128};  ///< by phase: codes that are split
   int last_phase_ = -1;  ///< where a phase's diamonds are split up to a place, from this code on
   unsigned last_least_ = 0;

@@ -152,17 +152,30 @@ bool SplitPages<Sample>::may_split(int level, LatticePoint block) const {
 
 template <class Sample>
 const typename StoredDiamonds<Sample>::Codes& SplitPages<Sample>::codes(int level, LatticePoint block) {
-  const PageId where = id(level, block);
-  if (codes_of_ != where) {
+  const PageId asked{level, block};
+  if (codes_of_ != asked) {
     codes_of_ = {-1, {}};
-    if (where.level == 0) {
-      find_finest_codes(where);
+    if (level == 0) {
+      find_finest_codes(asked);
     } else {
-      diamonds_.find_crossed(where, codes_);
+      diamonds_.find_crossed(id(level, block), codes_);
+      if (levels_below(level) > 0) gather_codes(level);
     }
-    codes_of_ = where;
+    codes_of_ = asked;
   }
   return codes_;
+}
+
+template <class Sample>
+void SplitPages<Sample>::gather_codes(int level) {
+  const auto all = codes_;
+  codes_.fill(0);
+  const std::int32_t step = 1 << levels_below(level), count = (kSide + step - 1) / step;
+  for (LatticePoint q{}; q.k < count; ++q.k) {
+    for (q.j = 0; q.j < count; ++q.j) {
+      for (q.i = 0; q.i < count; ++q.i) codes_[PageGrid::place(q, 0)] = all[PageGrid::place(step * q, 0)];
+    }
+  }
 }
 
 template <class Sample>
@@ -240,19 +253,12 @@ PageMask SplitPages<Sample>::split_of(int level, bool look_at_left, PageOfLevel&
   for (int axis = 0; axis < 3; ++axis)
     count[axis] = std::min(reach[axis] - kSide * page.block[axis] + 1, kSide);
   const auto in_row = static_cast<std::uint16_t>((1u << count.i) - 1);
-  const int step = 1 << levels_below(level);
   const auto& all = codes(level, page.block);
   PageMask mask, left;
   for (std::int32_t k = 0; k < count.k; ++k) {
     for (std::int32_t j = 0; j < count.j; ++j) {
       const RowPhases phases(j, k);
-      const std::uint8_t* row = all.data() + place(level, {0, j, k});
-      std::array<std::uint8_t, kSide> spread;
-      if (step > 1) {
-        for (std::int32_t i = 0; i < kSide; ++i)
-          spread[static_cast<std::size_t>(i)] = i * step < kSide ? row[i * step] : std::uint8_t{0};
-        row = spread.data();
-      }
+      const std::uint8_t* row = all.data() + PageGrid::place({0, j, k}, 0);
       if (is_zero(row)) continue;
       const std::size_t at = static_cast<std::size_t>(j + kSide * k);
       const unsigned own = in_row & (phases.even < 0 ? kOddPoints : kOddPoints | kEvenPoints);
@@ -268,7 +274,7 @@ PageMask SplitPages<Sample>::split_of(int level, bool look_at_left, PageOfLevel&
   if (look_at_left) {
     page.greatest_left = 0;
     left.for_each([&](LatticePoint q) {
-      page.greatest_left = std::max(page.greatest_left, all[place(level, q)] + 4 * level);
+      page.greatest_left = std::max(page.greatest_left, all[PageGrid::place(q, 0)] + 4 * level);
     });
   }
   return mask;

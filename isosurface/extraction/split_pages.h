@@ -25,9 +25,6 @@ struct PageMask {
   [[nodiscard]] bool has(LatticePoint q) const {
     return (rows[static_cast<std::size_t>(q.j + PageGrid::kSide * q.k)] >> q.i & 1) != 0;
   }
-  void add(LatticePoint q) {
-    rows[static_cast<std::size_t>(q.j + PageGrid::kSide * q.k)] |= static_cast<std::uint16_t>(1u << q.i);
-  }
   [[nodiscard]] bool any() const {
     return std::any_of(rows.begin(), rows.end(), [](std::uint16_t row) { return row != 0; });
   }
@@ -102,8 +99,8 @@ class SplitPages {
     finest_ = {};
   }
 
-  /// The error codes of a page's crossed diamonds, 0 of others: that of q at place(level, q). Valid until the
-  /// next call of anything. Throws PageLost.
+  /// The error codes of a page's crossed diamonds, 0 of others: that of q at PageGrid::place(q, 0). Valid
+  /// until the next call of anything. Throws PageLost.
   const typename StoredDiamonds<Sample>::Codes& codes(int level, LatticePoint block);
 
   [[nodiscard]] int levels() const { return diamonds_.levels(); }
@@ -151,11 +148,6 @@ class SplitPages {
   /// not grow from parents to children.
   [[nodiscard]] int greatest_left() const { return greatest_left_; }
 
-  /// Place in the codes that `find` hands out of a point of a page.
-  [[nodiscard]] std::size_t place(int level, LatticePoint q) const {
-    return PageGrid::place((1 << levels_below(level)) * q, 0);
-  }
-
  private:
   static constexpr int kUnknown = -1;
 
@@ -192,6 +184,8 @@ class SplitPages {
   [[nodiscard]] bool may_split(int level, LatticePoint block) const;
   static std::vector<LatticePoint> blocks_of(const Level& level);
   void find_finest_codes(const PageId& page);
+  /// Brings the codes of a coarser level than the coarsest page's own side by side.
+  void gather_codes(int level);
   /// Adds a page to its level. Whether it is as it was before.
   bool look_into(int level, LatticePoint block, const SurfaceCut& cut, const Level& before);
   /// The diamonds of a page that its cut splits; and, where it is to be looked at, the greatest rank that is
@@ -205,7 +199,7 @@ class SplitPages {
   std::vector<Level> levels_;
   Arena<PageMask> masks_;
   typename StoredDiamonds<Sample>::Codes codes_;  ///< of the page that was looked into last
-  PageId codes_of_{-1, {}};
+  PageId codes_of_{-1, {}};  ///< by the level that was asked for, not by that of its page
   bool several_cuts_ = false;
   FinestCodes finest_;  ///< where there are several cuts
   int greatest_left_ = 0;

@@ -23,8 +23,7 @@ int ranks_further(std::int64_t triangles, std::int64_t most) {
 template <class Sample>
 TriangleBudget<Sample>::TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages,
                                        const SurfaceRequest& request, int bisections)
-    : diamonds_(diamonds),
-      pages_(pages),
+    : pages_(pages),
       request_(request),
       bisections_(bisections),
       counter_(diamonds, request, bisections),
@@ -33,23 +32,13 @@ TriangleBudget<Sample>::TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPa
 template <class Sample>
 PageMask TriangleBudget<Sample>::of_ranks(int level, const PageOfLevel& page, int low, int high) {
   PageMask found = *page.split;
-  const int least = std::max(low - 4 * level, 1), end = std::clamp(high - 4 * level, 1, 128);
-  if (static_cast<int>(page.cut.least()) >= end) return {};
+  const unsigned least = CutOfPage::code(low, level), end = CutOfPage::code(high, level);
+  if (page.cut.least() >= end) return {};
   const auto& codes = pages_.codes(level, page.block);
-  if (level > diamonds_.grid().top()) {
-    // Of coarser levels than the coarsest page's own no rows of codes lie side by side.
-    PageMask wanted;
-    found.for_each([&](LatticePoint q) {
-      const int code = codes[pages_.place(level, q)];
-      if (code >= least && code < end) wanted.add(q);
-    });
-    return wanted;
-  }
   for (std::size_t row = 0; row < found.rows.size(); ++row) {
     if (found.rows[row] == 0) continue;
     const std::uint8_t* of_row = codes.data() + PageGrid::kSide * row;
-    const unsigned wanted = row_not_less(of_row, static_cast<unsigned>(std::min(least, 128))) &
-                            ~row_not_less(of_row, static_cast<unsigned>(end));
+    const unsigned wanted = row_not_less(of_row, least) & ~row_not_less(of_row, end);
     found.rows[row] = static_cast<std::uint16_t>(found.rows[row] & wanted);
   }
   return found;
@@ -71,7 +60,7 @@ void TriangleBudget<Sample>::visit_page(int level, const PageOfLevel& page, int 
         simple && ((page_.is_inside() && !request_.region) || counter_.is_inside(page_.diamond(q)));
     const std::int64_t more =
         whole ? page_.triangles_added(stencil, q) : counter_.added_by_split(page_.diamond(q));
-    visit(q, codes[pages_.place(level, q)] + 4 * level, 3 * (pages_.levels() - 1 - level) + stencil.phase,
+    visit(q, codes[PageGrid::place(q, 0)] + 4 * level, 3 * (pages_.levels() - 1 - level) + stencil.phase,
           more);
   });
 }

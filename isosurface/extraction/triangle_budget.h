@@ -46,7 +46,6 @@ class TriangleBudget {
   template <class Visit>
   void visit_page(int level, const PageOfLevel& page, int low, int high, Visit&& visit);
 
-  StoredDiamonds<Sample>& diamonds_;
   SplitPages<Sample>& pages_;
   const SurfaceRequest& request_;
   int bisections_;

@@ -12,8 +12,8 @@ namespace adamas {
 
 /// Pages of one volume in memory: the samples of those that were asked for, and the values of those of which
 /// values were. Those leave first that nobody asked for since they were last considered (second chance, an
-/// approximation of least recently used). Each part of a page needs the same of those of the next coarser
-/// level round it, which are got in the same way.
+/// approximation of least recently used). Samples of a page need those of the pages of the next coarser level
+/// round it, values those of the one that has its place, which are got in the same way.
 template <class Word>
 class PageTree {
  public:
@@ -32,6 +32,7 @@ class PageTree {
   /// A part of a page, or null where it or one that it is predicted from cannot be had. Valid until the next
   /// call.
   const PageSamples<Word>* samples(const PageId& id) {
+    if (const PageSamples<Word>* found = find(id)) return found;
     const Slot* slot = get(id, PageParts::kSamples, true);
     return slot == nullptr ? nullptr : slot->samples;
   }

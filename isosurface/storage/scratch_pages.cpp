@@ -102,10 +102,14 @@ void ScratchPages<Word>::get(const PageId& id, PageParts parts, PageSamples<Word
   const PageShape shape = page_shape(grid_, id);
   std::size_t points = 0;
   for_each_own_row(shape, [&](std::size_t, std::size_t count, std::size_t) { points += count; });
-  buffer_.resize(points * point_bytes());
+  // Samples come first.
+  const std::size_t sample_bytes = points * sizeof(Word);
+  const std::size_t begin = has_part(parts, PageParts::kSamples) ? 0 : sample_bytes;
+  const std::size_t end = values == nullptr ? sample_bytes : points * point_bytes();
+  buffer_.resize(end - begin);
   for (std::size_t done = 0; done < buffer_.size();) {
-    const ssize_t got =
-        pread(file_, buffer_.data() + done, buffer_.size() - done, static_cast<off_t>(offset(id) + done));
+    const ssize_t got = pread(file_, buffer_.data() + done, buffer_.size() - done,
+                              static_cast<off_t>(offset(id) + begin + done));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) fail("{}: scratch data cannot be read: {}", folder_.string(), std::strerror(errno));
     done += static_cast<std::size_t>(got);
@@ -120,11 +124,7 @@ void ScratchPages<Word>::get(const PageId& id, PageParts parts, PageSamples<Word
       }
     });
   };
-  if (has_part(parts, PageParts::kSamples)) {
-    take(samples.samples);
-  } else {
-    from += points * sizeof(Word);
-  }
+  if (has_part(parts, PageParts::kSamples)) take(samples.samples);
   if (values == nullptr) return;
   take(values->low);
   take(values->high);

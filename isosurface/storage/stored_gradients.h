@@ -18,8 +18,8 @@ class StoredGradients {
   /// tables are damaged. The file must outlive this.
   StoredGradients(StoreFile& file, std::uint32_t step, std::size_t memory);
 
-  /// The page, with OctahedralCodes as samples, the first byte lowest; null where it is
-  /// damaged or predicted from one that is. Valid until the next call.
+  /// The page, with OctahedralCodes as samples, the first byte lowest; null where it is damaged or predicted
+  /// from one that is. Valid until the next call.
   const PageSamples<std::uint16_t>* page(const PageId& id) { return tree_.samples(id); }
   /// At a point, whose coordinates count samples and are not negative: a unit vector, or zero where nothing
   /// changes. Beyond the data it is that of the nearest sample. Nothing where the page cannot be had.

@@ -46,10 +46,7 @@ class StoredPages {
   [[nodiscard]] const PageGrid& grid() const { return file_.grid(); }
 
   /// A part of a page, or null where it is damaged or predicted from one that is. Valid until the next call.
-  const PageSamples<Word>* samples(const PageId& id) {
-    const PageSamples<Word>* found = tree_.find(id);
-    return found != nullptr ? found : tree_.samples(id);
-  }
+  const PageSamples<Word>* samples(const PageId& id) { return tree_.samples(id); }
   const PageValues<Word>* values(const PageId& id) { return tree_.values(id); }
   /// The samples of a page that is in memory; null for others.
   const PageSamples<Word>* held(const PageId& id) { return tree_.find(id); }
