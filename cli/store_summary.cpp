@@ -53,7 +53,9 @@ Figures print_store(const std::string& path, Session& session) {
   Console& console = session.console;
   const std::uint64_t before = grid.bytes() * header.steps;
   const int levels = file->grid().top() + 1;
-  const char* coding = header.coding == SampleCoding::kSplitEdge ? "split-edge" : "interpolation";
+  const char* coding = header.coding == SampleCoding::kSplitEdge ? "split-edge"
+                       : header.coding == SampleCoding::kRanks   ? "interpolation of ranks"
+                                                                 : "interpolation";
   console.print("{}: stored volume\n", path);
   console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
   console.print("  {}, spacing {:.6g}, {:.6g}, {:.6g}\n", box_text(grid.box()), grid.spacing.x,

@@ -3,18 +3,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 #include "isosurface/compression/parity_cells.h"
+#include "isosurface/compression/sample_depth.h"
 
 namespace adamas {
 
-/// A page and what is round it, by the parity of the coordinates. Numbers are wide enough for sums of a few
-/// samples.
-template <class Word>
+/// A page and what is round it, by the parity of the coordinates.
+template <class Depth>
 struct InterpolationCells {
-  using Value = std::conditional_t<sizeof(Word) == 1, std::int16_t,
-                                   std::conditional_t<sizeof(Word) == 2, std::int32_t, std::int64_t>>;
+  using Value = typename Depth::Value;
   static constexpr std::array<int, 3> kStride = kCellStrides;
   static constexpr int kPlane = kStride[2];
   using Cells = ParityCells<Value>;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -10,6 +9,7 @@
 #include "isosurface/compression/context_groups.h"
 #include "isosurface/compression/interpolation_cells.h"
 #include "isosurface/compression/range_coder.h"
+#include "isosurface/compression/residual_reader.h"
 #include "isosurface/compression/sample_codec.h"
 
 namespace adamas {
@@ -21,13 +21,14 @@ namespace adamas {
 ///
 /// Bytes: the kind; the states, 4 bits for the length of each and the bits below its leading 1; the plain
 /// bits; zeros up to a whole byte; words of 16 bits, which are read from the last to the first.
-template <class Word>
-class InterpolationCodec final : public SampleCodec<Word> {
+template <class Depth>
+class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
  public:
+  using Word = typename Depth::Word;
   using typename SampleCodec<Word>::Samples;
   using typename SampleCodec<Word>::Around;
-  static constexpr std::size_t kContextsOfSet = ActivityContext<Word>::kContexts;
-  static constexpr std::size_t kComplete = InterpolationCells<Word>::kSets * kContextsOfSet;
+  static constexpr std::size_t kContextsOfSet = ActivityContext<Depth>::kContexts;
+  static constexpr std::size_t kComplete = InterpolationCells<Depth>::kSets * kContextsOfSet;
   static constexpr std::size_t kContexts = kComplete + 1;
 
   explicit InterpolationCodec(ContextGroups groups);
@@ -41,9 +42,9 @@ class InterpolationCodec final : public SampleCodec<Word> {
                             Samples& samples) const override;
 
  private:
-  class Reader;
+  using Reader = ResidualReader<Word>;
 
-  /// The group of a context of the set.
+  /// The group of an activity of the set.
   [[nodiscard]] auto group_of(int set) const;
   bool decode_smooth(const PageShape& shape, const Around& around, Samples& samples) const;
   bool decode_sets(Reader& reader, const PageShape& shape, const Around& around, Samples& samples) const;
@@ -54,13 +55,13 @@ class InterpolationCodec final : public SampleCodec<Word> {
 
   ContextGroups groups_;
   RangeTables tables_;
-  /// Groups by set and activity, where there are few enough activities.
-  std::vector<std::uint8_t> group_of_activity_;
+  std::vector<std::uint8_t> group_of_activity_;  ///< by set, where they have a table
 };
 
-template <class Word>
-class InterpolationSurvey final : public SampleSurvey<Word> {
+template <class Depth>
+class InterpolationSurvey final : public SampleSurvey<typename Depth::Word> {
  public:
+  using Word = typename Depth::Word;
   using typename SampleSurvey<Word>::Samples;
   using typename SampleSurvey<Word>::Around;
 

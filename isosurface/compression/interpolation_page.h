@@ -10,25 +10,27 @@
 #include "isosurface/compression/interpolation_cells.h"
 #include "isosurface/compression/interpolation_prediction.h"
 #include "isosurface/compression/residual_token.h"
+#include "isosurface/storage/page.h"
 
 namespace adamas {
 
 /// A page on its way to residuals or back, set by set: `predict`, then `residuals` or what was decoded, then
 /// `apply`. Residuals are folded (ResidualToken) and lie by parity, then by point, i running fastest.
-template <class Word>
+template <class Depth>
 class InterpolationPage {
  public:
+  using Word = typename Depth::Word;
   using Samples = PagePoints<Word>;
   using Around = typename Surroundings<Word>::template Points<Word>;
-  using Cells = InterpolationCells<Word>;
+  using Cells = InterpolationCells<Depth>;
   using Value = typename Cells::Value;
   static constexpr std::size_t kMostInSet = 3 * 512;
 
   InterpolationPage(LatticePoint count, const Around& around) : count_(count) {
-    // Loops run over cells without a point too, whose sums nobody uses: of 16 bits any fit, of more only
-    // those of small numbers.
-    if constexpr (sizeof(Value) > 2) cells_ = {};
-    for (std::size_t n = 0; n < around.size(); ++n) cells_.values[0][n] = static_cast<Value>(around[n]);
+    // Loops run over cells without a point too, whose sums nobody uses, but have to be those of numbers: of
+    // all that is read these alone may not have been written.
+    cells_.steps.fill(0);
+    for (std::size_t n = 0; n < around.size(); ++n) cells_.values[0][n] = Depth::value(around[n]);
     for (typename Cells::Cells& residuals : cells_.residuals) residuals.fill(0);
   }
 
@@ -39,7 +41,7 @@ class InterpolationPage {
     return total;
   }
 
-  void predict(int set) { InterpolationPrediction<Word>::predict(set, cells_); }
+  void predict(int set) { InterpolationPrediction<Depth>::predict(set, (count_.k + 1) / 2, cells_); }
 
   /// What `of` makes of the activity round each point.
   template <class Of>
@@ -47,9 +49,8 @@ class InterpolationPage {
     for (int n = 0; n < Cells::parities(set); ++n) {
       const Value* const activity = cells_.activity[static_cast<std::size_t>(n)].data();
       box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
-        for (int i = 0; i < row; ++i) {
-          contexts[before + static_cast<std::size_t>(i)] = of(activity[cell + static_cast<std::size_t>(i)]);
-        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i)
+          contexts[before + i] = of(activity[cell + i]);
       });
       contexts += box(set, n).size();
     }
@@ -63,7 +64,7 @@ class InterpolationPage {
         const Word* const from = first + sample_row(cell);
         for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
           folded[before + i] =
-              ResidualToken<Word>::fold(static_cast<Word>(from[2 * i] - static_cast<Word>(values[cell + i])));
+              ResidualToken<Word>::fold(static_cast<Word>(from[2 * i] - Depth::word(values[cell + i])));
         }
       });
       folded += box(set, n).size();
@@ -81,8 +82,8 @@ class InterpolationPage {
         std::array<Value, 8> sums, sizes;
         for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
           const Word word = folded[before + i];
-          const auto prediction = static_cast<Word>(values[cell + i]);
-          sums[i] = static_cast<Word>(prediction + ResidualToken<Word>::unfold(word));
+          const Word prediction = Depth::word(values[cell + i]);
+          sums[i] = Depth::value(static_cast<Word>(prediction + ResidualToken<Word>::unfold(word)));
           sizes[i] = static_cast<Value>((word >> 1) + (word & 1));
         }
         for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
@@ -117,8 +118,8 @@ class InterpolationPage {
       std::memcpy(to, pairs.data(), sizeof pairs);
     } else {
       for (std::size_t i = 0; i < kPairs; ++i) {
-        to[2 * i] = static_cast<Word>(even[i]);
-        to[2 * i + 1] = static_cast<Word>(odd[i]);
+        to[2 * i] = Depth::word(even[i]);
+        to[2 * i + 1] = Depth::word(odd[i]);
       }
     }
   }

@@ -16,9 +16,10 @@ namespace adamas {
 
 /// What the first byte of a coded page says about the others.
 enum class PageKind : std::uint8_t {
-  kRaw = 0,       ///< the page's own samples as they are, the least byte first
-  kSmooth = 1,    ///< nothing follows: all samples are as predicted
-  kResiduals = 2  ///< the residuals' code
+  kRaw = 0,        ///< the page's own samples as they are, the least byte first
+  kSmooth = 1,     ///< nothing follows: all samples are as predicted
+  kResiduals = 2,  ///< the residuals' code
+  kUnranked = 3    ///< as kRaw, where there are ranks but some sample has none
 };
 
 /// Number of points that the page keeps.
@@ -63,8 +64,9 @@ Word predicted_inside(LatticePoint q, const PageShape& shape, const PagePoints<W
 
 /// Writes a page raw, its kind included.
 template <class Word>
-void write_raw(const PageShape& shape, const PagePoints<Word>& samples, std::vector<std::byte>& out) {
-  out.push_back(static_cast<std::byte>(PageKind::kRaw));
+void write_raw(const PageShape& shape, const PagePoints<Word>& samples, std::vector<std::byte>& out,
+               PageKind kind = PageKind::kRaw) {
+  out.push_back(static_cast<std::byte>(kind));
   for_each_own_point(shape, [&](LatticePoint q, std::uint64_t) {
     const Word sample = samples[PageGrid::place(q, 0)];
     for (std::size_t b = 0; b < sizeof(Word); ++b)

@@ -52,11 +52,11 @@ struct ParityBox {
   [[nodiscard]] constexpr int size() const { return ni * nj * nk; }
 
   /// f(cell, number of points before, points in the row) for each row, with the last one a constant where the
-  /// box is whole.
+  /// rows are whole.
   template <class F>
   void for_each_row(F&& f) const {
-    if (size() == 512) {
-      rows(std::integral_constant<int, 8>(), 8, 8, f);
+    if (ni == 8) {
+      rows(std::integral_constant<int, 8>(), nj, nk, f);
     } else {
       rows(ni, nj, nk, f);
     }

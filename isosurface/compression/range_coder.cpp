@@ -1,8 +1,14 @@
 #include "isosurface/compression/range_coder.h"
 
 #include <algorithm>
+#include <array>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #include "core/base/assert.h"
+#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
@@ -26,6 +32,97 @@ inline std::uint8_t take_one(const std::uint32_t* entries, std::size_t group, st
   return static_cast<std::uint8_t>(entry & 0xff);
 }
 
+/// So many symbols as there are states. At most 2 kStates bytes before `next` are read.
+inline void take_row(const std::uint32_t* entries, const std::uint8_t* groups, RangeTables::States& states,
+                     const std::byte*& next, std::uint8_t* symbols) {
+  for (std::size_t n = 0; n < states.size(); ++n) {
+    symbols[n] = take_one(entries, groups[n], states[n], next);
+  }
+}
+
+#if defined(__x86_64__)
+/// By which of eight states take a word: the place of the word of each among the eight before `next`.
+constexpr auto kWordPlaces = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> places{};
+  for (std::size_t mask = 0; mask < places.size(); ++mask) {
+    std::uint8_t place = 8;
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      if ((mask >> lane & 1) != 0) places[mask][lane] = --place;
+    }
+  }
+  return places;
+}();
+
+[[gnu::target("avx2,popcnt")]] inline __m256i load_bytes_of_eight(const std::uint8_t* from) {
+  return _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)));
+}
+
+/// take_one for eight states; symbols are the lowest bytes of what is returned, below others.
+[[gnu::target("avx2,popcnt")]] inline __m256i take_eight(const std::uint32_t* entries,
+                                                         const std::uint8_t* groups, __m256i& states,
+                                                         const std::byte*& next) {
+  const __m256i slots = _mm256_set1_epi32(kSlots - 1);
+  const __m256i index = _mm256_or_si256(_mm256_slli_epi32(load_bytes_of_eight(groups), kScaleBits),
+                                        _mm256_and_si256(states, slots));
+  const __m256i entry = _mm256_i32gather_epi32(reinterpret_cast<const int*>(entries), index, sizeof(int));
+  const __m256i scaled =
+      _mm256_mullo_epi32(_mm256_srli_epi32(entry, kSizeAt), _mm256_srli_epi32(states, kScaleBits));
+  const __m256i x = _mm256_add_epi32(scaled, _mm256_and_si256(_mm256_srli_epi32(entry, kBiasAt), slots));
+  const __m256i low = _mm256_cmpgt_epi32(_mm256_set1_epi32(RangeTables::kLeast), x);
+  const auto mask = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(low)));
+  const __m256i eight_words =
+      _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(next - sizeof(__m128i))));
+  const __m256i words =
+      _mm256_permutevar8x32_epi32(eight_words, load_bytes_of_eight(kWordPlaces[mask].data()));
+  const __m256i refilled = _mm256_or_si256(_mm256_slli_epi32(x, RangeTables::kWordBits), words);
+  states = _mm256_blendv_epi8(x, refilled, low);
+  next -= sizeof(std::uint16_t) * static_cast<unsigned>(__builtin_popcount(mask));
+  return entry;
+}
+
+/// `count` rows; false where the words are used up.
+[[gnu::target("avx2,popcnt")]] bool take_wide_rows(const std::uint32_t* entries, const std::uint8_t* groups,
+                                                   std::size_t count, RangeTables::States& states,
+                                                   const std::byte* begin, const std::byte*& next,
+                                                   std::uint8_t* symbols) {
+  static_assert(RangeTables::kStates == 16);
+  // Copies that nothing points to stay in registers.
+  const std::byte* at = next;
+  auto* const halves = reinterpret_cast<__m256i*>(states.data());
+  __m256i first = _mm256_loadu_si256(halves), second = _mm256_loadu_si256(halves + 1);
+  const __m256i lowest = _mm256_set1_epi32(255);
+  for (std::size_t row = 0; row < count; ++row) {
+    if (at < begin) return false;
+    const __m256i a = take_eight(entries, groups, first, at);
+    const __m256i b = take_eight(entries, groups + 8, second, at);
+    const __m256i pairs = _mm256_packus_epi32(_mm256_and_si256(a, lowest), _mm256_and_si256(b, lowest));
+    const __m256i in_order = _mm256_permute4x64_epi64(pairs, 0b11011000);
+    const __m128i sixteen =
+        _mm_packus_epi16(_mm256_castsi256_si128(in_order), _mm256_extracti128_si256(in_order, 1));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(symbols), sixteen);
+    groups += RangeTables::kStates;
+    symbols += RangeTables::kStates;
+  }
+  _mm256_storeu_si256(halves, first);
+  _mm256_storeu_si256(halves + 1, second);
+  next = at;
+  return true;
+}
+#endif
+
+bool take_rows(const std::uint32_t* entries, const std::uint8_t* groups, std::size_t count,
+               RangeTables::States& states, const std::byte* begin, const std::byte*& next,
+               std::uint8_t* symbols) {
+#if defined(__x86_64__)
+  if (has_wide_lanes()) return take_wide_rows(entries, groups, count, states, begin, next, symbols);
+#endif
+  for (std::size_t row = 0; row < count; ++row) {
+    if (next < begin) return false;
+    take_row(entries, groups + row * states.size(), states, next, symbols + row * states.size());
+  }
+  return true;
+}
+
 }  // namespace
 
 RangeTables::RangeTables(std::span<const SymbolFrequencies> groups)
@@ -35,7 +132,10 @@ RangeTables::RangeTables(std::span<const SymbolFrequencies> groups)
     std::uint32_t* entry = entries_.data() + g * kSlots;
     std::uint32_t start = 0;
     for (std::size_t s = 0; s < sizes.size(); ++s) {
-      ranges_[g * kMaxSymbols + s] = {static_cast<std::uint16_t>(start), sizes[s]};
+      if (sizes[s] > 0) {
+        ranges_[g * kMaxSymbols + s] = {static_cast<std::uint16_t>(start), sizes[s],
+                                        ((std::uint64_t{1} << kReciprocalBits) + sizes[s] - 1) / sizes[s]};
+      }
       for (std::uint32_t bias = 0; bias < sizes[s]; ++bias) {
         *entry++ = static_cast<std::uint32_t>(s) | bias << kBiasAt | std::uint32_t{sizes[s]} << kSizeAt;
       }
@@ -45,32 +145,38 @@ RangeTables::RangeTables(std::span<const SymbolFrequencies> groups)
   }
 }
 
-bool RangeDecoder::take(std::span<const std::uint8_t> groups, std::uint8_t* symbols) {
-  static_assert(RangeTables::kStates == 4 && kBlock % RangeTables::kStates == 0);
-  // Copies that nothing points to stay in registers.
-  const std::uint32_t* const entries = entries_;
-  const std::byte* next = next_;
-  auto [a, b, c, d] = states_;
-  const std::uint8_t* group = groups.data();
-  const std::size_t whole = groups.size() / 4 * 4;
-  for (std::size_t n = 0; n < whole;) {
-    if (next < begin_) return false;
-    for (const std::size_t end = n + kBlock < whole ? n + kBlock : whole; n < end; n += 4) {
-      symbols[n] = take_one(entries, group[n], a, next);
-      symbols[n + 1] = take_one(entries, group[n + 1], b, next);
-      symbols[n + 2] = take_one(entries, group[n + 2], c, next);
-      symbols[n + 3] = take_one(entries, group[n + 3], d, next);
-    }
+std::uint16_t* RangeTables::encode(std::span<const std::uint8_t> groups, const std::uint8_t* symbols,
+                                   States& states, std::uint16_t* words) const {
+  States now;
+  now.fill(kLeast);
+  for (std::size_t n = groups.size(); n-- > 0;) {
+    const Range range = ranges_[groups[n] * kMaxSymbols + symbols[n]];
+    ADAMAS_ASSERT(range.size > 0);
+    std::uint32_t x = now[n % now.size()];
+    // Without a branch, for which there is no telling: whether a word leaves the state.
+    const bool high = x >= std::uint32_t{range.size} << kWordBits;
+    *words = static_cast<std::uint16_t>(x);
+    words += high ? 1 : 0;
+    x >>= high ? kWordBits : 0;
+    const auto quotient = static_cast<std::uint32_t>(x * range.reciprocal >> kReciprocalBits);
+    now[n % now.size()] =
+        (quotient << SymbolFrequencies::kScaleBits) + range.start + (x - quotient * range.size);
   }
-  if (next < begin_) return false;
-  states_ = {a, b, c, d};
-  for (std::size_t n = whole; n < groups.size(); ++n) {
-    symbols[n] = take_one(entries, group[n], states_[n % 4], next);
+  states = now;
+  return words;
+}
+
+bool RangeDecoder::take(std::span<const std::uint8_t> groups, std::uint8_t* symbols) {
+  static_assert(kSlack >= 2 * RangeTables::kStates);
+  const std::size_t rows = groups.size() / RangeTables::kStates, whole = rows * RangeTables::kStates;
+  if (!take_rows(entries_, groups.data(), rows, states_, begin_, next_, symbols)) return false;
+  if (next_ < begin_) return false;
+  const std::size_t rest = groups.size() - whole;
+  for (std::size_t n = 0; n < rest; ++n) {
+    symbols[whole + n] = take_one(entries_, groups[whole + n], states_[n], next_);
   }
   // The next symbol is that of the first state again.
-  std::rotate(states_.begin(), states_.begin() + static_cast<std::ptrdiff_t>(groups.size() % 4),
-              states_.end());
-  next_ = next;
+  std::rotate(states_.begin(), states_.begin() + static_cast<std::ptrdiff_t>(rest), states_.end());
   return true;
 }
 

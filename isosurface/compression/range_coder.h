@@ -16,12 +16,12 @@ namespace adamas {
 /// (rANS, Duda 2014). kStates sequences are coded in turn, so that a processor works at several symbols at
 /// once.
 ///
-/// A state x is below 2^28, and from kScale on except where nothing is left to read. A symbol of frequency f
-/// that starts at b takes x to kScale floor(x / f) + b + x mod f, before which the lowest 16 bits go to the
-/// stream if the result had more than 28.
+/// A state x is from kScale on and below 2^16 kScale. A symbol of frequency f that starts at b takes x to
+/// kScale floor(x / f) + b + x mod f, before which the lowest 16 bits go to the stream if the result were too
+/// great.
 class RangeTables {
  public:
-  static constexpr int kStates = 4;
+  static constexpr int kStates = 16;
   static constexpr std::uint32_t kLeast = SymbolFrequencies::kScale;
   static constexpr int kWordBits = 16;
   using States = std::array<std::uint32_t, kStates>;
@@ -32,17 +32,11 @@ class RangeTables {
     return ranges_[group * kMaxSymbols + symbol].size > 0;
   }
 
-  /// Puts a symbol on a state; a word that leaves it goes to the end of `words`.
-  void push(std::uint32_t& x, std::size_t group, std::size_t symbol, std::vector<std::byte>& words) const {
-    const Range range = ranges_[group * kMaxSymbols + symbol];
-    ADAMAS_ASSERT(range.size > 0);
-    if (x >= std::uint32_t{range.size} << kWordBits) {
-      words.push_back(static_cast<std::byte>(x & 0xff));
-      words.push_back(static_cast<std::byte>(x >> 8 & 0xff));
-      x >>= kWordBits;
-    }
-    x = (x / range.size << SymbolFrequencies::kScaleBits) + range.start + x % range.size;
-  }
+  /// Codes one symbol per group, of which the first will be the first that a RangeDecoder takes; a symbol
+  /// that `has` denies has none. Words go to `words`, which has room for as many as there are symbols.
+  /// Returns the end of those in use.
+  std::uint16_t* encode(std::span<const std::uint8_t> groups, const std::uint8_t* symbols, States& states,
+                        std::uint16_t* words) const;
 
   /// By group and the lowest bits of a state: from the lowest bit, 8 bits for the symbol, 12 for how far it
   /// is from the symbol's start and 12 for the symbol's frequency.
@@ -52,7 +46,11 @@ class RangeTables {
   static constexpr std::size_t kMaxSymbols = SymbolFrequencies::kMaxSymbols;
   struct Range {
     std::uint16_t start = 0, size = 0;
+    /// 2^kReciprocalBits / size, rounded up: so near that quotients of states are right.
+    std::uint64_t reciprocal = 0;
   };
+  static constexpr int kReciprocalBits =
+      SymbolFrequencies::kScaleBits + kWordBits + SymbolFrequencies::kScaleBits;
 
   std::vector<Range> ranges_;  ///< by group and symbol
   std::vector<std::uint32_t> entries_;
@@ -61,7 +59,7 @@ class RangeTables {
 /// Takes symbols from states and words again, the words from the last one to the first.
 class RangeDecoder {
  public:
-  /// How many bytes before `begin` must be readable: as many as kBlock symbols take.
+  /// How many bytes before `begin` must be readable: as many as a symbol of each state takes.
   static constexpr std::size_t kSlack = 32;
 
   /// Words end at `end` and do not begin before `begin`.
@@ -82,8 +80,6 @@ class RangeDecoder {
   [[nodiscard]] const std::byte* words() const { return next_; }
 
  private:
-  static constexpr std::size_t kBlock = kSlack / 2;
-
   const std::uint32_t* entries_;
   RangeTables::States states_;
   const std::byte *begin_, *next_;

@@ -1,16 +1,66 @@
 #include "isosurface/compression/sample_codec.h"
 
+#include <utility>
+
 #include "core/base/assert.h"
+#include "core/base/error.h"
 #include "isosurface/compression/interpolation_codec.h"
+#include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/split_edge_codec.h"
+#include "isosurface/storage/byte_stream.h"
 
 namespace adamas {
+namespace {
+
+/// make(depth) with the least of the depths that hold so many ranks.
+template <class Make>
+auto with_depth_of_ranks(std::size_t count, Make make) {
+  if (count <= std::size_t{Depth8::kGreatest} + 1) return make(Depth8{});
+  if (count <= std::size_t{Depth12::kGreatest} + 1) return make(Depth12{});
+  return make(Depth16{});
+}
 
 template <class Word>
-std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding) {
+std::unique_ptr<SampleSurvey<Word>> ranked_survey(std::shared_ptr<const SampleRanks> ranks) {
+  return with_depth_of_ranks(ranks->values().size(), [&](auto depth) -> std::unique_ptr<SampleSurvey<Word>> {
+    using Depth = decltype(depth);
+    return std::make_unique<RankedSurvey<Word, typename Depth::Word>>(
+        std::move(ranks), std::make_unique<InterpolationSurvey<Depth>>());
+  });
+}
+
+template <class Depth>
+std::unique_ptr<SampleCodec<typename Depth::Word>> parse_interpolation(std::span<const std::byte> tables,
+                                                                       std::string_view name) {
+  return std::make_unique<InterpolationCodec<Depth>>(InterpolationCodec<Depth>::parse(tables, name));
+}
+
+template <class Word>
+std::unique_ptr<SampleCodec<Word>> parse_ranked(std::span<const std::byte> tables, std::string_view name) {
+  ByteReader in(tables);
+  const std::span<const std::byte> bytes = in.sized_bytes();
+  if (!in.good()) fail("{}: expected the different samples, found too little data", name);
+  auto ranks =
+      std::make_shared<const SampleRanks>(SampleRanks::read(bytes, 8 * static_cast<int>(sizeof(Word)), name));
+  return with_depth_of_ranks(ranks->values().size(), [&](auto depth) -> std::unique_ptr<SampleCodec<Word>> {
+    using Depth = decltype(depth);
+    return std::make_unique<RankedCodec<Word, typename Depth::Word>>(
+        std::move(ranks), parse_interpolation<Depth>(in.rest(), name));
+  });
+}
+
+}  // namespace
+
+template <class Word>
+std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding,
+                                                  std::shared_ptr<const SampleRanks> ranks) {
+  ADAMAS_ASSERT((coding == SampleCoding::kRanks) == (ranks != nullptr));
   if (coding == SampleCoding::kSplitEdge) return std::make_unique<SplitEdgeSurvey<Word>>();
+  if constexpr (sizeof(Word) > 1) {
+    if (coding == SampleCoding::kRanks) return ranked_survey<Word>(std::move(ranks));
+  }
   ADAMAS_ASSERT(coding == SampleCoding::kInterpolation);
-  return std::make_unique<InterpolationSurvey<Word>>();
+  return std::make_unique<InterpolationSurvey<DepthOf<Word>>>();
 }
 
 template <class Word>
@@ -20,13 +70,19 @@ std::unique_ptr<SampleCodec<Word>> parse_sample_codec(SampleCoding coding, std::
     constexpr int kBits = 8 * static_cast<int>(sizeof(Word));
     return std::make_unique<SplitEdgeCodec<Word>>(ResidualCode::parse(tables, kBits, name));
   }
-  ADAMAS_ASSERT(coding == SampleCoding::kInterpolation);
-  return std::make_unique<InterpolationCodec<Word>>(InterpolationCodec<Word>::parse(tables, name));
+  if constexpr (sizeof(Word) > 1) {
+    if (coding == SampleCoding::kRanks) return parse_ranked<Word>(tables, name);
+  }
+  if (coding == SampleCoding::kRanks) fail("{}: expected ranks of samples of 2 bytes or more, found 1", name);
+  return parse_interpolation<DepthOf<Word>>(tables, name);
 }
 
-template std::unique_ptr<SampleSurvey<std::uint8_t>> sample_survey(SampleCoding);
-template std::unique_ptr<SampleSurvey<std::uint16_t>> sample_survey(SampleCoding);
-template std::unique_ptr<SampleSurvey<std::uint32_t>> sample_survey(SampleCoding);
+template std::unique_ptr<SampleSurvey<std::uint8_t>> sample_survey(SampleCoding,
+                                                                   std::shared_ptr<const SampleRanks>);
+template std::unique_ptr<SampleSurvey<std::uint16_t>> sample_survey(SampleCoding,
+                                                                    std::shared_ptr<const SampleRanks>);
+template std::unique_ptr<SampleSurvey<std::uint32_t>> sample_survey(SampleCoding,
+                                                                    std::shared_ptr<const SampleRanks>);
 template std::unique_ptr<SampleCodec<std::uint8_t>> parse_sample_codec(SampleCoding,
                                                                        std::span<const std::byte>,
                                                                        std::string_view);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "isosurface/compression/sample_ranks.h"
 #include "isosurface/storage/page.h"
 
 namespace adamas {
@@ -15,7 +16,13 @@ namespace adamas {
 enum class SampleCoding : std::uint8_t {
   kSplitEdge = 0,      ///< the dissertation's: mean of the split edge's ends, lead-1 codes (D 4.5)
   kInterpolation = 1,  ///< cubic on edges, then faces, then centres; contexts of local variation
+  kRanks = 2           ///< kInterpolation of the samples' ranks; of words of more than a byte
 };
+
+/// That of single bytes, which have no ranks, in a file with this coding.
+constexpr SampleCoding coding_of_bytes(SampleCoding coding) {
+  return coding == SampleCoding::kRanks ? SampleCoding::kInterpolation : coding;
+}
 
 /// Makes pages of samples into bytes and back, lossless. Built by a SampleSurvey, or from the tables of a
 /// file. May be used by several threads at once. Word: see Page.
@@ -56,8 +63,10 @@ class SampleSurvey {
   [[nodiscard]] virtual std::unique_ptr<SampleCodec<Word>> codec() const = 0;
 };
 
+/// For kRanks with the ranks of the volume's samples, which no other coding has.
 template <class Word>
-std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding);
+std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding,
+                                                  std::shared_ptr<const SampleRanks> ranks = nullptr);
 
 /// Throws Error, which begins with `name`, unless some codec's `tables` could have given just these bytes.
 template <class Word>

@@ -14,7 +14,7 @@ namespace adamas {
 /// those that have no frequency, always has one.
 class SymbolFrequencies {
  public:
-  static constexpr int kScaleBits = 11;
+  static constexpr int kScaleBits = 10;
   static constexpr std::uint32_t kScale = 1u << kScaleBits;
   static constexpr std::size_t kMaxSymbols = 256;
 

@@ -21,13 +21,22 @@ template <class Work>
 }
 #endif
 
+/// Whether the processor computes with 32 bytes at a time.
+inline bool has_wide_lanes() {
+#if defined(__x86_64__)
+  static const bool kWide = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi2") != 0;
+  return kWide;
+#else
+  return false;
+#endif
+}
+
 /// Calls work with the number of bytes, as a constant, that the processor computes with at a time. Results do
 /// not depend on it.
 template <class Work>
 void with_wide_lanes(Work work) {
 #if defined(__x86_64__)
-  static const bool kWide = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi2") != 0;
-  if (kWide) return with_lanes_of_32_bytes(work);
+  if (has_wide_lanes()) return with_lanes_of_32_bytes(work);
 #endif
   work(std::integral_constant<std::size_t, 16>{});
 }

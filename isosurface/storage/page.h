@@ -84,4 +84,17 @@ inline PageShape page_shape(const PageGrid& grid, const PageId& page) {
   return {grid.count(page), grid.is_complete(page), page.level};
 }
 
+/// f(place) for the page's own points, i running fastest.
+template <class F>
+void for_each_own_place(const PageShape& shape, F&& f) {
+  const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
+  for (std::int32_t k = 0; k < shape.count.k; ++k) {
+    for (std::int32_t j = 0; j < shape.count.j; ++j) {
+      const bool has_coarser = !shape.complete && ((j | k) & 1) == 0;
+      const std::size_t row = PageGrid::place({0, j, k}, 0), end = row + at(shape.count.i);
+      for (std::size_t n = row + (has_coarser ? 1 : 0); n < end; n += has_coarser ? 2 : 1) f(n);
+    }
+  }
+}
+
 }  // namespace adamas

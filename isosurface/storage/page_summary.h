@@ -9,19 +9,6 @@
 
 namespace adamas {
 
-/// Calls visit(place) with the places of the page's own points.
-template <class Visit>
-void for_each_own_place(const PageShape& shape, Visit&& visit) {
-  LatticePoint q{};
-  for (q.k = 0; q.k < shape.count.k; ++q.k) {
-    for (q.j = 0; q.j < shape.count.j; ++q.j) {
-      for (q.i = 0; q.i < shape.count.i; ++q.i) {
-        if (shape.owns(q)) visit(PageGrid::place(q, 0));
-      }
-    }
-  }
-}
-
 /// Of the page's own points.
 template <class Word>
 PageSummary summary(const PageShape& shape, const Page<Word>& page) {

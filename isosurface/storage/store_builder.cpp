@@ -67,8 +67,8 @@ struct Surveys {
   ValueSurvey<Word> values;
   std::optional<GradientSurvey> gradients;
 
-  Surveys(const StoreOptions& options, const Vec3& spacing)
-      : samples(sample_survey<Word>(options.coding)), values(spacing) {
+  Surveys(const StoreOptions& options, const Vec3& spacing, std::shared_ptr<const SampleRanks> ranks)
+      : samples(sample_survey<Word>(ranks ? SampleCoding::kRanks : options.coding, ranks)), values(spacing) {
     if (options.gradients) gradients.emplace(options.coding);
   }
 
@@ -160,7 +160,12 @@ class StoreBuilder {
     PreprocessOptions preprocessing;
     preprocessing.subtree_depth = options_.subtree_depth;
     preprocess<Sample>(
-        volume_, planes, [this](const PageId& id, const Page<Word>& page) { scratch_.put(id, page); },
+        volume_, planes,
+        [this](const PageId& id, const Page<Word>& page) {
+          if (options_.coding == SampleCoding::kInterpolation)
+            census_.add(page_shape(grid_, id), page.samples);
+          scratch_.put(id, page);
+        },
         preprocessing, progress_);
     if (gradients_ != nullptr) {
       gradient_pages<Sample>(
@@ -168,6 +173,7 @@ class StoreBuilder {
           [this](const PageId& id, const Page<std::uint16_t>& page) { gradients_->put(id, page); },
           progress_);
     }
+    ranks_ = census_.ranks();
     const std::vector<std::uint64_t> numbers = page_numbers(grid_);
     return write(numbers, survey(numbers), path, shown);
   }
@@ -199,13 +205,13 @@ class StoreBuilder {
       constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15ull;
       return numbers.size() <= kSurveyed || grid_.page(number).level > 0 || number * kScatter >> 61 == 0;
     });
-    Surveys<Word> surveys(options_, volume_.spacing);
+    Surveys<Word> surveys(options_, volume_.spacing, ranks_);
     for_each_batch(some, "surveying", [&](std::span<const Job<Word>> jobs) {
       constexpr std::size_t kPart = kBatch / 4;
       std::vector<std::unique_ptr<Surveys<Word>>> parts((jobs.size() + kPart - 1) / kPart);
       parallel_chunks(jobs.size(), kPart, [&](std::size_t begin, std::size_t end) {
         auto& part = parts[begin / kPart];
-        part = std::make_unique<Surveys<Word>>(options_, volume_.spacing);
+        part = std::make_unique<Surveys<Word>>(options_, volume_.spacing, ranks_);
         for (const Job<Word>& job : jobs.subspan(begin, end - begin)) part->add(job);
       });
       for (const auto& part : parts) surveys.merge(*part);
@@ -217,7 +223,7 @@ class StoreBuilder {
                      const std::filesystem::path& path, const std::string& shown) {
     StoreHeader header;
     header.grid = volume_;
-    header.coding = options_.coding;
+    header.coding = ranks_ != nullptr ? SampleCoding::kRanks : options_.coding;
     header.subtree_depth = static_cast<std::uint8_t>(options_.subtree_depth);
     header.gradients = options_.gradients;
     StoreFileWriter writer(path, shown, header);
@@ -251,6 +257,8 @@ class StoreBuilder {
   PageTree<Word> tree_;
   std::unique_ptr<GradientScratch> gradients_;  ///< null where none are kept
   std::vector<Job<Word>> jobs_;
+  SampleCensus<Word> census_;
+  std::shared_ptr<const SampleRanks> ranks_;  ///< null where samples are coded as they are
 };
 
 }  // namespace

@@ -55,7 +55,7 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
     if (value > most) fail("{}: expected {} from 0 to {}, found {}", name, what, most, value);
     return value;
   };
-  header.coding = static_cast<SampleCoding>(choice("a coding of samples", 1));
+  header.coding = static_cast<SampleCoding>(choice("a coding of samples", 2));
   header.subtree_depth = choice("a depth of subtrees", 2);
   header.gradients = choice("a coding of gradients", 1) != 0;
   header.steps = in.number<std::uint32_t>();

@@ -13,7 +13,7 @@ namespace {
 GradientCodec codec_of(const StoreFile& file) {
   const StoreHeader& header = file.header();
   if (!header.gradients) fail("{}: expected gradients, found none", file.name());
-  return GradientCodec::parse(header.coding, header.gradient_tables, file.name());
+  return GradientCodec::parse(coding_of_bytes(header.coding), header.gradient_tables, file.name());
 }
 
 }  // namespace

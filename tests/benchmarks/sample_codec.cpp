@@ -44,7 +44,14 @@ std::size_t report(const std::string& name, std::string_view coding_name, Sample
   std::vector<Content> contents(volume.pages().size());
   for (std::size_t n = 0; n < contents.size(); ++n) volume.content(volume.pages()[n], contents[n]);
 
-  const auto survey = sample_survey<Word>(coding);
+  std::shared_ptr<const SampleRanks> ranks;
+  if (coding == SampleCoding::kRanks) {
+    SampleCensus<Word> census;
+    for (const Content& page : contents) census.add(page.shape, page.samples);
+    ranks = census.ranks();
+    if (ranks == nullptr) return 0;
+  }
+  const auto survey = sample_survey<Word>(coding, ranks);
   const double surveying = least_seconds(1, [&] {
     for (const Content& page : contents) survey->add(page.shape, page.around, page.samples);
   });
@@ -96,6 +103,7 @@ template <class Word>
 void report(const std::string& name, const test::VolumePages<Word>& volume) {
   report(name, "split edge", SampleCoding::kSplitEdge, volume);
   report(name, "interpolation", SampleCoding::kInterpolation, volume);
+  report(name, "its ranks", SampleCoding::kRanks, volume);
 }
 
 /// Samples as they lie in memory.

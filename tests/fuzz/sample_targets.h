@@ -26,21 +26,23 @@ void sample_codec_of(SampleCoding coding, const PageShape& shape, std::span<cons
   require(page[0] == std::byte{0} || std::ranges::equal(again, page), "another page");
 }
 
-/// A header of 7 bytes: the size of a sample, and 128 more for kInterpolation; points per axis; whether the
-/// page is complete; the size of the tables in 2 bytes. Then the tables and the page.
+/// A header of 7 bytes: the size of a sample, and 128 more for kInterpolation or 64 more for kRanks; points
+/// per axis; whether the page is complete; the size of the tables in 2 bytes. Then the tables and the page.
 inline void sample_codec(std::string_view bytes) {
   constexpr std::size_t kHeader = 7;
   const auto given = std::as_bytes(std::span(bytes));
   if (given.size() < kHeader) fail("expected a header, found {} bytes", given.size());
   const auto number = [given](std::size_t at) { return std::to_integer<int>(given[at]); };
-  const auto coding = number(0) >= 128 ? SampleCoding::kInterpolation : SampleCoding::kSplitEdge;
+  const auto coding = number(0) >= 128  ? SampleCoding::kInterpolation
+                      : number(0) >= 64 ? SampleCoding::kRanks
+                                        : SampleCoding::kSplitEdge;
   const auto along = [&](std::size_t at) {
     return static_cast<std::int32_t>(number(at) % PageGrid::kSide + 1);
   };
   const PageShape shape{{along(1), along(2), along(3)}, number(4) % 2 != 0, 0};
   const auto size = std::min(static_cast<std::size_t>(number(5) + 256 * number(6)), given.size() - kHeader);
   const auto tables = given.subspan(kHeader, size), page = given.subspan(kHeader + size);
-  const int word = number(0) % 128;
+  const int word = number(0) % 64;
   if (word == 1) return sample_codec_of<std::uint8_t>(coding, shape, tables, page);
   if (word == 2) return sample_codec_of<std::uint16_t>(coding, shape, tables, page);
   if (word == 4) return sample_codec_of<std::uint32_t>(coding, shape, tables, page);

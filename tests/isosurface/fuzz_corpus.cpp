@@ -10,7 +10,7 @@ namespace {
 
 TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::residual_code), 4u); }
 
-TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sample_codec), 8u); }
+TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sample_codec), 11u); }
 TEST(FuzzCorpus, ValueCodec) { EXPECT_EQ(fuzz::replay("value_codec", fuzz::value_codec), 6u); }
 TEST(FuzzCorpus, GradientCodec) { EXPECT_EQ(fuzz::replay("gradient_codec", fuzz::gradient_codec), 5u); }
 TEST(FuzzCorpus, StoreFormat) { EXPECT_EQ(fuzz::replay("store_format", fuzz::store_format), 4u); }

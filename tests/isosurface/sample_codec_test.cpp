@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 
 #include "core/base/error.h"
 #include "isosurface/compression/split_edge_prediction.h"
@@ -17,7 +18,13 @@ namespace {
 using Bytes = std::vector<std::byte>;
 using Dimensions = std::array<std::uint64_t, 3>;
 
-constexpr SampleCoding kCodings[] = {SampleCoding::kSplitEdge, SampleCoding::kInterpolation};
+/// All that there are of words: single bytes have no ranks.
+template <class Word>
+std::vector<SampleCoding> codings() {
+  std::vector<SampleCoding> all{SampleCoding::kSplitEdge, SampleCoding::kInterpolation};
+  if (sizeof(Word) > 1) all.push_back(SampleCoding::kRanks);
+  return all;
+}
 
 template <class Word>
 using Content = test::PageContent<Word>;
@@ -31,9 +38,23 @@ Content<Word> content_of(const test::VolumePages<Word>& volume, const PageId& pa
   return content;
 }
 
+/// Of the volume's samples, or of the least of them where there are too many; null but for kRanks.
+template <class Word>
+std::shared_ptr<const SampleRanks> ranks_of(SampleCoding coding, const test::VolumePages<Word>& volume) {
+  if (coding != SampleCoding::kRanks) return nullptr;
+  std::set<std::uint32_t> values;
+  for (const PageId& page : volume.pages()) {
+    const Content<Word> content = content_of(volume, page);
+    values.insert(content.samples.begin(), content.samples.end());
+  }
+  std::vector<std::uint32_t> sorted(values.begin(), values.end());
+  sorted.resize(std::min(sorted.size(), SampleRanks::kMost));
+  return std::make_shared<const SampleRanks>(std::move(sorted));
+}
+
 template <class Word>
 std::unique_ptr<SampleCodec<Word>> codec_of(SampleCoding coding, const test::VolumePages<Word>& volume) {
-  const auto survey = sample_survey<Word>(coding);
+  const auto survey = sample_survey<Word>(coding, ranks_of(coding, volume));
   for (const PageId& page : volume.pages()) {
     const Content<Word> content = content_of(volume, page);
     survey->add(content.shape, content.around, content.samples);
@@ -128,7 +149,7 @@ TYPED_TEST(SampleCodecOf, TakesVolumesOfAllShapes) {
   using Word = TypeParam;
   // All of them for bytes; for the others those that differ in more than size.
   const std::uint64_t step = sizeof(Word) == 1 ? 1 : 4;
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     for (std::uint64_t i = 1; i <= 9; i += step)
       for (std::uint64_t j = 1; j <= 9; j += step)
         for (std::uint64_t k = 1; k <= 9; k += step) {
@@ -143,7 +164,7 @@ TYPED_TEST(SampleCodecOf, TakesVolumesOfAllShapes) {
 
 TYPED_TEST(SampleCodecOf, TakesVolumesOfSeveralLevels) {
   using Word = TypeParam;
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     for (const Dimensions& dimensions :
          {Dimensions{33, 33, 33}, {32, 31, 30}, {40, 17, 1}, {1, 1, 70}, {18, 35, 19}}) {
       expect_there_and_back<Word>(coding, dimensions, smooth_samples<Word>(dimensions, 0.02));
@@ -155,7 +176,7 @@ TYPED_TEST(SampleCodecOf, TakesVolumesOfSeveralLevels) {
 TYPED_TEST(SampleCodecOf, SpendsNextToNothingOnOneValue) {
   using Word = TypeParam;
   const Dimensions dimensions{49, 40, 33};
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     for (const Word value : {Word(0), Word(1), std::numeric_limits<Word>::max()}) {
       const test::VolumePages<Word> volume(dimensions, std::vector<Word>(size_of(dimensions), value));
       const std::size_t total =
@@ -170,7 +191,7 @@ TYPED_TEST(SampleCodecOf, TakesExtremes) {
   using Word = TypeParam;
   constexpr Word kMost = std::numeric_limits<Word>::max(), kHalf = kMost / 2 + 1;
   const Dimensions dimensions{34, 20, 18};
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     for (const std::array<Word, 2>& pair :
          {std::array<Word, 2>{0, kMost}, {0, kHalf}, {kMost, kHalf}, {Word(kHalf - 1), kHalf}, {0, 1}}) {
       std::vector<Word> samples(size_of(dimensions));
@@ -193,13 +214,13 @@ TYPED_TEST(SampleCodecOf, TakesFibonacciCounts) {
     while (random() % 1000 > 618) ++value;
     sample = static_cast<Word>(static_cast<std::uint32_t>(value * value) * 40503u);
   }
-  for (const SampleCoding coding : kCodings) expect_there_and_back<Word>(coding, dimensions, samples);
+  for (const SampleCoding coding : codings<Word>()) expect_there_and_back<Word>(coding, dimensions, samples);
 }
 
 TYPED_TEST(SampleCodecOf, DoesNotExpandNoise) {
   using Word = TypeParam;
   const Dimensions dimensions{33, 33, 33};
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     const test::VolumePages<Word> volume(dimensions, random_samples<Word>(size_of(dimensions), 9));
     const auto codec = codec_of(coding, volume);
     for (const PageId& page : volume.pages()) {
@@ -219,12 +240,12 @@ TYPED_TEST(SampleCodecOf, CodesPagesThatItDidNotCount) {
   const test::VolumePages<Word> flat(dimensions, std::vector<Word>(size_of(dimensions), 3));
   const test::VolumePages<Word> smooth(dimensions, smooth_samples<Word>(dimensions));
   const test::VolumePages<Word> noise(dimensions, random_samples<Word>(size_of(dimensions), 1));
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     for (const auto* counted : {&flat, &smooth, &noise}) {
       const auto codec = codec_of(coding, *counted);
       for (const auto* coded : {&flat, &smooth, &noise}) expect_there_and_back(*codec, *coded);
     }
-    const auto none = sample_survey<Word>(coding)->codec();
+    const auto none = sample_survey<Word>(coding, ranks_of(coding, flat))->codec();
     for (const auto* coded : {&flat, &smooth, &noise}) expect_there_and_back(*none, *coded);
     EXPECT_EQ(parse_sample_codec<Word>(coding, none->tables(), "none")->tables(), none->tables());
   }
@@ -234,10 +255,11 @@ TYPED_TEST(SampleCodecOf, IsTheSameForPagesInAnyOrder) {
   using Word = TypeParam;
   const Dimensions dimensions{40, 36, 33};
   const test::VolumePages<Word> volume(dimensions, smooth_samples<Word>(dimensions, 0.05));
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     const Bytes tables = codec_of(coding, volume)->tables();
-    const auto back = sample_survey<Word>(coding), first = sample_survey<Word>(coding),
-               second = sample_survey<Word>(coding);
+    const auto ranks = ranks_of(coding, volume);
+    const auto back = sample_survey<Word>(coding, ranks), first = sample_survey<Word>(coding, ranks),
+               second = sample_survey<Word>(coding, ranks);
     for (std::size_t n = volume.pages().size(); n-- > 0;) {
       const Content<Word> content = content_of(volume, volume.pages()[n]);
       back->add(content.shape, content.around, content.samples);
@@ -252,7 +274,7 @@ TYPED_TEST(SampleCodecOf, IsTheSameForPagesInAnyOrder) {
 TYPED_TEST(SampleCodecOf, RefusesPagesThatAreCutOrTooLong) {
   using Word = TypeParam;
   const Dimensions dimensions{12, 9, 7};
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     for (const double noise : {0.0, 0.1, 3.0}) {
       const test::VolumePages<Word> volume(dimensions, smooth_samples<Word>(dimensions, noise));
       const auto codec = codec_of(coding, volume);
@@ -275,7 +297,7 @@ TYPED_TEST(SampleCodecOf, AnswersToFlippedBytes) {
   using Word = TypeParam;
   const Dimensions dimensions{18, 12, 10};
   std::mt19937_64 random(12);
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     const test::VolumePages<Word> volume(dimensions, smooth_samples<Word>(dimensions, 0.1));
     const auto codec = codec_of(coding, volume);
     auto found = std::make_unique<Content<Word>>();
@@ -302,7 +324,7 @@ TYPED_TEST(SampleCodecOf, RefusesTablesThatAreCutOrTooLong) {
   using Word = TypeParam;
   const Dimensions dimensions{33, 20, 18};
   const test::VolumePages<Word> volume(dimensions, smooth_samples<Word>(dimensions, 0.1));
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     Bytes tables = codec_of(coding, volume)->tables();
     for (std::size_t length = 0; length < tables.size(); ++length) {
       const Bytes cut(tables.begin(), tables.begin() + static_cast<std::ptrdiff_t>(length));
@@ -318,7 +340,7 @@ TYPED_TEST(SampleCodecOf, AnswersToFlippedBitsOfTables) {
   const Dimensions dimensions{18, 12, 10};
   const test::VolumePages<Word> volume(dimensions, smooth_samples<Word>(dimensions, 0.1));
   std::mt19937_64 random(13);
-  for (const SampleCoding coding : kCodings) {
+  for (const SampleCoding coding : codings<Word>()) {
     const Bytes tables = codec_of(coding, volume)->tables();
     for (int trial = 0; trial < 200; ++trial) {
       Bytes corrupt = tables;
@@ -347,7 +369,8 @@ TEST(SampleCodec, TakesSpecialFloats) {
     words[n] = ordered(std::bit_cast<float>(bits));
     ASSERT_EQ(std::bit_cast<std::uint32_t>(from_ordered<float>(words[n])), bits);
   }
-  for (const SampleCoding coding : kCodings) expect_there_and_back<std::uint32_t>(coding, dimensions, words);
+  for (const SampleCoding coding : codings<std::uint32_t>())
+    expect_there_and_back<std::uint32_t>(coding, dimensions, words);
 }
 
 TEST(SampleCodec, InterpolationMakesSmoothVolumesSmall) {
@@ -357,6 +380,16 @@ TEST(SampleCodec, InterpolationMakesSmoothVolumesSmall) {
   const std::size_t interpolation = expect_there_and_back(SampleCoding::kInterpolation, dimensions, samples);
   EXPECT_LT(interpolation, split_edge * 3 / 4);
   EXPECT_LT(interpolation, samples.size() / 6);
+}
+
+TEST(SampleCodec, RanksMakeFewDifferentFloatsSmall) {
+  const Dimensions dimensions{65, 65, 65};
+  std::vector<std::uint32_t> words;
+  for (const std::uint8_t sample : smooth_samples<std::uint8_t>(dimensions))
+    words.push_back(ordered(0.1f * static_cast<float>(sample) - 7));
+  const std::size_t plain = expect_there_and_back(SampleCoding::kInterpolation, dimensions, words);
+  const std::size_t ranks = expect_there_and_back(SampleCoding::kRanks, dimensions, words);
+  EXPECT_LT(ranks, plain / 5);
 }
 
 }  // namespace

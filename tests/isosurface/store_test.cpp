@@ -125,6 +125,19 @@ TEST(Store, NumbersThatAreNoneComeBack) {
   expect_back_all_ways(MemoryVolume<float>({33, 20, 18}, few));
 }
 
+TYPED_TEST(StoreOf, FewDifferentSamplesAreCodedByTheirRanks) {
+  using Sample = TypeParam;
+  const MemoryVolume<Sample> volume({40, 33, 35}, [](LatticePoint p) {
+    return static_cast<Sample>(3 *
+                               std::round(20 + 12 * std::sin(0.1 * p.i) * std::cos(0.1 * p.j + 0.2 * p.k)));
+  });
+  expect_back_all_ways(volume);
+  const test::Scratch folder;
+  test::build(folder / "a.adm", volume, {SampleCoding::kInterpolation, 0});
+  StoreFile file(folder / "a.adm");
+  EXPECT_EQ(file.header().coding, sizeof(Sample) > 1 ? SampleCoding::kRanks : SampleCoding::kInterpolation);
+}
+
 TYPED_TEST(StoreOf, LevelsAreEverySoManyOfTheSamples) {
   for (const Dimensions& box : std::vector<Dimensions>{{70, 33, 40}, {17, 18, 1}, {33, 1, 64}, {16, 65, 2}}) {
     const auto volume = volume_of<TypeParam>(box, Kind::kRandom);

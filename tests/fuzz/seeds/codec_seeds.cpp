@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct Seed {
   SampleCoding coding;
   LatticePoint count;
   bool complete;
-  int noise;  ///< in parts of the greatest number
+  int noise;                 ///< in parts of the greatest number
+  std::uint32_t values = 1;  ///< for kRanks: of which samples are multiples
 };
 
 void append(Bytes& to, const Bytes& from) { to.insert(to.end(), from.begin(), from.end()); }
@@ -61,18 +63,29 @@ void write(const std::filesystem::path& folder, const std::string& name, const B
 }
 
 template <class Word>
+std::vector<std::uint32_t> different(const PagePoints<Word>& samples) {
+  const std::set<std::uint32_t> values(samples.begin(), samples.end());
+  return {values.begin(), values.end()};
+}
+
+template <class Word>
 void make_samples(const std::filesystem::path& folder, const Seed& seed) {
   const PageShape shape{seed.count, seed.complete, 0};
   typename SampleCodec<Word>::Around around;
   for (std::size_t n = 0; n < around.size(); ++n) around[n] = static_cast<Word>(n * n * 7);
   typename SampleCodec<Word>::Samples samples;
   fill(samples, seed.noise);
-  const auto survey = sample_survey<Word>(seed.coding);
+  std::shared_ptr<const SampleRanks> ranks;
+  if (seed.coding == SampleCoding::kRanks) {
+    for (Word& sample : samples) sample = static_cast<Word>(sample / seed.values * seed.values);
+    ranks = std::make_shared<const SampleRanks>(different(samples));
+  }
+  const auto survey = sample_survey<Word>(seed.coding, ranks);
   survey->add(shape, around, samples);
   const auto codec = survey->codec();
   Bytes page, bytes;
   codec->encode(shape, around, samples, page);
-  put(bytes, sizeof(Word) + (seed.coding == SampleCoding::kInterpolation ? 128 : 0));
+  put(bytes, sizeof(Word) + (seed.coding == SampleCoding::kInterpolation ? 128u : 0u) + (ranks ? 64u : 0u));
   put_points(bytes, seed.count);
   put(bytes, seed.complete ? 1 : 0);
   put_tables(bytes, codec->tables(), page);
@@ -201,7 +214,8 @@ VolumeGrid grid_of(SampleType type, std::array<std::uint64_t, 3> dimensions) {
 }
 
 void make(const std::filesystem::path& folder) {
-  constexpr auto kEdge = SampleCoding::kSplitEdge, kOurs = SampleCoding::kInterpolation;
+  constexpr auto kEdge = SampleCoding::kSplitEdge, kOurs = SampleCoding::kInterpolation,
+                 kRanks = SampleCoding::kRanks;
   make_samples<std::uint8_t>(folder, {"bytes", kOurs, {5, 4, 3}, false, 0});
   make_samples<std::uint8_t>(folder, {"complete", kOurs, {4, 4, 3}, true, 0});
   make_samples<std::uint8_t>(folder, {"raw", kOurs, {3, 3, 3}, false, 1});
@@ -210,6 +224,9 @@ void make(const std::filesystem::path& folder) {
   make_samples<std::uint8_t>(folder, {"split_bytes", kEdge, {5, 4, 3}, false, 0});
   make_samples<std::uint8_t>(folder, {"split_complete", kEdge, {4, 4, 3}, true, 0});
   make_samples<std::uint32_t>(folder, {"split_words", kEdge, {4, 3, 3}, false, 3});
+  make_samples<std::uint16_t>(folder, {"short_ranks", kRanks, {6, 4, 3}, false, 9, 2000});
+  make_samples<std::uint32_t>(folder, {"word_ranks", kRanks, {4, 3, 5}, false, 3, 1u << 22});
+  make_samples<std::uint32_t>(folder, {"complete_ranks", kRanks, {4, 4, 3}, true, 3, 1u << 26});
   make_values<std::uint8_t>(folder, "bytes", {{9, 5, 7}, false, 1}, 5, false);
   make_values<std::uint8_t>(folder, "sure", {{16, 5, 4}, false, 0}, 12, true);
   make_values<std::uint8_t>(folder, "empty", {{16, 16, 16}, false, 0}, 0, true);

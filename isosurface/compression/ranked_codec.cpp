@@ -1,0 +1,149 @@
+#include "isosurface/compression/ranked_codec.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/base/assert.h"
+#include "isosurface/compression/page_order.h"
+#include "isosurface/compression/wide_lanes.h"
+#include "isosurface/storage/byte_stream.h"
+
+namespace adamas {
+namespace {
+
+/// Whether all points of a page have a rank below this.
+template <class Rank>
+bool are_below(std::size_t end, const PageShape& shape, const PagePoints<Rank>& ranks) {
+  Rank greatest = 0;
+  with_wide_lanes([&](auto) {
+    Rank most = 0;
+    if (shape.count == LatticePoint{PageGrid::kSide, PageGrid::kSide, PageGrid::kSide}) {
+      for (const Rank rank : ranks) most = std::max(most, rank);
+    } else {
+      for (std::int32_t k = 0; k < shape.count.k; ++k) {
+        for (std::int32_t j = 0; j < shape.count.j; ++j) {
+          const Rank* const row = ranks.data() + PageGrid::place({0, j, k}, 0);
+          for (std::int32_t i = 0; i < shape.count.i; ++i) most = std::max(most, row[i]);
+        }
+      }
+    }
+    greatest = most;
+  });
+  return greatest < end;
+}
+
+template <class Word, class Rank>
+struct RankedPage {
+  typename SampleCodec<Rank>::Around around;
+  typename SampleCodec<Rank>::Samples samples;
+  bool has_all = true;  ///< whether each of the page's own samples has a rank
+
+  void take_around(const SampleRanks& ranks, const PageShape& shape,
+                   const typename SampleCodec<Word>::Around& words) {
+    if (shape.complete) return;
+    std::array<std::uint32_t, Surroundings<Word>::kPoints> found;
+    ranks.ranks(std::span<const Word>(words), found.data());
+    std::ranges::transform(found, around.begin(), [](std::uint32_t rank) {
+      return static_cast<Rank>(rank == SampleRanks::kNone ? 0 : rank);
+    });
+  }
+
+  void take(const SampleRanks& ranks, const PageShape& shape,
+            const typename SampleCodec<Word>::Samples& words) {
+    for_each_own_place(shape, [&](std::size_t place) {
+      const std::uint32_t rank = ranks.rank(words[place]);
+      has_all = has_all && rank != SampleRanks::kNone;
+      samples[place] = static_cast<Rank>(rank);
+    });
+  }
+};
+
+}  // namespace
+
+template <class Word, class Rank>
+RankedCodec<Word, Rank>::RankedCodec(std::shared_ptr<const SampleRanks> ranks,
+                                     std::unique_ptr<SampleCodec<Rank>> codec)
+    : ranks_(std::move(ranks)),
+      codec_(std::move(codec)),
+      words_(std::size_t{std::numeric_limits<Rank>::max()} + 1, 0) {
+  ADAMAS_ASSERT(ranks_->values().size() <= words_.size());
+  std::ranges::copy(ranks_->values(), words_.begin());
+}
+
+template <class Word, class Rank>
+std::vector<std::byte> RankedCodec<Word, Rank>::tables() const {
+  std::vector<std::byte> bytes;
+  ByteWriter out(bytes);
+  out.sized_bytes(ranks_->write());
+  out.bytes(codec_->tables());
+  return bytes;
+}
+
+template <class Word, class Rank>
+void RankedCodec<Word, Rank>::encode(const PageShape& shape, const Around& around, const Samples& samples,
+                                     std::vector<std::byte>& out) const {
+  RankedPage<Word, Rank> page;
+  page.take(*ranks_, shape, samples);
+  if (!page.has_all) return write_raw<Word>(shape, samples, out, PageKind::kUnranked);
+  page.take_around(*ranks_, shape, around);
+  codec_->encode(shape, page.around, page.samples, out);
+}
+
+template <class Word, class Rank>
+bool RankedCodec<Word, Rank>::decode(std::span<const std::byte> bytes, const PageShape& shape,
+                                     const Around& around, Samples& samples) const {
+  RankedPage<Word, Rank> page;
+  if (!bytes.empty() && static_cast<PageKind>(bytes[0]) == PageKind::kUnranked) {
+    if (!read_raw<Word>(bytes.subspan(1), shape, samples)) return false;
+    page.take(*ranks_, shape, samples);
+    if (page.has_all) return false;
+  } else {
+    page.take_around(*ranks_, shape, around);
+    if (!codec_->decode(bytes, shape, page.around, page.samples)) return false;
+    if (!are_below(ranks_->values().size(), shape, page.samples)) return false;
+    with_wide_lanes([&](auto) {
+      const std::uint32_t* const words = words_.data();
+      for (std::size_t n = 0; n < samples.size(); ++n) samples[n] = static_cast<Word>(words[page.samples[n]]);
+    });
+  }
+  if (!shape.complete) take_coarser<Word>(around, samples);
+  return true;
+}
+
+template <class Word, class Rank>
+RankedSurvey<Word, Rank>::RankedSurvey(std::shared_ptr<const SampleRanks> ranks,
+                                       std::unique_ptr<SampleSurvey<Rank>> survey)
+    : ranks_(std::move(ranks)), survey_(std::move(survey)) {}
+
+template <class Word, class Rank>
+void RankedSurvey<Word, Rank>::add(const PageShape& shape, const Around& around, const Samples& samples) {
+  RankedPage<Word, Rank> page;
+  page.take(*ranks_, shape, samples);
+  if (!page.has_all) return;
+  page.take_around(*ranks_, shape, around);
+  survey_->add(shape, page.around, page.samples);
+}
+
+template <class Word, class Rank>
+void RankedSurvey<Word, Rank>::merge(const SampleSurvey<Word>& other) {
+  const auto* same = dynamic_cast<const RankedSurvey*>(&other);
+  ADAMAS_ASSERT(same != nullptr);
+  survey_->merge(*same->survey_);
+}
+
+template <class Word, class Rank>
+std::unique_ptr<SampleCodec<Word>> RankedSurvey<Word, Rank>::codec() const {
+  return std::make_unique<RankedCodec<Word, Rank>>(ranks_, survey_->codec());
+}
+
+template class RankedCodec<std::uint16_t, std::uint8_t>;
+template class RankedCodec<std::uint16_t, std::uint16_t>;
+template class RankedCodec<std::uint32_t, std::uint8_t>;
+template class RankedCodec<std::uint32_t, std::uint16_t>;
+template class RankedSurvey<std::uint16_t, std::uint8_t>;
+template class RankedSurvey<std::uint16_t, std::uint16_t>;
+template class RankedSurvey<std::uint32_t, std::uint8_t>;
+template class RankedSurvey<std::uint32_t, std::uint16_t>;
+
+}  // namespace adamas

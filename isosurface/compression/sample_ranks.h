@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "isosurface/storage/page.h"
+
+namespace adamas {
+
+/// The different samples of a volume that has few, as words (OrderedWord), and the rank of each: how many are
+/// less.
+class SampleRanks {
+ public:
+  static constexpr std::size_t kMost = std::size_t{1} << 16;
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  /// 1 to kMost values, each greater than the one before.
+  explicit SampleRanks(std::vector<std::uint32_t> values);
+  /// What `write` has written, of words of so many bits. Throws Error, which begins with `name`.
+  static SampleRanks read(std::span<const std::byte> bytes, int bits, std::string_view name);
+
+  [[nodiscard]] std::vector<std::byte> write() const;
+  [[nodiscard]] std::span<const std::uint32_t> values() const { return values_; }
+  /// kNone where there is no such value.
+  [[nodiscard]] std::uint32_t rank(std::uint32_t value) const {
+    if (value < values_.front() || value > values_.back()) return kNone;
+    std::uint32_t rank = first_[(value - values_.front()) >> shift_];
+    while (values_[rank] < value) ++rank;
+    return values_[rank] == value ? rank : kNone;
+  }
+  /// That of each value.
+  template <class Word>
+  void ranks(std::span<const Word> values, std::uint32_t* ranks) const;
+
+ private:
+  std::vector<std::uint32_t> values_;
+  /// By the upper bits of how far a value is above the least: the rank of the first one with these bits or
+  /// greater ones.
+  std::vector<std::uint32_t> first_;
+  int shift_ = 0;
+};
+
+/// A set of words that may be many.
+class WordSet {
+ public:
+  WordSet() : slots_(64) {}
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  void insert(std::uint32_t word);
+  /// All, each greater than the one before.
+  [[nodiscard]] std::vector<std::uint32_t> sorted() const;
+
+ private:
+  struct Slot {
+    std::uint32_t word = 0;
+    bool taken = false;
+  };
+  [[nodiscard]] Slot& slot(std::uint32_t word);
+
+  std::vector<Slot> slots_;  ///< a power of 2, at most half of them taken
+  std::size_t size_ = 0;
+};
+
+/// Collects the different samples of a volume.
+template <class Word>
+class SampleCensus {
+ public:
+  /// Takes in the page's own points.
+  void add(const PageShape& shape, const PagePoints<Word>& samples);
+  /// Null where there are too many for ranks to pay.
+  [[nodiscard]] std::shared_ptr<const SampleRanks> ranks() const;
+
+ private:
+  /// Beyond these a volume's samples are coded as they are. Of 16 bits fewer have to be saved to gain
+  /// anything.
+  static constexpr std::size_t kMost = sizeof(Word) == 1 ? 0 : sizeof(Word) == 2 ? 4095 : SampleRanks::kMost;
+  /// So many samples of each value pay for the bytes that tell it.
+  static constexpr std::uint64_t kLeastOfEach = 32;
+
+  WordSet values_;  ///< at most one more than kMost
+  std::uint64_t samples_ = 0;
+  Word last_ = 0;
+};
+
+}  // namespace adamas
