@@ -33,27 +33,34 @@ class PointNumbers {
     const LatticePoint q{p.i >> level, p.j >> level, p.k >> level};
     const auto centre = [level](std::int32_t x) { return ((x & ~3) + 2) << level; };
     const LatticePoint key{centre(q.i), centre(q.j), centre(q.k)};
-    if (key != last_key_) {
-      const auto [block, is_new] = blocks_.insert(key);
-      if (is_new) {
-        *block = static_cast<std::uint32_t>(numbers_.size());
-        numbers_.add()->fill(kNone);
-      }
-      last_key_ = key;
-      last_block_ = &numbers_[*block];
-    }
+    Recent& recent =
+        recent_[static_cast<std::size_t>((q.i >> 2 & 7) + 8 * (q.j >> 2 & 7) + 64 * (q.k >> 2 & 7))];
+    if (key != recent.key) recent = {key, block(key)};
     std::uint32_t& number =
-        (*last_block_)[static_cast<std::size_t>((q.i & 3) + 4 * (q.j & 3) + 16 * (q.k & 3))];
+        (*recent.block)[static_cast<std::size_t>((q.i & 3) + 4 * (q.j & 3) + 16 * (q.k & 3))];
     return {&number, number == kNone};
   }
 
  private:
   using Block = std::array<std::uint32_t, 64>;
+  /// A block that was asked for lately: far fewer of them stay in the caches than there are.
+  struct Recent {
+    LatticePoint key = kNoKey<LatticePoint>;
+    Block* block = nullptr;
+  };
+
+  Block* block(LatticePoint key) {
+    const auto [block, is_new] = blocks_.insert(key);
+    if (is_new) {
+      *block = static_cast<std::uint32_t>(numbers_.size());
+      numbers_.add()->fill(kNone);
+    }
+    return &numbers_[*block];
+  }
 
   LatticeMap<std::uint32_t> blocks_;
   Arena<Block> numbers_;
-  LatticePoint last_key_ = kNoKey<LatticePoint>;
-  Block* last_block_ = nullptr;
+  std::array<Recent, 512> recent_;  ///< by where the block lies among 8^3 of its level
 };
 
 }  // namespace adamas

@@ -77,8 +77,7 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
 }
 
 template <class Sample>
-bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
-                                           std::array<double, 27>& samples) {
+bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step, std::array<Word, 27>& samples) {
   constexpr std::int32_t kSide = PageGrid::kSide;
   const int level = std::countr_zero(static_cast<std::uint32_t>(step)) - shift_;
   if (level < 0 || level > grid_.top()) return false;
@@ -92,10 +91,9 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
     const PageSamples<Word>* page = pages_.held({level, block});
     if (page == nullptr) return false;
     const Word* from = page->samples.data() + PageGrid::place(first, 0);
-    double* to = samples.data();
+    Word* to = samples.data();
     for (int k = 0; k < 3; ++k, from += kSide * kSide - 3 * kSide) {
-      for (int j = 0; j < 3; ++j, from += kSide, to += 3)
-        to[0] = value(from[0]), to[1] = value(from[1]), to[2] = value(from[2]);
+      for (int j = 0; j < 3; ++j, from += kSide, to += 3) to[0] = from[0], to[1] = from[1], to[2] = from[2];
     }
     return true;
   }
@@ -133,7 +131,7 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step,
       const std::size_t second = (j >= in_first.j ? 2u : 0u) | (k >= in_first.k ? 4u : 0u);
       for (std::int32_t i = 0; i < 3; ++i)
         samples[n++] =
-            value(pages[second | (i >= in_first.i ? 1u : 0u)][row + offsets[0][static_cast<std::size_t>(i)]]);
+            pages[second | (i >= in_first.i ? 1u : 0u)][row + offsets[0][static_cast<std::size_t>(i)]];
     }
   }
   return true;

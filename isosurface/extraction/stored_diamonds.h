@@ -71,9 +71,9 @@ class StoredDiamonds {
     return samples(id)[PageGrid::place(at, id.level)];
   }
 
-  /// The samples at a lattice point and its 26 neighbours `step` lattice units away, i running fastest, as
+  /// The samples, as words, at a lattice point and its 26 neighbours `step` lattice units away, i running fastest, as
   /// far as it is quick: false where they are not all on one page in memory.
-  bool samples_round(LatticePoint p, std::int32_t step, std::array<double, 27>& samples);
+  bool samples_round(LatticePoint p, std::int32_t step, std::array<Word, 27>& samples);
 
   /// Errors by rank: 0 is none, and each rank is an error 2^(1/4) times that of the one before.
   static constexpr int kRanks = ErrorScale::kCodes + 4 * PageGrid::kMaxDepth;

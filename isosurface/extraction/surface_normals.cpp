@@ -1,8 +1,11 @@
 #include "isosurface/extraction/surface_normals.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "core/base/large_pages.h"
 #include "core/lattice/lattice_map.h"
@@ -64,8 +67,13 @@ class VertexGradients {
 
   Vec3 estimate(LatticePoint p, std::int32_t wanted_step) {
     const std::int32_t step = step_inside(p, wanted_step);
+    std::array<OrderedWord<Sample>, 27> words;
     Neighbourhood values;
-    if (!diamonds_.samples_round(p, step, values)) {
+    if (diamonds_.samples_round(p, step, words)) {
+      // Their differences are those of the samples.
+      if constexpr (std::is_integral_v<Sample>) return estimator(step).central(words);
+      std::ranges::transform(words, values.begin(), StoredDiamonds<Sample>::value);
+    } else {
       for (int dk = -1; dk <= 1; ++dk) {
         for (int dj = -1; dj <= 1; ++dj) {
           for (int di = -1; di <= 1; ++di)

@@ -71,22 +71,6 @@ GradientEstimator::GradientEstimator(const Vec3& spacing) {
     inverse_[s] = 0.5 / lengths_[s] * solve_symmetric(matrix, directions_[s]);
 }
 
-Vec3 GradientEstimator::central(const Neighbourhood& values) const {
-  const auto difference = [&values](int i, int j, int k) {
-    return values[neighbour(i, j, k)] - values[neighbour(-i, -j, -k)];
-  };
-  // Steps that differ in nothing but signs have weights of the same size.
-  const double x = difference(1, 0, 0), y = difference(0, 1, 0), z = difference(0, 0, 1);
-  const double xy = difference(1, 1, 0), x_y = difference(1, -1, 0), xz = difference(1, 0, 1),
-               x_z = difference(1, 0, -1), yz = difference(0, 1, 1), y_z = difference(0, 1, -1);
-  const double a = difference(1, 1, 1), b = difference(1, 1, -1), c = difference(1, -1, 1),
-               d = difference(1, -1, -1);
-  const auto& w = inverse_;
-  return {w[0].x * x + w[3].x * (xy + x_y) + w[5].x * (xz + x_z) + w[9].x * ((a + b) + (c + d)),
-          w[1].y * y + w[3].y * (xy - x_y) + w[7].y * (yz + y_z) + w[9].y * ((a + b) - (c + d)),
-          w[2].z * z + w[5].z * (xz - x_z) + w[7].z * (yz - y_z) + w[9].z * ((a - b) + (c - d))};
-}
-
 Vec3 GradientEstimator::operator()(const Neighbourhood& values) const {
   // Of what is not finite 0 times is NaN.
   double sum = 0;

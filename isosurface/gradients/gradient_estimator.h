@@ -26,13 +26,14 @@ class GradientEstimator {
   /// there, one-sided where one is, and left out where none is. Components that no difference tells anything
   /// about are 0, and all are where the middle is not finite.
   [[nodiscard]] Vec3 operator()(const Neighbourhood& values) const;
+  /// The same, where all of the values are finite: doubles, or whole numbers of 16 bits at most.
+  template <class Number>
+  [[nodiscard]] Vec3 central(const std::array<Number, 27>& values) const;
 
  private:
   static constexpr std::size_t kDirections = 13;
   using Differences = std::array<double, kDirections>;
 
-  /// Where all of the values are finite.
-  [[nodiscard]] Vec3 central(const Neighbourhood& values) const;
   [[nodiscard]] Vec3 solve(const Differences& slopes) const;
 
   std::array<Vec3, kDirections> directions_{};  ///< unit vectors
@@ -40,5 +41,24 @@ class GradientEstimator {
   /// The least-squares solution is this times the differences over both steps where all are known.
   std::array<Vec3, kDirections> inverse_{};
 };
+
+template <class Number>
+Vec3 GradientEstimator::central(const std::array<Number, 27>& values) const {
+  // Whole numbers are only as many as remain made floating-point ones; differences of those of 16 bits have
+  // room.
+  const auto difference = [&values](int i, int j, int k) {
+    return values[neighbour(i, j, k)] - values[neighbour(-i, -j, -k)];
+  };
+  // Steps that differ in nothing but signs have weights of the same size.
+  const auto x = difference(1, 0, 0), y = difference(0, 1, 0), z = difference(0, 0, 1);
+  const auto xy = difference(1, 1, 0), x_y = difference(1, -1, 0), xz = difference(1, 0, 1),
+             x_z = difference(1, 0, -1), yz = difference(0, 1, 1), y_z = difference(0, 1, -1);
+  const auto a = difference(1, 1, 1), b = difference(1, 1, -1), c = difference(1, -1, 1),
+             d = difference(1, -1, -1);
+  const auto& w = inverse_;
+  return {w[0].x * x + w[3].x * (xy + x_y) + w[5].x * (xz + x_z) + w[9].x * ((a + b) + (c + d)),
+          w[1].y * y + w[3].y * (xy - x_y) + w[7].y * (yz + y_z) + w[9].y * ((a + b) - (c + d)),
+          w[2].z * z + w[5].z * (xz - x_z) + w[7].z * (yz - y_z) + w[9].z * ((a - b) + (c - d))};
+}
 
 }  // namespace adamas

@@ -44,7 +44,7 @@ struct PageSummary {
   /// The same by isovalue. The words from low + 1 to high, each the least that is not below some isovalue,
   /// lie in parts of 2^part_bits() words; no diamond that a contour for a part's isovalues crosses has a
   /// greater code than the part's, which is 0 where there is none, and else at most kSpan below `error`.
-  static constexpr std::size_t kParts = 16;
+  static constexpr std::size_t kParts = 32;
   static constexpr int kSpan = 14;
   std::array<std::uint8_t, kParts> part_errors{};
 
