@@ -14,11 +14,11 @@ namespace adamas {
 
 /// An entropy code of symbols that come in contexts, with fixed frequencies for each: range asymmetric
 /// numeral systems (Duda 2009), four states in turn. Contexts with like frequencies share a table. Each
-/// symbol can be coded in each context: those without a frequency of their own come after an escape. May be
-/// used by several threads at once.
+/// symbol can be coded in each context: those without a frequency of their own are an escape, and come after
+/// the row of symbols that each state has one of. May be used by several threads at once.
 class ContextCoder {
  public:
-  static constexpr std::size_t kMaxSymbols = 255, kMaxTables = 255;
+  static constexpr std::size_t kMaxSymbols = 128, kMaxTables = 255;
   /// Tables that are made: so many stay in the caches.
   static constexpr std::size_t kMostClusters = 64;
   static constexpr int kScaleBits = 10;
@@ -106,9 +106,9 @@ class ContextDecoder {
   [[nodiscard]] bool finish() const;
 
  private:
-  std::uint8_t decode_one(std::uint32_t& state, std::size_t context);
-  /// What follows an escape: a symbol that has no frequency in the context.
-  std::uint8_t decode_escaped(std::uint32_t& state, std::size_t context);
+  /// Puts in the place of a row's escapes what comes after the row: symbols without a frequency in their
+  /// contexts.
+  void decode_escaped(std::size_t base, std::span<const std::uint8_t> contexts, std::uint8_t* symbols);
   void renormalise(std::uint32_t& state);
   std::size_t decode_most(std::size_t base, std::span<const std::uint8_t> contexts,
                           std::span<std::uint8_t> symbols);

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "isosurface/compression/context_coder.h"
 
 namespace adamas {
@@ -48,14 +50,19 @@ void ContextEncoder::finish(std::vector<std::byte>& out) const {
   BackwardStates stream;
   stream.states.fill(ContextCoder::kLeastState);
   stream.words.reserve(items_.size() / 2);
-  for (std::size_t n = items_.size(); n-- > 0;) {
-    const auto [context, symbol, lane] = items_[n];
-    ContextCoder::Range range = coder_.range(context, symbol);
-    if (range.frequency == 0) {
-      stream.push(lane, symbol, 1, kEscapedBits);
-      range = coder_.escape(context);
+  for (std::size_t end = items_.size(), begin = 0; end > 0; end = begin) {
+    for (begin = end - 1; items_[begin].lane != 0;) --begin;
+    // What is escaped in a row comes after the row.
+    for (std::size_t n = end; n-- > begin;) {
+      const auto [context, symbol, lane] = items_[n];
+      if (coder_.range(context, symbol).frequency == 0) stream.push(lane, symbol, 1, kEscapedBits);
     }
-    stream.push(lane, range.start, range.frequency, ContextCoder::kScaleBits);
+    for (std::size_t n = end; n-- > begin;) {
+      const auto [context, symbol, lane] = items_[n];
+      const ContextCoder::Range own = coder_.range(context, symbol);
+      const ContextCoder::Range range = own.frequency == 0 ? coder_.escape(context) : own;
+      stream.push(lane, range.start, range.frequency, ContextCoder::kScaleBits);
+    }
   }
   const auto append = [&out](std::uint32_t number, int bytes) {
     for (int n = 0; n < bytes; ++n) out.push_back(static_cast<std::byte>(number >> (8 * n) & 0xff));
@@ -90,41 +97,46 @@ void ContextDecoder::renormalise(std::uint32_t& state) {
   next_ += 2;
 }
 
-std::uint8_t ContextDecoder::decode_escaped(std::uint32_t& state, std::size_t context) {
-  const std::uint32_t symbol = state & ((1u << kEscapedBits) - 1);
-  state >>= kEscapedBits;
-  renormalise(state);
-  if (symbol < coder_.symbols() && coder_.range(context, symbol).frequency == 0)
-    return static_cast<std::uint8_t>(symbol);
-  good_ = false;
-  return 0;
-}
-
-std::uint8_t ContextDecoder::decode_one(std::uint32_t& state, std::size_t context) {
-  std::uint32_t symbol = 0;
-  state = step(coder_.tables_view(context).entries(0), state, symbol);
-  renormalise(state);
-  return symbol == ContextCoder::kEscape ? decode_escaped(state, context) : static_cast<std::uint8_t>(symbol);
+void ContextDecoder::decode_escaped(std::size_t base, std::span<const std::uint8_t> contexts,
+                                    std::uint8_t* symbols) {
+  for (std::size_t lane = 0; lane < contexts.size(); ++lane) {
+    if (symbols[lane] != ContextCoder::kEscape) continue;
+    const std::uint32_t symbol = states_[lane] & ((1u << kEscapedBits) - 1);
+    states_[lane] >>= kEscapedBits;
+    renormalise(states_[lane]);
+    const bool is_rare =
+        symbol < coder_.symbols() && coder_.range(base + contexts[lane], symbol).frequency == 0;
+    symbols[lane] = static_cast<std::uint8_t>(is_rare ? symbol : 0);
+    good_ = good_ && is_rare;
+  }
 }
 
 void ContextDecoder::decode(std::size_t base, std::span<const std::uint8_t> contexts,
                             std::span<std::uint8_t> symbols) {
   ADAMAS_ASSERT(contexts.size() == symbols.size());
-  for (std::size_t n = decode_most(base, contexts, symbols); n < symbols.size(); ++n)
-    symbols[n] = decode_one(states_[n % kLanes], base + contexts[n]);
+  for (std::size_t n = decode_most(base, contexts, symbols); n < symbols.size(); n += kLanes) {
+    const auto row = contexts.subspan(n, std::min(kLanes, symbols.size() - n));
+    for (std::size_t lane = 0; lane < row.size(); ++lane) {
+      std::uint32_t symbol = 0;
+      states_[lane] = step(coder_.tables_view(base).entries(row[lane]), states_[lane], symbol);
+      renormalise(states_[lane]);
+      symbols[n + lane] = static_cast<std::uint8_t>(symbol);
+    }
+    decode_escaped(base, row, symbols.data() + n);
+  }
 }
 
-/// Decodes as many at a time as there are states until the stream is near its end. Returns how many.
+/// Decodes rows of as many as there are states until the stream is near its end. Returns how many.
 std::size_t ContextDecoder::decode_most(std::size_t base, std::span<const std::uint8_t> contexts,
                                         std::span<std::uint8_t> symbols) {
-  // Each symbol takes a word at most, and one more after an escape.
-  constexpr std::ptrdiff_t kMostBytes = 4 * kLanes;
+  constexpr std::ptrdiff_t kMostBytes = 2 * kLanes;
   // Copies that nothing points to stay in registers.
   const auto tables = coder_.tables_view(base);
   std::array<std::uint32_t, kLanes> states = states_;
   const std::byte* next = next_;
   std::size_t n = 0;
   for (; n + kLanes <= symbols.size() && end_ - next >= kMostBytes; n += kLanes) {
+    std::uint32_t any = 0;
 #pragma GCC unroll 8
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       std::uint32_t symbol = 0;
@@ -133,14 +145,16 @@ std::size_t ContextDecoder::decode_most(std::size_t base, std::span<const std::u
       const std::uint32_t low = state < ContextCoder::kLeastState ? ~0u : 0u;
       states[lane] = state << (low & kWordBits) | (load_word(next) & low);
       next += low & 2;
-      if (symbol == ContextCoder::kEscape) [[unlikely]] {
-        next_ = next;
-        std::uint32_t escaped = states[lane];
-        symbol = decode_escaped(escaped, base + contexts[n + lane]);
-        states[lane] = escaped;
-        next = next_;
-      }
       symbols[n + lane] = static_cast<std::uint8_t>(symbol);
+      any |= symbol;
+    }
+    // Of all symbols the escape alone has the highest bit.
+    if ((any & 128) != 0) [[unlikely]] {
+      states_ = states;
+      next_ = next;
+      decode_escaped(base, contexts.subspan(n, kLanes), symbols.data() + n);
+      states = states_;
+      next = next_;
     }
   }
   states_ = states;

@@ -1,6 +1,7 @@
 #include "isosurface/extraction/page_diamonds.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace adamas {
@@ -32,6 +33,30 @@ constexpr std::uint32_t pages_round(std::int32_t x, std::size_t axis) {
   return own | (x == 0 ? before : 0) | (x == kLast ? behind : 0);
 }
 
+/// The pages that have members of a page's diamonds, as bits.
+std::uint32_t pages_touched(const PageMask& split) {
+  // By step along j and k: all rows of which a diamond may reach there.
+  std::array<std::array<unsigned, 3>, 3> rows{};
+  for (std::size_t k = 0; k < PageGrid::kSide; ++k) {
+    const std::uint16_t* const plane = split.rows.data() + PageGrid::kSide * k;
+    unsigned all = 0;
+    for (std::size_t j = 0; j < PageGrid::kSide; ++j) all |= plane[j];
+    const std::array<unsigned, 3> along_j{plane[0], all, plane[kLast]};
+    for (std::size_t j = 0; j < 3; ++j) {
+      rows[1][j] |= along_j[j];
+      if (k == 0) rows[0][j] |= along_j[j];
+      if (k == kLast) rows[2][j] |= along_j[j];
+    }
+  }
+  std::uint32_t pages = 0;
+  for (unsigned n = 0; n < 9; ++n) {
+    const unsigned row = rows[n / 3][n % 3];
+    const unsigned along_i = ((row & 1) != 0 ? 1u : 0u) | (row != 0 ? 2u : 0u) | (row >> kLast << 2);
+    pages |= along_i << 3 * n;
+  }
+  return pages;
+}
+
 }  // namespace
 
 template <class Sample>
@@ -55,7 +80,7 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
         std::copy_n(samples.data() + PageGrid::place({0, j, k}, 0), PageGrid::kSide, words_.at({0, j, k}));
     }
     known_ = kOwnPage;
-    get_from_neighbours();
+    get_from_neighbours(pages_touched(split));
   }
   reaching_others(split).for_each([this](LatticePoint q) { get_others(q); });
   finite_ = true;
@@ -92,12 +117,13 @@ PageMask PageDiamonds<Sample>::reaching_others(const PageMask& split) const {
 }
 
 template <class Sample>
-void PageDiamonds<Sample>::get_from_neighbours() {
+void PageDiamonds<Sample>::get_from_neighbours(std::uint32_t pages) {
   const LatticePoint blocks = diamonds_.grid().blocks(level_);
-  for (std::int32_t n = 0; n < 27; ++n) {
+  for (pages &= ~kOwnPage; pages != 0; pages &= pages - 1) {
+    const int n = std::countr_zero(pages);
     const LatticePoint step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}, block = block_ + step;
-    if (step == LatticePoint{} || std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i ||
-        block.j >= blocks.j || block.k >= blocks.k)
+    if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
+        block.k >= blocks.k)
       continue;
     const PageSamples<Word>* page = diamonds_.held_samples({level_, block});
     if (page == nullptr) {

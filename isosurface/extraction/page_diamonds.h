@@ -66,8 +66,9 @@ class PageDiamonds {
       result |= DiamondStencil::Members{diamonds_.is_above(at[stencil.places[m]])} << m;
     return result;
   }
-  /// Copies what the pages round the page have of the points round it, as far as they are in memory.
-  void get_from_neighbours();
+  /// Copies what some of the pages round the page, as bits, have of the points round it, as far as they are
+  /// in memory.
+  void get_from_neighbours(std::uint32_t pages);
   /// Of a page that is not in memory, one step from -1 to 1 away: copies those points that are coarser ones.
   void get_coarser(LatticePoint step);
   /// Of split diamonds, those that may have members which were not got together with the others.

@@ -191,7 +191,7 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
       PageEntry entry;
       entry.low = 3, entry.high = 200, entry.error = 40, entry.size = 20, entry.checksum = 77;
       for (std::size_t n = 1; n < entry.part_count(); ++n)
-        entry.part_errors[n] = static_cast<std::uint8_t>(41 - n);
+        entry.part_errors[n] = static_cast<std::uint8_t>(41 - n % 15);
       const Bytes part = serialise_entries(std::vector(count, entry), sample_bytes(grid.type));
       root.chunks.push_back({step, first, prologue.root_offset, part.size(), crc32c(part), 32, 33});
       prologue.root_offset += part.size();
