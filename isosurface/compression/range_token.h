@@ -14,7 +14,7 @@ struct RangeToken {
   static constexpr std::uint8_t kBound = 1;      ///< at the bound, which is another word
   static constexpr std::uint8_t kFirst = 2;      ///< the distance is 1
   /// Shorter distances have a symbol each, others one for each leading 1 and the bit below it.
-  static constexpr int kDirectBits = 4;
+  static constexpr int kDirectBits = 5;
   static constexpr std::uint8_t kFirstOpen =
       kFirst + (1 << kDirectBits) - 1;  ///< from this one on bits follow
   static constexpr std::uint8_t kBehind =

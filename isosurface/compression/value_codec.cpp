@@ -71,18 +71,18 @@ class ValueReader {
     with_wide_lanes([&](auto bytes) {
       ParityCells<std::uint8_t> symbols{};
       ParityCells<Word> words;
-      RowBytes all = 0, open = 0;
+      RowBytes all = 0;
       for_each_row<bytes() == 32>(stage, [&](std::size_t cell, RowBytes row, int) {
         all |= row;
-        open |= open_symbols(row);
         store_row(row, symbols.data() + cell);
       });
       summary_.any_other |= all != 0;
-      good_ = good_ && put_near<bytes()>(symbols, fields_.known[side], fields_.bounds[side], words);
+      bool any_open = false;
+      good_ = good_ && put_near<bytes()>(symbols, fields_.known[side], fields_.bounds[side], words, any_open);
       stage.box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
         std::copy_n(words.data() + cell, static_cast<int>(count), values + cell);
       });
-      if (open != 0) put_far(stage.box, symbols, side, values);
+      if (any_open) put_far(stage.box, symbols, side, values);
     });
   }
 
@@ -123,17 +123,17 @@ class ValueReader {
     });
   }
 
-  /// The words for symbols that leave nothing open, at all cells. False where such a symbol cannot stand
-  /// there.
+  /// The words for symbols that leave nothing open, at all cells, and whether there are others. False where
+  /// such a symbol cannot stand there.
   template <std::size_t Bytes>
   [[gnu::always_inline]] static inline bool put_near(const ParityCells<std::uint8_t>& symbols,
                                                      const ParityCells<Word>& known,
                                                      const ParityCells<Word>& bounds,
-                                                     ParityCells<Word>& words) {
+                                                     ParityCells<Word>& words, bool& any_open) {
     using Lanes = WideLanes<Word, Bytes>;
     using Numbers = typename Lanes::Numbers;
     using Symbols [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
-    Numbers bad{};
+    Numbers bad{}, greatest{};
     for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
       Symbols row;
       std::memcpy(&row, symbols.data() + n, sizeof row);
@@ -148,9 +148,13 @@ class ValueReader {
                                                      : (before > predicted ? ~Numbers{} : Numbers{}) |
                                                            (before == bound ? ~Numbers{} : Numbers{});
       bad |= symbol < Token::kFirstOpen ? wrong : Numbers{};
+      greatest = Lanes::greater(greatest, symbol);
     }
     Word any = 0;
-    for (std::size_t n = 0; n < Lanes::kCount; ++n) any = static_cast<Word>(any | bad[n]);
+    for (std::size_t n = 0; n < Lanes::kCount; ++n) {
+      any = static_cast<Word>(any | bad[n]);
+      any_open = any_open || greatest[n] >= Token::kFirstOpen;
+    }
     return any == 0;
   }
 

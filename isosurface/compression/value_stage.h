@@ -55,19 +55,25 @@ class SurePoints {
   /// None.
   SurePoints() = default;
   SurePoints(const PageShape& shape, int parity, Of of) {
+    /// By axis: all bits of a cell's byte where its coordinate is sure.
+    std::array<RowBytes, 3> along{};
     for (int axis = 0; axis < 3; ++axis) {
       const int odd = parity >> axis & 1;
       for (std::int32_t c = 0; c < 8; ++c) {
         if (is_sure(2 * c + odd, shape.count[axis], phase_of(parity), of))
-          along_[static_cast<std::size_t>(axis)] |= RowBytes{255} << 8 * c;
+          along[static_cast<std::size_t>(axis)] |= RowBytes{255} << 8 * c;
       }
+    }
+    const ParityBox box = ParityBox::of(shape.count, parity);
+    std::size_t n = 0;
+    for (int k = 0; k < box.nk; ++k) {
+      for (int j = 0; j < box.nj; ++j)
+        rows_[n++] = (along[1] >> 8 * j & along[2] >> 8 * k & 1) != 0 ? along[0] : 0;
     }
   }
 
-  /// All bits of those of the row with the given cells along j and k.
-  [[nodiscard]] RowBytes row(std::size_t j, std::size_t k) const {
-    return (along_[1] >> 8 * j & along_[2] >> 8 * k & 1) != 0 ? along_[0] : 0;
-  }
+  /// All bits of those of the nth row of the parity's points.
+  [[nodiscard]] RowBytes row(std::size_t n) const { return rows_[n]; }
 
  private:
   /// As far as a coordinate tells, where there are `count` of them.
@@ -81,7 +87,7 @@ class SurePoints {
     return !odd || x < PageGrid::kSide - 1 || count < PageGrid::kSide;
   }
 
-  std::array<RowBytes, 3> along_{};  ///< by axis: all bits of a cell's byte where its coordinate is sure
+  std::array<RowBytes, 64> rows_{};
 };
 
 /// What is coded of a page at once: one number of each of some of the points of a parity.
@@ -108,14 +114,13 @@ struct ValueStage {
 
 template <bool Wide, class Row>
 void ValueStage::add_rows(const SurePoints& points, Row row) {
-  std::size_t n = 0, j = 0, k = 0;
+  std::size_t n = 0;
   box.for_each_row([&](std::size_t cell, std::size_t, int count) {
-    const auto [all_contexts, all_coded] = row(cell, points.row(j, k));
+    const auto [all_contexts, all_coded] = row(cell, points.row(n));
     const RowBytes those = all_coded & first_bytes(count);
     coded[n++] = those;
     store_row(gather_bytes<Wide>(all_contexts, those), contexts.data() + size);
     size += bytes_in(those);
-    if (++j == static_cast<std::size_t>(box.nj)) j = 0, ++k;
   });
 }
 
