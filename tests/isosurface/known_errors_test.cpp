@@ -27,8 +27,7 @@ void for_each_sure(const PageShape& shape, int parity, Check check) {
   std::size_t count = 0;
   for (std::int32_t n = 0; n < box.size(); ++n) {
     const LatticePoint c{n % box.ni, n / box.ni % box.nj, n / box.ni / box.nj};
-    if ((sure.row(static_cast<std::size_t>(c.j), static_cast<std::size_t>(c.k)) >> 8 * c.i & 1) == 0)
-      continue;
+    if ((sure.row(static_cast<std::size_t>(n / box.ni)) >> 8 * c.i & 1) == 0) continue;
     ++count;
     check(kFirstCell + static_cast<std::size_t>(c.i + 11 * (c.j + 11 * c.k)), 2 * c + odd);
   }
