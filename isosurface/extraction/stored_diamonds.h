@@ -71,8 +71,8 @@ class StoredDiamonds {
     return samples(id)[PageGrid::place(at, id.level)];
   }
 
-  /// The samples, as words, at a lattice point and its 26 neighbours `step` lattice units away, i running fastest, as
-  /// far as it is quick: false where they are not all on one page in memory.
+  /// The samples, as words, at a lattice point and its 26 neighbours `step` lattice units away, i running
+  /// fastest, as far as it is quick: false where they are not all on one page in memory.
   bool samples_round(LatticePoint p, std::int32_t step, std::array<Word, 27>& samples);
 
   /// Errors by rank: 0 is none, and each rank is an error 2^(1/4) times that of the one before.
