@@ -8,25 +8,10 @@
 
 #include "core/base/error.h"
 #include "isosurface/compression/context_clusters.h"
+#include "isosurface/compression/elias_codes.h"
 
 namespace adamas {
 namespace {
-
-/// A number of 1 to 2^16 - 1 in twice as many bits as it has, less one (Elias 1975).
-void put_gamma(BitWriter& out, std::uint32_t value) {
-  const auto bits = static_cast<int>(std::bit_width(value));
-  out.put(1u << (bits - 1), bits);
-  out.put(value & ((1u << (bits - 1)) - 1), bits - 1);
-}
-
-/// 0 where there is no such number.
-std::uint32_t take_gamma(BitReader& in) {
-  in.refill();
-  const int bits = std::countr_zero(in.window() | 1u << 16) + 1;
-  if (bits > 16) return 0;
-  in.skip(bits);
-  return 1u << (bits - 1) | static_cast<std::uint32_t>(in.take(bits - 1));
-}
 
 /// Of the number of a table.
 int map_bits(std::size_t tables) { return static_cast<int>(std::bit_width(tables - 1)); }

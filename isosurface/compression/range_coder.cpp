@@ -32,14 +32,6 @@ inline std::uint8_t take_one(const std::uint32_t* entries, std::size_t group, st
   return static_cast<std::uint8_t>(entry & 0xff);
 }
 
-/// So many symbols as there are states. At most 2 kStates bytes before `next` are read.
-inline void take_row(const std::uint32_t* entries, const std::uint8_t* groups, RangeTables::States& states,
-                     const std::byte*& next, std::uint8_t* symbols) {
-  for (std::size_t n = 0; n < states.size(); ++n) {
-    symbols[n] = take_one(entries, groups[n], states[n], next);
-  }
-}
-
 #if defined(__x86_64__)
 /// By which of eight states take a word: the place of the word of each among the eight before `next`.
 constexpr auto kWordPlaces = [] {
@@ -80,7 +72,7 @@ constexpr auto kWordPlaces = [] {
   return entry;
 }
 
-/// `count` rows; false where the words are used up.
+/// `count` rows of a symbol from each state; false where the words are used up.
 [[gnu::target("avx2,popcnt")]] bool take_wide_rows(const std::uint32_t* entries, const std::uint8_t* groups,
                                                    std::size_t count, RangeTables::States& states,
                                                    const std::byte* begin, const std::byte*& next,
@@ -118,7 +110,7 @@ bool take_rows(const std::uint32_t* entries, const std::uint8_t* groups, std::si
 #endif
   for (std::size_t row = 0; row < count; ++row) {
     if (next < begin) return false;
-    take_row(entries, groups + row * states.size(), states, next, symbols + row * states.size());
+    for (std::uint32_t& state : states) *symbols++ = take_one(entries, *groups++, state, next);
   }
   return true;
 }

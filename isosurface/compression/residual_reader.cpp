@@ -124,9 +124,8 @@ template <class Word>
   sum = _mm256_add_epi32(sum, _mm256_slli_si256(sum, 8));
   const __m256i lower = _mm256_permutevar8x32_epi32(sum, all(3));
   sum = _mm256_add_epi32(sum, _mm256_blend_epi32(_mm256_setzero_si256(), lower, 0xf0));
-  const auto before = static_cast<int>(taken_ / 8 < size_ ? taken_ % 8 : 0);
-  const std::size_t first = taken_ / 8 < size_ ? taken_ / 8 : size_;
-  const __m256i from = _mm256_add_epi32(_mm256_sub_epi32(sum, open), all(before));
+  const std::size_t first = next_byte();
+  const __m256i from = _mm256_add_epi32(_mm256_sub_epi32(sum, open), all(static_cast<int>(taken_ % 8)));
   // Not beyond the zeros after the page.
   const __m256i byte = _mm256_min_epi32(_mm256_srli_epi32(from, 3), all(static_cast<int>(size_ + 4 - first)));
   const __m256i word = _mm256_i32gather_epi32(reinterpret_cast<const int*>(begin() + first), byte, 1);

@@ -41,11 +41,12 @@ class ResidualReader {
 
   [[nodiscard]] const std::byte* begin() const { return buffer_.data() + RangeDecoder::kSlack; }
 
+  /// Where the next plain bit lies; the zeros after the page for those beyond it.
+  [[nodiscard]] std::size_t next_byte() const { return taken_ / 8 < size_ ? taken_ / 8 : size_; }
   /// The plain bits from the next one on, 57 or more; zeros beyond the page.
   [[nodiscard]] std::uint64_t window() const {
-    const std::size_t byte = taken_ / 8 < size_ ? taken_ / 8 : size_;
     std::uint64_t bits = 0;
-    std::memcpy(&bits, begin() + byte, sizeof bits);
+    std::memcpy(&bits, begin() + next_byte(), sizeof bits);
     return little_endian(bits) >> taken_ % 8;
   }
   std::uint64_t take(int bits) {

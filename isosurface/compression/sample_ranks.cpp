@@ -7,6 +7,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "isosurface/compression/bit_stream.h"
+#include "isosurface/compression/elias_codes.h"
 #include "isosurface/compression/page_order.h"
 #include "isosurface/compression/wide_lanes.h"
 
@@ -14,30 +15,8 @@ namespace adamas {
 namespace {
 
 constexpr int kCountBits = 16;
-constexpr int kLengthBits = 6;
 /// Of the table that ranks are looked up in.
 constexpr int kTableBits = 16;
-
-/// A number from 1 on: how long the number of its bits is, as many zeros; then both but for the first's
-/// leading 1 (Elias 1975, delta).
-void put_delta(BitWriter& out, std::uint64_t number) {
-  const int bits = std::bit_width(number), length = std::bit_width(static_cast<unsigned>(bits));
-  out.put(std::uint64_t{1} << (length - 1), length);
-  out.put(static_cast<std::uint64_t>(bits) & ((1u << (length - 1)) - 1), length - 1);
-  out.put(number & ((std::uint64_t{1} << (bits - 1)) - 1), bits - 1);
-}
-
-/// 0 where there is no number of 33 bits or less.
-std::uint64_t take_delta(BitReader& in) {
-  in.refill();
-  const int length = std::countr_zero(in.window() | std::uint64_t{1} << kLengthBits) + 1;
-  if (length > kLengthBits) return 0;
-  in.skip(length);
-  const int bits = (1 << (length - 1)) | static_cast<int>(in.take(length - 1));
-  if (bits > 33) return 0;
-  in.refill();
-  return std::uint64_t{1} << (bits - 1) | in.take(bits - 1);
-}
 
 }  // namespace
 
@@ -106,34 +85,6 @@ void SampleRanks::ranks(std::span<const Word> values, std::uint32_t* ranks) cons
   for (std::size_t n = 0; n < values.size(); ++n) ranks[n] = rank(values[n]);
 }
 
-WordSet::Slot& WordSet::slot(std::uint32_t word) {
-  constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15;
-  const std::size_t last = slots_.size() - 1;
-  std::size_t at = word * kScatter >> 32 & last;
-  while (slots_[at].taken && slots_[at].word != word) at = (at + 1) & last;
-  return slots_[at];
-}
-
-void WordSet::insert(std::uint32_t word) {
-  Slot& own = slot(word);
-  if (own.taken) return;
-  own = {word, true};
-  if (2 * ++size_ <= slots_.size()) return;
-  const std::vector<Slot> before = std::exchange(slots_, std::vector<Slot>(2 * slots_.size()));
-  for (const Slot& one : before) {
-    if (one.taken) slot(one.word) = one;
-  }
-}
-
-std::vector<std::uint32_t> WordSet::sorted() const {
-  std::vector<std::uint32_t> words;
-  for (const Slot& one : slots_) {
-    if (one.taken) words.push_back(one.word);
-  }
-  std::ranges::sort(words);
-  return words;
-}
-
 template <class Word>
 void SampleCensus<Word>::add(const PageShape& shape, const PagePoints<Word>& samples) {
   if (values_.size() > kMost) return;
@@ -149,7 +100,9 @@ template <class Word>
 std::shared_ptr<const SampleRanks> SampleCensus<Word>::ranks() const {
   const std::size_t count = values_.size();
   if (count == 0 || count > kMost || samples_ / kLeastOfEach < count) return nullptr;
-  return std::make_shared<const SampleRanks>(values_.sorted());
+  std::vector<std::uint32_t> sorted(values_.begin(), values_.end());
+  std::ranges::sort(sorted);
+  return std::make_shared<const SampleRanks>(std::move(sorted));
 }
 
 template void SampleRanks::ranks(std::span<const std::uint16_t>, std::uint32_t*) const;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "isosurface/storage/page.h"
@@ -44,27 +45,6 @@ class SampleRanks {
   int shift_ = 0;
 };
 
-/// A set of words that may be many.
-class WordSet {
- public:
-  WordSet() : slots_(64) {}
-
-  [[nodiscard]] std::size_t size() const { return size_; }
-  void insert(std::uint32_t word);
-  /// All, each greater than the one before.
-  [[nodiscard]] std::vector<std::uint32_t> sorted() const;
-
- private:
-  struct Slot {
-    std::uint32_t word = 0;
-    bool taken = false;
-  };
-  [[nodiscard]] Slot& slot(std::uint32_t word);
-
-  std::vector<Slot> slots_;  ///< a power of 2, at most half of them taken
-  std::size_t size_ = 0;
-};
-
 /// Collects the different samples of a volume.
 template <class Word>
 class SampleCensus {
@@ -81,7 +61,7 @@ class SampleCensus {
   /// So many samples of each value pay for the bytes that tell it.
   static constexpr std::uint64_t kLeastOfEach = 32;
 
-  WordSet values_;  ///< at most one more than kMost
+  std::unordered_set<std::uint32_t> values_;  ///< at most one more than kMost
   std::uint64_t samples_ = 0;
   Word last_ = 0;
 };

@@ -35,24 +35,15 @@ constexpr std::uint32_t pages_round(std::int32_t x, std::size_t axis) {
 
 /// The pages that have members of a page's diamonds, as bits.
 std::uint32_t pages_touched(const PageMask& split) {
-  // By step along j and k: all rows of which a diamond may reach there.
-  std::array<std::array<unsigned, 3>, 3> rows{};
-  for (std::size_t k = 0; k < PageGrid::kSide; ++k) {
-    const std::uint16_t* const plane = split.rows.data() + PageGrid::kSide * k;
-    unsigned all = 0;
-    for (std::size_t j = 0; j < PageGrid::kSide; ++j) all |= plane[j];
-    const std::array<unsigned, 3> along_j{plane[0], all, plane[kLast]};
-    for (std::size_t j = 0; j < 3; ++j) {
-      rows[1][j] |= along_j[j];
-      if (k == 0) rows[0][j] |= along_j[j];
-      if (k == kLast) rows[2][j] |= along_j[j];
-    }
-  }
+  const auto& [before, own, behind] = kPagesAt[0];
   std::uint32_t pages = 0;
-  for (unsigned n = 0; n < 9; ++n) {
-    const unsigned row = rows[n / 3][n % 3];
-    const unsigned along_i = ((row & 1) != 0 ? 1u : 0u) | (row != 0 ? 2u : 0u) | (row >> kLast << 2);
-    pages |= along_i << 3 * n;
+  for (std::int32_t k = 0; k <= kLast; ++k) {
+    for (std::int32_t j = 0; j <= kLast; ++j) {
+      const unsigned row = split.rows[static_cast<std::size_t>(j + PageGrid::kSide * k)];
+      if (row == 0) continue;
+      const std::uint32_t along_i = own | ((row & 1) != 0 ? before : 0) | (row >> kLast != 0 ? behind : 0);
+      pages |= along_i & pages_round(j, 1) & pages_round(k, 2);
+    }
   }
   return pages;
 }

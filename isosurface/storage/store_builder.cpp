@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -67,9 +68,11 @@ struct Surveys {
   ValueSurvey<Word> values;
   std::optional<GradientSurvey> gradients;
 
-  Surveys(const StoreOptions& options, const Vec3& spacing, std::shared_ptr<const SampleRanks> ranks)
-      : samples(sample_survey<Word>(ranks ? SampleCoding::kRanks : options.coding, ranks)), values(spacing) {
-    if (options.gradients) gradients.emplace(options.coding);
+  /// `ranks`: see sample_survey.
+  Surveys(SampleCoding coding, std::shared_ptr<const SampleRanks> ranks, bool with_gradients,
+          const Vec3& spacing)
+      : samples(sample_survey<Word>(coding, std::move(ranks))), values(spacing) {
+    if (with_gradients) gradients.emplace(coding_of_bytes(coding));
   }
 
   void add(const Job<Word>& job) {
@@ -179,6 +182,9 @@ class StoreBuilder {
   }
 
  private:
+  [[nodiscard]] SampleCoding coding() const {
+    return ranks_ != nullptr ? SampleCoding::kRanks : options_.coding;
+  }
   /// Calls fn(jobs) for the pages in batches.
   template <class Fn>
   void for_each_batch(const std::vector<std::uint64_t>& numbers, const char* stage, Fn&& fn) {
@@ -205,25 +211,28 @@ class StoreBuilder {
       constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15ull;
       return numbers.size() <= kSurveyed || grid_.page(number).level > 0 || number * kScatter >> 61 == 0;
     });
-    Surveys<Word> surveys(options_, volume_.spacing, ranks_);
+    const auto empty = [this] {
+      return std::make_unique<Surveys<Word>>(coding(), ranks_, options_.gradients, volume_.spacing);
+    };
+    const auto surveys = empty();
     for_each_batch(some, "surveying", [&](std::span<const Job<Word>> jobs) {
       constexpr std::size_t kPart = kBatch / 4;
       std::vector<std::unique_ptr<Surveys<Word>>> parts((jobs.size() + kPart - 1) / kPart);
       parallel_chunks(jobs.size(), kPart, [&](std::size_t begin, std::size_t end) {
         auto& part = parts[begin / kPart];
-        part = std::make_unique<Surveys<Word>>(options_, volume_.spacing, ranks_);
+        part = empty();
         for (const Job<Word>& job : jobs.subspan(begin, end - begin)) part->add(job);
       });
-      for (const auto& part : parts) surveys.merge(*part);
+      for (const auto& part : parts) surveys->merge(*part);
     });
-    return Codecs<Word>(surveys);
+    return Codecs<Word>(*surveys);
   }
 
   StoreFigures write(const std::vector<std::uint64_t>& numbers, const Codecs<Word>& codecs,
                      const std::filesystem::path& path, const std::string& shown) {
     StoreHeader header;
     header.grid = volume_;
-    header.coding = ranks_ != nullptr ? SampleCoding::kRanks : options_.coding;
+    header.coding = coding();
     header.subtree_depth = static_cast<std::uint8_t>(options_.subtree_depth);
     header.gradients = options_.gradients;
     StoreFileWriter writer(path, shown, header);
