@@ -232,8 +232,8 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
 
 void check_options(const InputOptions& options) {
   const InputKind kind = input_kind(options.path);
-  if ((kind != InputKind::kGrid || is_store(options.path)) && !options.material_option().empty()) {
-    wrong_usage("{}: expected data on a grid as INPUT", options.material_option());
+  if ((kind != InputKind::kGrid || is_store(options.path)) && !options.grid_option().empty()) {
+    wrong_usage("{}: expected data on a grid as INPUT", options.grid_option());
   }
   if (kind != InputKind::kNetwork && !options.region_names.empty()) {
     wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
@@ -250,7 +250,10 @@ void run(const InputOptions& options, Session& session) {
     return session.outputs.commit();
   }
   session.console.step("reading " + options.path, -1);
-  const FileSummary summary = summarize_file(options.path);
+  // Labels and fractions are of cells where nothing is said.
+  const bool materials = !options.labels.empty() || !options.fractions.empty();
+  const FileSummary summary =
+      summarize_file(options.path, options.centering(), materials ? Centering::kCells : Centering::kPoints);
   Figures figures{{"file", options.path}, {"kind", summary.kind}};
   session.console.print("{}: {}\n", options.path, summary.kind);
   print_grid(summary, session.console, figures);

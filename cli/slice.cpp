@@ -23,7 +23,7 @@ namespace {
 struct Options {
   InputOptions input;
   std::string plane, origin, normal, original, mode, range, colour_map, size, output;
-  bool cells = false, no_cells = false, no_interfaces = false;
+  bool draw_cells = false, no_draw_cells = false, no_interfaces = false;
 };
 
 Plane parse_any_plane(const Options& options) {
@@ -119,7 +119,8 @@ void report_areas(const SliceInput& input, const CrossSection& section, bool sto
 
 /// Options that would say nothing, and files that may not be written. `field`: what is shown.
 void check_options(const Options& options, const std::string& field, OutputSet& outputs) {
-  if (options.cells && options.no_cells) wrong_usage("--cells and --no-cells: expected one of them");
+  if (options.draw_cells && options.no_draw_cells)
+    wrong_usage("--draw-cells and --no-draw-cells: expected one of them");
   if (field.empty()) {
     if (!options.range.empty()) wrong_usage("--range: expected --field as well");
     if (!options.colour_map.empty()) wrong_usage("--colour-map: expected --field as well");
@@ -133,9 +134,9 @@ void check_options(const Options& options, const std::string& field, OutputSet& 
 /// Cells are drawn as asked for, else those of a mesh and, beside it, those of its input where they are seen.
 void choose_cells(const Options& options, const SliceInput& input, const SliceOptions& size,
                   std::size_t panels, SliceStyle& style) {
-  style.mesh_cells = options.cells || !options.no_cells;
-  style.input_cells = options.cells || (!options.no_cells && input.mesh && input.data &&
-                                        shows_cells(input, style.plane, size, panels));
+  style.mesh_cells = options.draw_cells || !options.no_draw_cells;
+  style.input_cells = options.draw_cells || (!options.no_draw_cells && input.mesh && input.data &&
+                                             shows_cells(input, style.plane, size, panels));
 }
 
 /// The samples of a store round the plane.
@@ -143,7 +144,7 @@ SliceInput load_store_slice(const Options& options, const Plane& plane,
                             const std::function<void(const SliceInput&)>& check, Session& session) {
   if (!options.original.empty())
     wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.input.path);
-  if (const std::string unused = options.input.material_option(); !unused.empty() && unused != "--field")
+  if (const std::string unused = options.input.grid_option(); !unused.empty() && unused != "--field")
     wrong_usage("{}: expected data with materials as INPUT, found {}", unused, options.input.path);
   SliceInput input;
   input.name = options.input.path;
@@ -209,10 +210,10 @@ void add_drawing_options(CLI::App& command, Options& options) {
       ->check(one_of({"input", "plain", "materials", "all"}))
       ->group("Picture");
   command
-      .add_flag("--cells", options.cells,
+      .add_flag("--draw-cells", options.draw_cells,
                 "Draw the cells (default for a mesh, and for its input unless they are tiny)")
       ->group("Picture");
-  command.add_flag("--no-cells", options.no_cells, "Do not draw the cells")->group("Picture");
+  command.add_flag("--no-draw-cells", options.no_draw_cells, "Do not draw the cells")->group("Picture");
   command.add_flag("--no-interfaces", options.no_interfaces, "Do not draw the interfaces")->group("Picture");
   command.add_option("--range", options.range, "Values at the ends of the colour map")
       ->type_name("a,b")

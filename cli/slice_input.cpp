@@ -82,8 +82,8 @@ void load_original(const InputOptions& options, Console& console, SliceInput& in
     wrong_usage("--region-names: expected a labelled network (.arec, .txt)");
   }
   if (!gridded && given) {
-    if (options.material_option().empty()) return;
-    wrong_usage("{}: expected data on a grid", options.material_option());
+    if (options.grid_option().empty()) return;
+    wrong_usage("{}: expected data on a grid", options.grid_option());
   }
   input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
   if (!input.mesh) return;
@@ -115,7 +115,7 @@ SliceInput load_slice_input(const InputOptions& options, const std::string& orig
     from.path = original;
     if (!original.empty()) check_input_file(original);
     const std::string unused =
-        options.material_option().empty() ? options.interface_option() : options.material_option();
+        options.grid_option().empty() ? options.interface_option() : options.grid_option();
     if (original.empty() && !unused.empty()) wrong_usage("{}: expected --original DATA", unused);
   } else if (!original.empty()) {
     wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.path);

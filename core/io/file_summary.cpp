@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/io/grid_file.h"
+#include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/polygon_soup.h"
@@ -33,8 +33,10 @@ void set_points(const std::vector<Vec3>& points, FileSummary& summary) {
   for (const Vec3& p : points) summary.box.extend(p);
 }
 
-FileSummary summarize_grid(const std::filesystem::path& path) {
-  const GridFile file = read_grid_file(path);
+FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Centering> wanted,
+                           Centering otherwise) {
+  GridFile file = read_grid_file(path);
+  choose_centering(path.string(), wanted, otherwise, file);
   FileSummary summary;
   summary.kind = file.kind;
   summary.points = summary.cells = 1;
@@ -88,7 +90,8 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 
 }  // namespace
 
-FileSummary summarize_file(const std::filesystem::path& path) {
+FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted,
+                           Centering otherwise) {
   const std::string extension = file_extension(path);
   if (extension == ".vtu" || extension == ".vtp") return summarize_mesh(path);
   FileSummary summary;
@@ -106,7 +109,7 @@ FileSummary summarize_file(const std::filesystem::path& path) {
     summary.cells = soup.offsets.size() - 1;
     return summary;
   }
-  return summarize_grid(path);
+  return summarize_grid(path, wanted, otherwise);
 }
 
 }  // namespace adamas

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/data/rectilinear_grid.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {
@@ -29,7 +31,9 @@ struct FileSummary {
 };
 
 /// Reads a grid or image (read_grid_file), mesh (.vtu, .vtp), labelled network (.arec, .txt) or surface
-/// (.obj, .off, .ply, .stl) and says what is in it. Throws Error at unusable files.
-FileSummary summarize_file(const std::filesystem::path& path);
+/// (.obj, .off, .ply, .stl) and says what is in it; `wanted` and `otherwise`: see choose_centering. Throws
+/// Error at unusable files.
+FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
+                           Centering otherwise = Centering::kPoints);
 
 }  // namespace adamas

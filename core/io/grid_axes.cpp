@@ -78,14 +78,22 @@ void rearrange(GridArray& array, const Layout& layout, const GridFile& file) {
 
 void lay_out(const std::string& name, const GridAxes& axes, GridFile& file) {
   Layout layout{find_sources(name, axes), {}};
-  std::array<std::vector<double>, 3> nodes;
+  std::array<std::vector<double>, 3> nodes, faces;
+  std::array<std::optional<Centering>, 3> stated;
   for (int axis = 0; axis < 3; ++axis) {
     const auto s = static_cast<std::size_t>(axis);
-    const double step = axes.directions[layout.source[s]][axis];
-    for (const double t : file.nodes[layout.source[s]]) nodes[s].push_back(axes.origin[axis] + step * t);
+    const std::size_t from = layout.source[s];
+    const double step = axes.directions[from][axis];
+    for (const double t : file.nodes[from]) nodes[s].push_back(axes.origin[axis] + step * t);
+    for (const double t : file.faces[from]) faces[s].push_back(axes.origin[axis] + step * t);
+    stated[s] = file.stated[from];
     // A file may also count backwards by a negative spacing.
     layout.reversed[s] = !nodes[s].empty() && nodes[s].front() > nodes[s].back();
-    if (layout.reversed[s]) std::reverse(nodes[s].begin(), nodes[s].end());
+    if (!layout.reversed[s] && nodes[s].size() == 1 && faces[s].size() == 2)
+      layout.reversed[s] = faces[s].front() > faces[s].back();
+    if (!layout.reversed[s]) continue;
+    std::reverse(nodes[s].begin(), nodes[s].end());
+    std::reverse(faces[s].begin(), faces[s].end());
   }
   const bool in_order =
       layout.source == std::array<std::size_t, 3>{0, 1, 2} &&
@@ -94,6 +102,8 @@ void lay_out(const std::string& name, const GridAxes& axes, GridFile& file) {
     if (!in_order) rearrange(array, layout, file);
   }
   file.nodes = std::move(nodes);
+  file.faces = std::move(faces);
+  file.stated = stated;
 }
 
 }  // namespace adamas

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,6 +35,14 @@ struct GridFile {
   std::vector<GridArray> arrays;
   /// The strings of a field array "material_names", what the values of labels mean; mostly empty.
   std::vector<std::string> material_names;
+  /// Of a format that has samples, which may be values at points or of the cells round them: the faces of
+  /// these cells, one more than nodes. Its arrays are on points until choose_centering() is asked. Empty
+  /// where the format says what its arrays are on (VTK).
+  std::array<std::vector<double>, 3> faces;
+  /// What the file says of its samples, by axis.
+  std::array<std::optional<Centering>, 3> stated;
+
+  [[nodiscard]] bool has_samples() const { return !faces[0].empty(); }
 
   [[nodiscard]] const GridArray* find(const std::string& name) const;
   /// Names of all arrays, for messages: "'a', 'b'".

@@ -9,6 +9,7 @@
 #include "core/io/array_names.h"
 #include "core/io/centering.h"
 #include "core/io/field_assembly.h"
+#include "core/io/grid_centering.h"
 #include "core/io/grid_file.h"
 
 namespace adamas {
@@ -16,6 +17,14 @@ namespace adamas {
 namespace {
 
 constexpr std::size_t kMostLabels = 65535;
+
+/// Whether samples of a file lie on as many cells as the main file has.
+bool fits_cells(const GridFile& file, const GridFile& main) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (file.faces[axis].size() != main.nodes[axis].size()) return false;
+  }
+  return true;
+}
 
 /// Throws where two grids differ by more than a millionth of their size.
 void check_same_grid(const std::string& name, const GridFile& file, const std::string& main_name,
@@ -54,12 +63,15 @@ class Reader {
     progress_.step("read " + path_.filename().string(), 0);
     main_ = read_grid_file(path_);
     data_.source = path_.string();
+    const GridCentering centering =
+        choose_centering(data_.source, options_.centering, Centering::kCells, main_);
     data_.grid.nodes = main_.nodes;
     if (!(options_.fraction_scale > 0)) {
       fail("{}: expected a positive scale of volume fractions, found {}", data_.source,
            options_.fraction_scale);
     }
     read_materials();
+    tell(centering);
     read_fields();
     progress_.step("check materials", 0.9);
     if (options_.region) crop(*options_.region, data_);
@@ -85,6 +97,19 @@ class Reader {
     }
     if (data_.materials.empty()) return read_labels_unasked();
     if (!options_.rest.empty()) add_rest();
+  }
+
+  void tell(const GridCentering& centering) const {
+    if (!options_.note) return;
+    if (centering.assumed)
+      options_.note(data_.source +
+                    ": nothing says whether its values are of cells or points: taken for those of cells "
+                    "(--cells or --points chooses)");
+    if (centering.mixed)
+      options_.note(
+          data_.source +
+          ": cells along some axes, nodes along others: along these the samples are taken for those "
+          "of cells up to halfway to the next (--cells or --points chooses)");
   }
 
   /// What write_multi_material_data has written, or else what the user may have meant.
@@ -141,6 +166,8 @@ class Reader {
     }
     progress_.step("read " + file.filename().string(), 0.5);
     GridFile other = read_grid_file(file);
+    choose_centering(file.string(), options_.centering,
+                     fits_cells(other, main_) ? Centering::kCells : Centering::kPoints, other);
     check_same_grid(file.string(), other, data_.source, main_);
     if (other.arrays.size() != 1) {
       fail("{}: {}: expected a file of one array, found {}", file.string(), option, other.array_names());

@@ -142,8 +142,12 @@ GridFile read_nrrd(const std::filesystem::path& path) {
   GridFile file;
   file.kind = "NRRD";
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < header.sizes[axis]; ++i) {
-      file.nodes[axis].push_back(static_cast<double>(i));
+    const NrrdCentering& center = header.centers[axis];
+    file.stated[axis] = center.stated;
+    for (std::size_t i = 0; i <= header.sizes[axis]; ++i) {
+      const auto place = static_cast<double>(i);
+      if (i < header.sizes[axis]) file.nodes[axis].push_back(place);
+      file.faces[axis].push_back(center.first_face + place * center.cell);
     }
   }
   file.arrays.push_back(std::move(array));

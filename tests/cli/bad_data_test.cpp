@@ -149,11 +149,12 @@ TEST_F(BadData, RegionsOutside) {
 TEST_F(BadData, PointsFiles) {
   make_scene("sphere");
   write("p.csv", "x,y,z\n0.5,0.5,0.5\n0.5,oops,0.5\n");
-  expect_failure({"probe", "scene.vtr", "--points", "p.csv", "-o", "o.csv"}, {"p.csv:3", "expected", "oops"});
+  expect_failure({"probe", "scene.vtr", "--points-file", "p.csv", "-o", "o.csv"},
+                 {"p.csv:3", "expected", "oops"});
   write("p.csv", "x,y,z\n");
-  expect_failure({"probe", "scene.vtr", "--points", "p.csv", "-o", "o.csv"},
+  expect_failure({"probe", "scene.vtr", "--points-file", "p.csv", "-o", "o.csv"},
                  {"p.csv", "expected", "found none"});
-  expect_failure({"probe", "scene.vtr", "--points", "none.csv", "-o", "o.csv"}, {"none.csv"});
+  expect_failure({"probe", "scene.vtr", "--points-file", "none.csv", "-o", "o.csv"}, {"none.csv"});
 }
 
 TEST_F(BadData, PointsFilesOfSpreadsheets) {
@@ -164,13 +165,14 @@ TEST_F(BadData, PointsFilesOfSpreadsheets) {
                                     "\xEF\xBB\xBFx;y;z\r\n0.25;0.5;0.5;7\r\n", "+0.25 0.5\t0.5\n",
                                     "# where\n\n\"x\",\"y\",\"z\"\n .25 , 5e-1, 0.5\n"}) {
     write("p.csv", content);
-    EXPECT_EQ(run_well({"probe", "scene.vtr", "--points", "p.csv"}).out, values) << content;
+    EXPECT_EQ(run_well({"probe", "scene.vtr", "--points-file", "p.csv"}).out, values) << content;
   }
   // Decimal commas would be taken for three numbers, and a bad first line for names.
   for (const std::string line :
        {"0,25;0,5;0,5", "0,25 0,5 0,5", ".5,oops,.5", "nan,0,0", "-,1,2", "1,,2,3"}) {
     write("p.csv", line + "\n0.5,0.5,0.5\n");
-    expect_failure({"probe", "scene.vtr", "--points", "p.csv", "-o", "o.csv"}, {"p.csv:1", "expected", line});
+    expect_failure({"probe", "scene.vtr", "--points-file", "p.csv", "-o", "o.csv"},
+                   {"p.csv:1", "expected", line});
   }
 }
 

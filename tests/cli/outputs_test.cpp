@@ -71,8 +71,8 @@ TEST_F(Outputs, NoInputIsOverwritten) {
       {"resample", "sub/scene.vtr", "--field", "a=labels.vtp", "--interfaces-out", "sub/labels.vtp"},
       {"reconstruct", "sub/scene.vtr", "--labels", "sub/labels.vtp", "-o", "sub/labels.vtp"},
       {"slice", "m.vtu", "--plane", "x=0.5", "--original", "net.vtp", "-o", "net.vtp"},
-      {"probe", "scene.vtr", "--points", "p.csv", "-o", "p.csv"},
-      {"probe", "scene.vtr", "--points", "alias.csv", "-o", "p.csv"},
+      {"probe", "scene.vtr", "--points-file", "p.csv", "-o", "p.csv"},
+      {"probe", "scene.vtr", "--points-file", "alias.csv", "-o", "p.csv"},
       {"info", "scene.vtr", "--config", "c.json", "--json", "c.json"}};
   for (const auto& command : commands) {
     const std::string before = read(command.back());
