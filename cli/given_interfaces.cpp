@@ -10,6 +10,7 @@
 #include "cli/usage_error.h"
 #include "core/io/array_names.h"
 #include "core/io/field_assembly.h"
+#include "core/io/grid_axes.h"
 #include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
@@ -56,6 +57,7 @@ Box3 domain_of(const InterfaceMesh& mesh) {
 MultiMaterialData read_fields(const InputOptions& options) {
   if (!options.region.empty()) wrong_usage("--region: expected a grid with materials");
   GridFile file = read_grid_file(options.path);
+  require_laid_out(options.path, file);
   choose_centering(options.path, options.centering(), Centering::kPoints, file);
   MultiMaterialData data;
   data.source = options.path;

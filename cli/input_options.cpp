@@ -180,6 +180,7 @@ MaterialDataOptions material_options(const InputOptions& options) {
   result.extensive = options.extensive;
   if (!options.region.empty()) result.region = parse_bounds("--region", options.region);
   result.centering = options.centering();
+  result.plain = options.plain;
   return result;
 }
 

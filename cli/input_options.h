@@ -22,6 +22,7 @@ struct InputOptions {
   std::vector<std::string> fractions, fields, extensive, interfaces;
   std::string fraction_scale, rest, labels, region, box, region_names;
   bool tolerant = false, cells = false, points = false;
+  bool plain = false;  ///< data without materials will do (MaterialDataOptions::plain); no option
 
   /// The first option given that only gridded data with materials can mean, for messages; empty where there
   /// is none.

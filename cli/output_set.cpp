@@ -6,6 +6,7 @@
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
+#include "core/io/referred_files.h"
 
 namespace adamas {
 
@@ -20,10 +21,10 @@ std::string lower_case(std::string text) {
 void check_extension(const std::string& option, const std::filesystem::path& path,
                      std::initializer_list<const char*> extensions) {
   if (extensions.size() == 0) return;
-  const std::string found = lower_case(path.extension().string());
+  const std::string name = lower_case(path.filename().string());
   std::string known;
   for (const char* extension : extensions) {
-    if (found == extension) return;
+    if (name.size() > std::string_view(extension).size() && name.ends_with(extension)) return;
     known += (known.empty() ? "" : ", ") + std::string(extension);
   }
   wrong_usage("{}: expected a file name that ends in {}, found '{}'", option, known, path.string());
@@ -48,8 +49,12 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 void OutputSet::protect(const std::filesystem::path& input) {
-  for (const auto& [option, file] : files_) check_apart(option, file->path(), input);
-  inputs_.push_back(input);
+  std::vector<std::filesystem::path> all = referred_files(input);
+  all.push_back(input);
+  for (const auto& each : all) {
+    for (const auto& [option, file] : files_) check_apart(option, file->path(), each);
+    inputs_.push_back(each);
+  }
 }
 
 void OutputSet::declare(const std::string& option, const std::string& path,

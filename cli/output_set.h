@@ -17,8 +17,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {
  public:
-  /// An input that no output may overwrite, whether declared before or after; one that is no file is
-  /// ignored. Throws UsageError.
+  /// An input that no output may overwrite, nor any file that it refers to (referred_files), whether declared
+  /// before or after; one that is no file is ignored. Throws UsageError.
   void protect(const std::filesystem::path& input);
   /// An output that will be written, to be declared before long work; an empty path is none. Throws
   /// UsageError for an extension that is not among those given, for a path declared before and for an input,

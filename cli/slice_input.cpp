@@ -7,6 +7,7 @@
 #include "cli/given_interfaces.h"
 #include "cli/material_numbers.h"
 #include "cli/usage_error.h"
+#include "core/data/volume_placement.h"
 #include "core/io/field_assembly.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
@@ -94,6 +95,13 @@ void load_original(const InputOptions& options, Console& console, SliceInput& in
 
 }  // namespace
 
+std::vector<Vec3> SliceInput::outline(const Plane& plane) const {
+  if (!turned) return clip_plane(plane, box());
+  std::vector<Vec3> corners = clip_plane(plane_in_frame(*turned, plane), box());
+  for (Vec3& p : corners) p = turned->in_space(p);
+  return corners;
+}
+
 ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
   check_input_file(path);
   console.step("reading " + path, -1);
@@ -125,7 +133,7 @@ SliceInput load_slice_input(const InputOptions& options, const std::string& orig
   }
   if (!from.path.empty() || !from.interfaces.empty()) load_original(from, console, input);
   check(input);
-  if (!input.data || input.interfaces || plane == nullptr) return input;
+  if (!input.data || input.interfaces || plane == nullptr || input.plain()) return input;
   const auto near = near_plane(*input.data, *plane);
   input.interfaces = Reconstruction(near ? *near : *input.data, console).mesh();
   return input;

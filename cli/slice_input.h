@@ -6,6 +6,7 @@
 
 #include "cli/input_options.h"
 #include "core/data/interface_mesh.h"
+#include "core/data/volume.h"
 #include "core/geometry/plane.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
@@ -17,7 +18,14 @@ struct SliceInput {
   std::unique_ptr<MultiMaterialData> data;
   std::optional<InterfaceMesh> interfaces;  ///< the original ones
   std::optional<ResampledMesh> mesh;
+  /// Of samples whose axes are not x, y and z: the data are in its frame.
+  std::optional<VolumeGrid> turned;
 
+  /// Whether the data know no materials.
+  [[nodiscard]] bool plain() const { return data && !mesh && is_plain(*data); }
+  /// What the plane cuts out of the domain, in space.
+  [[nodiscard]] std::vector<Vec3> outline(const Plane& plane) const;
+  /// Of the domain; of samples in their frame.
   [[nodiscard]] Box3 box() const { return mesh ? mesh->box : data->grid.domain(); }
   [[nodiscard]] const IdVector<MaterialId, std::string>& materials() const {
     return mesh ? mesh->materials : data->materials;

@@ -16,7 +16,9 @@ namespace {
 std::string temporary_name(const std::filesystem::path& path) {
   static std::atomic<unsigned> count = 0;
   constexpr std::size_t kLongestExtension = 32;
-  const std::string extension = path.extension().string();
+  std::string extension = path.extension().string();
+  // Those of compressed files tell what is compressed.
+  if (extension == ".gz") extension = path.stem().extension().string() + extension;
   return ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++) +
          (extension.size() <= kLongestExtension ? extension : "");
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/data/volume.h"
 #include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
@@ -33,6 +34,24 @@ void set_points(const std::vector<Vec3>& points, FileSummary& summary) {
   for (const Vec3& p : points) summary.box.extend(p);
 }
 
+void set_grid_box(const GridFile& file, FileSummary& summary) {
+  Box3 nodes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& along = file.nodes[static_cast<std::size_t>(axis)];
+    nodes.min[axis] = along.front();
+    nodes.max[axis] = along.back();
+  }
+  if (!file.aslant) {
+    summary.box = nodes;
+    return;
+  }
+  const auto& [a, b, c] = file.aslant->directions;
+  for (const Vec3& p : corners_of(nodes))
+    summary.box.extend(file.aslant->origin + p.x * a + p.y * b + p.z * c);
+  summary.directions = {normalized(a), normalized(b), normalized(c)};
+  summary.origin = file.aslant->origin + nodes.min.x * a + nodes.min.y * b + nodes.min.z * c;
+}
+
 FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Centering> wanted,
                            Centering otherwise) {
   GridFile file = read_grid_file(path);
@@ -46,16 +65,8 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
     summary.points *= nodes.size();
     summary.cells *= nodes.size() - std::min<std::size_t>(nodes.size(), 1);
   }
-  if (summary.points > 0) {
-    const auto corner = [&file](bool last) {
-      const auto at = [&](std::size_t axis) {
-        return last ? file.nodes[axis].back() : file.nodes[axis].front();
-      };
-      return Vec3{at(0), at(1), at(2)};
-    };
-    summary.box.extend(corner(false));
-    summary.box.extend(corner(true));
-  }
+  if (summary.points > 0) set_grid_box(file, summary);
+  summary.space = file.space;
   for (const GridArray& array : file.arrays) {
     ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
                       array.components};

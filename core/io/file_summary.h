@@ -27,6 +27,11 @@ struct FileSummary {
   std::array<std::size_t, 3> nodes{};  ///< per axis, for a grid; else zeros
   std::size_t points = 0, cells = 0;   ///< cells: of a grid, tetrahedra, polygons, lines, triangles
   Box3 box;                            ///< of all points
+  /// Unit vectors of a grid's axes, not x, y and z where it could not be laid out along these, and the place
+  /// of its first node then.
+  std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3 origin;
+  std::string space;  ///< what places are told in, as of VolumeGrid; mostly empty
   std::vector<ArraySummary> arrays;
 };
 

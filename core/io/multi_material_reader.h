@@ -33,9 +33,16 @@ struct MaterialDataOptions {
   std::optional<std::array<double, 6>> region;
   /// What the values are on, whatever the files say.
   std::optional<Centering> centering;
+  /// Where nothing is a material, all of the grid is one, kPlainMaterial, with all arrays as fields.
+  bool plain = false;
   /// Told in a line what was assumed that the files do not say.
   std::function<void(const std::string&)> note;
 };
+
+/// The material of data that know none.
+inline constexpr const char* kPlainMaterial = "volume";
+/// Whether data know no materials.
+bool is_plain(const MultiMaterialData& data);
 
 /// Reads materials, fractions or labels, and fields from one file of those of read_grid_file, or several.
 /// Remaining arrays are fields, per material where the name says so ("Mass for Steel", "density_Steel"); "X

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/data/anatomical_space.h"
 #include "core/io/nrrd_places.h"
 #include "core/io/printable.h"
 
@@ -149,6 +150,8 @@ class Parser {
       read_centers(value);
     } else if (field == "kinds") {
       places_.kinds = split(value, kBlanks);
+    } else if (field == "space") {
+      header_.space = space_of_nrrd(value);
     } else if (field == "space origin") {
       places_.origin = split(value, " \t(),");
     } else if (field == "space directions") {
@@ -177,10 +180,12 @@ class Parser {
       header_.encoding = NrrdEncoding::kRaw;
     } else if (value == "gzip" || value == "gz") {
       header_.encoding = NrrdEncoding::kGzip;
+    } else if (value == "bzip2" || value == "bz2") {
+      header_.encoding = NrrdEncoding::kBzip2;
     } else if (value == "text" || value == "txt" || value == "ascii") {
       header_.encoding = NrrdEncoding::kText;
     } else {
-      fail_field("the encoding raw, gzip or text", value);
+      fail_field("the encoding raw, gzip, bzip2 or text", value);
     }
   }
 

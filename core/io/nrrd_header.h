@@ -12,7 +12,7 @@
 
 namespace adamas {
 
-enum class NrrdEncoding { kRaw, kGzip, kText };
+enum class NrrdEncoding { kRaw, kGzip, kBzip2, kText };
 
 /// What the samples along an axis stand for: nothing where the header does not say. As values of cells, the
 /// first cell begins `first_face` steps behind the first sample, and each is `cell` steps long.
@@ -30,6 +30,7 @@ struct NrrdHeader {
   std::size_t components = 1;
   GridAxes axes;  ///< a step along each axis and the place of the first sample
   std::array<NrrdCentering, 3> centers;
+  std::string space;  ///< as of VolumeGrid
   NrrdEncoding encoding = NrrdEncoding::kRaw;
   bool big_endian = false;
   std::string data_file;  ///< empty: the data follow the header

@@ -170,7 +170,7 @@ void add_data(const std::string& name, vtkDataObject* data, ArrayPlaces places, 
   for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i) {
     file.material_names.push_back(names->GetValue(i));
   }
-  if (image != nullptr) lay_out(name, axes.value_or(axes_of(*image)), file);
+  if (image != nullptr) lay_out(axes.value_or(axes_of(*image)), file);
 }
 
 template <class Reader>
@@ -222,7 +222,9 @@ GridFile read_nifti(const std::string& name, const VtkMessages& messages) {
   const auto reader = vtkSmartPointer<vtkNIFTIImageReader>::New();
   if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected NIfTI, found something else", name);
   const auto data = run(*reader, name, messages);
-  add_data(name, data, ArrayPlaces::kSamples, file, nifti_axes(*reader));
+  const auto axes = nifti_axes(*reader);
+  if (axes) file.space = "RAS";
+  add_data(name, data, ArrayPlaces::kSamples, file, axes);
   scale_nifti(*reader, file);
   return file;
 }
@@ -236,6 +238,7 @@ GridFile read_meta_image(const std::filesystem::path& path, const VtkMessages& m
   if (auto* image = vtkImageData::SafeDownCast(data)) {
     axes = axes_of(*image);
     if (const auto directions = meta_image_directions(path)) axes->directions = *directions;
+    file.space = meta_image_space(path);
   }
   add_data(name, data, ArrayPlaces::kSamples, file, axes);
   return file;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -44,11 +45,39 @@ BorderPoint between(const BorderPoint& a, const BorderPoint& b, double t) {
   return result;
 }
 
-/// The part of a contour before (beyond = 1) or behind (beyond = -1) a plane across an axis.
+/// A half space: what is not higher than a plane.
+class HalfSpace {
+ public:
+  /// Before (beyond = 1) or behind (beyond = -1) a plane across an axis, in which cut points lie exactly.
+  HalfSpace(int axis, double plane, int beyond) : axis_(axis), plane_(beyond * plane) {
+    normal_[axis] = beyond;
+  }
+  explicit HalfSpace(const Plane& plane) : normal_(plane.normal), plane_(dot(plane.normal, plane.origin)) {}
+
+  /// Above the plane.
+  [[nodiscard]] double height(const Vec3& p) const {
+    return (axis_ ? normal_[*axis_] * p[*axis_] : dot(normal_, p)) - plane_;
+  }
+  /// Where a line between a point inside and one beyond cuts the plane: a part of the way.
+  [[nodiscard]] double cut(const Vec3& p, const Vec3& q) const {
+    const double from = height(p), to = height(q);
+    return -from / (to - from);
+  }
+  [[nodiscard]] Vec3 on_plane(Vec3 point) const {
+    if (axis_) point[*axis_] = normal_[*axis_] * plane_;
+    return point;
+  }
+
+ private:
+  std::optional<int> axis_;
+  Vec3 normal_;
+  double plane_;
+};
+
+/// The part of a contour in a half space.
 class PlaneClip {
  public:
-  PlaneClip(Contour& contour, int axis, double plane, int beyond)
-      : contour_(contour), axis_(axis), plane_(plane), beyond_(beyond) {}
+  PlaneClip(Contour& contour, const HalfSpace& inside) : contour_(contour), inside_(inside) {}
 
   void run() {
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -59,8 +88,8 @@ class PlaneClip {
  private:
   /// -1 inside, 0 on the plane, 1 beyond it.
   [[nodiscard]] int side(std::uint32_t point) const {
-    const double x = contour_.points[point][axis_];
-    return beyond_ * (static_cast<int>(x > plane_) - static_cast<int>(x < plane_));
+    const double height = inside_.height(contour_.points[point]);
+    return static_cast<int>(height > 0) - static_cast<int>(height < 0);
   }
 
   void clip(const std::array<std::uint32_t, 3>& triangle) {
@@ -88,19 +117,15 @@ class PlaneClip {
         fail("a contour has more than 2^32 - 1 points at the data's border");
       entry->second = static_cast<std::uint32_t>(contour_.points.size());
       const Vec3 p = contour_.points[a], q = contour_.points[b];
-      const double t = (plane_ - p[axis_]) / (q[axis_] - p[axis_]);
-      Vec3 point = point_between(p, q, t);
-      point[axis_] = plane_;
+      const double t = inside_.cut(p, q);
       contour_.border_points.push_back(between(as_mean(contour_, a), as_mean(contour_, b), t));
-      contour_.points.push_back(point);
+      contour_.points.push_back(inside_.on_plane(point_between(p, q, t)));
     }
     return entry->second;
   }
 
   Contour& contour_;
-  int axis_;
-  double plane_;
-  int beyond_;
+  const HalfSpace& inside_;
   std::unordered_map<std::uint64_t, std::uint32_t> cuts_;  ///< by the two points of an edge
 };
 
@@ -129,20 +154,30 @@ void remove_unused_points(Contour& contour) {
   contour = std::move(kept);
 }
 
+void clip_by(const std::vector<HalfSpace>& sides, Contour& contour) {
+  bool clipped = false;
+  for (const HalfSpace& side : sides) {
+    const auto is_outside = [&side](const Vec3& p) { return side.height(p) > 0; };
+    if (std::none_of(contour.points.begin(), contour.points.end(), is_outside)) continue;
+    PlaneClip(contour, side).run();
+    clipped = true;
+  }
+  if (clipped) remove_unused_points(contour);
+}
+
 }  // namespace
 
 void clip_contour(Contour& contour, const Box3& box) {
-  bool clipped = false;
+  std::vector<HalfSpace> sides;
   for (int axis = 0; axis < 3; ++axis) {
-    for (const int beyond : {1, -1}) {
-      const double plane = beyond > 0 ? box.max[axis] : box.min[axis];
-      const auto outside = [&](const Vec3& p) { return beyond * p[axis] > beyond * plane; };
-      if (std::none_of(contour.points.begin(), contour.points.end(), outside)) continue;
-      PlaneClip(contour, axis, plane, beyond).run();
-      clipped = true;
-    }
+    sides.emplace_back(axis, box.max[axis], 1);
+    sides.emplace_back(axis, box.min[axis], -1);
   }
-  if (clipped) remove_unused_points(contour);
+  clip_by(sides, contour);
+}
+
+void clip_contour(Contour& contour, std::span<const Plane> sides) {
+  clip_by({sides.begin(), sides.end()}, contour);
 }
 
 }  // namespace adamas

@@ -39,6 +39,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Pro
     surface = pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   }
   if (request_.region) clip_contour(surface.contour, *request_.region);
+  clip_contour(surface.contour, request_.sides);
   return surface;
 }
 
