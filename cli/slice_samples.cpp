@@ -29,16 +29,20 @@ SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
       fraction_material(file_stem(input.path))) {
     return SampleOrigin::kNone;
   }
-  return has_one_array(input.path) ? SampleOrigin::kVolume : SampleOrigin::kNone;
+  const bool samples = has_one_array(input.path) || is_aslant_image(input.path);
+  return samples ? SampleOrigin::kVolume : SampleOrigin::kNone;
 }
 
 SliceInput load_samples(const InputOptions& input, VolumeInput volume, SampleOrigin origin,
-                        const Plane& plane, const std::function<void(const SliceInput&)>& check,
-                        Session& session) {
+                        std::string& field, const Plane& plane,
+                        const std::function<void(const SliceInput&)>& check, Session& session) {
   SliceInput result;
   result.name = input.path;
   StoreInput store;
   store.path = volume.path = input.path;
+  if (origin == SampleOrigin::kVolume && volume.array.empty() && is_aslant_image(input.path)) {
+    volume.array = std::exchange(field, {});
+  }
   SampleSlab slab = origin == SampleOrigin::kStore
                         ? store_slab(store, plane, session)
                         : volume_slab(open_volume_input(volume, session), plane, session);

@@ -11,8 +11,10 @@
 #include "core/io/input_file.h"
 #include "core/io/meta_image_fields.h"
 #include "core/io/nrrd_header.h"
+#include "core/io/number_list.h"
 #include "core/io/volume_format.h"
 #include "core/io/volume_stack.h"
+#include "core/io/xml_tags.h"
 #include "isosurface/storage/page_grid.h"
 
 namespace adamas {
@@ -118,6 +120,24 @@ bool has_one_array(const std::string& path) {
   const std::string channels =
       parse_meta_image_fields(read_beginning(path), path).value("ElementNumberOfChannels");
   return channels.empty() || channels == "1";
+}
+
+bool is_aslant_image(const std::string& path) {
+  if (file_extension(path) != ".vti") return false;
+  const std::string text = read_beginning(path);
+  XmlTags tags(text, path);
+  while (const auto tag = tags.next()) {
+    if (tag->name != "ImageData") continue;
+    const auto numbers = parse_number_list<double>(tag->value("Direction"));
+    if (!numbers || numbers->size() != 9) return false;
+    // A row, and so a column, with two numbers.
+    for (std::size_t row = 0; row < 3; ++row) {
+      const auto begin = numbers->begin() + 3 * static_cast<std::ptrdiff_t>(row);
+      if (std::count(begin, begin + 3, 0.0) < 2) return true;
+    }
+    return false;
+  }
+  return false;
 }
 
 void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {

@@ -32,6 +32,10 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session);
 /// and, of NRRD, its header.
 bool has_one_array(const std::string& path);
 
+/// Whether a .vti says that its axes are not parallel to x, y and z, so that it is no grid laid out along
+/// these.
+bool is_aslant_image(const std::string& path);
+
 /// Throws Error where a volume has more samples along an axis than pages can be made of.
 void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
 

@@ -72,7 +72,11 @@ std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput v
   volume.path = path;
   if (!volume.option().empty() || is(".h5") || is(".hdf5") || is(".he5"))
     return open_volume_input(volume, session);
-  if (!input.grid_option().empty() || !(is(".nii") || is(".nii.gz"))) return {};
+  if (!input.grid_option().empty()) return {};
+  const bool pair = is(".hdr") || is(".hdr.gz") || is(".img") || is(".img.gz");
+  // Pictures of high dynamic range end in .hdr too.
+  if (pair && !read_beginning(path).starts_with("#?")) return open_volume_input(volume, session);
+  if (!(is(".nii") || is(".nii.gz"))) return {};
   // One of colours is no volume.
   if (!NiftiHeader::parse(read_nifti_header(path), path).type()) return {};
   return open_volume_input(volume, session);

@@ -1,5 +1,6 @@
 // Volumes whose axes are turned, mirrored, exchanged or aslant: every output is where the header says.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -304,6 +305,38 @@ TEST_F(VolumePlaces, TheSameFilesForInfoSliceAndStore) {
   expect_wrong_usage({"slice", "a.adm", "--plane", "z=8", "--type", "uint8", "-o", "x.png"},
                      {"--type: expected a volume as INPUT, found a.adm"});
   expect_wrong_usage(with({"info", "a.raw", "--cells"}), {"--dimensions and --cells: expected one of them"});
+  // One of several times.
+  write_ball("t.nii", affines()[0]);
+  std::string times = read("t.nii");
+  times.replace(40, 2, raw(std::int16_t{4}));
+  times.replace(48, 2, raw(std::int16_t{2}));
+  write("t.nii", times + std::string(times.size() - 352, '\0'));
+  for (const char* command : {"info", "store", "slice"}) {
+    const auto at = [&](const char* time) {
+      std::vector<std::string> all{command, "t.nii", "--time", time, "--json", "t.json"};
+      if (all[0] == "store") all.insert(all.end(), {"-o", "t.adm"});
+      if (all[0] == "slice") all.insert(all.end(), {"--plane", "z=8", "-o", "t.vtp"});
+      return all;
+    };
+    run_well(at("0"));
+    run_well(at("1"));
+    expect_failure(at("2"), {"t.nii: expected a time from 0 to 1, found 2"});
+    auto none = at("0");
+    none.erase(none.begin() + 2, none.begin() + 4);
+    expect_failure(none, {"t.nii: expected one time, or which of them by --time (0 to 1), found 2 times"});
+  }
+  run_well({"info", "t.nii", "--time", "1", "--json", "t.json"});
+  EXPECT_EQ(read_json("t.json").at("arrays")[0].at("max"), 0.0);
+  run_well({"info", "t.adm", "--json", "t.json"});
+  EXPECT_EQ(read_json("t.json").at("max"), 0.0);
+  // An image of VTK whose axes run aslant.
+  write_ball("v.nii", affines()[4]);
+  run_well({"store", "v.nii", "-o", "v.adm"});
+  EXPECT_EQ(run({"restore", "v.adm", "-o", "v.vti"}).status, 0);
+  run_well({"slice", "v.vti", "--plane", "z=8", "-o", "a.vtp", "--json", "a.json"});
+  run_well({"slice", "v.vti", "--plane", "z=8", "--field", "samples", "-o", "b.vtp"});
+  EXPECT_EQ(read("a.vtp"), read("b.vtp"));
+  EXPECT_NEAR(read_json("a.json").at("area").get<double>(), 14.5 * 12.5, 1e-4);
   // Plain scalars of any grid, on cells too, and vectors by a component.
   make_scene("sphere", 6);
   write("s.vtk",
