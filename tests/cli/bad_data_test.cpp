@@ -70,7 +70,13 @@ TEST_F(BadData, AFolder) { expect_refused({"."}, {".", "expected", "found"}); }
 
 TEST_F(BadData, NoMaterial) {
   write_image("a.nrrd", 4, [](std::size_t i) { return static_cast<float>(i) + 0.5f; });
-  expect_refused({"a.nrrd"}, {"a.nrrd", "expected", "Volume Fraction", "found"});
+  const std::vector<std::string> parts{"a.nrrd", "expected", "Volume Fraction", "found"};
+  expect_failure({"resample", "a.nrrd", "-o", "m.vtu"}, parts);
+  expect_failure({"reconstruct", "a.nrrd", "-o", "r.vtp"}, parts);
+  expect_failure({"probe", "a.nrrd", "--point", "1,1,1", "-o", "p.csv"}, parts);
+  // A slice shows plain values too, but not where materials are asked for.
+  run_well({"slice", "a.nrrd", "--plane", "x=1", "-o", "s.png"});
+  expect_failure({"slice", "a.nrrd", "--rest", "b", "--plane", "x=1", "-o", "s2.png"}, parts);
 }
 
 TEST_F(BadData, UnknownArrays) {
