@@ -64,7 +64,7 @@ void append_command(const CLI::App& command, const std::string& name, std::strin
 }
 
 std::string man_page(const CLI::App& app) {
-  std::string page = std::string(".TH ADAMAS 1 \"\" \"adamas ") + kVersion + "\" \"User Commands\"\n";
+  std::string page = std::string(".TH ADAMAS 1 \"\" \"adamas ") + kVersion + "\" \"User Commands\"\n.ad l\n";
   page += ".SH NAME\nadamas \\- " + roff(app.get_description()) + "\n";
   page += ".SH SYNOPSIS\n.B adamas\n.I COMMAND\n[\n.I INPUT\n\\&... ] [\n.I options\n]\n";
   page += ".SH DESCRIPTION\n" +
