@@ -13,7 +13,7 @@
 
 namespace {
 
-enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130 };
+enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2, kIncomplete = 3, kInterrupted = 130 };
 
 /// One line on stderr, whatever the text.
 void complain(std::string text) {
@@ -36,7 +36,7 @@ int run(CLI::App& app, adamas::Session& session, int argc, char** argv) {
     session.run();
     session.console.clear();
     session.console.flush();
-    return kDone;
+    return session.console.damage_noted() ? kIncomplete : kDone;
   } catch (const CLI::Success& e) {
     const int status = app.exit(e);
     session.console.flush();
