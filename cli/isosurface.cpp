@@ -74,7 +74,7 @@ SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
 }
 
 /// Adds a surface for one isovalue to those before.
-void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isovalue, bool several,
+void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isovalue,
             TriangleSurface& surface) {
   const auto first = surface.points.size();
   if (first + from.contour.points.size() > ~std::uint32_t{0})
@@ -85,7 +85,7 @@ void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isov
     for (std::uint32_t& p : triangle) p += static_cast<std::uint32_t>(first);
     surface.triangles.push_back(triangle);
   }
-  if (several) surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
+  surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
 
 /// Throws where a surface cannot be: in a region outside of the data, or without cells.
@@ -106,12 +106,11 @@ void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRe
   }
 }
 
-/// A surface; errors name the store.
-template <class Sample>
-ExtractedSurface extract(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,
-                         const std::string& name, Console& console) {
+/// Calls `work`, whose errors name the store.
+template <class Work>
+auto naming(const std::string& name, Work&& work) {
   try {
-    return extractor.extract(request, console);
+    return work();
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& e) {
@@ -125,7 +124,8 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   Console& console = session.console;
   const VolumeGrid& grid = file.header().grid;
   SurfaceRequest request = request_of(options, grid);
-  check_data(options.input.path, grid, request);
+  const std::string& name = options.input.path;
+  check_data(name, grid, request);
   StoredPages<OrderedWord<Sample>> pages(file, 0, store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;
@@ -136,12 +136,14 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   for (const double isovalue : isovalues) {
     request.isovalue = isovalue;
     request.others_follow = ends.size() + 1 < isovalues.size();
-    const ExtractedSurface found = extract(extractor, request, options.input.path, console);
-    std::vector<Vec3> normals;
-    if (!options.no_normals && !options.output.empty())
-      normals = surface_normals<Sample>(pages, found.contour, console);
+    const ExtractedSurface found = naming(name, [&] { return extractor.extract(request, console); });
     figures.add(request, found, extractor.range());
-    append(found, std::move(normals), isovalue, isovalues.size() > 1, surface);
+    SurfaceNormals normals;
+    if (!options.no_normals && !options.output.empty()) {
+      normals = surface_normals<Sample>(pages, found.contour, console);
+      naming(name, [&] { figures.add_normals(request, found, normals.lost); });
+    }
+    append(found, std::move(normals.normals), isovalue, surface);
     ends.push_back(surface.triangles.size());
   }
   session.outputs.write(options.output, [&](const auto& path) { write_surface(path, surface, console); });

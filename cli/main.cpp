@@ -14,7 +14,7 @@
 
 namespace {
 
-using adamas::kDone, adamas::kFailed, adamas::kInterrupted, adamas::kWrongUsage;
+using adamas::kDone, adamas::kFailed, adamas::kIncomplete, adamas::kInterrupted, adamas::kWrongUsage;
 
 /// One line on stderr, whatever the text.
 void complain(std::string text) {
@@ -37,7 +37,7 @@ int run(CLI::App& app, adamas::Session& session, int argc, char** argv) {
     session.run();
     session.console.clear();
     session.console.flush();
-    return kDone;
+    return session.console.damage_noted() ? kIncomplete : kDone;
   } catch (const CLI::Success& e) {
     const int status = app.exit(e);
     session.console.flush();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "cli/interrupt.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 
@@ -70,7 +69,6 @@ void OutputSet::declare(const std::string& option, const std::string& path,
     fail("{}: expected the name of a plain file, found something else there", path);
   }
   files_.push_back({option, std::make_unique<OutputFile>(path)});
-  remove_at_abrupt_end(files_.back().file->temporary());
 }
 
 OutputFile* OutputSet::find(const std::string& path) const {

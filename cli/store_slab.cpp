@@ -57,7 +57,7 @@ MultiMaterialData store_slab(const StoreInput& input, const Plane& plane, Sessio
     if (n < 2) fail("{}: expected two samples or more along each axis, found {}", input.path, n);
   }
   if (part.level > 0)
-    session.console.note("the section is of every {}th sample along each axis", 1 << part.level);
+    session.console.note("the section is of one sample in {} along each axis", 1 << part.level);
   MultiMaterialData data;
   data.source = input.path;
   data.grid = nodes_of(part.grid);

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <atomic>
 #include <system_error>
 
 #include "core/base/error.h"
@@ -11,14 +10,11 @@ namespace adamas {
 
 namespace {
 
-/// A short name: the file's own may be as long as names can be, and outputs of outputs nest. The number tells
-/// those of one process apart.
-std::string temporary_name(const std::filesystem::path& path) {
-  static std::atomic<unsigned> count = 0;
+/// A short name: the file's own may be as long as names can be, and outputs of outputs nest.
+std::filesystem::path temporary_name(const PartialNames& names, const std::filesystem::path& path) {
   constexpr std::size_t kLongestExtension = 32;
   const std::string extension = path.extension().string();
-  return ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++) +
-         (extension.size() <= kLongestExtension ? extension : "");
+  return names.next(extension.size() <= kLongestExtension ? extension : "");
 }
 
 }  // namespace
@@ -34,7 +30,13 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (::access(folder.c_str(), W_OK) != 0) {
     fail("{}: expected a writable output folder, found {} read-only", path_.string(), folder.string());
   }
-  temporary_ = folder / temporary_name(path_);
+  try {
+    names_ = PartialNames::in(folder);
+  } catch (const std::system_error& error) {
+    fail("{}: expected a writable output folder, found that files cannot be made in {}: {}", path_.string(),
+         folder.string(), error.code().message());
+  }
+  temporary_ = temporary_name(*names_, path_);
 }
 
 OutputFile::~OutputFile() {

@@ -16,6 +16,8 @@
 #include <cstring>
 #include <thread>
 
+#include "core/base/abrupt_end.h"
+
 namespace adamas {
 
 namespace {
@@ -94,7 +96,7 @@ struct ChildSetup {
   if (::getppid() != setup.parent) ::_exit(kNotStarted);
   struct sigaction standard {};
   standard.sa_handler = SIG_DFL;
-  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ, SIGALRM})
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXFSZ, SIGALRM})
     ::sigaction(number, &standard, nullptr);
   for (int stream = 0; stream < 3; ++stream) ::dup2(setup.streams[static_cast<std::size_t>(stream)], stream);
   ::setrlimit(RLIMIT_CORE, &setup.core);
@@ -108,7 +110,7 @@ struct ChildSetup {
 /// Ends the child and all it has started, whichever way this scope is left.
 class ChildGuard {
  public:
-  explicit ChildGuard(pid_t child) : child_(child) { ::setpgid(child, child); }
+  explicit ChildGuard(pid_t child) : child_(child), at_abrupt_end_(child) { ::setpgid(child, child); }
   ~ChildGuard() {
     ::kill(-child_, SIGKILL);
     if (!ended_) wait(0);
@@ -128,6 +130,7 @@ class ChildGuard {
 
  private:
   pid_t child_;
+  EndedAtAbruptEnd at_abrupt_end_;
   int status_ = 0;
   bool ended_ = false;
 };

@@ -1,13 +1,13 @@
 #include "isosurface/contour/contour_clip.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/lattice/diamond.h"
 #include "isosurface/contour/point_between.h"
@@ -25,38 +25,79 @@ BorderPoint as_mean(const Contour& contour, std::uint32_t point) {
   return {{p.first, p.second, p.first, p.first}, {1 - p.parameter, p.parameter, 0, 0}};
 }
 
-/// The mean of two points of one tetrahedron.
+/// The mean of two points of one tetrahedron. Where a neighbour has become one of them, there may be other
+/// vertices too: the four that matter most are kept.
 BorderPoint between(const BorderPoint& a, const BorderPoint& b, double t) {
-  BorderPoint result;
+  std::array<std::pair<double, LatticePoint>, 8> parts;
   std::size_t count = 0;
   const auto add = [&](const BorderPoint& p, double weight) {
     for (std::size_t v = 0; v < 4; ++v) {
       if (p.weights[v] == 0) continue;
-      const auto begin = result.vertices.begin(), end = begin + static_cast<std::ptrdiff_t>(count);
-      const auto place = static_cast<std::size_t>(std::find(begin, end, p.vertices[v]) - begin);
-      ADAMAS_ASSERT(place < 4);
-      if (place == count) result.vertices[count++] = p.vertices[v];
-      result.weights[place] += weight * p.weights[v];
+      std::size_t place = 0;
+      while (place < count && parts[place].second != p.vertices[v]) ++place;
+      if (place == count) parts[count++] = {0, p.vertices[v]};
+      parts[place].first += weight * p.weights[v];
     }
   };
   add(a, 1 - t);
   add(b, t);
+  double total = 1;
+  if (count > 4) {
+    std::stable_sort(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](const auto& x, const auto& y) { return x.first > y.first; });
+    count = 4;
+    total = parts[0].first + parts[1].first + parts[2].first + parts[3].first;
+  }
+  BorderPoint result;
+  for (std::size_t v = 0; v < count; ++v) {
+    result.vertices[v] = parts[v].second;
+    result.weights[v] = parts[v].first / total;
+  }
   return result;
 }
 
 /// The part of a contour before (beyond = 1) or behind (beyond = -1) a plane across an axis.
 class PlaneClip {
  public:
-  PlaneClip(Contour& contour, int axis, double plane, int beyond)
-      : contour_(contour), axis_(axis), plane_(plane), beyond_(beyond) {}
+  /// `tolerance`: how near places along each axis count as one.
+  PlaneClip(Contour& contour, int axis, double plane, int beyond, const Vec3& tolerance)
+      : contour_(contour), axis_(axis), plane_(plane), beyond_(beyond), tolerance_(tolerance) {}
 
   void run() {
+    if (tolerance_[axis_] > 0) move_near_points();
     std::vector<std::array<std::uint32_t, 3>> triangles;
     triangles.swap(contour_.triangles);
     for (const auto& triangle : triangles) clip(triangle);
+    if (!merged_.empty()) merge();
   }
 
  private:
+  using Polygon = SmallList<std::uint32_t, 4>;
+
+  /// Puts points near the plane into it. They are no longer on edges.
+  void move_near_points() {
+    const std::size_t edge_count = contour_.edge_points.size(), count = contour_.points.size();
+    std::unordered_map<std::uint32_t, std::uint32_t> moved;
+    for (std::size_t p = 0; p < count; ++p) {
+      Vec3 point = contour_.points[p];
+      if (point[axis_] == plane_ || !(std::abs(point[axis_] - plane_) <= tolerance_[axis_])) continue;
+      point[axis_] = plane_;
+      if (p >= edge_count) {
+        contour_.points[p] = point;
+      } else {
+        const auto number = static_cast<std::uint32_t>(p);
+        moved.emplace(number, add(point, as_mean(contour_, number)));
+      }
+    }
+    if (moved.empty()) return;
+    for (auto& triangle : contour_.triangles) {
+      for (std::uint32_t& p : triangle) {
+        const auto found = moved.find(p);
+        if (found != moved.end()) p = found->second;
+      }
+    }
+  }
+
   /// -1 inside, 0 on the plane, 1 beyond it.
   [[nodiscard]] int side(std::uint32_t point) const {
     const double x = contour_.points[point][axis_];
@@ -66,15 +107,16 @@ class PlaneClip {
   void clip(const std::array<std::uint32_t, 3>& triangle) {
     const std::array<int, 3> sides{side(triangle[0]), side(triangle[1]), side(triangle[2])};
     const auto [least, greatest] = std::minmax_element(sides.begin(), sides.end());
-    if (*greatest <= 0) contour_.triangles.push_back(triangle);
-    // What only touches the plane from beyond has no part inside.
-    if (*greatest <= 0 || *least >= 0) return;
-    SmallList<std::uint32_t, 4> polygon;
+    Polygon polygon;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t next = (c + 1) % 3;
       if (sides[c] <= 0) polygon.push_back(triangle[c]);
-      if (sides[c] * sides[next] < 0) polygon.push_back(cut(triangle[c], triangle[next]));
+      if (*greatest > 0 && *least < 0 && sides[c] * sides[next] < 0)
+        polygon.push_back(cut(triangle[c], triangle[next]));
     }
+    // What only touches the plane from beyond has no part inside.
+    if (*greatest > 0 && *least >= 0) return;
+    if (*greatest >= 0 && tolerance_[axis_] > 0) note_near_points(polygon);
     for (std::size_t c = 2; c < polygon.size(); ++c)
       contour_.triangles.push_back({polygon[0], polygon[c - 1], polygon[c]});
   }
@@ -84,24 +126,57 @@ class PlaneClip {
     if (b < a) std::swap(a, b);
     const auto [entry, is_new] = cuts_.try_emplace(std::uint64_t{a} << 32 | b, kNone);
     if (is_new) {
-      if (contour_.points.size() >= kNone)
-        fail("a contour has more than 2^32 - 1 points at the data's border");
-      entry->second = static_cast<std::uint32_t>(contour_.points.size());
       const Vec3 p = contour_.points[a], q = contour_.points[b];
       const double t = (plane_ - p[axis_]) / (q[axis_] - p[axis_]);
       Vec3 point = point_between(p, q, t);
       point[axis_] = plane_;
-      contour_.border_points.push_back(between(as_mean(contour_, a), as_mean(contour_, b), t));
-      contour_.points.push_back(point);
+      entry->second = add(point, between(as_mean(contour_, a), as_mean(contour_, b), t));
     }
     return entry->second;
+  }
+
+  std::uint32_t add(const Vec3& point, const BorderPoint& border_point) {
+    if (contour_.points.size() >= kNone) fail("a contour has more than 2^32 - 1 points at the data's border");
+    contour_.border_points.push_back(border_point);
+    contour_.points.push_back(point);
+    return static_cast<std::uint32_t>(contour_.points.size() - 1);
+  }
+
+  /// Neighbours in the plane become one point where they are near each other.
+  void note_near_points(const Polygon& polygon) {
+    for (std::size_t c = 0; c < polygon.size(); ++c) {
+      const std::uint32_t a = polygon[c], b = polygon[(c + 1) % polygon.size()];
+      if (contour_.points[a][axis_] != plane_ || contour_.points[b][axis_] != plane_) continue;
+      const Vec3 way = contour_.points[b] - contour_.points[a];
+      bool is_near = true;
+      for (int axis = 0; axis < 3; ++axis) is_near = is_near && std::abs(way[axis]) <= tolerance_[axis];
+      const std::uint32_t first = std::min(kept(a), kept(b)), second = std::max(kept(a), kept(b));
+      if (is_near && first != second) merged_[second] = first;
+    }
+  }
+
+  /// The point that one has become.
+  [[nodiscard]] std::uint32_t kept(std::uint32_t point) const {
+    for (auto found = merged_.find(point); found != merged_.end(); found = merged_.find(point))
+      point = found->second;
+    return point;
+  }
+
+  void merge() {
+    for (auto& triangle : contour_.triangles) {
+      for (std::uint32_t& p : triangle) p = kept(p);
+    }
+    std::erase_if(contour_.triangles,
+                  [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   }
 
   Contour& contour_;
   int axis_;
   double plane_;
   int beyond_;
-  std::unordered_map<std::uint64_t, std::uint32_t> cuts_;  ///< by the two points of an edge
+  Vec3 tolerance_;
+  std::unordered_map<std::uint64_t, std::uint32_t> cuts_;    ///< by the two points of an edge
+  std::unordered_map<std::uint32_t, std::uint32_t> merged_;  ///< points to lesser ones
 };
 
 /// Keeps the points of triangles, in their order.
@@ -129,16 +204,30 @@ void remove_unused_points(Contour& contour) {
   contour = std::move(kept);
 }
 
+/// How near places along an axis count as one: some units in the last place of single precision, which is
+/// what surfaces are written with, but more than double precision rounds places of samples by.
+double tolerance_at(double place, double spacing) {
+  return std::clamp(std::ldexp(std::abs(place), -21), std::ldexp(spacing, -30), std::ldexp(spacing, -13));
+}
+
+Vec3 tolerance_in(const Box3& box, const Vec3& spacing) {
+  Vec3 result;
+  for (int axis = 0; axis < 3; ++axis)
+    result[axis] = tolerance_at(std::max(std::abs(box.min[axis]), std::abs(box.max[axis])), spacing[axis]);
+  return result;
+}
+
 }  // namespace
 
-void clip_contour(Contour& contour, const Box3& box) {
+void clip_contour(Contour& contour, const Box3& box, const Vec3& spacing) {
+  const Vec3 tolerance = tolerance_in(box, spacing);
   bool clipped = false;
   for (int axis = 0; axis < 3; ++axis) {
     for (const int beyond : {1, -1}) {
       const double plane = beyond > 0 ? box.max[axis] : box.min[axis];
       const auto outside = [&](const Vec3& p) { return beyond * p[axis] > beyond * plane; };
       if (std::none_of(contour.points.begin(), contour.points.end(), outside)) continue;
-      PlaneClip(contour, axis, plane, beyond).run();
+      PlaneClip(contour, axis, plane, beyond, tolerance).run();
       clipped = true;
     }
   }
