@@ -23,7 +23,10 @@ void add_common_options(CLI::App& command, Session& session) {
   command.add_option("--threads", session.threads, "Number of threads (default: all cores)")
       ->type_name("N")
       ->group("Common");
-  command.add_flag("--quiet,-q", session.console.quiet, "Print nothing but errors")->group("Common");
+  command
+      .add_flag("--quiet,-q", session.console.quiet,
+                "Print nothing but errors and what is missing of a damaged input")
+      ->group("Common");
   command.add_flag("--verbose,-v", session.console.verbose, "Print a line per stage of the work")
       ->group("Common");
   CLI::Option* config = root_of(command).get_config_ptr();

@@ -29,6 +29,13 @@ class Console final : public Progress {
   void note(fmt::format_string<Args...> format, Args&&... args) {
     if (!quiet) write_note(fmt::format(format, std::forward<Args>(args)...));
   }
+  /// What a result lacks since the input is damaged: a note whatever `quiet` says, and another exit status.
+  template <class... Args>
+  void note_damage(fmt::format_string<Args...> format, Args&&... args) {
+    write_note(fmt::format(format, std::forward<Args>(args)...));
+    damage_noted_ = true;
+  }
+  [[nodiscard]] bool damage_noted() const { return damage_noted_; }
   /// Columns of text, the first one to the left and the others to the right.
   void table(const std::vector<std::vector<std::string>>& rows);
   /// To stdout, whatever `quiet` says.
@@ -49,7 +56,7 @@ class Console final : public Progress {
 
   Clock::time_point start_ = Clock::now(), drawn_{};
   std::string stage_;
-  bool bar_ = false;
+  bool bar_ = false, damage_noted_ = false;
 };
 
 }  // namespace adamas

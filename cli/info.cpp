@@ -12,6 +12,7 @@
 #include "cli/given_interfaces.h"
 #include "cli/grid_summary.h"
 #include "cli/input_options.h"
+#include "cli/network_figures.h"
 #include "cli/store_input.h"
 #include "cli/store_summary.h"
 #include "cli/usage_error.h"
@@ -140,16 +141,7 @@ void print_resampled(const ResampledMesh& mesh, Console& console, Figures& figur
 void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures) {
   figures["materials"] = Figures::array();
   for (const std::string& name : mesh.materials) figures["materials"].push_back({{"name", name}});
-  std::map<std::pair<MaterialId, MaterialId>, std::size_t> counts;
-  for (const InterfaceTriangle& t : mesh.triangles) ++counts[std::minmax(t.front, t.back)];
-  figures["interfaces"] = Figures::array();
-  Rows rows{{"interface", "triangles"}};
-  for (const auto& [pair, count] : counts) {
-    const std::string &a = mesh.materials[pair.first], &b = mesh.materials[pair.second];
-    rows.push_back({a + " | " + b, std::to_string(count)});
-    figures["interfaces"].push_back({{"materials", {a, b}}, {"triangles", count}});
-  }
-  console.table(rows);
+  figures["interfaces"] = print_interfaces(mesh, console);
   InterfaceMeshReport report;
   try {
     report = check_interface_mesh(mesh, nullptr, {true, true});
@@ -222,8 +214,10 @@ void check_options(const Options& all) {
   }
 }
 
-void run(const Options& all, Session& session) {
+void run(const Options& given, Session& session) {
+  const Options all{with_main_file(given.input), given.volume};
   const InputOptions& options = all.input;
+  if (options.path.empty()) wrong_usage("expected a FILE, or files in --fraction or --labels, found neither");
   protect_inputs(options, options.path, session.outputs);
   check_options(all);
   if (!all.volume.stack) check_input_file(options.path);
@@ -261,7 +255,6 @@ void add_info(CLI::App& app, Session& session) {
                    std::string("Any file that can be read: ") + kGridFiles +
                        ", a mesh (.vtu), interfaces (.vtp, .arec, .txt), a surface "
                        "(.obj, .off, .ply, .stl) or a store (.adm)")
-      ->required()
       ->type_name("FILE");
   add_material_options(*command, options->input);
   command

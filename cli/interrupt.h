@@ -1,20 +1,14 @@
 #pragma once
 
-#include <filesystem>
-
 namespace adamas {
 
-/// From here on the first SIGINT or SIGTERM only sets a flag, the second ends the program at once, and
-/// writing to a closed pipe or beyond the limit of a file's size is an error instead of the end.
+/// From here on the first SIGINT, SIGTERM, SIGHUP or SIGQUIT only sets a flag, and the second ends the
+/// program at once, with what it would leave behind (core/base/abrupt_end.h). Those that whoever started the
+/// program has it ignore stay ignored. Writing to a closed pipe or beyond the limit of a file's size is an
+/// error instead of the end.
 void catch_signals();
 
 /// Whether one of them has come.
 bool interrupted();
-
-/// A temporary file that a second signal removes, since no destructor will; with it what its writers have
-/// beside it, which is called alike up to a number.
-void remove_at_abrupt_end(const std::filesystem::path& temporary);
-/// The same for a temporary folder and the files in it.
-void remove_folder_at_abrupt_end(const std::filesystem::path& temporary);
 
 }  // namespace adamas

@@ -29,26 +29,23 @@ namespace {
 struct Options {
   StoreInput input;
   std::vector<std::string> isovalues;
-  std::string error, max_triangles, region, output, picture, direction = "-0.62,0.72,-0.42";
+  std::string error, max_triangles, region, output;
+  PictureOptions picture;
   bool no_normals = false, strict = false;
 };
 
 /// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
 /// diagonal.
 double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
-  std::string_view number = text;
+  const auto in_voxels = before_voxels(text);
+  std::string_view number = in_voxels ? *in_voxels : text;
   double unit = 1;
-  for (const char* name : {"voxels", "voxel", "v"}) {
-    if (!number.ends_with(name)) continue;
-    number.remove_suffix(std::string_view(name).size());
+  if (in_voxels) {
     unit = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-    break;
-  }
-  if (number.size() == text.size() && number.ends_with('%')) {
+  } else if (number.ends_with('%')) {
     number.remove_suffix(1);
     unit = grid.frame_box().diagonal() / 100;
   }
-  while (number.ends_with(' ')) number.remove_suffix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (code != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || value < 0)
@@ -88,14 +85,8 @@ SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
   return request;
 }
 
-Vec3 parse_direction(const Options& options) {
-  const Vec3 direction = parse_vector("--direction", options.direction);
-  if (!(squared_norm(direction) > 0)) wrong_usage("--direction: expected a vector with a length, found 0");
-  return direction;
-}
-
 /// Adds a surface for one isovalue to those before.
-void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isovalue, bool several,
+void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isovalue,
             TriangleSurface& surface) {
   const auto first = surface.points.size();
   if (first + from.contour.points.size() > ~std::uint32_t{0})
@@ -106,7 +97,7 @@ void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isov
     for (std::uint32_t& p : triangle) p += static_cast<std::uint32_t>(first);
     surface.triangles.push_back(triangle);
   }
-  if (several) surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
+  surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
 
 /// Throws where a surface cannot be: in a region outside of the data, or without cells.
@@ -128,12 +119,11 @@ void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRe
   }
 }
 
-/// A surface; errors name the store.
-template <class Sample>
-ExtractedSurface extract(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,
-                         const std::string& name, Console& console) {
+/// Calls `work`, whose errors name the store.
+template <class Work>
+auto naming(const std::string& name, Work&& work) {
   try {
-    return extractor.extract(request, console);
+    return work();
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& e) {
@@ -147,7 +137,8 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   Console& console = session.console;
   const VolumeGrid& grid = file.header().grid;
   SurfaceRequest request = request_of(options, grid);
-  check_data(options.input.path, grid, request, wanted_region(options));
+  const std::string& name = options.input.path;
+  check_data(name, grid, request, wanted_region(options));
   StoredPages<OrderedWord<Sample>> pages(file, 0, store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;
@@ -158,31 +149,33 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   for (const double isovalue : isovalues) {
     request.isovalue = isovalue;
     request.others_follow = ends.size() + 1 < isovalues.size();
-    const ExtractedSurface found = extract(extractor, request, options.input.path, console);
-    std::vector<Vec3> normals;
-    if (!options.no_normals && !options.output.empty())
-      normals = surface_normals<Sample>(pages, found.contour, console);
+    const ExtractedSurface found = naming(name, [&] { return extractor.extract(request, console); });
     figures.add(request, found, extractor.range());
-    append(found, std::move(normals), isovalue, isovalues.size() > 1, surface);
+    SurfaceNormals normals;
+    if (!options.no_normals && !options.output.empty()) {
+      normals = surface_normals<Sample>(pages, found.contour, console);
+      naming(name, [&] { figures.add_normals(request, found, normals.lost); });
+    }
+    append(found, std::move(normals.normals), isovalue, surface);
     ends.push_back(surface.triangles.size());
   }
   place_in_space(grid, surface);
   session.outputs.write(options.output, [&](const auto& path) { write_surface(path, surface, console); });
-  if (!options.picture.empty()) console.step("drawing", -1);
-  session.outputs.write(options.picture, [&](const auto& path) {
+  if (!options.picture.file.empty()) console.step("drawing", -1);
+  session.outputs.write(options.picture.file, [&](const auto& path) {
     write_isosurface_picture(path, surface, ends, isovalues, wanted_region(options).value_or(grid.box()),
-                             parse_direction(options));
+                             options.picture);
   });
   figures.report(surface, pages.counts());
 }
 
 void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".ply", ".stl", ".obj", ".vtp", ".glb", ".gltf"});
-  session.outputs.declare("--picture", options.picture, {".png", ".svg", ".pdf"});
-  if (options.output.empty() && options.picture.empty() && session.json.empty())
+  session.outputs.declare("--picture", options.picture.file, {".png", ".svg", ".pdf"});
+  if (options.output.empty() && options.picture.file.empty() && session.json.empty())
     wrong_usage("expected -o, --picture or --json, found no output");
   parse_isovalues(options.isovalues);
-  parse_direction(options);
+  options.picture.check();
   store_memory(options.input);
   VolumeGrid any;
   any.dimensions = {1, 1, 1};
@@ -223,11 +216,7 @@ void add_isosurface(CLI::App& app, Session& session) {
   command->add_flag("--strict", options->strict, "Stop at damaged pages, instead of going on coarser there");
   command->add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")
       ->type_name("FILE");
-  command->add_option("--picture", options->picture, "A picture of it: .png, .svg or .pdf")
-      ->type_name("FILE");
-  command->add_option("--direction", options->direction, "The way that the picture's camera looks")
-      ->type_name("x,y,z")
-      ->capture_default_str();
+  add_picture_options(*command, options->picture, "it");
 }
 
 }  // namespace adamas

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/store_input.h"
+#include "core/base/error.h"
 
 namespace adamas {
 
@@ -18,6 +19,10 @@ std::string reason_for_none(const SurfaceRequest& request, const std::array<doub
   const std::string where = request.region ? "nothing of it is in the region" : "";
   if (request.error == 0) return where;
   return (where.empty() ? "" : where + ", or ") + "it is smaller than the error";
+}
+
+std::string damaged_pages(std::size_t count) {
+  return fmt::format("{} damaged page{}", count, count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -38,9 +43,22 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
                  stretch_ * request.error);
   }
   if (!surface.lost.empty()) {
-    console.note("{} damaged page{}: the surface at isovalue {:.6g} is coarser there", surface.lost.size(),
-                 surface.lost.size() == 1 ? "" : "s", request.isovalue);
+    console.note_damage("{}: the surface at isovalue {:.6g} is coarser there",
+                        damaged_pages(surface.lost.size()), request.isovalue);
   }
+}
+
+void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
+                                    const std::vector<PageId>& lost) {
+  std::size_t count = 0;
+  for (const PageId& page : lost) {
+    if (request.strict) fail("{} is damaged, on which normals depend", page_name(page));
+    // Where the surface is coarser, so are its normals.
+    if (std::find(surface.lost.begin(), surface.lost.end(), page) == surface.lost.end()) ++count;
+  }
+  if (count == 0) return;
+  session_.console.note_damage("{}: normals of the surface at isovalue {:.6g} are less exact there",
+                               damaged_pages(count), request.isovalue);
 }
 
 void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts& counts) {

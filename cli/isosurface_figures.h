@@ -23,6 +23,9 @@ class IsosurfaceFigures {
   /// `range`: least and greatest sample of the store.
   void add(const SurfaceRequest& request, const ExtractedSurface& surface,
            const std::array<double, 2>& range);
+  /// `lost`: what the normals of the surface do without. Throws Error where the request is strict.
+  void add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
+                   const std::vector<PageId>& lost);
   void report(const TriangleSurface& surface, const PageCounts& counts);
 
  private:

@@ -7,13 +7,14 @@
 #include <string>
 
 #include "cli/command.h"
+#include "cli/exit_status.h"
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
 #include "cli/usage_message.h"
 
 namespace {
 
-enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130 };
+using adamas::kDone, adamas::kFailed, adamas::kIncomplete, adamas::kInterrupted, adamas::kWrongUsage;
 
 /// One line on stderr, whatever the text.
 void complain(std::string text) {
@@ -36,7 +37,7 @@ int run(CLI::App& app, adamas::Session& session, int argc, char** argv) {
     session.run();
     session.console.clear();
     session.console.flush();
-    return kDone;
+    return session.console.damage_noted() ? kIncomplete : kDone;
   } catch (const CLI::Success& e) {
     const int status = app.exit(e);
     session.console.flush();

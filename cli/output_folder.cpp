@@ -1,10 +1,11 @@
 #include "cli/output_folder.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <cstdio>
+#include <system_error>
 
-#include "cli/interrupt.h"
 #include "cli/output_set.h"
 #include "core/base/error.h"
 
@@ -43,11 +44,17 @@ OutputFolder::OutputFolder(fs::path path, bool overwrite, std::initializer_list<
   std::error_code code;
   if (!fs::is_directory(above, code))
     fail("{}: expected an existing folder above, found none at {}", path_.string(), above.string());
-  const fs::path temporary = path_.parent_path() / fmt::format(".partial-{}", ::getpid());
-  if (::access(above.c_str(), W_OK) != 0 || !fs::create_directory(temporary, code))
+  if (::access(above.c_str(), W_OK) != 0)
     fail("{}: expected a writable folder above, found {} read-only", path_.string(), above.string());
-  temporary_ = temporary;
-  remove_folder_at_abrupt_end(temporary_);
+  try {
+    names_ = PartialNames::in(above);
+    const fs::path temporary = names_->next("");
+    fs::create_directory(temporary);
+    temporary_ = temporary;
+  } catch (const std::system_error& error) {
+    fail("{}: expected a writable folder above, found that nothing can be made in {}: {}", path_.string(),
+         above.string(), error.code().message());
+  }
 }
 
 OutputFolder::~OutputFolder() {
@@ -67,10 +74,17 @@ void OutputFolder::fill(const std::function<void()>& work) const {
 
 void OutputFolder::commit() {
   std::error_code code;
-  const fs::path old = temporary_.string() + "-old";
   const bool replace = fs::exists(path_, code);
-  if (replace) fs::rename(path_, old, code);
-  if (!code) fs::rename(temporary_, path_, code);
+  fs::path old;
+  // At no time is there neither the old folder nor the new one, where the file system can exchange them.
+  if (replace && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0) {
+    old = temporary_;
+  } else {
+    // No temporary name: as long as the new one has no other, the next run must not remove the old one.
+    if (replace) old = path_.string() + "-replaced-by" + temporary_.filename().string();
+    if (replace) fs::rename(path_, old, code);
+    if (!code) fs::rename(temporary_, path_, code);
+  }
   if (code) fail("{}: could not be given its final name: {}", path_.string(), code.message());
   temporary_.clear();
   if (replace) fs::remove_all(old, code);

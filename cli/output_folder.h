@@ -3,12 +3,15 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <string>
+
+#include "core/base/partial_names.h"
 
 namespace adamas {
 
 /// A folder of outputs that gets its final name only when all of it is whole: write into `temporary()`, then
-/// `commit()`. Without a commit nothing is left.
+/// `commit()`. Without a commit nothing is left, if need be after the next run (PartialNames).
 class OutputFolder {
  public:
   /// `overwrite`: a folder that is there is replaced, if it holds all the files of `signs` and so was made by
@@ -30,6 +33,7 @@ class OutputFolder {
 
  private:
   std::filesystem::path path_, temporary_;
+  std::shared_ptr<PartialNames> names_;
 };
 
 }  // namespace adamas

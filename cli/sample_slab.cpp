@@ -68,7 +68,7 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
     if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
   }
   if (part.level > 0)
-    session.console.note("the section is of every {}th sample along each axis", 1 << part.level);
+    session.console.note("the section is of one sample in {} along each axis", 1 << part.level);
   MultiMaterialData data;
   data.source = name;
   data.grid = nodes_of(part, volume);

@@ -11,8 +11,12 @@ namespace adamas {
 
 SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
                            const std::string& original) {
-  const std::string option = input.grid_option(), of_volume = volume.option();
-  const bool about_grid = !option.empty() && option != "--field";
+  const std::string of_volume = volume.option();
+  std::string option = input.grid_option();
+  if (option.empty() || option == "--field") {
+    option = input.interfaces.empty() ? input.interface_option() : "--interface";
+  }
+  const bool about_grid = !option.empty();
   if (is_store(input.path)) {
     if (!original.empty())
       wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", input.path);

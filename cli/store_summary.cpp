@@ -5,23 +5,28 @@
 
 #include "cli/store_input.h"
 #include "cli/volume_places.h"
-#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/storage/sample_dispatch.h"
 
 namespace adamas {
 
 namespace {
 
-/// Least and greatest sample, as the directory has them of the coarsest page.
+/// Least and greatest sample.
 void print_range(StoreFile& file, Console& console, Figures& figures) {
-  const auto entry = file.entry(0, {file.grid().top(), {0, 0, 0}});
-  if (!entry || entry->low > entry->high) return;
   with_sample_type(file.header().grid.type, [&](auto sample) {
     using Sample = decltype(sample);
-    const double low = from_ordered<Sample>(entry->low), high = from_ordered<Sample>(entry->high);
-    console.print("  values from {:.6g} to {:.6g}\n", low, high);
-    figures["min"] = low;
-    figures["max"] = high;
+    try {
+      StoredPages<OrderedWord<Sample>> pages(file, 0, 0);
+      const auto [low, high] = StoredDiamonds<Sample>(pages).range();
+      if (low > high) return;
+      console.print("  values from {:.6g} to {:.6g}\n", low, high);
+      figures["min"] = low;
+      figures["max"] = high;
+    } catch (const PageLost& lost) {
+      console.note_damage("{}: {} is damaged, which tells the range of values", file.name(),
+                          page_name(lost.damaged));
+    }
   });
 }
 

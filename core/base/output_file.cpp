@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <atomic>
 #include <system_error>
 
 #include "core/base/error.h"
@@ -11,16 +10,13 @@ namespace adamas {
 
 namespace {
 
-/// A short name: the file's own may be as long as names can be, and outputs of outputs nest. The number tells
-/// those of one process apart.
-std::string temporary_name(const std::filesystem::path& path) {
-  static std::atomic<unsigned> count = 0;
+/// A short name: the file's own may be as long as names can be, and outputs of outputs nest.
+std::filesystem::path temporary_name(const PartialNames& names, const std::filesystem::path& path) {
   constexpr std::size_t kLongestExtension = 32;
   std::string extension = path.extension().string();
   // Those of compressed files tell what is compressed.
   if (extension == ".gz") extension = path.stem().extension().string() + extension;
-  return ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++) +
-         (extension.size() <= kLongestExtension ? extension : "");
+  return names.next(extension.size() <= kLongestExtension ? extension : "");
 }
 
 }  // namespace
@@ -36,7 +32,13 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (::access(folder.c_str(), W_OK) != 0) {
     fail("{}: expected a writable output folder, found {} read-only", path_.string(), folder.string());
   }
-  temporary_ = folder / temporary_name(path_);
+  try {
+    names_ = PartialNames::in(folder);
+  } catch (const std::system_error& error) {
+    fail("{}: expected a writable output folder, found that files cannot be made in {}: {}", path_.string(),
+         folder.string(), error.code().message());
+  }
+  temporary_ = temporary_name(*names_, path_);
 }
 
 OutputFile::~OutputFile() {
@@ -44,11 +46,15 @@ OutputFile::~OutputFile() {
   if (!committed_) std::filesystem::remove(temporary_, code);
 }
 
-void OutputFile::commit() {
+void OutputFile::publish() {
   std::error_code code;
   if (!std::filesystem::exists(temporary_, code)) fail("{}: nothing was written", path_.string());
   std::filesystem::rename(temporary_, path_, code);
   if (code) fail("{}: could not be given its final name: {}", path_.string(), code.message());
+}
+
+void OutputFile::commit() {
+  publish();
   committed_ = true;
 }
 

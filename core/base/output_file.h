@@ -1,12 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+
+#include "core/base/partial_names.h"
 
 namespace adamas {
 
 /// A file that gets its final name only when it is whole: write to `temporary()`, then `commit()`. Without a
-/// commit the temporary file is removed. The temporary name keeps the extension, since libraries choose
-/// formats by it.
+/// commit the temporary file is removed, if need be by the next run (PartialNames). The temporary name keeps
+/// the extension, since libraries choose formats by it.
 class OutputFile {
  public:
   /// Throws Error when the folder is missing or cannot be written.
@@ -19,11 +22,14 @@ class OutputFile {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Throws Error when the temporary file is missing or cannot be renamed.
   void commit();
+  /// Gives what was written so far the final name; more may be written, to take its place.
+  void publish();
 
  private:
   std::filesystem::path path_;
+  std::shared_ptr<PartialNames> names_;
   std::filesystem::path temporary_;
-  bool committed_ = false;
+  bool committed_ = false;  ///< there is no temporary file any more
 };
 
 }  // namespace adamas

@@ -79,9 +79,19 @@ rlim_t mapped_bytes() {
   return size > 0 ? std::strtoull(text.data(), nullptr, 10) * page : 0;
 }
 
-void confine(std::size_t input_bytes) {
+/// What is ignored stays ignored: nohup says so of hanging up.
+void let_signals_stop() {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    struct sigaction now {};
+    if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) ::signal(number, SIG_DFL);
+  }
+}
+
+void confine(pid_t parent, std::size_t input_bytes) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int number : {SIGALRM, SIGPIPE, SIGINT, SIGTERM}) ::signal(number, SIG_DFL);
+  if (::getppid() != parent) ::_exit(1);
+  for (const int number : {SIGALRM, SIGPIPE}) ::signal(number, SIG_DFL);
+  let_signals_stop();
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (int stream = 0; stream < 3; ++stream) ::dup2(nowhere, stream);
   limit(RLIMIT_CORE, 0);
@@ -93,9 +103,9 @@ void confine(std::size_t input_bytes) {
   ::alarm(static_cast<unsigned>(std::min<std::size_t>(20 + input_bytes / 1'000'000, 86'400)));
 }
 
-[[noreturn]] void run_child(const std::string& name, int descriptor, std::size_t input_bytes,
+[[noreturn]] void run_child(const std::string& name, pid_t parent, int descriptor, std::size_t input_bytes,
                             const std::function<void(ByteSink&)>& produce) {
-  confine(input_bytes);
+  confine(parent, input_bytes);
   ByteSink sink(descriptor);
   try {
     produce(sink);
@@ -115,7 +125,7 @@ void confine(std::size_t input_bytes) {
 [[noreturn]] void fail_stopped(const std::string& name, int status) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
-    if (number == SIGINT) throw Cancelled();
+    if (number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGQUIT) throw Cancelled();
     if (number == SIGALRM) fail("{}: expected a readable file, found none within the time limit", name);
     fail("{}: expected a readable file, found a corrupt one (its reader ended by signal {}, {})", name,
          number, ::strsignal(number));
@@ -214,7 +224,7 @@ void read_in_child(const std::string& name, std::size_t input_bytes,
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     fail("{}: no pipe for its reader: {}", name, std::strerror(errno));
   ::fcntl(ends[1], F_SETPIPE_SZ, static_cast<int>(kFrame));
-  const pid_t child = ::fork();
+  const pid_t self = ::getpid(), child = ::fork();
   if (child < 0) {
     const int reason = errno;
     ::close(ends[0]);
@@ -223,7 +233,7 @@ void read_in_child(const std::string& name, std::size_t input_bytes,
   }
   if (child == 0) {
     ::close(ends[0]);
-    run_child(name, ends[1], input_bytes, produce);
+    run_child(name, self, ends[1], input_bytes, produce);
   }
   ::close(ends[1]);
   const auto end_child = [&] {

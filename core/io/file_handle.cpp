@@ -10,24 +10,10 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/unnamed_file.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
-
-namespace {
-
-/// Opens a file that is no longer in its folder, or was never in it.
-int open_unnamed(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor >= 0) return descriptor;
-  // Some file systems cannot make files without names.
-  std::string pattern = (folder / "adamas-XXXXXX").string();
-  const int named = ::mkostemp(pattern.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(pattern.c_str());
-  return named;
-}
-
-}  // namespace
 
 FileHandle::FileHandle(int descriptor, std::string name, std::uint64_t size)
     : descriptor_(descriptor), name_(std::move(name)), size_(size) {}
@@ -47,7 +33,7 @@ std::shared_ptr<FileHandle> FileHandle::scratch(std::filesystem::path folder) {
     folder = std::filesystem::temp_directory_path(code);
     if (code) fail("expected a folder for temporary files (TMPDIR), found none: {}", code.message());
   }
-  const int descriptor = open_unnamed(folder);
+  const int descriptor = open_unnamed_file(folder);
   if (descriptor < 0) {
     fail("{}: expected a folder for temporary files that can be written: {}", folder.string(),
          std::strerror(errno));

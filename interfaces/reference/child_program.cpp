@@ -16,6 +16,8 @@
 #include <cstring>
 #include <thread>
 
+#include "core/base/abrupt_end.h"
+
 namespace adamas {
 
 namespace {
@@ -94,7 +96,7 @@ struct ChildSetup {
   if (::getppid() != setup.parent) ::_exit(kNotStarted);
   struct sigaction standard {};
   standard.sa_handler = SIG_DFL;
-  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ, SIGALRM})
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXFSZ, SIGALRM})
     ::sigaction(number, &standard, nullptr);
   for (int stream = 0; stream < 3; ++stream) ::dup2(setup.streams[static_cast<std::size_t>(stream)], stream);
   ::setrlimit(RLIMIT_CORE, &setup.core);
@@ -108,7 +110,7 @@ struct ChildSetup {
 /// Ends the child and all it has started, whichever way this scope is left.
 class ChildGuard {
  public:
-  explicit ChildGuard(pid_t child) : child_(child) { ::setpgid(child, child); }
+  explicit ChildGuard(pid_t child) : child_(child), at_abrupt_end_(child) { ::setpgid(child, child); }
   ~ChildGuard() {
     ::kill(-child_, SIGKILL);
     if (!ended_) wait(0);
@@ -128,6 +130,7 @@ class ChildGuard {
 
  private:
   pid_t child_;
+  EndedAtAbruptEnd at_abrupt_end_;
   int status_ = 0;
   bool ended_ = false;
 };
@@ -146,6 +149,11 @@ std::string last_words(const AnonymousFile& words) {
   return text.empty() ? "" : " (it said: " + text + ")";
 }
 
+std::string took_longer(const ChildLimits& limits) {
+  return fmt::format("took longer than {:.6g} s",
+                     limits.whole_seconds > 0 ? limits.whole_seconds : limits.seconds);
+}
+
 std::string failure_of(int status, const ChildLimits& limits) {
   if (WIFEXITED(status)) {
     if (WEXITSTATUS(status) == 0) return "";
@@ -153,7 +161,7 @@ std::string failure_of(int status, const ChildLimits& limits) {
     return fmt::format("ended with status {}", WEXITSTATUS(status));
   }
   const int number = WTERMSIG(status);
-  if (number == SIGXCPU) return fmt::format("took longer than {:.6g} s", limits.seconds);
+  if (number == SIGXCPU) return took_longer(limits);
   return fmt::format("was ended by signal {}, {}", number, ::strsignal(number));
 }
 
@@ -182,7 +190,7 @@ ChildResult run_child_program(const std::filesystem::path& program, const std::v
   const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
   while (!guard.wait(WNOHANG)) {
     progress.check();
-    if (Clock::now() > deadline) return {fmt::format("took longer than {:.6g} s", limits.seconds), false, {}};
+    if (Clock::now() > deadline) return {took_longer(limits), false, {}};
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   const int status = guard.status();

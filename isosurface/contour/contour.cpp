@@ -74,7 +74,7 @@ void ContourBuilder::expect(std::size_t triangles) {
 
 Contour ContourBuilder::finish() {
   if (options_.last_sample)
-    clip_contour(contour_, {domain_.box().min, domain_.position(*options_.last_sample)});
+    clip_contour(contour_, {domain_.box().min, domain_.position(*options_.last_sample)}, options_.spacing);
   return std::move(contour_);
 }
 

@@ -52,6 +52,8 @@ struct ContourOptions {
   /// The lattice point of the data's last sample, where the domain is larger than the data: the contour is
   /// clipped to the box from the origin to it.
   std::optional<LatticePoint> last_sample;
+  /// The spacing of samples in space; see clip_contour.
+  Vec3 spacing{};
 };
 
 /// Whether the tetrahedron has at most a face in the data's box.

@@ -1,6 +1,7 @@
 #include "isosurface/contour/contour_clip.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -8,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/lattice/diamond.h"
 #include "isosurface/contour/point_between.h"
@@ -26,66 +26,122 @@ BorderPoint as_mean(const Contour& contour, std::uint32_t point) {
   return {{p.first, p.second, p.first, p.first}, {1 - p.parameter, p.parameter, 0, 0}};
 }
 
-/// The mean of two points of one tetrahedron.
+/// The mean of two points of one tetrahedron. Where a neighbour has become one of them, there may be other
+/// vertices too: the four that matter most are kept.
 BorderPoint between(const BorderPoint& a, const BorderPoint& b, double t) {
-  BorderPoint result;
+  std::array<std::pair<double, LatticePoint>, 8> parts;
   std::size_t count = 0;
   const auto add = [&](const BorderPoint& p, double weight) {
     for (std::size_t v = 0; v < 4; ++v) {
       if (p.weights[v] == 0) continue;
-      const auto begin = result.vertices.begin(), end = begin + static_cast<std::ptrdiff_t>(count);
-      const auto place = static_cast<std::size_t>(std::find(begin, end, p.vertices[v]) - begin);
-      ADAMAS_ASSERT(place < 4);
-      if (place == count) result.vertices[count++] = p.vertices[v];
-      result.weights[place] += weight * p.weights[v];
+      std::size_t place = 0;
+      while (place < count && parts[place].second != p.vertices[v]) ++place;
+      if (place == count) parts[count++] = {0, p.vertices[v]};
+      parts[place].first += weight * p.weights[v];
     }
   };
   add(a, 1 - t);
   add(b, t);
+  double total = 1;
+  if (count > 4) {
+    std::stable_sort(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](const auto& x, const auto& y) { return x.first > y.first; });
+    count = 4;
+    total = parts[0].first + parts[1].first + parts[2].first + parts[3].first;
+  }
+  BorderPoint result;
+  for (std::size_t v = 0; v < count; ++v) {
+    result.vertices[v] = parts[v].second;
+    result.weights[v] = parts[v].first / total;
+  }
   return result;
 }
 
-/// A half space: what is not higher than a plane.
+/// A half space: what is not above a plane.
 class HalfSpace {
  public:
-  /// Before (beyond = 1) or behind (beyond = -1) a plane across an axis, in which cut points lie exactly.
+  /// Before (beyond = 1) or behind (beyond = -1) a plane across an axis.
   HalfSpace(int axis, double plane, int beyond) : axis_(axis), plane_(beyond * plane) {
     normal_[axis] = beyond;
   }
-  explicit HalfSpace(const Plane& plane) : normal_(plane.normal), plane_(dot(plane.normal, plane.origin)) {}
-
-  /// Above the plane.
-  [[nodiscard]] double height(const Vec3& p) const {
-    return (axis_ ? normal_[*axis_] * p[*axis_] : dot(normal_, p)) - plane_;
+  /// `tolerance`: how near places along each axis count as one.
+  HalfSpace(const Plane& plane, const Vec3& tolerance)
+      : normal_(normalized(plane.normal)), plane_(dot(normal_, plane.origin)) {
+    constexpr double kRoundOff = 1e-12;
+    near_ = kRoundOff * (norm(plane.origin) + norm(tolerance));
+    for (int a = 0; a < 3; ++a) near_ += std::abs(normal_[a]) * tolerance[a];
   }
-  /// Where a line between a point inside and one beyond cuts the plane: a part of the way.
+
+  /// Of planes across an axis.
+  [[nodiscard]] std::optional<int> axis() const { return axis_; }
+  /// Above the plane, 0 in it.
+  [[nodiscard]] double height(const Vec3& p) const {
+    if (axis_) return normal_[*axis_] * p[*axis_] - plane_;
+    const double result = dot(normal_, p) - plane_;
+    return std::abs(result) <= near_ ? 0 : result;
+  }
+  /// Where a line between points on both sides cuts the plane, as a part of the way.
   [[nodiscard]] double cut(const Vec3& p, const Vec3& q) const {
+    if (axis_) return (at() - p[*axis_]) / (q[*axis_] - p[*axis_]);
     const double from = height(p), to = height(q);
     return -from / (to - from);
   }
+  /// The point moved into a plane across an axis.
   [[nodiscard]] Vec3 on_plane(Vec3 point) const {
-    if (axis_) point[*axis_] = normal_[*axis_] * plane_;
+    if (axis_) point[*axis_] = at();
     return point;
   }
 
  private:
+  [[nodiscard]] double at() const { return normal_[*axis_] * plane_; }
+
   std::optional<int> axis_;
   Vec3 normal_;
-  double plane_;
+  double plane_ = 0, near_ = 0;
 };
 
 /// The part of a contour in a half space.
 class PlaneClip {
  public:
-  PlaneClip(Contour& contour, const HalfSpace& inside) : contour_(contour), inside_(inside) {}
+  /// `tolerance`: how near places along each axis count as one.
+  PlaneClip(Contour& contour, const HalfSpace& inside, const Vec3& tolerance)
+      : contour_(contour), inside_(inside), tolerance_(tolerance) {}
 
   void run() {
+    if (inside_.axis() && tolerance_[*inside_.axis()] > 0) move_near_points(*inside_.axis());
     std::vector<std::array<std::uint32_t, 3>> triangles;
     triangles.swap(contour_.triangles);
     for (const auto& triangle : triangles) clip(triangle);
+    if (!merged_.empty()) merge();
   }
 
  private:
+  using Polygon = SmallList<std::uint32_t, 4>;
+
+  /// Puts points near the plane into it. They are no longer on edges.
+  void move_near_points(int axis) {
+    const std::size_t edge_count = contour_.edge_points.size(), count = contour_.points.size();
+    std::unordered_map<std::uint32_t, std::uint32_t> moved;
+    for (std::size_t p = 0; p < count; ++p) {
+      const double height = inside_.height(contour_.points[p]);
+      if (height == 0 || !(std::abs(height) <= tolerance_[axis])) continue;
+      const Vec3 point = inside_.on_plane(contour_.points[p]);
+      if (p >= edge_count) {
+        contour_.points[p] = point;
+      } else {
+        const auto number = static_cast<std::uint32_t>(p);
+        moved.emplace(number, add(point, as_mean(contour_, number)));
+      }
+    }
+    if (moved.empty()) return;
+    for (auto& triangle : contour_.triangles) {
+      for (std::uint32_t& p : triangle) {
+        const auto found = moved.find(p);
+        if (found != moved.end()) p = found->second;
+      }
+    }
+  }
+
   /// -1 inside, 0 on the plane, 1 beyond it.
   [[nodiscard]] int side(std::uint32_t point) const {
     const double height = inside_.height(contour_.points[point]);
@@ -95,15 +151,16 @@ class PlaneClip {
   void clip(const std::array<std::uint32_t, 3>& triangle) {
     const std::array<int, 3> sides{side(triangle[0]), side(triangle[1]), side(triangle[2])};
     const auto [least, greatest] = std::minmax_element(sides.begin(), sides.end());
-    if (*greatest <= 0) contour_.triangles.push_back(triangle);
-    // What only touches the plane from beyond has no part inside.
-    if (*greatest <= 0 || *least >= 0) return;
-    SmallList<std::uint32_t, 4> polygon;
+    Polygon polygon;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t next = (c + 1) % 3;
       if (sides[c] <= 0) polygon.push_back(triangle[c]);
-      if (sides[c] * sides[next] < 0) polygon.push_back(cut(triangle[c], triangle[next]));
+      if (*greatest > 0 && *least < 0 && sides[c] * sides[next] < 0)
+        polygon.push_back(cut(triangle[c], triangle[next]));
     }
+    // What only touches the plane from beyond has no part inside.
+    if (*greatest > 0 && *least >= 0) return;
+    if (*greatest >= 0 && norm(tolerance_) > 0) note_near_points(polygon);
     for (std::size_t c = 2; c < polygon.size(); ++c)
       contour_.triangles.push_back({polygon[0], polygon[c - 1], polygon[c]});
   }
@@ -113,20 +170,54 @@ class PlaneClip {
     if (b < a) std::swap(a, b);
     const auto [entry, is_new] = cuts_.try_emplace(std::uint64_t{a} << 32 | b, kNone);
     if (is_new) {
-      if (contour_.points.size() >= kNone)
-        fail("a contour has more than 2^32 - 1 points at the data's border");
-      entry->second = static_cast<std::uint32_t>(contour_.points.size());
       const Vec3 p = contour_.points[a], q = contour_.points[b];
       const double t = inside_.cut(p, q);
-      contour_.border_points.push_back(between(as_mean(contour_, a), as_mean(contour_, b), t));
-      contour_.points.push_back(inside_.on_plane(point_between(p, q, t)));
+      entry->second = add(inside_.on_plane(point_between(p, q, t)),
+                          between(as_mean(contour_, a), as_mean(contour_, b), t));
     }
     return entry->second;
   }
 
+  std::uint32_t add(const Vec3& point, const BorderPoint& border_point) {
+    if (contour_.points.size() >= kNone) fail("a contour has more than 2^32 - 1 points at the data's border");
+    contour_.border_points.push_back(border_point);
+    contour_.points.push_back(point);
+    return static_cast<std::uint32_t>(contour_.points.size() - 1);
+  }
+
+  /// Neighbours in the plane become one point where they are near each other.
+  void note_near_points(const Polygon& polygon) {
+    for (std::size_t c = 0; c < polygon.size(); ++c) {
+      const std::uint32_t a = polygon[c], b = polygon[(c + 1) % polygon.size()];
+      if (side(a) != 0 || side(b) != 0) continue;
+      const Vec3 way = contour_.points[b] - contour_.points[a];
+      bool is_near = true;
+      for (int axis = 0; axis < 3; ++axis) is_near = is_near && std::abs(way[axis]) <= tolerance_[axis];
+      const std::uint32_t first = std::min(kept(a), kept(b)), second = std::max(kept(a), kept(b));
+      if (is_near && first != second) merged_[second] = first;
+    }
+  }
+
+  /// The point that one has become.
+  [[nodiscard]] std::uint32_t kept(std::uint32_t point) const {
+    for (auto found = merged_.find(point); found != merged_.end(); found = merged_.find(point))
+      point = found->second;
+    return point;
+  }
+
+  void merge() {
+    for (auto& triangle : contour_.triangles) {
+      for (std::uint32_t& p : triangle) p = kept(p);
+    }
+    std::erase_if(contour_.triangles,
+                  [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  }
+
   Contour& contour_;
   const HalfSpace& inside_;
-  std::unordered_map<std::uint64_t, std::uint32_t> cuts_;  ///< by the two points of an edge
+  Vec3 tolerance_;
+  std::unordered_map<std::uint64_t, std::uint32_t> cuts_;    ///< by the two points of an edge
+  std::unordered_map<std::uint32_t, std::uint32_t> merged_;  ///< points to lesser ones
 };
 
 /// Keeps the points of triangles, in their order.
@@ -154,12 +245,25 @@ void remove_unused_points(Contour& contour) {
   contour = std::move(kept);
 }
 
-void clip_by(const std::vector<HalfSpace>& sides, Contour& contour) {
+/// How near places along an axis count as one: some units in the last place of single precision, which is
+/// what surfaces are written with, but more than double precision rounds places of samples by.
+double tolerance_at(double place, double spacing) {
+  return std::clamp(std::ldexp(std::abs(place), -21), std::ldexp(spacing, -30), std::ldexp(spacing, -13));
+}
+
+Vec3 tolerance_in(const Box3& box, const Vec3& spacing) {
+  Vec3 result;
+  for (int axis = 0; axis < 3; ++axis)
+    result[axis] = tolerance_at(std::max(std::abs(box.min[axis]), std::abs(box.max[axis])), spacing[axis]);
+  return result;
+}
+
+void clip_by(const std::vector<HalfSpace>& sides, const Vec3& tolerance, Contour& contour) {
   bool clipped = false;
   for (const HalfSpace& side : sides) {
     const auto is_outside = [&side](const Vec3& p) { return side.height(p) > 0; };
     if (std::none_of(contour.points.begin(), contour.points.end(), is_outside)) continue;
-    PlaneClip(contour, side).run();
+    PlaneClip(contour, side, tolerance).run();
     clipped = true;
   }
   if (clipped) remove_unused_points(contour);
@@ -167,17 +271,23 @@ void clip_by(const std::vector<HalfSpace>& sides, Contour& contour) {
 
 }  // namespace
 
-void clip_contour(Contour& contour, const Box3& box) {
+void clip_contour(Contour& contour, const Box3& box, const Vec3& spacing) {
   std::vector<HalfSpace> sides;
   for (int axis = 0; axis < 3; ++axis) {
     sides.emplace_back(axis, box.max[axis], 1);
     sides.emplace_back(axis, box.min[axis], -1);
   }
-  clip_by(sides, contour);
+  clip_by(sides, tolerance_in(box, spacing), contour);
 }
 
-void clip_contour(Contour& contour, std::span<const Plane> sides) {
-  clip_by({sides.begin(), sides.end()}, contour);
+void clip_contour(Contour& contour, std::span<const Plane> sides, const Vec3& spacing) {
+  if (sides.empty()) return;
+  Box3 box;
+  for (const Vec3& p : contour.points) box.extend(p);
+  const Vec3 tolerance = contour.points.empty() ? Vec3{} : tolerance_in(box, spacing);
+  std::vector<HalfSpace> all;
+  for (const Plane& side : sides) all.emplace_back(side, tolerance);
+  clip_by(all, tolerance, contour);
 }
 
 }  // namespace adamas

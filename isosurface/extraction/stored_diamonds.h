@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +30,8 @@ class StoredDiamonds {
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   /// The lattice's cube in space; it may reach beyond the data.
   [[nodiscard]] const Domain& domain() const { return domain_; }
+  /// The spacing of samples in space.
+  [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, -grid_.depth()) * domain_.box().size(); }
   /// The lattice point of the last sample.
   [[nodiscard]] LatticePoint last_sample() const { return (1 << shift_) * grid_.last(); }
   /// Levels of samples; diamonds of levels below this have errors.
@@ -102,7 +105,7 @@ class StoredDiamonds {
 
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
 
-  /// Bounds of all samples. Throws PageLost.
+  /// The least and the greatest finite sample; the first greater where there is none. Throws PageLost.
   std::array<double, 2> range();
 
  private:

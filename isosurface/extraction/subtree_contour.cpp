@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "isosurface/extraction/contour_options.h"
 #include "isosurface/extraction/diamond_halves.h"
 #include "isosurface/hierarchy/indexed_hierarchy.h"
 
@@ -98,9 +99,9 @@ ExtractedSurface contour_of_subtrees(StoredDiamonds<Sample>& diamonds, SplitPage
   surface.diamonds = pages.count();
   surface.max_error = subtrees.greatest_error();
   surface.tetrahedra = subtrees.mesh().tetrahedron_count();
-  surface.contour =
-      extract_contour(subtrees.mesh(), [&diamonds](LatticePoint p) { return diamonds.sample(p); },
-                      request.isovalue, {request.least_parameter, diamonds.last_sample()});
+  surface.contour = extract_contour(
+      subtrees.mesh(), [&diamonds](LatticePoint p) { return diamonds.sample(p); }, request.isovalue,
+      contour_options(diamonds, request));
   return surface;
 }
 

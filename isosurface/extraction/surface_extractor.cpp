@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "isosurface/contour/contour_clip.h"
+#include "isosurface/extraction/contour_options.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/subtree_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
@@ -22,11 +23,6 @@ SurfaceExtractor<Sample>::SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pag
 }
 
 template <class Sample>
-ContourOptions SurfaceExtractor<Sample>::options() const {
-  return {request_.least_parameter, diamonds_.last_sample()};
-}
-
-template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Progress& progress) {
   pages_.find(cut,
               [&](int level, const auto&) { progress.step("reading", 1 - (level + 1.0) / pages_.levels()); });
@@ -38,15 +34,16 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Pro
     if (!request_.others_follow) diamonds_.drop_values();
     surface = pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   }
-  if (request_.region) clip_contour(surface.contour, *request_.region);
-  clip_contour(surface.contour, request_.sides);
+  const Vec3 spacing = contour_options(diamonds_, request_).spacing;
+  if (request_.region) clip_contour(surface.contour, *request_.region, spacing);
+  clip_contour(surface.contour, request_.sides, spacing);
   return surface;
 }
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
   const Diamond root(root_);
-  ContourBuilder builder(domain(), request_.isovalue, options());
+  ContourBuilder builder(domain(), request_.isovalue, contour_options(diamonds_, request_));
   DiamondContour(builder, request_.isovalue, diamonds_.last_sample())
       .add(root, (1u << root.tetrahedron_count()) - 1,
            [this](LatticePoint p) { return diamonds_.sample(p); });
@@ -59,7 +56,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
-  ContourBuilder builder(domain(), request_.isovalue, options());
+  ContourBuilder builder(domain(), request_.isovalue, contour_options(diamonds_, request_));
   // A little more than surfaces have for each split diamond.
   const std::uint64_t about = std::uint64_t{pages_.count()} * 3 / 2;
   builder.expect(static_cast<std::size_t>(std::min(about, request_.max_triangles.value_or(about))));
@@ -110,7 +107,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
   limits_ = {{}, LostRegions(subtree_bisections_ / 3)};
   diamonds_.set_contour(request_.isovalue);
   if (request.region) {
-    const Vec3 spacing = std::ldexp(1.0, -diamonds_.levels()) * diamonds_.domain().box().size();
+    const Vec3 spacing = diamonds_.spacing();
     const auto in_samples = [&](const Vec3& p) {
       Vec3 result;
       for (int axis = 0; axis < 3; ++axis)

@@ -32,7 +32,6 @@ class SurfaceExtractor {
   ExtractedSurface contour_of_mesh(Progress& progress);
   /// Of the mesh in which nothing is split.
   ExtractedSurface contour_of_root();
-  [[nodiscard]] ContourOptions options() const;
 
   StoredDiamonds<Sample> diamonds_;
   int subtree_bisections_;

@@ -43,6 +43,9 @@ class VertexGradients {
     return known.gradient;
   }
 
+  /// Damaged pages that some gradient was worked out without.
+  [[nodiscard]] const std::vector<PageId>& lost() const { return lost_; }
+
   /// How far away neighbours are in a mesh that has the edge.
   [[nodiscard]] static std::int32_t step(const EdgePoint& edge) {
     const LatticePoint way = edge.second - edge.first;
@@ -52,7 +55,13 @@ class VertexGradients {
  private:
   Vec3 stored(LatticePoint p, std::int32_t step) {
     const std::optional<Vec3> direction = stored_->direction(diamonds_.in_samples(p));
-    return direction ? *direction : -downwards(estimate(p, step));
+    if (direction) return *direction;
+    note_lost(stored_->last_damaged());
+    return -downwards(estimate(p, step));
+  }
+
+  void note_lost(const PageId& page) {
+    if (std::find(lost_.begin(), lost_.end(), page) == lost_.end()) lost_.push_back(page);
   }
 
   /// Nearer, where along some axis there are no samples so far away.
@@ -90,7 +99,8 @@ class VertexGradients {
     if (p.i < 0 || p.j < 0 || p.k < 0 || p.i > last.i || p.j > last.j || p.k > last.k) return kNone;
     try {
       return diamonds_.sample(p);
-    } catch (const PageLost&) {
+    } catch (const PageLost& missing) {
+      note_lost(missing.damaged);
       return kNone;
     }
   }
@@ -111,14 +121,15 @@ class VertexGradients {
   StoredDiamonds<Sample> diamonds_;
   std::optional<StoredGradients> stored_;
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
+  std::vector<PageId> lost_;
   std::vector<KnownGradient> known_ = std::vector<KnownGradient>(std::size_t{1} << kKnownBits);
 };
 
 }  // namespace
 
 template <class Sample>
-std::vector<Vec3> surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
-                                  Progress& progress) {
+SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
+                               Progress& progress) {
   VertexGradients<Sample> gradients(pages);
   std::vector<Vec3> normals;
   reserve_in_large_pages(normals, contour.points.size());
@@ -143,15 +154,13 @@ std::vector<Vec3> surface_normals(StoredPages<OrderedWord<Sample>>& pages, const
     }
     normals.push_back(downwards(gradient));
   }
-  return normals;
+  return {std::move(normals), gradients.lost()};
 }
 
-template std::vector<Vec3> surface_normals<std::uint8_t>(StoredPages<std::uint8_t>&, const Contour&,
-                                                         Progress&);
-template std::vector<Vec3> surface_normals<std::uint16_t>(StoredPages<std::uint16_t>&, const Contour&,
-                                                          Progress&);
-template std::vector<Vec3> surface_normals<std::int16_t>(StoredPages<std::uint16_t>&, const Contour&,
-                                                         Progress&);
-template std::vector<Vec3> surface_normals<float>(StoredPages<std::uint32_t>&, const Contour&, Progress&);
+template SurfaceNormals surface_normals<std::uint8_t>(StoredPages<std::uint8_t>&, const Contour&, Progress&);
+template SurfaceNormals surface_normals<std::uint16_t>(StoredPages<std::uint16_t>&, const Contour&,
+                                                       Progress&);
+template SurfaceNormals surface_normals<std::int16_t>(StoredPages<std::uint16_t>&, const Contour&, Progress&);
+template SurfaceNormals surface_normals<float>(StoredPages<std::uint32_t>&, const Contour&, Progress&);
 
 }  // namespace adamas

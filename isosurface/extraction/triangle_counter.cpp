@@ -5,6 +5,7 @@
 
 #include "core/geometry/tetrahedron_contour.h"
 #include "isosurface/contour/contour_clip.h"
+#include "isosurface/extraction/contour_options.h"
 
 namespace adamas {
 
@@ -26,12 +27,12 @@ bool TriangleCounter<Sample>::is_inside(const Diamond& diamond) const {
 
 template <class Sample>
 std::int64_t TriangleCounter<Sample>::count_clipped(const Diamond& diamond, int slot) {
-  ContourBuilder builder(diamonds_.domain(), request_.isovalue,
-                         {request_.least_parameter, diamonds_.last_sample()});
+  const ContourOptions options = contour_options(diamonds_, request_);
+  ContourBuilder builder(diamonds_.domain(), request_.isovalue, options);
   DiamondContour(builder, request_.isovalue, diamonds_.last_sample())
       .add(diamond, 1u << slot, [this](LatticePoint p) { return diamonds_.sample(p); });
   Contour contour = builder.finish();
-  if (request_.region) clip_contour(contour, *request_.region);
+  if (request_.region) clip_contour(contour, *request_.region, options.spacing);
   return static_cast<std::int64_t>(contour.triangles.size());
 }
 

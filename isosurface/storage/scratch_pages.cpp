@@ -1,14 +1,12 @@
 #include "isosurface/storage/scratch_pages.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <string>
 
 #include "core/base/error.h"
+#include "core/base/unnamed_file.h"
 
 namespace adamas {
 
@@ -31,12 +29,10 @@ void for_each_own_row(const PageShape& shape, Fn&& fn) {
   }
 }
 
-int nameless_file(const std::filesystem::path& folder) {
-  std::string name = (folder / "adamas-scratch-XXXXXX").string();
-  const int file = mkostemp(name.data(), O_CLOEXEC);
+int scratch_file(const std::filesystem::path& folder) {
+  const int file = open_unnamed_file(folder);
   if (file < 0)
     fail("{}: expected a folder for scratch data, found: {}", folder.string(), std::strerror(errno));
-  unlink(name.c_str());
   return file;
 }
 
@@ -44,7 +40,7 @@ int nameless_file(const std::filesystem::path& folder) {
 
 template <class Word>
 ScratchPages<Word>::ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, PageParts parts)
-    : grid_(grid), parts_(parts), folder_(folder), file_(nameless_file(folder)) {
+    : grid_(grid), parts_(parts), folder_(folder), file_(scratch_file(folder)) {
   for (int level = 0; level <= grid_.top(); ++level) {
     const LatticePoint n = grid_.blocks(level);
     offsets_.emplace_back(static_cast<std::size_t>(n.i) * static_cast<std::size_t>(n.j) *

@@ -31,8 +31,11 @@ bool StoredGradients::load(const PageId& id, const PageShape& shape, const Gradi
                            GradientCodes& codes) {
   const StoreFile::Payload payload = file_.read(step_, id);
   PagePayload parts;
-  return payload.state != PageState::kDamaged && split_payload(payload.bytes, parts) &&
-         codec_.decode(parts.gradients, shape, around, codes);
+  if (payload.state != PageState::kDamaged && split_payload(payload.bytes, parts) &&
+      codec_.decode(parts.gradients, shape, around, codes))
+    return true;
+  last_damaged_ = id;
+  return false;
 }
 
 std::optional<Vec3> StoredGradients::direction(LatticePoint p) {

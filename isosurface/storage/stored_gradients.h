@@ -24,6 +24,8 @@ class StoredGradients {
   /// At a point, whose coordinates count samples and are not negative: a unit vector, or zero where nothing
   /// changes. Beyond the data it is that of the nearest sample. Nothing where the page cannot be had.
   std::optional<Vec3> direction(LatticePoint p);
+  /// The damaged page for which a page could not be had, when that was last so.
+  [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }
 
  private:
   bool load(const PageId& id, const PageShape& shape, const GradientCodesAround& around,
@@ -33,6 +35,7 @@ class StoredGradients {
   std::uint32_t step_;
   GradientCodec codec_;
   PageTree<std::uint16_t> tree_;
+  PageId last_damaged_;
 };
 
 }  // namespace adamas

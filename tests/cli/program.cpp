@@ -34,16 +34,56 @@ namespace {
   dup2(in, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
+  if (!options.stdout_file.empty()) dup2(open(options.stdout_file.c_str(), O_WRONLY), STDOUT_FILENO);
+  // What runs the tests may ignore signals.
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT})
+    signal(number, number == options.ignored ? SIG_IGN : SIG_DFL);
   execv(ADAMAS_PROGRAM, argv.data());
   _exit(127);
 }
 
+/// The line of a file of /proc that begins so; empty where there is none.
+std::string status_line(pid_t process, const std::string& beginning) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.rfind(beginning, 0) == 0) return line.substr(beginning.size());
+  }
+  return "";
+}
+
+char state_of(pid_t process) {
+  const std::string state = status_line(process, "State:\t");
+  return state.empty() ? 'X' : state[0];
+}
+
+bool is_pending(pid_t process, int number) {
+  const std::string pending = status_line(process, "ShdPnd:\t");
+  return !pending.empty() && (std::stoull(pending, nullptr, 16) >> (number - 1) & 1) != 0;
+}
+
+}  // namespace
+
+bool is_running(pid_t process) {
+  const char state = state_of(process);
+  return state != 'X' && state != 'Z';
+}
+
+void wait_until_stopped(pid_t process) {
+  while (is_running(process) && state_of(process) != 'T') usleep(100);
+}
+
+void wait_until_gone(pid_t process) {
+  while (is_running(process)) usleep(100);
+}
+
+namespace {
+
 /// Collects what comes from both pipes; interrupts the child where it was asked to.
 void collect(pid_t child, int out, int err, const RunOptions& options, RunResult& result) {
   std::array<pollfd, 2> ends{pollfd{out, POLLIN, 0}, pollfd{err, POLLIN, 0}};
-  bool interrupt = !options.interrupt_at.empty();
+  bool interrupt = !options.interrupt_at.empty() || options.interrupt_when;
   while (ends[0].fd >= 0 || ends[1].fd >= 0) {
-    poll(ends.data(), ends.size(), -1);
+    poll(ends.data(), ends.size(), options.interrupt_when ? 1 : -1);
     for (std::size_t i = 0; i < 2; ++i) {
       if (ends[i].fd < 0 || ends[i].revents == 0) continue;
       std::array<char, 4096> buffer;
@@ -54,13 +94,15 @@ void collect(pid_t child, int out, int err, const RunOptions& options, RunResult
       }
       (i == 0 ? result.out : result.err).append(buffer.data(), static_cast<std::size_t>(n));
     }
-    if (interrupt && result.err.find(options.interrupt_at) != std::string::npos) {
-      for (int i = 0; i < options.interrupts; ++i) {
-        // Signals that wait together become one.
-        if (i > 0) usleep(1000);
-        kill(child, SIGINT);
-      }
+    if (interrupt && (options.interrupt_when ? options.interrupt_when()
+                                             : result.err.find(options.interrupt_at) != std::string::npos)) {
       interrupt = false;
+      if (options.act) options.act(child);
+      for (int i = 0; !options.act && i < options.interrupts; ++i) {
+        kill(child, SIGINT);
+        // Signals that wait together become one.
+        while (is_running(child) && is_pending(child, SIGINT)) usleep(100);
+      }
     }
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/types.h>
 
 #include <cstddef>
 #include <filesystem>
@@ -25,9 +26,21 @@ struct RunOptions {
   std::optional<std::size_t> file_size_limit;
   /// Send SIGINT as soon as stderr holds this text.
   std::string interrupt_at;
-  int interrupts = 1;         ///< that many times
+  /// Or as soon as this is so.
+  std::function<bool()> interrupt_when;
+  int interrupts = 1;  ///< that many times
+  /// What is done instead of sending SIGINT, with the number of the program's process.
+  std::function<void(pid_t)> act;
+  int ignored = 0;            ///< a signal that the program is started with as ignored
   bool close_stdout = false;  ///< nobody reads what the program prints
+  std::string stdout_file;    ///< goes there
 };
+
+/// Whether a process is there and runs; one that ended but was not waited for does not.
+bool is_running(pid_t process);
+/// Waits for what a signal does: for ever, or as long as tests may run.
+void wait_until_stopped(pid_t process);
+void wait_until_gone(pid_t process);
 
 /// Runs the built program in a folder.
 RunResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,

@@ -171,12 +171,34 @@ TEST_F(StoreCommands, SeveralSurfacesInOneFile) {
   for (const std::string value : {"40", "160.5"}) {
     run_well({"isosurface", "b.adm", "--isovalue", value, "-o", "s.ply", "--json", "f.json"});
     sum += read_json("f.json")["triangles"].get<std::size_t>();
-    EXPECT_EQ(read("s.ply").find("property float isovalue"), std::string::npos);
+    // One isovalue is told at the points as several are.
+    const std::string ply = read("s.ply");
+    const float number = std::stof(value);
+    const std::string bytes(reinterpret_cast<const char*>(&number), sizeof number);
+    const std::size_t data = ply.find("end_header\n") + 11, stride = 7 * sizeof number;
+    EXPECT_NE(ply.find("comment value is isovalue"), std::string::npos);
+    EXPECT_NE(ply.find("property float value"), std::string::npos);
+    for (std::size_t n = 1; n <= read_json("f.json")["vertices"].get<std::size_t>(); ++n)
+      ASSERT_EQ(ply.substr(data + n * stride - sizeof number, sizeof number), bytes);
+    run_well({"isosurface", "b.adm", "--isovalue", value, "-o", "s.vtp"});
+    EXPECT_NE(read("s.vtp").find("Name=\"isovalue\""), std::string::npos);
   }
   run_well({"isosurface", "b.adm", "--isovalue", "40", "--isovalue", "160.5", "-o", "s.ply", "--picture",
             "s.png", "--json", "f.json"});
   EXPECT_EQ(read_json("f.json")["triangles"], sum);
   EXPECT_EQ(read("s.png").substr(1, 3), "PNG");
+}
+
+TEST_F(StoreCommands, EightSamples) {
+  write("eight.raw", std::string("\1\2\3\4\5\6\7\x40"));
+  run_well({"store", "eight.raw", "--dimensions", "2", "--type", "uint8", "-o", "b.adm"});
+  run_well({"isosurface", "b.adm", "--isovalue", "20", "-o", "s.ply", "--json", "f.json"});
+  EXPECT_GT(read_json("f.json")["triangles"], 0);
+  run_well({"info", "b.adm", "--json", "i.json"});
+  EXPECT_EQ(read_json("i.json")["min"], 1);
+  EXPECT_EQ(read_json("i.json")["max"], 64);
+  const RunResult beyond = run({"isosurface", "b.adm", "--isovalue", "65", "-o", "s.ply"});
+  EXPECT_EQ(beyond.err, "adamas: note: no surface at isovalue 65: samples are from 1 to 64\n");
 }
 
 TEST_F(StoreCommands, EmptySurfacesSayWhy) {

@@ -244,7 +244,7 @@ TEST(StoredGradients, GiveSurfacesTheirNormals) {
     request.isovalue = 17.3;
     request.error = error;
     const ExtractedSurface found = extractor.extract(request);
-    const std::vector<Vec3> normals = surface_normals<float>(pages, found.contour);
+    const std::vector<Vec3> normals = surface_normals<float>(pages, found.contour).normals;
     ASSERT_EQ(normals.size(), found.contour.points.size());
     ASSERT_GT(normals.size(), 50u);
     double worst = 1;
@@ -273,7 +273,7 @@ TEST(StoredGradients, NormalsAreTheSameHoweverPagesCome) {
       request.isovalue = 9;
       surface_normals<float>(pages, extractor.extract(request).contour);
     }
-    normals.push_back(surface_normals<float>(pages, found.contour));
+    normals.push_back(surface_normals<float>(pages, found.contour).normals);
   }
   ASSERT_EQ(normals[0].size(), normals[1].size());
   for (std::size_t n = 0; n < normals[0].size(); ++n) ASSERT_EQ(norm(normals[0][n] - normals[1][n]), 0);

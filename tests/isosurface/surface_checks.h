@@ -161,7 +161,8 @@ class DiamondTable {
 /// Where the contour's options end the data.
 template <class Sample>
 ContourOptions options_of(const MemoryVolume<Sample>& volume, int depth, double least_parameter) {
-  return {least_parameter, lattice_step(depth) * volume.last()};
+  return {least_parameter, lattice_step(depth) * volume.last(),
+          least_parameter > 0 ? volume.grid.spacing : Vec3{}};
 }
 
 /// Expects a surface as it is to be whatever the data, but where samples are no numbers: edges with one

@@ -17,7 +17,8 @@ using test::OpenStore;
 
 template <class Sample>
 std::vector<Vec3> normals_of(OpenStore<Sample>& store, const Contour& contour) {
-  std::vector<Vec3> normals = surface_normals<Sample>(store.pages(), contour);
+  const auto [normals, lost] = surface_normals<Sample>(store.pages(), contour);
+  EXPECT_TRUE(lost.empty());
   EXPECT_EQ(normals.size(), contour.points.size());
   for (const Vec3& n : normals) {
     const double length = norm(n);

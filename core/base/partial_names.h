@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/base/abrupt_end.h"
+
+namespace adamas {
+
+/// Names for what a run is writing in a folder, `.partial-XXXXXX-N` with six letters or digits that no other
+/// run has there. With them goes an empty file `.partial-XXXXXX`, locked as long as the run lives. So the
+/// next run that writes there can tell what a run has left that was killed or cut off: a file that it can
+/// lock, and all that is called alike. Numbers of processes would not tell: they come again, and on a shared
+/// folder other computers have their own.
+class PartialNames {
+ public:
+  /// Those of a folder, which all that write there at the same time share. The first of a process removes
+  /// what earlier runs have left. Throws std::system_error where nothing can be written there.
+  static std::shared_ptr<PartialNames> in(const std::filesystem::path& folder);
+  ~PartialNames();
+  PartialNames(const PartialNames&) = delete;
+  PartialNames& operator=(const PartialNames&) = delete;
+
+  /// Another name, with this at its end.
+  [[nodiscard]] std::filesystem::path next(const std::string& extension) const;
+
+ private:
+  explicit PartialNames(std::filesystem::path folder);
+  bool make_locked_file();
+
+  std::filesystem::path folder_, mark_;
+  int file_ = -1;
+  std::optional<RemovedAtAbruptEnd> at_abrupt_end_;
+};
+
+}  // namespace adamas

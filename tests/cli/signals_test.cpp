@@ -1,0 +1,165 @@
+// Signals: how a run ends at them, and that nothing stays behind, neither files nor processes.
+
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "program.h"
+
+namespace adamas::test {
+
+namespace {
+
+const std::vector<std::string> kResample{
+    "resample", "scene.vtr", "--interface-error", "0.02%", "--verbose", "-o", "m.vtu", "--json", "j.json"};
+
+class Signals : public ProgramTest {
+ protected:
+  Signals() { make_scene("voronoi10", 20); }
+  ~Signals() override { unsetenv("ADAMAS_REFERENCE_PROGRAM"); }
+
+  [[nodiscard]] bool has_partial_files() const {
+    const auto names = files();
+    return std::any_of(names.begin(), names.end(),
+                       [](const std::string& name) { return name.find(".partial-") != std::string::npos; });
+  }
+  /// Runs until stderr has the text, and then `act`.
+  [[nodiscard]] RunResult run_until(const std::vector<std::string>& command, const std::string& text,
+                                    const std::function<void(pid_t)>& act) const {
+    RunOptions options;
+    options.interrupt_at = text;
+    options.act = act;
+    return run(command, options);
+  }
+  void kill_at(const std::vector<std::string>& command, const std::string& text) const {
+    const RunResult result = run_until(command, text, [](pid_t program) { kill(program, SIGKILL); });
+    EXPECT_EQ(result.status, 1000 + SIGKILL) << result.err;
+  }
+};
+
+TEST_F(Signals, EachStopsTheRun) {
+  const auto before = files();
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    const RunResult result =
+        run_until(kResample, "refining", [number](pid_t program) { kill(program, number); });
+    EXPECT_EQ(result.status, 130) << number << result.err;
+    EXPECT_EQ(result.err_lines().back(), "adamas: cancelled") << number;
+    EXPECT_EQ(files(), before) << number;
+  }
+}
+
+TEST_F(Signals, ASecondOneOfAnyKindEndsItAtOnce) {
+  const auto before = files();
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    const RunResult result = run_until(kResample, "refining", [number](pid_t program) {
+      // Stopped, so that both are there before the run can go on.
+      kill(program, SIGSTOP);
+      wait_until_stopped(program);
+      kill(program, SIGINT);
+      kill(program, number == SIGINT ? SIGTERM : number);
+      kill(program, SIGCONT);
+    });
+    EXPECT_EQ(result.status, 130) << number << result.err;
+    EXPECT_EQ(result.err.find("cancelled"), std::string::npos) << number;
+    EXPECT_EQ(files(), before) << number;
+  }
+}
+
+/// As nohup has it.
+TEST_F(Signals, ThoseThatAreIgnoredStayIgnored) {
+  RunOptions options;
+  options.interrupt_at = "refining";
+  options.act = [](pid_t program) { kill(program, SIGHUP); };
+  options.ignored = SIGHUP;
+  const RunResult result =
+      run({"resample", "scene.vtr", "--interface-error", "4%", "--verbose", "-o", "m.vtu"}, options);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(files().contains("m.vtu"));
+}
+
+TEST_F(Signals, TheNextRunRemovesWhatAKilledOneLeft) {
+  const auto before = files();
+  write(".partial-notes", "not ours");
+  write(".partial-abcdef", "of six letters, but not empty");
+  write(".partial-abcdef-1.vtu", "and so not ours either");
+  kill_at(kResample, "refining");
+  EXPECT_TRUE(has_partial_files());
+  EXPECT_GT(files().size(), before.size() + 3);
+  run_well({"resample", "scene.vtr", "--interface-error", "4%", "-o", "m.vtu"});
+  auto wanted = before;
+  wanted.insert({"m.vtu", ".partial-notes", ".partial-abcdef", ".partial-abcdef-1.vtu"});
+  EXPECT_EQ(files(), wanted);
+}
+
+TEST_F(Signals, TheNextRunRemovesTheFolderOfAKilledExperiment) {
+  const auto before = files();
+  const std::vector<std::string> experiment{
+      "experiment",        "--generate", "sphere",    "--dimensions", "8",
+      "--interface-error", "4%",         "--verbose", "-o",           "e"};
+  kill_at(experiment, "writing mesh-interfaces");
+  EXPECT_TRUE(has_partial_files());
+  EXPECT_FALSE(files().contains("e"));
+  EXPECT_EQ(run(experiment).status, 0);
+  EXPECT_TRUE(files().contains("e/report.html"));
+  EXPECT_FALSE(has_partial_files());
+  std::filesystem::remove_all(folder() / "e");
+  const RunResult stopped = run_until(experiment, "writing mesh-interfaces", [](pid_t program) {
+    kill(program, SIGSTOP);
+    wait_until_stopped(program);
+    for (const int number : {SIGINT, SIGTERM, SIGCONT}) kill(program, number);
+  });
+  EXPECT_EQ(stopped.status, 130);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Signals, RunsAtTheSameTimeLeaveEachOtherAlone) {
+  const RunResult first =
+      run_until({"resample", "scene.vtr", "--interface-error", "2%", "--verbose", "-o", "m.vtu"}, "refining",
+                [this](pid_t program) {
+                  kill(program, SIGSTOP);
+                  wait_until_stopped(program);
+                  EXPECT_TRUE(has_partial_files());
+                  const auto before = files();
+                  run_well({"resample", "scene.vtr", "--interface-error", "4%", "-o", "other.vtu"});
+                  auto wanted = before;
+                  wanted.insert("other.vtu");
+                  EXPECT_EQ(files(), wanted);
+                  kill(program, SIGCONT);
+                });
+  EXPECT_EQ(first.status, 0) << first.err;
+  EXPECT_TRUE(files().contains("m.vtu"));
+  EXPECT_FALSE(has_partial_files());
+}
+
+/// What a mesher of others starts goes with it, also where the run ends at once.
+TEST_F(Signals, ComparisonsLeaveNoProcesses) {
+  write("mesher", "#!/bin/sh\nsleep 1000 &\necho $! > started\nmv started pid\nwait\n");
+  chmod((folder() / "mesher").c_str(), 0755);
+  setenv("ADAMAS_REFERENCE_PROGRAM", (folder() / "mesher").c_str(), 1);
+  for (const bool at_once : {false, true}) {
+    std::filesystem::remove(folder() / "pid");
+    RunOptions options;
+    options.stdout_file = "/dev/full";
+    options.interrupt_when = [this] { return std::filesystem::exists(folder() / "pid"); };
+    options.act = [at_once](pid_t program) {
+      kill(program, SIGSTOP);
+      wait_until_stopped(program);
+      kill(program, SIGINT);
+      if (at_once) kill(program, SIGTERM);
+      kill(program, SIGCONT);
+    };
+    const RunResult result =
+        run({"compare", "scene.vtr", "--interface-error", "8%", "--json", "f.json"}, options);
+    EXPECT_EQ(result.status, 130) << result.err;
+    const int started = std::stoi(read("pid"));
+    wait_until_gone(started);
+    EXPECT_FALSE(is_running(started));
+  }
+  EXPECT_FALSE(has_partial_files());
+}
+
+}  // namespace
+
+}  // namespace adamas::test
