@@ -80,10 +80,10 @@ void run(const Options& options, Session& session) {
   Console& console = session.console;
   const std::vector<ResamplingWishes> wishes = all_wishes(options);
   ComparisonOptions comparison = comparison_options(options);
+  comparison.mesher.program = find_reference_program();
   protect_inputs(options.input, options.input.path, session.outputs);
   session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
   session.outputs.declare("--csv", options.csv, {".csv"});
-  comparison.mesher.program = find_reference_program();
   const Input input = load_input(options.input, console, [&wishes](const auto&... found) {
     for (const ResamplingWishes& wish : wishes) wish.check(found...);
   });

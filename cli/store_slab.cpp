@@ -61,6 +61,7 @@ MultiMaterialData store_slab(const StoreInput& input, const Plane& plane, Sessio
   MultiMaterialData data;
   data.source = input.path;
   data.grid = nodes_of(part.grid);
+  check_nodes(input.path, data.grid);
   data.materials = IdVector<MaterialId, std::string>(1, "volume");
   data.labels.assign(part.grid.samples(), 0);
   Field field;

@@ -50,6 +50,7 @@ void OutputFile::commit() {
   std::filesystem::rename(temporary_, path_, code);
   if (code) fail("{}: could not be given its final name: {}", path_.string(), code.message());
   committed_ = true;
+  names_.reset();
 }
 
 }  // namespace adamas
