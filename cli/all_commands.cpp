@@ -18,7 +18,7 @@ void add_all_commands(CLI::App& app, Session& session) {
   app.set_config("--config")->group("");
   app.config_formatter(std::make_shared<ConfigFile>(app));
   app.require_subcommand(1);
-  app.footer("Each command has its own --help with an example.");
+  app.footer(kFirstSteps);
   add_generate(app, session);
   add_info(app, session);
   add_reconstruct(app, session);
@@ -32,6 +32,7 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_verify(app, session);
   add_isosurface(app, session);
   add_completion(app, session);
+  add_man(app, session);
   add_common_checks(app);
 }
 

@@ -24,6 +24,15 @@ struct Session {
   void begin();
 };
 
+/// What a newcomer types first: data to try, what is in them, a mesh, a look at it, more about a command.
+inline constexpr const char* kFirstSteps =
+    "First steps:\n"
+    "  adamas generate scene voronoi10 --dimensions 48 -o cells.vtr\n"
+    "  adamas info cells.vtr\n"
+    "  adamas resample cells.vtr --interface-error 1% -o mesh.vtu\n"
+    "  adamas slice mesh.vtu --plane z=0.5 -o slice.png\n"
+    "  adamas resample --help";
+
 /// A subcommand with the common options. `example` is shown by --help. `run` is called for the command that
 /// was chosen; it may throw UsageError, Error and Cancelled.
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
@@ -43,6 +52,7 @@ void add_restore(CLI::App& app, Session& session);
 void add_verify(CLI::App& app, Session& session);
 void add_isosurface(CLI::App& app, Session& session);
 void add_completion(CLI::App& app, Session& session);
+void add_man(CLI::App& app, Session& session);
 
 /// The whole command line.
 void add_all_commands(CLI::App& app, Session& session);

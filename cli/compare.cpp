@@ -76,35 +76,63 @@ ComparisonOptions comparison_options(const Options& options) {
   return result;
 }
 
+/// Where the rows are that were finished before the user stopped.
+std::string where_kept(const Options& options, const std::string& json) {
+  std::string files;
+  for (const std::string& file : {options.csv, json}) {
+    if (!file.empty()) files += (files.empty() ? "they are in " : " and ") + file;
+  }
+  return files.empty() ? "--csv and --json keep them" : files;
+}
+
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   const std::vector<ResamplingWishes> wishes = all_wishes(options);
   ComparisonOptions comparison = comparison_options(options);
   comparison.mesher.program = find_reference_program();
-  protect_inputs(options.input, options.input.path, session.outputs);
+  protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
   session.outputs.declare("--csv", options.csv, {".csv"});
-  const Input input = load_input(options.input, console, [&wishes](const auto&... found) {
-    for (const ResamplingWishes& wish : wishes) wish.check(found...);
+  comparison.interface_errors.resize(wishes.size());
+  print_plan(comparison, console);
+  const Input input = load_input(options.input, console, [&wishes](const InputFacts& found) {
+    for (const ResamplingWishes& wish : wishes) wish.check(found);
   });
   comparison.resampling = wishes.front().options(input.source);
-  for (const ResamplingWishes& wish : wishes)
-    comparison.interface_errors.push_back(wish.options(input.source).interface_error);
-  const std::vector<ComparedMesh> rows = compare_meshes(input.source, comparison, console);
-  print_comparison(rows, input.source, console);
-  Figures figures;
-  figures["meshes"] = comparison_figures(rows, input.source);
+  for (std::size_t i = 0; i < wishes.size(); ++i)
+    comparison.interface_errors[i] = wishes[i].options(input.source).interface_error;
+  print_comparison_header(console);
+  // Rows are kept as they come, whatever becomes of the rest.
+  std::vector<ComparedMesh> rows;
+  const auto keep = [&](bool whole) {
+    session.outputs.publish(options.csv, [&](const auto& path) {
+      OutputStream stream(path);
+      stream.write(comparison_csv(rows, input.source));
+      stream.finish();
+    });
+    session.outputs.publish(session.json, [&](const auto& path) {
+      write_figures(path, {{"finished", whole},
+                           {"meshes", comparison_figures(rows, input.source)},
+                           {"seconds", console.seconds()}});
+    });
+  };
+  comparison.finished = [&](const ComparedMesh& row) {
+    rows.push_back(row);
+    print_comparison_row(row, input.source, console);
+    keep(false);
+  };
+  try {
+    compare_meshes(input.source, comparison, console);
+  } catch (const Cancelled&) {
+    if (!rows.empty())
+      console.note("stopped after {} rows; {}", rows.size(), where_kept(options, session.json));
+    throw;
+  }
   session.outputs.write(options.picture, [&](const auto& path) {
     write_comparison_picture(path, rows, std::filesystem::path(input.source.name).stem().string());
   });
-  session.outputs.write(options.csv, [&](const auto& path) {
-    OutputStream stream(path);
-    stream.write(comparison_csv(rows, input.source));
-    stream.finish();
-  });
-  figures["seconds"] = console.seconds();
-  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  keep(true);
+  session.outputs.commit(options.picture);
 }
 
 }  // namespace
@@ -121,9 +149,10 @@ void add_compare(CLI::App& app, Session& session) {
       ->type_name("FILE");
   command
       ->add_option("--interface-error", options->interface_errors,
-                   "Greatest distance between the interfaces and their approximation, as a length or in % of "
-                   "the domain's diagonal; repeatable, a group of rows each (default: 1%)")
-      ->type_name("E|E%")
+                   "Greatest distance between the interfaces and their approximation: a length, in % of the "
+                   "domain's diagonal, or in voxels of the input's grid; repeatable, a group of rows each "
+                   "(default: 1%)")
+      ->type_name("E|E%|Evoxels")
       ->allow_extra_args(false);
   add_other_resampling_options(*command, options->text);
   command
@@ -136,7 +165,8 @@ void add_compare(CLI::App& app, Session& session) {
       ->type_name("SWITCHES")
       ->capture_default_str();
   command
-      ->add_option("--time-limit", options->time_limit, "Seconds that one mesh of another generator may take")
+      ->add_option("--time-limit", options->time_limit,
+                   "Seconds that one mesh of another generator may take, all trials together")
       ->type_name("S")
       ->capture_default_str();
   command

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/resample_figures.h"
+#include "interfaces/reference/sizing_search.h"
 
 namespace adamas {
 
@@ -71,6 +72,33 @@ std::vector<std::string> text_row(const ComparedMesh& row, const ResamplingSourc
   return result;
 }
 
+/// A column of the table that grows row by row: its width is that of the widest usual entry.
+struct Column {
+  const char* name;
+  std::size_t width;
+};
+constexpr Column kTable[] = {{"mesh", 22},
+                             {"error wanted", 12},
+                             {"tetrahedra", 10},
+                             {"vertices", 8},
+                             {"seconds", 8},
+                             {"memory", 9},
+                             {"dihedral angles", 15},
+                             {"to input", 10},
+                             {"from input", 10},
+                             {"field error % max / mean", 24},
+                             {"at interfaces", 16},
+                             {"volume %", 8}};
+
+void print_line(const std::vector<std::string>& cells, Console& console) {
+  std::string line;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    line += c == 0 ? fmt::format("  {:<{}}", cells[c], kTable[c].width)
+                   : fmt::format("  {:>{}}", cells[c], kTable[c].width);
+  line.erase(line.find_last_not_of(' ') + 1);
+  console.print("{}\n", line);
+}
+
 Figures optional_figure(const std::optional<double>& value) {
   return value ? Figures(*value) : Figures(nullptr);
 }
@@ -122,28 +150,43 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-void print_comparison(const std::vector<ComparedMesh>& rows, const ResamplingSource& source,
-                      Console& console) {
-  std::vector<std::vector<std::string>> table{{"mesh", "error wanted", "tetrahedra", "vertices", "seconds",
-                                               "memory", "dihedral angles", "to input", "from input",
-                                               "field error % max / mean", "at interfaces", "volume %"}};
-  for (const ComparedMesh& row : rows) table.push_back(text_row(row, source));
-  console.table(table);
-  console.print("\n");
-  for (const ComparedMesh& row : rows) {
-    std::string line = mesh_name(row.kind);
-    if (row.interface_error) line += " at " + short_number(*row.interface_error);
-    std::string said;
-    const auto add = [&said](const std::string& text) { said += (said.empty() ? "" : "; ") + text; };
-    if (!row.failure.empty()) add("failed: " + row.failure);
-    if (!row.note.empty()) add(row.note);
-    if (row.kind == MeshKind::kOwn)
-      add(fmt::format("{:.3f} s of it to certify the distance", row.certifying_seconds));
-    if (!row.matched && row.failure.empty()) add("the distance was not matched within 5%");
-    if (!row.switches.empty()) add(row.switches);
-    if (row.trials > 0) add(fmt::format("{} trials", row.trials));
-    if (!said.empty()) console.print("  {}: {}\n", line, said);
-  }
+void print_plan(const ComparisonOptions& options, Console& console) {
+  const std::size_t errors = options.interface_errors.size();
+  const double seconds = options.mesher.limits.seconds;
+  std::string others;
+  if (options.tetgen) others += "TetGen with the input's interfaces and with ours";
+  if (options.mesh3)
+    others += fmt::format("{}Mesh_3, in up to {} trials of its size, and once more with its optimisers",
+                          options.tetgen ? "; " : "", SizingOptions().most_trials);
+  const std::size_t meshes = reference_count(options);
+  console.print(
+      "Comparing at {} interface error{}: adamas; {}. {} mesh{} of other generators, at most {:g} s each and "
+      "{:g} s in all, beside measuring them.\n\n",
+      errors, errors == 1 ? "" : "s", others, meshes, meshes == 1 ? "" : "es", seconds,
+      seconds * static_cast<double>(meshes));
+  console.flush();
+}
+
+void print_comparison_header(Console& console) {
+  std::vector<std::string> names;
+  for (const Column& column : kTable) names.emplace_back(column.name);
+  print_line(names, console);
+  console.flush();
+}
+
+void print_comparison_row(const ComparedMesh& row, const ResamplingSource& source, Console& console) {
+  print_line(text_row(row, source), console);
+  std::string said;
+  const auto add = [&said](const std::string& text) { said += (said.empty() ? "" : "; ") + text; };
+  if (!row.failure.empty()) add("failed: " + row.failure);
+  if (!row.note.empty()) add(row.note);
+  if (row.kind == MeshKind::kOwn)
+    add(fmt::format("{:.3f} s of it to certify the distance", row.certifying_seconds));
+  if (!row.matched && row.failure.empty()) add("the distance was not matched within 5%");
+  if (!row.switches.empty()) add(row.switches);
+  if (row.trials > 0) add(fmt::format("{} trial{}", row.trials, row.trials == 1 ? "" : "s"));
+  if (!said.empty()) console.print("      {}\n", said);
+  console.flush();
 }
 
 Figures comparison_figures(const std::vector<ComparedMesh>& rows, const ResamplingSource& source) {

@@ -9,9 +9,16 @@
 
 namespace adamas {
 
-/// The rows of a comparison as a table on stdout, for `--json`, and as CSV.
-void print_comparison(const std::vector<ComparedMesh>& rows, const ResamplingSource& source,
-                      Console& console);
+/// Says what a comparison is going to do, and how long other generators may take. Of the interface errors only
+/// the number need be known.
+void print_plan(const ComparisonOptions& options, Console& console);
+
+/// The rows of a comparison as a table on stdout, each as soon as it is there, with what has to be known of
+/// it.
+void print_comparison_header(Console& console);
+void print_comparison_row(const ComparedMesh& row, const ResamplingSource& source, Console& console);
+
+/// The rows for `--json`, and as CSV.
 Figures comparison_figures(const std::vector<ComparedMesh>& rows, const ResamplingSource& source);
 std::string comparison_csv(const std::vector<ComparedMesh>& rows, const ResamplingSource& source);
 

@@ -67,7 +67,9 @@ class Experiment {
   void write_interfaces_of(const InterfaceMesh& mesh, const std::string& name, bool triangle_edges) {
     console_.step("writing " + name, -1);
     write_interface_mesh(folder_.file(name + ".vtp"), mesh);
-    write_surface_picture(folder_.file(name + ".png"), mesh, input_.source.box, triangle_edges);
+    SurfacePictureOptions picture = options_.pictures;
+    picture.triangle_edges = triangle_edges;
+    write_surface_picture(folder_.file(name + ".png"), mesh, input_.source.box, picture);
   }
 
   const ExperimentOptions& options_;
@@ -83,14 +85,15 @@ class Experiment {
 };
 
 void Experiment::load() {
-  InputOptions from = options_.input;
+  InputOptions from = with_main_file(options_.input);
   if (!options_.generate.empty()) {
     from.path = folder_.file("input.vtr");
     write_multi_material_data(from.path, generate_data(wishes_.data, console_));
   }
-  input_ = load_input(from, console_, [this](const auto&... found) { wishes_.check(found...); });
+  input_ = load_input(from, console_, [this](const InputFacts& found) { wishes_.check(found); });
   if (!options_.generate.empty()) input_.data->source = input_.source.name = "input.vtr";
   const MultiMaterialData& data = *input_.data;
+  options_.pictures.check_materials(data.materials, data.source);
   targets_ = wishes_.resampling.options(input_.source);
   record_.title = options_.title.empty() ? "Resampling " + input_.source.name : options_.title;
   const auto counts = [&](int axis) { return data.grid.sites(axis); };
@@ -111,7 +114,9 @@ void Experiment::show_input() {
   for (const auto& [pair, count] : counts)
     record_.triangles.emplace_back(mesh.materials[pair.first] + " | " + mesh.materials[pair.second], count);
   write_interfaces_of(mesh, "input-interfaces", false);
-  record_.input_pictures.push_back({"input-interfaces.png", "Interfaces of the input."});
+  record_.input_pictures.push_back(
+      {"input-interfaces.png",
+       "Interfaces of the input; each side has the colour of the material behind it."});
   slices_.name = input_.source.name;
   slices_.interfaces = std::move(mesh);
 }
@@ -140,7 +145,8 @@ void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::s
                            const std::string& caption, const std::optional<Box2>& detail) {
   slices_.mesh = std::move(mesh);
   SliceStyle style{.plane = plane, .field = options_.show};
-  const std::vector<SliceMode> modes{SliceMode::kInput, SliceMode::kPlain, SliceMode::kMaterials};
+  std::vector<SliceMode> modes{SliceMode::kInput, SliceMode::kMaterials};
+  if (!style.field.empty()) modes.insert(modes.begin() + 1, SliceMode::kPlain);
   SliceOptions size;
   size.width = kSliceWidth;
   style.input_cells = shows_cells(slices_, plane, size, modes.size());
@@ -160,17 +166,19 @@ void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::s
 }
 
 void Experiment::cut_slices() {
-  if (options_.show.empty()) return;
+  if (wishes_.planes.empty()) return;
   slices_.data = std::move(input_.data);
   std::size_t number = 0;
   for (const Plane& plane : wishes_.planes) {
     const std::string name = fmt::format("slice-{}", ++number);
     const auto detail = number == 1 ? wishes_.detail : std::nullopt;
-    add_slice(interface_mesh_, plane, name,
-              fmt::format("{}: the input; plain linear interpolation in the cells of the mesh that holds the "
-                          "interfaces; each material's own field.",
-                          to_string(plane)),
-              detail);
+    add_slice(
+        interface_mesh_, plane, name,
+        to_string(plane) + (options_.show.empty()
+                                ? ": the input; the mesh that holds the interfaces."
+                                : ": the input; plain linear interpolation in the cells of the mesh that "
+                                  "holds the interfaces; each material's own field."),
+        detail);
     if (!record_.with_fields) continue;
     add_slice(mesh_, plane, name + "-fields",
               fmt::format("{}: the same with the mesh that holds the fields too.", to_string(plane)), detail);
@@ -180,7 +188,7 @@ void Experiment::cut_slices() {
 
 void Experiment::follow_curve() {
   ResamplingOptions options = without_fields(targets_);
-  for (const double error : wishes_.curve(input_.source.box, targets_.interface_error)) {
+  for (const double error : wishes_.curve(facts_of(input_.source), targets_.interface_error)) {
     if (error == targets_.interface_error) {
       record_.curve.push_back(record_.interfaces);
       continue;
@@ -242,7 +250,7 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
 
 void run(const ExperimentOptions& options, Session& session) {
   const ExperimentWishes wishes(options);
-  protect_inputs(options.input, options.input.path, session.outputs);
+  protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   OutputFolder folder(options.output, options.overwrite, {"metrics.json", "report.html"});
   ExperimentRecord record;
   Figures figures;

@@ -54,7 +54,10 @@ void add_experiment_options(CLI::App& command, ExperimentOptions& options) {
       ->type_name("FOLDER");
   command.add_flag("--overwrite", options.overwrite, "Replace the folder of an earlier experiment");
   command.add_option("--title", options.title, "The heading of the report")->type_name("TEXT");
-  command.add_option("--show", options.show, "The field in slices and tables, or NAME:x for a component")
+  command
+      .add_option("--show", options.show,
+                  "The field in slices and tables, or NAME:x for a component; without it, slices show the "
+                  "materials")
       ->type_name("NAME");
   command.add_option("--plane", options.planes, "A plane of a slice; repeatable")
       ->type_name("x=N|y=N|z=N")
@@ -65,7 +68,7 @@ void add_experiment_options(CLI::App& command, ExperimentOptions& options) {
       .add_option("--curve", options.curve,
                   "An interface error of the curve of error against tetrahedra; repeatable (default: 8, 4, 2 "
                   "and 1 times --interface-error)")
-      ->type_name("E|E%")
+      ->type_name("E|E%|Evoxels")
       ->allow_extra_args(false);
   command
       .add_option("--density", options.density,
@@ -78,13 +81,14 @@ void add_experiment_options(CLI::App& command, ExperimentOptions& options) {
                   "A published figure to set beside: 'tetrahedra=5390', 'triangles A | B=38'; repeatable")
       ->type_name("NAME=X")
       ->allow_extra_args(false);
+  add_surface_picture_options(command, options.pictures, false);
   add_resampling_options(command, options.resampling);
   add_material_options(command, options.input);
 }
 
 ExperimentWishes::ExperimentWishes(const ExperimentOptions& options)
     : resampling(options.resampling), show(options.show), density_name(options.density) {
-  if (options.generate.empty() == options.input.path.empty())
+  if (options.generate.empty() == with_main_file(options.input).path.empty())
     wrong_usage("expected an INPUT or --generate, found {}", options.generate.empty() ? "neither" : "both");
   if (options.generate.empty()) {
     if (!options.dimensions.empty()) wrong_usage("--dimensions: expected --generate as well");
@@ -92,8 +96,8 @@ ExperimentWishes::ExperimentWishes(const ExperimentOptions& options)
   } else {
     data = parse_generated_data(options.generate, options.dimensions, options.seed);
   }
-  if (show.empty() != options.planes.empty())
-    wrong_usage("expected --show and --plane together, found only {}", show.empty() ? "--plane" : "--show");
+  if (!show.empty() && options.planes.empty()) wrong_usage("--show: expected --plane as well");
+  options.pictures.check();
   for (const std::string& text : options.planes) planes.push_back(parse_plane_option("--plane", text));
   if (!options.detail.empty()) {
     if (planes.empty()) wrong_usage("--detail: expected --plane as well");
@@ -102,34 +106,30 @@ ExperimentWishes::ExperimentWishes(const ExperimentOptions& options)
     if (detail->empty())
       wrong_usage("--detail: expected a0 < a1 and b0 < b1 in a0,a1,b0,b1, found '{}'", options.detail);
   }
-  for (const std::string& text : options.curve) errors.push_back(parse_error_target("--curve", text));
+  for (const std::string& text : options.curve) errors.push_back(parse_error_target("--curve", text, true));
   if (options.published.empty() != options.published_by.empty())
     wrong_usage("expected --published and --published-by together");
   for (const std::string& text : options.published) published.push_back(parse_published(text));
 }
 
-void ExperimentWishes::check(const std::string& source, const Box3& box,
-                             const std::vector<FieldInfo>& fields) const {
-  resampling.check(source, box, fields);
-  for (const ErrorTarget& error : errors) {
-    if (!(error.of(box.diagonal()) < box.diagonal()))
-      wrong_usage("--curve: expected less than the domain's diagonal, {:.6g}, found {:.6g}", box.diagonal(),
-                  error.of(box.diagonal()));
-  }
+void ExperimentWishes::check(const InputFacts& input) const {
+  resampling.check(input);
+  for (const ErrorTarget& error : errors) static_cast<void>(interface_error_of("--curve", error, input));
   for (const Plane& plane : planes) {
-    if (clip_plane(plane, box).empty())
-      fail("{}: --plane: expected one that cuts {}, found {}", source, box_text(box), to_string(plane));
+    if (clip_plane(plane, input.box).empty())
+      fail("{}: --plane: expected one that cuts {}, found {}", input.name, box_text(input.box),
+           to_string(plane));
   }
-  if (!show.empty()) find_field(fields, show, source);
-  static_cast<void>(density(fields, source));
+  if (!show.empty()) find_field(input.fields, show, input.name);
+  static_cast<void>(density(input.fields, input.name));
 }
 
-std::vector<double> ExperimentWishes::curve(const Box3& box, double target) const {
+std::vector<double> ExperimentWishes::curve(const InputFacts& input, double target) const {
   std::vector<double> result{target};
-  for (const ErrorTarget& error : errors) result.push_back(error.of(box.diagonal()));
+  for (const ErrorTarget& error : errors) result.push_back(interface_error_of("--curve", error, input));
   if (errors.empty()) {
     for (const double factor : kCurve) {
-      if (factor * target < box.diagonal()) result.push_back(factor * target);
+      if (factor * target < input.box.diagonal()) result.push_back(factor * target);
     }
   }
   std::sort(result.begin(), result.end(), std::greater<>());

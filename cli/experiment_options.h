@@ -9,6 +9,7 @@
 #include "cli/generated_data.h"
 #include "cli/input_options.h"
 #include "cli/resampling_setup.h"
+#include "cli/surface_picture.h"
 #include "core/geometry/plane.h"
 #include "core/picture/vec2.h"
 
@@ -18,6 +19,7 @@ namespace adamas {
 struct ExperimentOptions {
   InputOptions input;
   ResamplingText resampling;
+  SurfacePictureOptions pictures;
   std::string generate, dimensions, seed;
   std::string title, show, detail, density, published_by, output;
   std::vector<std::string> planes, curve, published;
@@ -31,9 +33,9 @@ struct ExperimentWishes {
   /// Throws UsageError.
   explicit ExperimentWishes(const ExperimentOptions& options);
   /// Throws where the options do not suit the input.
-  void check(const std::string& source, const Box3& box, const std::vector<FieldInfo>& fields) const;
+  void check(const InputFacts& input) const;
   /// Interface errors from coarse to fine, `target` among them.
-  [[nodiscard]] std::vector<double> curve(const Box3& box, double target) const;
+  [[nodiscard]] std::vector<double> curve(const InputFacts& input, double target) const;
   /// The field whose integral is mass: the one asked for, else one called density; empty for none.
   [[nodiscard]] std::string density(const std::vector<FieldInfo>& fields, const std::string& source) const;
 

@@ -117,6 +117,15 @@ void print_report(const InterfaceMeshReport& report, const std::string& name, Co
   }
 }
 
+/// Throws Error where the interfaces cannot be used, and tells of the option that takes what can.
+void check_interfaces(const InterfaceMesh& mesh, const Box3* box, bool tolerant, Console& console) {
+  try {
+    print_report(check_interface_mesh(mesh, box, {tolerant, tolerant}), mesh.source, console);
+  } catch (const TolerableFault& fault) {
+    fail("{} (--tolerant takes such interfaces)", fault.what());
+  }
+}
+
 }  // namespace
 
 bool has_given_interfaces(const InputOptions& options) {
@@ -168,12 +177,13 @@ ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_
   }
   if (!box && !mesh.triangles.empty()) box = data ? data->grid.domain() : domain_of(mesh);
   if (box) check_domain(mesh, *box);
-  if (check && box) check(mesh.source, *box, data ? field_infos(*data) : std::vector<FieldInfo>());
+  if (check && box) {
+    check({mesh.source, *box, data ? field_infos(*data) : std::vector<FieldInfo>(),
+           data ? data->grid.least_spacing() : 0});
+  }
   console.step("checking interfaces", -1);
-  const InterfaceCheckOptions how{options.tolerant, options.tolerant};
-  print_report(check_interface_mesh(mesh, box ? &*box : nullptr, how), mesh.source, console);
-  console.step("finding bodies", -1);
-  return make_mesh_source(mesh, *box, data.get());
+  check_interfaces(mesh, box ? &*box : nullptr, options.tolerant, console);
+  return make_mesh_source(mesh, *box, data.get(), console);
 }
 
 }  // namespace adamas

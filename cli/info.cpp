@@ -11,6 +11,7 @@
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
+#include "cli/network_figures.h"
 #include "cli/store_input.h"
 #include "cli/store_summary.h"
 #include "cli/usage_error.h"
@@ -165,16 +166,7 @@ void print_resampled(const ResampledMesh& mesh, Console& console, Figures& figur
 void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures) {
   figures["materials"] = Figures::array();
   for (const std::string& name : mesh.materials) figures["materials"].push_back({{"name", name}});
-  std::map<std::pair<MaterialId, MaterialId>, std::size_t> counts;
-  for (const InterfaceTriangle& t : mesh.triangles) ++counts[std::minmax(t.front, t.back)];
-  figures["interfaces"] = Figures::array();
-  Rows rows{{"interface", "triangles"}};
-  for (const auto& [pair, count] : counts) {
-    const std::string &a = mesh.materials[pair.first], &b = mesh.materials[pair.second];
-    rows.push_back({a + " | " + b, std::to_string(count)});
-    figures["interfaces"].push_back({{"materials", {a, b}}, {"triangles", count}});
-  }
-  console.table(rows);
+  figures["interfaces"] = print_interfaces(mesh, console);
   InterfaceMeshReport report;
   try {
     report = check_interface_mesh(mesh, nullptr, {true, true});
@@ -240,7 +232,9 @@ void check_options(const InputOptions& options) {
   }
 }
 
-void run(const InputOptions& options, Session& session) {
+void run(const InputOptions& given, Session& session) {
+  const InputOptions options = with_main_file(given);
+  if (options.path.empty()) wrong_usage("expected a FILE, or files in --fraction or --labels, found neither");
   protect_inputs(options, options.path, session.outputs);
   check_options(options);
   check_input_file(options.path);
@@ -270,7 +264,6 @@ void add_info(CLI::App& app, Session& session) {
                    std::string("Any file that can be read: ") + kGridFiles +
                        ", a mesh (.vtu), interfaces (.vtp, .arec, .txt), a surface "
                        "(.obj, .off, .ply, .stl) or a store (.adm)")
-      ->required()
       ->type_name("FILE");
   add_material_options(*command, *options);
   command

@@ -164,8 +164,26 @@ MaterialDataOptions material_options(const InputOptions& options) {
   return result;
 }
 
-MultiMaterialData load_data(const InputOptions& options, Console& console) {
+InputOptions with_main_file(const InputOptions& options) {
+  InputOptions result = options;
+  if (!options.path.empty()) return result;
+  if (!options.fractions.empty())
+    result.path = parse_assignment("--fraction", options.fractions.front()).second;
+  else if (!options.labels.empty())
+    result.path = options.labels;
+  return result;
+}
+
+InputFacts facts_of(const ResamplingSource& source) {
+  return {source.name, source.box, source.fields ? source.fields->fields() : std::vector<FieldInfo>(),
+          source.voxel};
+}
+
+MultiMaterialData load_data(const InputOptions& given, Console& console) {
+  const InputOptions options = with_main_file(given);
   const MaterialDataOptions how = material_options(options);
+  if (options.path.empty())
+    wrong_usage("expected an INPUT, or files in --fraction or --labels, found neither");
   check_input_file(options.path);
   switch (input_kind(options.path)) {
     case InputKind::kMesh:
@@ -184,18 +202,22 @@ MultiMaterialData load_data(const InputOptions& options, Console& console) {
   return data;
 }
 
-Input load_input(const InputOptions& options, Console& console, const InputCheck& check) {
+Input load_input(const InputOptions& given, Console& console, const InputCheck& check) {
+  const InputOptions options = with_main_file(given);
   Input input;
   if (has_given_interfaces(options)) {
     input.source = load_given_interfaces(options, input.data, console, check);
     return input;
   }
-  if (options.path.empty()) wrong_usage("expected an INPUT or --interface, found neither");
+  if (options.path.empty())
+    wrong_usage("expected an INPUT, --interface, or files in --fraction or --labels, found none");
   if (!options.box.empty()) wrong_usage("--box: expected given interfaces (for a grid, --region crops)");
   if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
   if (options.tolerant) wrong_usage("--tolerant: expected given interfaces");
   input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
-  if (check) check(options.path, input.data->grid.domain(), field_infos(*input.data));
+  if (check)
+    check({options.path, input.data->grid.domain(), field_infos(*input.data),
+           input.data->grid.least_spacing()});
   input.source = make_grid_source(*input.data, console);
   return input;
 }

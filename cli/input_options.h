@@ -52,6 +52,10 @@ void protect_inputs(const InputOptions& options, const std::string& base, Output
 /// The options as the reader wants them; throws UsageError.
 MaterialDataOptions material_options(const InputOptions& options);
 
+/// The same options with the file that gives the grid as the input's path: where none was given, the first of
+/// those that hold volume fractions or labels.
+InputOptions with_main_file(const InputOptions& options);
+
 /// Reads a gridded input; notes what was mended in its volume fractions beyond round-off.
 MultiMaterialData load_data(const InputOptions& options, Console& console);
 
@@ -61,9 +65,16 @@ struct Input {
   ResamplingSource source;
 };
 
-/// Looks at the input's name, domain and fields before long work, and throws where options do not fit them.
-using InputCheck =
-    std::function<void(const std::string& name, const Box3& box, const std::vector<FieldInfo>& fields)>;
+/// What is known of an input before long work.
+struct InputFacts {
+  std::string name;
+  Box3 box;
+  std::vector<FieldInfo> fields;
+  double voxel = 0;  ///< the least spacing of its grid; 0 where there is none
+};
+InputFacts facts_of(const ResamplingSource& source);
+/// Throws where options do not fit the input.
+using InputCheck = std::function<void(const InputFacts&)>;
 
 /// Reads the input: interfaces reconstructed from a grid's volume fractions, or given as meshes.
 Input load_input(const InputOptions& options, Console& console, const InputCheck& check = {});

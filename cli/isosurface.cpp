@@ -28,26 +28,23 @@ namespace {
 struct Options {
   StoreInput input;
   std::vector<std::string> isovalues;
-  std::string error, max_triangles, region, output, picture, direction = "-0.62,0.72,-0.42";
+  std::string error, max_triangles, region, output;
+  PictureOptions picture;
   bool no_normals = false, strict = false;
 };
 
 /// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
 /// diagonal.
 double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
-  std::string_view number = text;
+  const auto in_voxels = before_voxels(text);
+  std::string_view number = in_voxels ? *in_voxels : text;
   double unit = 1;
-  for (const char* name : {"voxels", "voxel", "v"}) {
-    if (!number.ends_with(name)) continue;
-    number.remove_suffix(std::string_view(name).size());
+  if (in_voxels) {
     unit = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-    break;
-  }
-  if (number.size() == text.size() && number.ends_with('%')) {
+  } else if (number.ends_with('%')) {
     number.remove_suffix(1);
     unit = grid.box().diagonal() / 100;
   }
-  while (number.ends_with(' ')) number.remove_suffix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (code != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || value < 0)
@@ -74,12 +71,6 @@ SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
     request.max_triangles = parse_count("--max-triangles", options.max_triangles);
   if (!options.region.empty()) request.region = to_box(parse_bounds("--region", options.region));
   return request;
-}
-
-Vec3 parse_direction(const Options& options) {
-  const Vec3 direction = parse_vector("--direction", options.direction);
-  if (!(squared_norm(direction) > 0)) wrong_usage("--direction: expected a vector with a length, found 0");
-  return direction;
 }
 
 /// Adds a surface for one isovalue to those before.
@@ -156,21 +147,21 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
     ends.push_back(surface.triangles.size());
   }
   session.outputs.write(options.output, [&](const auto& path) { write_surface(path, surface, console); });
-  if (!options.picture.empty()) console.step("drawing", -1);
-  session.outputs.write(options.picture, [&](const auto& path) {
+  if (!options.picture.file.empty()) console.step("drawing", -1);
+  session.outputs.write(options.picture.file, [&](const auto& path) {
     write_isosurface_picture(path, surface, ends, isovalues, request.region.value_or(grid.box()),
-                             parse_direction(options));
+                             options.picture);
   });
   figures.report(surface, pages.counts());
 }
 
 void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".ply", ".stl", ".obj", ".vtp", ".glb", ".gltf"});
-  session.outputs.declare("--picture", options.picture, {".png", ".svg", ".pdf"});
-  if (options.output.empty() && options.picture.empty() && session.json.empty())
+  session.outputs.declare("--picture", options.picture.file, {".png", ".svg", ".pdf"});
+  if (options.output.empty() && options.picture.file.empty() && session.json.empty())
     wrong_usage("expected -o, --picture or --json, found no output");
   parse_isovalues(options.isovalues);
-  parse_direction(options);
+  options.picture.check();
   store_memory(options.input);
   request_of(options, {{1, 1, 1}, {}, {}, {}});
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
@@ -209,11 +200,7 @@ void add_isosurface(CLI::App& app, Session& session) {
   command->add_flag("--strict", options->strict, "Stop at damaged pages, instead of going on coarser there");
   command->add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")
       ->type_name("FILE");
-  command->add_option("--picture", options->picture, "A picture of it: .png, .svg or .pdf")
-      ->type_name("FILE");
-  command->add_option("--direction", options->direction, "The way that the picture's camera looks")
-      ->type_name("x,y,z")
-      ->capture_default_str();
+  add_picture_options(*command, options->picture, "it");
 }
 
 }  // namespace adamas

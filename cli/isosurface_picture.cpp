@@ -16,10 +16,10 @@ constexpr Colour kBone{0.93, 0.85, 0.71};
 
 void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
                               const std::vector<std::size_t>& ends, const std::vector<double>& isovalues,
-                              const Box3& domain, const Vec3& direction) {
+                              const Box3& domain, const PictureOptions& camera) {
   InterfacePicture picture;
   picture.domain = domain;
-  picture.direction = direction;
+  camera.aim(picture);
   picture.triangles.reserve(surface.triangles.size());
   for (std::size_t n = 0; n < ends.size(); ++n) {
     const Colour colour = ends.size() > 1 ? material_colour(n) : kBone;
@@ -29,7 +29,7 @@ void write_isosurface_picture(const std::filesystem::path& path, const TriangleS
       picture.triangles.push_back({{surface.points[a], surface.points[b], surface.points[c]}, colour});
     }
   }
-  write_interfaces(picture, path);
+  write_interfaces(picture, path, camera.sizes());
 }
 
 }  // namespace adamas

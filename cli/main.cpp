@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/command.h"
+#include "cli/exit_status.h"
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
 #include "cli/usage_message.h"
@@ -14,7 +15,7 @@
 
 namespace {
 
-enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2, kIncomplete = 3, kInterrupted = 130 };
+using adamas::kDone, adamas::kFailed, adamas::kIncomplete, adamas::kInterrupted, adamas::kWrongUsage;
 
 /// One line on stderr, whatever the text.
 void complain(std::string text) {

@@ -92,7 +92,7 @@ void OutputSet::declare(const std::string& option, const std::string& path,
   files_.push_back({option, std::make_unique<OutputFile>(path)});
 }
 
-const OutputFile* OutputSet::find(const std::string& path) const {
+OutputFile* OutputSet::find(const std::string& path) const {
   const auto at = std::find_if(files_.begin(), files_.end(),
                                [&path](const Declared& each) { return each.file->path() == path; });
   return at == files_.end() ? nullptr : at->file.get();
@@ -111,11 +111,21 @@ void OutputSet::write(const std::string& path,
   }
 }
 
+void OutputSet::publish(const std::string& path,
+                        const std::function<void(const std::filesystem::path&)>& writer) {
+  write(path, writer);
+  if (OutputFile* file = find(path)) file->publish();
+}
+
 std::size_t OutputSet::bytes(const std::string& path) const {
   const OutputFile* file = find(path);
   std::error_code code;
   const auto size = file == nullptr ? 0 : std::filesystem::file_size(file->temporary(), code);
   return code ? 0 : static_cast<std::size_t>(size);
+}
+
+void OutputSet::commit(const std::string& path) {
+  if (OutputFile* file = find(path)) file->commit();
 }
 
 void OutputSet::commit() {

@@ -31,16 +31,21 @@ class OutputSet {
                std::initializer_list<const char*> extensions = {});
   /// Calls `writer` with the name to write to, if the path was declared. Its Errors name the final path.
   void write(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
+  /// The same for an output that is whole at several moments: it gets its name at once, and may be written
+  /// again.
+  void publish(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
   /// Bytes written for a path.
   [[nodiscard]] std::size_t bytes(const std::string& path) const;
   void commit();
+  /// The same for one output alone, which is done then.
+  void commit(const std::string& path);
 
  private:
   struct Declared {
     std::string option;
     std::unique_ptr<OutputFile> file;
   };
-  [[nodiscard]] const OutputFile* find(const std::string& path) const;
+  [[nodiscard]] OutputFile* find(const std::string& path) const;
   void check_outputs_apart_from(const std::filesystem::path& input) const;
 
   std::vector<Declared> files_;

@@ -8,6 +8,7 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/network_figures.h"
 #include "cli/option_values.h"
 #include "cli/point_table.h"
 #include "cli/slice_input.h"
@@ -98,6 +99,24 @@ void report_integrals(const IdVector<MaterialId, MaterialIntegral>& integrals,
   if (print) console.table(rows);
 }
 
+/// Volumes and areas of given interfaces.
+void report_network(const ResamplingSource& source, bool print, Console& console, Figures& figures) {
+  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
+  const bool known = !source.volumes.empty();
+  figures["materials"] = Figures::array();
+  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
+    figures["materials"].push_back(
+        {{"name", source.materials[m]}, {"volume", known ? Figures(source.volumes[m]) : Figures(nullptr)}});
+    rows.push_back({source.materials[m], known ? volume_text(source.volumes[m]) : "-"});
+  }
+  if (print) {
+    console.print("  domain {}\n", box_text(source.box));
+    console.table(rows);
+  }
+  figures["interfaces"] = print_interface_areas(source, print, console);
+  if (!known) console.note("{}: the interfaces are not closed, so that volumes are not known", source.name);
+}
+
 /// Points beside the domain have no values, which is easily overlooked in a long table.
 void note_points_outside(const PointTable& table, const Box3& domain, Console& console) {
   const auto outside = std::count_if(table.samples.begin(), table.samples.end(),
@@ -117,9 +136,10 @@ void check_mesh_options(const InputOptions& input) {
 
 void run(const Options& options, Session& session) {
   Console& console = session.console;
-  const bool meshed = input_kind(options.input.path) == InputKind::kMesh;
+  const std::string main = with_main_file(options.input).path;
+  const bool meshed = !main.empty() && input_kind(main) == InputKind::kMesh;
   if (meshed) check_mesh_options(options.input);
-  protect_inputs(options.input, options.input.path, session.outputs);
+  protect_inputs(options.input, main, session.outputs);
   if (!options.points.empty()) session.outputs.protect(options.points);
   session.outputs.declare("-o", options.output, {".csv", ".txt"});
   const std::vector<Vec3> points = wanted_points(options);
@@ -147,6 +167,8 @@ void run(const Options& options, Session& session) {
     if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
       report_integrals(material_integrals(*input.data), input.data->materials, field_infos(*input.data),
                        !to_stdout, console, figures);
+    } else {
+      report_network(input.source, !to_stdout, console, figures);
     }
   }
   if (to_stdout) console.write(table.csv());
@@ -171,7 +193,6 @@ void add_probe(CLI::App& app, Session& session) {
       ->add_option("input", options->input.path,
                    std::string("What to probe: ") + kGridFiles +
                        ", interfaces (.vtp, .arec, .txt), or a mesh from adamas resample (.vtu)")
-      ->required()
       ->type_name("FILE");
   command->add_option("--points", options->points, "Points, x,y,z a line")->type_name("FILE");
   command->add_option("--point", options->single, "A point; repeatable")

@@ -1,16 +1,18 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/given_interfaces.h"
 #include "cli/input_options.h"
+#include "cli/network_figures.h"
 #include "cli/surface_picture.h"
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
+#include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
 namespace adamas {
@@ -19,10 +21,11 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string output, picture;
+  SurfacePictureOptions picture;
+  std::string output;
 };
 
-Figures print_materials(const MultiMaterialData& data, const Reconstruction& result, Console& console) {
+Figures print_volumes(const MultiMaterialData& data, const Reconstruction& result, Console& console) {
   Figures figures = Figures::array();
   std::vector<std::vector<std::string>> rows{{"material", "volume", "reconstructed", "difference"}};
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
@@ -36,38 +39,65 @@ Figures print_materials(const MultiMaterialData& data, const Reconstruction& res
   return figures;
 }
 
-Figures print_interfaces(const InterfaceMesh& mesh, Console& console) {
-  std::map<std::pair<MaterialId, MaterialId>, std::size_t> counts;
-  for (const InterfaceTriangle& t : mesh.triangles) ++counts[std::minmax(t.front, t.back)];
+/// The same for interfaces that are given: there is nothing to compare with.
+Figures print_volumes(const ResamplingSource& source, Console& console) {
   Figures figures = Figures::array();
-  std::vector<std::vector<std::string>> rows{{"interface", "triangles"}};
-  for (const auto& [pair, count] : counts) {
-    const std::string &a = mesh.materials[pair.first], &b = mesh.materials[pair.second];
-    if (rows.size() <= 40) rows.push_back({a + " | " + b, std::to_string(count)});
-    figures.push_back({{"materials", {a, b}}, {"triangles", count}});
+  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
+  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
+    const bool known = !source.volumes.empty();
+    rows.push_back({source.materials[m], known ? volume_text(source.volumes[m]) : "-"});
+    figures.push_back({{"name", source.materials[m]},
+                       {"volume_reconstructed", known ? Figures(source.volumes[m]) : Figures(nullptr)}});
   }
   console.table(rows);
-  if (counts.size() > 40) console.print("  ... and {} more\n", counts.size() - 40);
   return figures;
 }
 
-void run(const Options& options, Session& session) {
-  protect_inputs(options.input, options.input.path, session.outputs);
-  session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
-  session.outputs.declare("--picture", options.picture, {".png", ".svg", ".pdf"});
-  Console& console = session.console;
+/// The interfaces of an input, with what is printed of them.
+struct Interfaces {
+  InterfaceMesh mesh;
+  Box3 box;
+};
+
+Interfaces reconstruct(const Options& options, Figures& figures, Console& console) {
   const MultiMaterialData data = load_data(options.input, console);
-  const Reconstruction result(data, console);
-  Figures figures;
-  figures["materials"] = print_materials(data, result, console);
+  options.picture.check_materials(data.materials, data.source);
+  Reconstruction result(data, console);
+  figures["materials"] = print_volumes(data, result, console);
   figures["interfaces"] = print_interfaces(result.mesh(), console);
-  figures["triangles"] = result.mesh().triangles.size();
   figures["bodies"] = result.body_materials().size();
+  return {result.take_mesh(), data.grid.domain()};
+}
+
+/// Given interfaces: checked, welded, without triangles that bound nothing.
+Interfaces take_given(const Options& options, Figures& figures, Console& console) {
+  const Input input = load_input(options.input, console);
+  const ResamplingSource& source = input.source;
+  options.picture.check_materials(source.materials, source.name);
+  figures["materials"] = print_volumes(source, console);
+  figures["interfaces"] = print_interface_areas(source, true, console);
+  figures["bodies"] = source.network->table().body_count();
+  return {network_mesh(*source.network, source.materials, source.name), source.box};
+}
+
+void run(const Options& options, Session& session) {
+  protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
+  session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
+  session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf"});
+  options.picture.check();
+  Console& console = session.console;
+  Figures figures;
+  const bool given = has_given_interfaces(options.input);
+  if (!given && !options.input.interface_option().empty())
+    wrong_usage("{}: expected given interfaces as INPUT", options.input.interface_option());
+  const Interfaces found =
+      given ? take_given(options, figures, console) : reconstruct(options, figures, console);
+  figures["triangles"] = found.mesh.triangles.size();
   console.step("writing", -1);
-  session.outputs.write(options.output, [&](const auto& path) { write_interface_mesh(path, result.mesh()); });
+  session.outputs.write(options.output, [&](const auto& path) { write_interface_mesh(path, found.mesh); });
   console.check();
-  session.outputs.write(options.picture, [&](const auto& path) {
-    write_surface_picture(path, result.mesh(), data.grid.domain());
+  session.outputs.write(options.picture.camera.file, [&](const auto& path) {
+    write_surface_picture(path, found.mesh, found.box, options.picture);
   });
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
@@ -79,18 +109,21 @@ void run(const Options& options, Session& session) {
 
 void add_reconstruct(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(app, session, "reconstruct", "Interface meshes from volume fractions",
-                                  "adamas reconstruct cth.vtr -o interfaces.vtp --picture interfaces.png",
-                                  [options, &session] { run(*options, session); });
-  command->add_option("input", options->input.path, std::string("What to reconstruct: ") + kGridFiles)
-      ->required()
+  CLI::App* command =
+      add_command(app, session, "reconstruct", "Interface meshes from volume fractions, or of a network",
+                  "adamas reconstruct cth.vtr -o interfaces.vtp --picture interfaces.png",
+                  [options, &session] { run(*options, session); });
+  command
+      ->add_option("input", options->input.path,
+                   std::string("What to reconstruct: ") + kGridFiles +
+                       ", or a network to check and write anew (.vtp, .arec, .txt)")
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
       ->required()
       ->type_name("FILE");
-  command->add_option("--picture", options->picture, "A picture of them: .png, .svg or .pdf")
-      ->type_name("FILE");
+  add_surface_picture_options(*command, options->picture);
   add_material_options(*command, options->input);
+  add_interface_options(*command, options->input);
 }
 
 }  // namespace adamas

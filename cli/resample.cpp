@@ -10,11 +10,13 @@
 #include "cli/input_options.h"
 #include "cli/resample_figures.h"
 #include "cli/resampling_setup.h"
+#include "cli/surface_picture.h"
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/cut_mesh.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/resampling/shortfall.h"
 
 namespace adamas {
 
@@ -25,9 +27,12 @@ std::string shown_length(double length) {
   return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
 }
 
+std::string place_text(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z); }
+
 struct Options {
   InputOptions input;
   ResamplingText text;
+  SurfacePictureOptions picture;
   std::string output, interfaces, cut;
 };
 
@@ -45,10 +50,10 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   if (m.flagged_vertices > 0)
     rows.push_back({"vertices of doubtful material", std::to_string(m.flagged_vertices)});
   console.table(rows);
-  const auto& distance = resampler.interface_distance();
-  if (distance && distance->upper > target) {
-    console.note("the interface error wanted was not reached: {} instead of {:.4g}",
-                 shown_length(distance->upper), target);
+  if (const auto shortfall = interface_shortfall(resampler)) {
+    console.note("the interface error wanted was not reached: {} instead of {:.4g}, at {}: {}",
+                 shown_length(resampler.interface_distance()->upper), target, place_text(shortfall->place),
+                 shortfall->reason);
   }
 }
 
@@ -70,11 +75,12 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
   console.print("\n");
   console.table(rows);
   for (std::size_t f = 0; f < m.fields.size(); ++f) {
-    const auto& target = resampler.options().field_errors[f];
     const FieldError& all = m.fields[f].all;
-    if (!target || all.count == 0 || all.max <= *target) continue;
-    console.note("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}",
-                 resampler.source().fields->fields()[f].name, all.max, *target);
+    const auto shortfall = field_shortfall(resampler, f, all);
+    if (!shortfall) continue;
+    console.note("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}, at {}: {}",
+                 resampler.source().fields->fields()[f].name, all.max, *resampler.options().field_errors[f],
+                 place_text(shortfall->place), shortfall->reason);
   }
 }
 
@@ -100,11 +106,15 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
 
 void write_outputs(const Options& options, Resampler& resampler, Session& session) {
   Console& console = session.console;
-  if (!options.interfaces.empty()) {
+  const std::string& picture = options.picture.camera.file;
+  if (!options.interfaces.empty() || !picture.empty()) {
     const InterfaceMesh interfaces = approximated_interfaces(resampler, console);
-    console.step("writing " + options.interfaces, -1);
+    console.step("writing interfaces", -1);
     session.outputs.write(options.interfaces,
                           [&](const auto& path) { write_interface_mesh(path, interfaces); });
+    session.outputs.write(picture, [&](const auto& path) {
+      write_surface_picture(path, interfaces, resampler.source().box, options.picture);
+    });
   }
   if (options.output.empty() && options.cut.empty()) return;
   console.step("completing fields", -1);
@@ -122,16 +132,21 @@ void write_outputs(const Options& options, Resampler& resampler, Session& sessio
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   const ResamplingWishes wishes(options.text);
-  if (options.output.empty() && options.interfaces.empty() && options.cut.empty() && session.json.empty()) {
-    wrong_usage("nothing to write: expected -o, --interfaces-out, --cut-mesh or --json, found none");
+  if (options.output.empty() && options.interfaces.empty() && options.cut.empty() &&
+      options.picture.camera.file.empty() && session.json.empty()) {
+    wrong_usage(
+        "nothing to write: expected -o, --interfaces-out, --cut-mesh, --picture or --json, found none");
   }
-  protect_inputs(options.input, options.input.path, session.outputs);
+  options.picture.check();
+  protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtu"});
   session.outputs.declare("--interfaces-out", options.interfaces,
                           {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   session.outputs.declare("--cut-mesh", options.cut, {".vtu"});
+  session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf"});
   const Input input =
-      load_input(options.input, console, [&wishes](const auto&... found) { wishes.check(found...); });
+      load_input(options.input, console, [&](const InputFacts& found) { wishes.check(found); });
+  options.picture.check_materials(input.source.materials, input.source.name);
   Resampler resampler(input.source, wishes.options(input.source), console);
   resampler.refine();
   console.step("measuring", -1);
@@ -170,6 +185,8 @@ void add_resample(CLI::App& app, Session& session) {
       ->type_name("FILE");
   command->add_option("--cut-mesh", options->cut, "The mesh with cells cut along the interfaces: .vtu")
       ->type_name("FILE");
+  options->picture.triangle_edges = true;
+  add_surface_picture_options(*command, options->picture);
   add_material_options(*command, options->input);
   add_interface_options(*command, options->input);
 }

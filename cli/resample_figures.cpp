@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "interfaces/resampling/shortfall.h"
+
 namespace adamas {
 
 ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
@@ -39,6 +41,13 @@ namespace {
 /// A figure that is not known is null.
 Figures known(bool is, double value) { return is ? Figures(value) : Figures(nullptr); }
 
+/// Null where an error was reached.
+Figures shortfall_figures(const std::optional<Shortfall>& shortfall) {
+  if (!shortfall) return nullptr;
+  const Vec3& p = shortfall->place;
+  return {{"reason", shortfall->reason}, {"place", {p.x, p.y, p.z}}};
+}
+
 Figures field_figures(const ResampleFigures& measured, const Resampler& resampler) {
   Figures figures = Figures::object();
   for (std::size_t f = 0; f < measured.fields.size(); ++f) {
@@ -47,6 +56,7 @@ Figures field_figures(const ResampleFigures& measured, const Resampler& resample
     Figures figure = field_error_figures(measured.fields[f]);
     figure["target"] = known(target.has_value(), target.value_or(0));
     figure["reached"] = target && all.count > 0 ? Figures(all.max <= *target) : Figures(nullptr);
+    figure["shortfall"] = shortfall_figures(field_shortfall(resampler, f, all));
     figures[resampler.source().fields->fields()[f].name] = std::move(figure);
   }
   return figures;
@@ -84,6 +94,7 @@ Figures resample_json(const ResampleFigures& measured, const Resampler& resample
   figures["interface_error_target"] = resampler.options().interface_error;
   figures["interface_error_reached"] =
       distance ? Figures(distance->upper <= resampler.options().interface_error) : Figures(nullptr);
+  figures["interface_error_shortfall"] = shortfall_figures(interface_shortfall(resampler));
   figures["lost_interfaces"] = measured.lost_interfaces;
   figures["fields"] = field_figures(measured, resampler);
   figures["materials"] = volume_figures(resampler.source(), measured.volumes);

@@ -20,9 +20,9 @@ std::vector<FieldInfo>::const_iterator find_by_name(const std::vector<FieldInfo>
 void add_resampling_options(CLI::App& command, ResamplingText& text) {
   command
       .add_option("--interface-error", text.interface_error,
-                  "Greatest distance between the interfaces and their approximation, as a length or in % of "
-                  "the domain's diagonal")
-      ->type_name("E|E%")
+                  "Greatest distance between the interfaces and their approximation: a length, in % of the "
+                  "domain's diagonal, or in voxels of the input's grid (its least spacing)")
+      ->type_name("E|E%|Evoxels")
       ->capture_default_str();
   add_other_resampling_options(command, text);
 }
@@ -47,7 +47,7 @@ void add_other_resampling_options(CLI::App& command, ResamplingText& text) {
 }
 
 ResamplingWishes::ResamplingWishes(const ResamplingText& text)
-    : interface_error(parse_error_target("--interface-error", text.interface_error)) {
+    : interface_error(parse_error_target("--interface-error", text.interface_error, true)) {
   for (const std::string& each : text.field_errors) {
     const auto [name, value] = parse_assignment("--field-error", each, true);
     const auto same = [&name = name](const auto& other) { return other.first == name; };
@@ -62,30 +62,33 @@ ResamplingWishes::ResamplingWishes(const ResamplingText& text)
   if (text.distance == "nearest-vertex") distance = DistanceMode::kNearestVertex;
 }
 
-void ResamplingWishes::check(const std::string& source, const Box3& box,
-                             const std::vector<FieldInfo>& fields) const {
-  const double whole = box.diagonal();
-  if (!(interface_error.of(whole) < whole)) {
-    const double value = interface_error.value;
-    wrong_usage(
-        "--interface-error: expected less than the domain's diagonal, {:.6g}, found {} (a part of it is "
-        "written 1%)",
-        whole, interface_error.relative ? fmt::format("{:.6g}%", 100 * value) : fmt::format("{:.6g}", value));
-  }
+double interface_error_of(const std::string& option, const ErrorTarget& error, const InputFacts& input) {
+  const double whole = input.box.diagonal();
+  if (error.unit == ErrorTarget::Unit::kVoxels && !(input.voxel > 0))
+    wrong_usage("{}: expected a length or a part of the domain's diagonal, since {} has no grid, found {}",
+                option, input.name, error.text());
+  const double length = error.of(whole, input.voxel);
+  if (length < whole) return length;
+  wrong_usage("{}: expected less than the domain's diagonal, {:.6g}, found {} (a part of it is written 1%)",
+              option, whole, error.text());
+}
+
+void ResamplingWishes::check(const InputFacts& input) const {
+  static_cast<void>(interface_error_of("--interface-error", interface_error, input));
   for (const auto& [name, target] : field_errors) {
-    if (find_by_name(fields, name) == fields.end()) {
-      fail("{}: --field-error: expected one of its fields ({}), found '{}'", source, field_names(fields),
-           name);
+    if (find_by_name(input.fields, name) == input.fields.end()) {
+      fail("{}: --field-error: expected one of its fields ({}), found '{}'", input.name,
+           field_names(input.fields), name);
     }
   }
 }
 
 ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) const {
-  const std::vector<FieldInfo> none;
-  const auto& fields = source.fields ? source.fields->fields() : none;
-  check(source.name, source.box, fields);
+  const InputFacts input = facts_of(source);
+  const auto& fields = input.fields;
+  check(input);
   ResamplingOptions result;
-  result.interface_error = interface_error.of(source.box.diagonal());
+  result.interface_error = interface_error_of("--interface-error", interface_error, input);
   result.max_tetrahedra = max_tetrahedra;
   result.ghost = ghost;
   result.distance = distance;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "interfaces/resampling/resampler.h"
 
@@ -25,7 +26,7 @@ struct ResamplingWishes {
   explicit ResamplingWishes(const ResamplingText& text);
   /// Throws UsageError for an interface error that says nothing in this domain, and Error for fields that the
   /// input has not.
-  void check(const std::string& source, const Box3& box, const std::vector<FieldInfo>& fields) const;
+  void check(const InputFacts& input) const;
   /// For a source that was checked: errors in its units.
   [[nodiscard]] ResamplingOptions options(const ResamplingSource& source) const;
 
@@ -35,6 +36,10 @@ struct ResamplingWishes {
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;
 };
+
+/// An interface error in units of length. Throws UsageError that names the option where it is not less than
+/// the domain's diagonal, or is in voxels and there are none.
+double interface_error_of(const std::string& option, const ErrorTarget& error, const InputFacts& input);
 
 /// The names of a source's fields, for messages: "'a', 'b'"; "none" where it has none.
 std::string field_names(const std::vector<FieldInfo>& fields);

@@ -126,7 +126,8 @@ void check_options(const Options& options, const std::string& field, OutputSet& 
     if (options.mode == "plain") wrong_usage("--mode plain: expected --field as well");
   }
   parse_range(options);
-  protect_inputs(options.input, options.original.empty() ? options.input.path : options.original, outputs);
+  const std::string main = with_main_file(options.input).path;
+  protect_inputs(options.input, options.original.empty() ? main : options.original, outputs);
   outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});
 }
 
@@ -230,14 +231,15 @@ void add_drawing_options(CLI::App& command, Options& options) {
 void add_slice(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = add_command(
-      app, session, "slice", "A cross section of data, of a resampled mesh or of a stored volume",
+      app, session, "slice", "A cross section of data, of a mesh, of interfaces or of a stored volume",
       "adamas slice mesh.vtu --plane z=0 --field Pressure --mode all --original cth.vtr -o slice.png",
       [options, &session] { run(*options, session); });
   command
-      ->add_option("input", options->input.path,
-                   std::string("What to cut: ") + kGridFiles +
-                       ", a mesh from adamas resample (.vtu), or a store from adamas store (.adm)")
-      ->required()
+      ->add_option(
+          "input", options->input.path,
+          std::string("What to cut: ") + kGridFiles +
+              ", a mesh from adamas resample (.vtu), interfaces (.vtp, .arec, .txt), or a store from "
+              "adamas store (.adm)")
       ->type_name("FILE");
   command->add_option("--plane", options->plane, "The plane, at right angles to an axis")
       ->type_name("x=N|y=N|z=N");
@@ -255,7 +257,7 @@ void add_slice(CLI::App& app, Session& session) {
                        "The field to show, or NAME:x for a component of a vector; without, the materials. "
                        "NAME=FILE adds it first",
                        "NAME[=FILE-or-ARRAY]");
-  add_interface_options(*command, options->input, false);
+  add_interface_options(*command, options->input);
 }
 
 }  // namespace adamas

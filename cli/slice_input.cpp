@@ -11,6 +11,7 @@
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
 namespace adamas {
@@ -104,24 +105,39 @@ ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
   return from_unstructured_mesh(mesh, path);
 }
 
-SliceInput load_slice_input(const InputOptions& options, const std::string& original, const Plane* plane,
+SliceInput load_slice_input(const InputOptions& given, const std::string& original, const Plane* plane,
                             const std::function<void(const SliceInput&)>& check, Console& console) {
+  const InputOptions options = with_main_file(given);
+  if (options.path.empty())
+    wrong_usage("expected an INPUT, or files in --fraction or --labels, found neither");
   SliceInput input;
   input.name = options.path;
   InputOptions from = options;
   check_input_file(options.path);
-  if (input_kind(options.path) == InputKind::kMesh) {
+  const InputKind kind = input_kind(options.path);
+  const bool meshed = kind == InputKind::kMesh;
+  if (!meshed && !original.empty())
+    wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.path);
+  if (kind == InputKind::kNetwork) {
+    Input read = load_input(options, console);
+    input.interfaces = network_mesh(*read.source.network, read.source.materials, read.source.name);
+    input.network = std::move(read.source);
+    check(input);
+    return input;
+  }
+  for (const char* option : {"--box", "--tolerant"}) {
+    if (option == std::string("--box") ? options.box.empty() : !options.tolerant) continue;
+    wrong_usage("{}: expected interfaces as INPUT, found {}", option, options.path);
+  }
+  if (meshed) {
     input.mesh = load_resampled_mesh(options.path, console);
     from.path = original;
     if (!original.empty()) check_input_file(original);
     const std::string unused =
         options.material_option().empty() ? options.interface_option() : options.material_option();
     if (original.empty() && !unused.empty()) wrong_usage("{}: expected --original DATA", unused);
-  } else if (!original.empty()) {
-    wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.path);
-  } else if (input_kind(options.path) != InputKind::kGrid) {
-    fail("{}: expected data on a grid or a resampled mesh (.vtu), found interfaces: resample them first",
-         options.path);
+  } else if (kind == InputKind::kSurface) {
+    fail("{}: expected data on a grid, a resampled mesh (.vtu) or a network, found a surface", options.path);
   }
   if (!from.path.empty() || !from.interfaces.empty()) load_original(from, console, input);
   check(input);

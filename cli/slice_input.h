@@ -11,26 +11,33 @@
 
 namespace adamas {
 
-/// What a slice is cut from: the input's own data and interfaces, a resampled mesh, or both.
+/// What a slice is cut from: the input's own data and interfaces, a resampled mesh, both, or interfaces
+/// alone.
 struct SliceInput {
   std::string name;
   std::unique_ptr<MultiMaterialData> data;
   std::optional<InterfaceMesh> interfaces;  ///< the original ones
   std::optional<ResampledMesh> mesh;
+  std::optional<ResamplingSource> network;  ///< given interfaces without data
 
-  [[nodiscard]] Box3 box() const { return mesh ? mesh->box : data->grid.domain(); }
+  [[nodiscard]] Box3 box() const {
+    if (mesh) return mesh->box;
+    return network ? network->box : data->grid.domain();
+  }
   [[nodiscard]] const IdVector<MaterialId, std::string>& materials() const {
-    return mesh ? mesh->materials : data->materials;
+    if (mesh) return mesh->materials;
+    return network ? network->materials : data->materials;
   }
 };
 
 /// Reads a resampled mesh from .vtu. Throws Error for another mesh.
 ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
 
-/// Reads the positional input, a resampled mesh or gridded data, and for a mesh the original data or
-/// interfaces, where given; the original data get the mesh's order of materials. `check` looks at what was
-/// read before long work and may throw. Interfaces of gridded data are reconstructed round `plane`, unless it
-/// is null. Throws Error where the original has another box or other materials than the mesh.
+/// Reads the positional input, a resampled mesh, gridded data or given interfaces, and for a mesh the
+/// original data or interfaces, where given; the original data get the mesh's order of materials. `check`
+/// looks at what was read before long work and may throw. Interfaces of gridded data are reconstructed round
+/// `plane`, unless it is null. Throws Error where the original has another box or other materials than the
+/// mesh.
 SliceInput load_slice_input(const InputOptions& options, const std::string& original, const Plane* plane,
                             const std::function<void(const SliceInput&)>& check, Console& console);
 

@@ -33,6 +33,7 @@ LineSet to_lines(const PlaneFrame& frame, const std::string& name, const Stroke&
 }
 
 std::vector<FieldInfo> fields_of(const SliceInput& input, bool of_data) {
+  if (input.network) return {};
   return of_data ? field_infos(*input.data) : input.mesh->fields;
 }
 
@@ -113,13 +114,16 @@ std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode,
   if (style.field.empty()) return {};
   const bool of_data = mode == SliceMode::kInput;
   const std::vector<FieldInfo> fields = fields_of(input, of_data);
-  const std::string& source = of_data ? input.data->source : input.name;
+  const std::string& source = of_data && input.data ? input.data->source : input.name;
   return find_field(fields, with_index(fields, style.field, source), source);
 }
 
 CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
   const bool of_data = mode == SliceMode::kInput;
   const auto field = choose_field(input, mode, style);
+  if (input.network)
+    return cross_section(*input.network->network, input.box(), input.materials().size(), style.plane,
+                         input.name);
   if (of_data) return cross_section(*input.data, style.plane, field);
   return cross_section(*input.mesh, style.plane, field,
                        mode == SliceMode::kPlain ? SectionMode::kPlain : SectionMode::kPerMaterial);

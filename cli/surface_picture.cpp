@@ -1,8 +1,12 @@
 #include "cli/surface_picture.h"
 
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <vector>
+#include <array>
 
+#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 
@@ -13,45 +17,106 @@ namespace {
 /// More names than this make no legend.
 constexpr std::size_t kMostNames = 24;
 
-/// The materials' volumes up to a constant per closed network, by the divergence theorem; what surrounds the
-/// others comes out smallest, since the domain's own faces are no triangles.
-IdVector<MaterialId, double> enclosed_volumes(const InterfaceMesh& mesh, const Box3& domain) {
-  IdVector<MaterialId, double> volumes(mesh.materials.size(), 0.0);
-  const Vec3 o = domain.center();
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    const double v =
-        signed_volume(o, mesh.points[t.points[0]], mesh.points[t.points[1]], mesh.points[t.points[2]]);
-    volumes[t.back] += v;
-    volumes[t.front] -= v;
-  }
-  return volumes;
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
+
+/// The materials that a choice names: two of an interface, or one and none.
+std::array<std::string, 2> chosen_names(const std::string& text) {
+  const std::size_t bar = text.find('|');
+  if (bar == std::string::npos) return {trimmed(text), ""};
+  return {trimmed(text.substr(0, bar)), trimmed(text.substr(bar + 1))};
+}
+
+MaterialId find_material(const IdVector<MaterialId, std::string>& materials, const std::string& name,
+                         const std::string& source) {
+  const auto found = std::find(materials.begin(), materials.end(), name);
+  if (found != materials.end()) return MaterialId(static_cast<std::size_t>(found - materials.begin()));
+  std::string known;
+  for (const std::string& each : materials) known += (known.empty() ? "'" : ", '") + each + "'";
+  fail("{}: --show-interface: expected materials of {}, found '{}'", source, known, name);
+}
+
+/// Whether a picture shows a triangle.
+class Choice {
+ public:
+  Choice(const std::vector<std::string>& texts, const IdVector<MaterialId, std::string>& materials,
+         const std::string& source) {
+    for (const std::string& text : texts) {
+      const auto [a, b] = chosen_names(text);
+      const MaterialId first = find_material(materials, a, source);
+      pairs_.push_back({first, b.empty() ? MaterialId() : find_material(materials, b, source)});
+    }
+  }
+
+  [[nodiscard]] bool shows(const InterfaceTriangle& t) const {
+    const auto fits = [&t](const std::array<MaterialId, 2>& pair) {
+      const auto& [a, b] = pair;
+      if (!b.valid()) return t.front == a || t.back == a;
+      return (t.front == a && t.back == b) || (t.front == b && t.back == a);
+    };
+    return pairs_.empty() || std::any_of(pairs_.begin(), pairs_.end(), fits);
+  }
+
+ private:
+  std::vector<std::array<MaterialId, 2>> pairs_;
+};
 
 }  // namespace
 
+void SurfacePictureOptions::check() const {
+  camera.check();
+  if (camera.own_file && camera.file.empty() && !shown.empty())
+    wrong_usage("--show-interface: expected --picture as well");
+  for (const std::string& text : shown) {
+    const auto [a, b] = chosen_names(text);
+    if (a.empty() || a == b || (b.empty() && text.find('|') != std::string::npos))
+      wrong_usage("--show-interface: expected A or 'A|B' with two materials, found '{}'", text);
+  }
+}
+
+void SurfacePictureOptions::check_materials(const IdVector<MaterialId, std::string>& materials,
+                                            const std::string& source) const {
+  static_cast<void>(Choice(shown, materials, source));
+}
+
+void add_surface_picture_options(CLI::App& command, SurfacePictureOptions& options, bool own_file) {
+  add_picture_options(command, options.camera, "the interfaces", own_file);
+  command
+      .add_option(
+          "--show-interface", options.shown,
+          "The picture shows the interface between two materials, or with A alone all of one material; "
+          "repeatable (default: all)")
+      ->type_name("A|B")
+      ->allow_extra_args(false)
+      ->group("Picture");
+}
+
 void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
-                           bool triangle_edges) {
-  const auto volumes = enclosed_volumes(mesh, domain);
+                           const SurfacePictureOptions& options) {
+  const Choice choice(options.shown, mesh.materials, mesh.source);
   InterfacePicture picture;
   picture.domain = domain;
+  options.camera.aim(picture);
   std::vector<char> shown(mesh.materials.size(), 0);
   for (const InterfaceTriangle& t : mesh.triangles) {
-    const bool front = volumes[t.front] != volumes[t.back] ? volumes[t.front] > volumes[t.back]
-                                                           : t.front.value > t.back.value;
-    const MaterialId m = front ? t.front : t.back;
-    shown[m.value] = 1;
+    if (!choice.shows(t)) continue;
+    shown[t.front.value] = shown[t.back.value] = 1;
     picture.triangles.push_back(
         {{mesh.points[t.points[0]], mesh.points[t.points[1]], mesh.points[t.points[2]]},
-         material_colour(m.value)});
+         material_colour(t.back.value),
+         material_colour(t.front.value)});
   }
   if (static_cast<std::size_t>(std::count(shown.begin(), shown.end(), 1)) <= kMostNames) {
     for (MaterialId m(0); m.value < mesh.materials.size(); ++m.value) {
       if (shown[m.value] != 0) picture.materials.push_back({mesh.materials[m], material_colour(m.value)});
     }
   }
-  InterfacePictureOptions options;
-  options.triangle_edges = triangle_edges;
-  write_interfaces(picture, path, options);
+  InterfacePictureOptions drawn = options.camera.sizes();
+  drawn.triangle_edges = options.triangle_edges;
+  write_interfaces(picture, path, drawn);
 }
 
 }  // namespace adamas

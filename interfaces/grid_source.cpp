@@ -2,9 +2,22 @@
 
 #include <algorithm>
 
+#include "core/base/parallel.h"
 #include "interfaces/fields/grid_field_source.h"
+#include "interfaces/network/grid_bodies.h"
+#include "interfaces/network/network_measures.h"
 
 namespace adamas {
+
+namespace {
+
+std::vector<MaterialId> materials_of(const std::vector<BodyId>& bodies, const InterfaceTable& table) {
+  std::vector<MaterialId> materials(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) materials[i] = table.material(bodies[i]);
+  return materials;
+}
+
+}  // namespace
 
 ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progress) {
   auto reconstruction = std::make_shared<Reconstruction>(data, progress);
@@ -13,6 +26,7 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progr
   source.box = data.grid.domain();
   source.materials = data.materials;
   source.volumes = reconstruction->volume_input();
+  source.voxel = data.grid.least_spacing();
   {
     const InterfaceMesh mesh = reconstruction->take_mesh();
     source.network = std::make_shared<InterfaceNetwork>(
@@ -23,13 +37,19 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progr
     return reconstruction->body_at(p);
   };
   if (!data.fields.empty()) {
-    source.fields = std::make_shared<GridFieldSource>(
-        data, [&](const Vec3& p) { return source.network->table().material(reconstruction->body_at(p)); });
+    std::vector<BodyId> bodies(data.grid.site_count());
+    const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
+    parallel_for(bodies.size(), 1024, [&](std::size_t i) {
+      bodies[i] = reconstruction->body_at(data.grid.site(i % nx, i / nx % ny, i / (nx * ny)));
+    });
+    source.fields = std::make_shared<GridFieldSource>(data, materials_of(bodies, source.network->table()));
   }
   return source;
 }
 
-ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, const MultiMaterialData* data) {
+ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, const MultiMaterialData* data,
+                                  Progress& progress) {
+  progress.step("finding bodies", -1);
   ResamplingSource source;
   source.name = mesh.source;
   source.box = box;
@@ -54,10 +74,15 @@ ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, co
   if (network->table().body_count() == 0)
     fail("{}: expected triangles between two materials, found none", mesh.source);
   source.network = network;
+  if (data != nullptr) source.voxel = data->grid.least_spacing();
+  // What leaks through an open border or a wrong side has no volume.
+  if (!network->has_open_border() && network->inconsistencies() == 0)
+    source.volumes = measure_network(*network, box, source.materials.size()).volumes;
   source.body_at = [network](const Vec3& p, bool* flagged) { return network->body_at(p, flagged); };
   if (fields) {
+    progress.step("finding owners of sites", -1);
     source.fields = std::make_shared<GridFieldSource>(
-        *data, [&](const Vec3& p) { return network->table().material(network->body_at(p)); });
+        *data, materials_of(bodies_at_sites(*network, data->grid), network->table()));
   }
   return source;
 }

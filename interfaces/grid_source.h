@@ -17,6 +17,7 @@ ResamplingSource make_grid_source(const MultiMaterialData& data,
 /// fractions or labels, where it has them, only tell which sites state a material's value. Throws Error where
 /// a material of the mesh is not among the data's, and where no triangle lies between two materials.
 ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box,
-                                  const MultiMaterialData* data = nullptr);
+                                  const MultiMaterialData* data = nullptr,
+                                  Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

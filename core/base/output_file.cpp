@@ -44,11 +44,15 @@ OutputFile::~OutputFile() {
   if (!committed_) std::filesystem::remove(temporary_, code);
 }
 
-void OutputFile::commit() {
+void OutputFile::publish() {
   std::error_code code;
   if (!std::filesystem::exists(temporary_, code)) fail("{}: nothing was written", path_.string());
   std::filesystem::rename(temporary_, path_, code);
   if (code) fail("{}: could not be given its final name: {}", path_.string(), code.message());
+}
+
+void OutputFile::commit() {
+  publish();
   committed_ = true;
   names_.reset();
 }

@@ -22,12 +22,14 @@ class OutputFile {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Throws Error when the temporary file is missing or cannot be renamed.
   void commit();
+  /// Gives what was written so far the final name; more may be written, to take its place.
+  void publish();
 
  private:
   std::filesystem::path path_;
   std::shared_ptr<PartialNames> names_;
   std::filesystem::path temporary_;
-  bool committed_ = false;
+  bool committed_ = false;  ///< there is no temporary file any more
 };
 
 }  // namespace adamas

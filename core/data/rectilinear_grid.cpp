@@ -1,6 +1,7 @@
 #include "core/data/rectilinear_grid.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace adamas {
 
@@ -14,6 +15,14 @@ double extent(const std::vector<double>& nodes, Centering centering, std::size_t
 }
 
 }  // namespace
+
+double RectilinearGrid::least_spacing() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& x : nodes) {
+    for (std::size_t i = 1; i < x.size(); ++i) least = std::min(least, x[i] - x[i - 1]);
+  }
+  return least;
+}
 
 double RectilinearGrid::site_volume(std::size_t i, std::size_t j, std::size_t k) const {
   return extent(nodes[0], centering, i) * extent(nodes[1], centering, j) * extent(nodes[2], centering, k);

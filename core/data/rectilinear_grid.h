@@ -39,6 +39,8 @@ struct RectilinearGrid {
     return {{nodes[0].front(), nodes[1].front(), nodes[2].front()},
             {nodes[0].back(), nodes[1].back(), nodes[2].back()}};
   }
+  /// The least distance of neighbouring nodes along any axis.
+  [[nodiscard]] double least_spacing() const;
   /// Volume that site (i, j, k) stands for: its cell, or the part of the domain nearer to it than to other
   /// sites along each axis.
   [[nodiscard]] double site_volume(std::size_t i, std::size_t j, std::size_t k) const;

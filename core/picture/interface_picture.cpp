@@ -27,21 +27,19 @@ Box3 framed_box(const InterfacePicture& picture) {
 }
 
 /// The legend of the colours that are to be seen, by a picture of half the size.
-std::vector<LegendEntry> visible_materials(const InterfacePicture& picture, const Box3& box,
+std::vector<LegendEntry> visible_materials(const InterfacePicture& picture, const Box3& shown,
                                            const InterfacePictureOptions& options) {
   const int width = static_cast<int>(options.width / 2), height = static_cast<int>(options.height / 2);
-  Rasteriser rasteriser(Camera(picture.projection, box, picture.direction, width, height), width, height);
+  Rasteriser rasteriser(Camera(picture.projection, shown, picture.direction, width, height), width, height);
   rasteriser.draw(picture.triangles);
-  std::vector<bool> seen(picture.triangles.size() + 1);  // the last: no triangle
+  std::set<std::array<double, 3>> colours;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      seen[std::min<std::size_t>(rasteriser.triangle_at(x, y), picture.triangles.size())] = true;
+      const std::uint32_t triangle = rasteriser.triangle_at(x, y);
+      if (triangle == Rasteriser::kNone) continue;
+      const Colour& c = rasteriser.facing_colour(triangle);
+      colours.insert({c.r, c.g, c.b});
     }
-  }
-  std::set<std::array<double, 3>> colours;
-  for (std::size_t i = 0; i < picture.triangles.size(); ++i) {
-    const Colour& c = picture.triangles[i].colour;
-    if (seen[i]) colours.insert({c.r, c.g, c.b});
   }
   std::vector<LegendEntry> entries = picture.materials;
   std::erase_if(entries, [&](const LegendEntry& e) {
@@ -107,8 +105,8 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
         options.width, options.height, options.samples, f);
   }
   Canvas canvas(format, options.width, options.height);
-  const Box3 box = framed_box(picture);
-  const Legend legend(visible_materials(picture, box, options), options.width - 2 * kMargin * f, f);
+  const Box3 box = framed_box(picture), shown = picture.focus.value_or(box);
+  const Legend legend(visible_materials(picture, shown, options), options.width - 2 * kMargin * f, f);
   const double top = std::ceil((0.5 * kMargin + (picture.title.empty() ? 0 : kTitleHeight)) * f);
   const double bottom = std::ceil(legend.height() + (legend.height() > 0 ? 1.5 : 0.5) * kMargin * f);
   const int width = static_cast<int>(options.width), height = static_cast<int>(options.height - top - bottom);
@@ -116,7 +114,7 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
     fail("interface picture: expected room for the picture, found a height of {}", options.height);
 
   const int samples = options.samples;
-  const Camera camera(picture.projection, box, picture.direction, samples * width, samples * height);
+  const Camera camera(picture.projection, shown, picture.direction, samples * width, samples * height);
   Rasteriser rasteriser(camera, samples * width, samples * height);
   rasteriser.draw(picture.triangles);
   RasteriserStyle style{.triangle_edges = options.triangle_edges, .outlines = options.outlines};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace adamas {
 struct InterfacePicture {
   std::string title{};
   std::vector<PictureTriangle> triangles{};
-  Box3 domain{};  ///< drawn as a wireframe and framed; empty: that of the triangles, not drawn
+  Box3 domain{};                ///< drawn as a wireframe and framed; empty: that of the triangles, not drawn
+  std::optional<Box3> focus{};  ///< framed instead
   std::vector<LegendEntry>
       materials{};  ///< the legend; areas whose colour is not to be seen are left out of it
   Vec3 direction{-0.62, 0.72, -0.42};  ///< the way the camera looks

@@ -61,6 +61,7 @@ void Rasteriser::draw(std::span<const PictureTriangle> triangles) {
   triangles_ = triangles;
   planes_.resize(triangles.size());
   normals_.resize(triangles.size());
+  turned_.resize(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const Vec3& p : triangles[i].points) {
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
@@ -75,7 +76,8 @@ void Rasteriser::draw_triangle(std::uint32_t number) {
   const std::array<Vec3, 3>& points = triangles_[number].points;
   const Vec3 normal = normalized(cross(points[1] - points[0], points[2] - points[0]));
   const Vec3 view = camera_.towards((1.0 / 3) * (points[0] + points[1] + points[2]));
-  normals_[number] = dot(normal, view) < 0 ? -normal : normal;
+  turned_[number] = dot(normal, view) < 0 ? 1 : 0;
+  normals_[number] = turned_[number] != 0 ? -normal : normal;
 
   const CutTriangle cut = cut_near(camera_, points);
   if (cut.count < 3) return;
@@ -97,6 +99,11 @@ void Rasteriser::draw_triangle(std::uint32_t number) {
   });
 }
 
+const Colour& Rasteriser::facing_colour(std::uint32_t triangle) const {
+  const PictureTriangle& t = triangles_[triangle];
+  return t.back && turned_[triangle] != 0 ? *t.back : t.colour;
+}
+
 Colour Rasteriser::shaded_colour(std::uint32_t number) const {
   const PictureTriangle& triangle = triangles_[number];
   const Vec3& normal = normals_[number];
@@ -106,7 +113,7 @@ Colour Rasteriser::shaded_colour(std::uint32_t number) const {
   const Vec3 lamp = normalized(0.8 * camera_.up() - 0.6 * camera_.right() - 0.5 * camera_.forward());
   const double fill = 0.5 + 0.5 * dot(normal, lamp);
   const double light = 0.46 + 0.32 * head + 0.34 * fill * fill;
-  const Colour& c = triangle.colour;
+  const Colour& c = facing_colour(number);
   if (light <= 1) return {light * c.r, light * c.g, light * c.b};
   return mix(c, {1, 1, 1}, std::min(1.0, 3 * (light - 1)));
 }
@@ -162,7 +169,7 @@ bool Rasteriser::outline_between(int x, int y, int u, int v, const RasteriserSty
   const std::uint32_t a = triangle_at(x, y), b = triangle_at(u, v);
   if (a == b) return false;
   if (a == kNone || b == kNone) return true;
-  if (!(triangles_[a].colour == triangles_[b].colour)) return true;
+  if (!(facing_colour(a) == facing_colour(b))) return true;
   if (dot(normals_[a], normals_[b]) < least_cosine) return true;
   // A step: neither triangle's plane, continued, comes near the other's depth.
   const double at_b = camera_.distance_at_depth(depth_at(u, v)),

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,10 +12,11 @@
 
 namespace adamas {
 
-/// A triangle in space with one colour; either side may face the camera.
+/// A triangle in space; either side may face the camera.
 struct PictureTriangle {
   std::array<Vec3, 3> points;
-  Colour colour;
+  Colour colour;                 ///< of its front, where its normal points to by the right-hand rule
+  std::optional<Colour> back{};  ///< of its back; default: as the front
 };
 
 /// What is drawn besides the shaded triangles.
@@ -39,6 +41,8 @@ class Rasteriser {
   void draw(std::span<const PictureTriangle> triangles);
   /// Index of the nearest triangle at a pixel, kNone where there is none.
   [[nodiscard]] std::uint32_t triangle_at(int x, int y) const { return triangle_[index(x, y)]; }
+  /// The colour of a triangle's side that faces the camera.
+  [[nodiscard]] const Colour& facing_colour(std::uint32_t triangle) const;
   /// Projected depth at a pixel, infinite where there is no triangle.
   [[nodiscard]] double depth_at(int x, int y) const { return depth_[index(x, y)]; }
 
@@ -70,6 +74,7 @@ class Rasteriser {
   std::span<const PictureTriangle> triangles_;
   std::vector<DepthPlane> planes_;
   std::vector<Vec3> normals_;  // towards the camera
+  std::vector<char> turned_;   // whether a triangle's back faces the camera
   std::vector<std::uint32_t> triangle_;
   std::vector<double> depth_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/typed_id.h"
@@ -9,6 +10,7 @@
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/cross_section/section_edges.h"
 #include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/network/interface_network.h"
 
 namespace adamas {
 
@@ -53,5 +55,11 @@ CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
 /// weights areas by the fractions. `cell_edges` are those of the sites' cells; there are no interface edges.
 CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
                            const std::optional<FieldChoice>& field);
+
+/// The section of given interfaces in a box, as triangles between the lines in which the plane cuts them, by
+/// exact predicates; without cells and interface edges. `source`: for messages. Throws Error as PlaneSides
+/// does.
+CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std::size_t materials,
+                           const Plane& plane, const std::string& source);
 
 }  // namespace adamas

@@ -24,7 +24,8 @@ class Measurer {
         native_(source.fields->row_size()) {}
 
   /// The errors at an element whose place the mesh gives to its own material; false for others.
-  bool measure(const NativeElement& element, std::span<FieldError> errors) {
+  bool measure(std::uint32_t number, std::span<FieldError> errors) {
+    const NativeElement& element = source_.fields->native_elements()[number];
     const Weights weights = cell_.frame.weights(element.position);
     const OwnershipProblem& problem = cell_.owners.problem;
     const BodyId owner(cell_.owners.pure() ? problem.candidates[0].owner : problem.owner(weights));
@@ -32,14 +33,14 @@ class Measurer {
     source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
     for (std::size_t f = 0; f < fields.size(); ++f)
-      add(error_at(cell_, fields[f], owner, weights), errors[f]);
+      add(error_at(cell_, fields[f], owner, weights), number, errors[f]);
     return true;
   }
 
   /// The errors at a displaced element. The box grows to its full size only while an error is above its
   /// limit.
-  void measure_displaced(const NativeElement& element, std::span<const double> limits,
-                         std::span<FieldError> errors) {
+  void measure_displaced(std::uint32_t number, std::span<const double> limits, std::span<FieldError> errors) {
+    const NativeElement& element = source_.fields->native_elements()[number];
     source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
     std::vector<double> least;
@@ -55,7 +56,7 @@ class Measurer {
       for (std::size_t f = 0; f < fields.size(); ++f) good = good && !(least[f] > limits[f]);
       if (good || reach >= half_width_) break;
     }
-    for (std::size_t f = 0; f < fields.size(); ++f) add(least[f], errors[f]);
+    for (std::size_t f = 0; f < fields.size(); ++f) add(least[f], number, errors[f]);
   }
 
  private:
@@ -69,8 +70,8 @@ class Measurer {
   [[nodiscard]] MaterialId material(BodyId body) const { return source_.network->table().material(body); }
 
   /// Fields without a value at the element, or without any in the material, have no error there.
-  static void add(double error, FieldError& sum) {
-    if (!std::isnan(error)) sum.add(error);
+  static void add(double error, std::uint32_t element, FieldError& sum) {
+    if (!std::isnan(error)) sum.add(error, element);
   }
 
   [[nodiscard]] double error_at(const CellView& cell, const FieldInfo& field, BodyId body,
@@ -162,10 +163,9 @@ std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, 
                                                 std::span<FieldError> errors) {
   const CellsInBox none;
   Measurer measurer(source, cell, 0, none);
-  const auto& all = source.fields->native_elements();
   std::vector<std::uint32_t> displaced;
   for (const std::uint32_t e : elements) {
-    if (!measurer.measure(all[e], errors)) displaced.push_back(e);
+    if (!measurer.measure(e, errors)) displaced.push_back(e);
   }
   return displaced;
 }
@@ -175,8 +175,7 @@ void measure_displaced_errors(const ResamplingSource& source, const CellView& ce
                               const CellsInBox& cells_in_box, std::span<const double> limits,
                               std::span<FieldError> errors) {
   Measurer measurer(source, cell, half_width, cells_in_box);
-  const auto& all = source.fields->native_elements();
-  for (const std::uint32_t e : displaced) measurer.measure_displaced(all[e], limits, errors);
+  for (const std::uint32_t e : displaced) measurer.measure_displaced(e, limits, errors);
 }
 
 }  // namespace adamas

@@ -15,17 +15,20 @@ namespace adamas {
 
 /// Errors of one field at the native data elements of a cell.
 struct FieldError {
+  static constexpr std::uint32_t kNowhere = 0xffffffffu;
+
   double max = 0;
   double sum = 0;
   std::size_t count = 0;
+  std::uint32_t worst = kNowhere;  ///< a native element with the greatest error, where that is not 0
 
-  void add(double error) {
-    max = std::max(max, error);
+  void add(double error, std::uint32_t element) {
+    if (error > max) max = error, worst = element;
     sum += error;
     ++count;
   }
   void add(const FieldError& other) {
-    max = std::max(max, other.max);
+    if (other.max > max) max = other.max, worst = other.worst;
     sum += other.sum;
     count += other.count;
   }

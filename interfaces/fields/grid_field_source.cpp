@@ -6,6 +6,7 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "interfaces/fields/linear_fit.h"
 
@@ -48,8 +49,7 @@ struct GridFieldSource::Cell {
 
 GridFieldSource::~GridFieldSource() = default;
 
-GridFieldSource::GridFieldSource(const MultiMaterialData& data,
-                                 const std::function<MaterialId(const Vec3&)>& material_at)
+GridFieldSource::GridFieldSource(const MultiMaterialData& data, const std::vector<MaterialId>& owners)
     : data_(data), cache_(std::make_unique<Cache>()) {
   for (int axis = 0; axis < 3; ++axis) {
     auto& x = coordinates_[static_cast<std::size_t>(axis)];
@@ -66,15 +66,15 @@ GridFieldSource::GridFieldSource(const MultiMaterialData& data,
   }
   const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1), nz = data.grid.sites(2);
   elements_.resize(nx * ny * nz);
+  ADAMAS_ASSERT(owners.size() == elements_.size());
   owner_.resize(elements_.size());
   parallel_for(nz, 1, [&](std::size_t k) {
     for (std::size_t j = 0; j < ny; ++j) {
       for (std::size_t i = 0; i < nx; ++i) {
         const std::size_t site = data.grid.site_index(i, j, k);
         const Vec3 position = data.grid.site(i, j, k);
-        const MaterialId material = material_at(position);
-        elements_[site] = {position, material, site};
-        owner_[site] = static_cast<std::uint16_t>(material.value);
+        elements_[site] = {position, owners[site], site};
+        owner_[site] = static_cast<std::uint16_t>(owners[site].value);
       }
     }
   });

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -19,8 +18,8 @@ namespace adamas {
 /// sites that hold some of the material, else from the nearest that states one.
 class GridFieldSource final : public FieldSource {
  public:
-  /// `material_at` owns each site's centre: native elements are of that material. `data` must outlive this.
-  GridFieldSource(const MultiMaterialData& data, const std::function<MaterialId(const Vec3&)>& material_at);
+  /// `owners`: of each site's centre; native elements are of that material. `data` must outlive this.
+  GridFieldSource(const MultiMaterialData& data, const std::vector<MaterialId>& owners);
   ~GridFieldSource() override;
 
   [[nodiscard]] const std::vector<FieldInfo>& fields() const override { return fields_; }

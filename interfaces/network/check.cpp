@@ -76,11 +76,10 @@ void check_edges(const InterfaceMesh& mesh, const EdgeFans& fans, const Interfac
                             mesh.materials[fans.material(b.triangle, ahead)]);
     }
     const auto [low, high] = fans.ends(edge);
-    fail(
+    throw TolerableFault(fmt::format(
         "{}: expected the same material on facing sides round the edge {} to {}, found triangles {} (one is "
-        "turned the "
-        "wrong way or missing)",
-        mesh.source, describe(mesh.points[low]), describe(mesh.points[high]), around);
+        "turned the wrong way or missing)",
+        mesh.source, describe(mesh.points[low]), describe(mesh.points[high]), around));
   }
 }
 
@@ -97,11 +96,10 @@ InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* 
   report.intersections = found.count;
   if (found.count > 0 && !options.allow_intersections) {
     const auto [a, b] = *found.first;
-    fail(
+    throw TolerableFault(fmt::format(
         "{}: expected triangles that meet at common points only, found {} pairs that intersect, the first {} "
-        "and {} near "
-        "{}",
-        mesh.source, found.count, a, b, describe(mesh.points[mesh.triangles[a].points[0]]));
+        "and {} near {}",
+        mesh.source, found.count, a, b, describe(mesh.points[mesh.triangles[a].points[0]])));
   }
   return report;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
 
@@ -28,10 +29,16 @@ struct InterfaceCheckOptions {
   bool allow_intersections = false;
 };
 
+/// A fault that the options can allow.
+class TolerableFault : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Throws Error naming the mesh and the first fault: no triangles, points that are not finite, indices and
 /// materials out of range, the same material on both sides of a triangle, no triangle with an area, edges
 /// round which the materials do not match (triangles turned the wrong way, or missing), triangles that
-/// intersect. `domain` may be null.
+/// intersect; the last two as TolerableFault. `domain` may be null.
 InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* domain,
                                          const InterfaceCheckOptions& options = {});
 

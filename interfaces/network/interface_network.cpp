@@ -125,6 +125,19 @@ void InterfaceNetwork::find_borders() {
   }
 }
 
+bool InterfaceNetwork::has_open_border() const {
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    for (unsigned i = 0; i < 3; ++i) {
+      if ((borders_[t] >> (kEdgeOfNetwork + i) & 1u) == 0) continue;
+      const Vec3 &a = points_[triangles_[t][i]], &b = points_[triangles_[t][(i + 1) % 3]];
+      // Beyond the domain nothing is open, and an edge in its boundary ends there.
+      if (domain_ && (!domain_->contains(0.5 * (a + b)) || on_domain_boundary(0.5 * (a + b)))) continue;
+      return true;
+    }
+  }
+  return false;
+}
+
 void InterfaceNetwork::mark_border_corner(std::uint32_t triangle, std::uint32_t point, bool of_interface) {
   for (std::uint32_t i = point_starts_[point]; i < point_starts_[point + 1]; ++i) {
     const std::uint32_t t = point_triangles_[i];

@@ -63,6 +63,8 @@ class InterfaceNetwork {
   /// Unit normal, towards the lower body; zero for a triangle without area.
   [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
   [[nodiscard]] InterfaceId interface_of(std::uint32_t triangle) const { return interface_of_[triangle]; }
+  /// Whether an edge of a single triangle lies inside the domain.
+  [[nodiscard]] bool has_open_border() const;
   /// Edges and rays that did not match, as `Bodies` reports them.
   [[nodiscard]] std::size_t inconsistencies() const { return inconsistencies_; }
 

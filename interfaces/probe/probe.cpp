@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "interfaces/network/closest_point_tree.h"
 
 namespace adamas {
 
@@ -19,24 +20,24 @@ std::size_t row_size(const std::vector<FieldInfo>& fields) {
   return fields.empty() ? 0 : fields.back().offset + static_cast<std::size_t>(fields.back().components);
 }
 
-ProbeSample outside(const Vec3& p, std::size_t values) {
+ProbeSample unknown(const Vec3& p, std::size_t values) {
   return {p, false, {}, {}, std::vector<double>(values, kNothing), kNothing};
 }
 
-/// Half of what the owner's function is ahead of the next one's: between two bodies, the distance to their
-/// interface.
-double distance_from_rivals(const OwnershipProblem& problem, std::uint32_t owner, const Weights& weights) {
-  if (problem.candidates.size() < 2) return kNothing;
-  double own = 0, rival = -std::numeric_limits<double>::infinity();
-  for (const auto& candidate : problem.candidates) {
-    const double value = problem.value(candidate, weights);
-    if (candidate.owner == owner) {
-      own = value;
-    } else {
-      rival = std::max(rival, value);
-    }
+/// The triangles between materials that the mesh shows.
+ClosestPointTree interface_tree(const ResampledMesh& mesh) {
+  const InterfaceMesh interfaces = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box).mesh;
+  std::vector<ClosestPointTree::Triangle> triangles;
+  triangles.reserve(interfaces.triangles.size());
+  for (const InterfaceTriangle& t : interfaces.triangles) {
+    if (t.front != t.back) triangles.push_back(t.points);
   }
-  return std::max(0.0, 0.5 * (own - rival));
+  return {interfaces.points, triangles};
+}
+
+double distance_from(const ClosestPointTree& interfaces, const Vec3& p) {
+  const auto closest = interfaces.closest(p);
+  return closest ? std::sqrt(closest->squared_distance) : kNothing;
 }
 
 }  // namespace
@@ -44,11 +45,14 @@ double distance_from_rivals(const OwnershipProblem& problem, std::uint32_t owner
 std::vector<ProbeSample> probe(const ResampledMesh& mesh, const CellLocator& locator,
                                std::span<const Vec3> points) {
   const std::size_t values = row_size(mesh.fields);
+  if (points.empty()) return {};
+  const ClosestPointTree interfaces = interface_tree(mesh);
   std::vector<ProbeSample> samples(points.size());
   parallel_chunks(points.size(), kChunk, [&](std::size_t first, std::size_t last) {
     CellOwnership ownership;
     for (std::size_t i = first; i < last; ++i) {
-      ProbeSample& sample = samples[i] = outside(points[i], values);
+      ProbeSample& sample = samples[i] = unknown(points[i], values);
+      sample.interface_distance = distance_from(interfaces, points[i]);
       const auto location = locator.locate(points[i]);
       if (!location) continue;
       mesh.ownership(location->cell, ownership);
@@ -57,7 +61,6 @@ std::vector<ProbeSample> probe(const ResampledMesh& mesh, const CellLocator& loc
       sample.inside = true;
       sample.body = BodyId(owner);
       sample.material = mesh.table.material(sample.body);
-      sample.interface_distance = distance_from_rivals(ownership.problem, owner, location->weights);
       for (std::size_t c = 0; c < values; ++c)
         sample.values[c] = mesh.value(location->cell, sample.body, c, location->weights);
     }
@@ -74,13 +77,12 @@ std::vector<ProbeSample> probe(const ResamplingSource& source, std::span<const V
   std::vector<ProbeSample> samples(points.size());
   parallel_for(points.size(), kChunk, [&](std::size_t i) {
     const Vec3& p = points[i];
-    ProbeSample& sample = samples[i] = outside(p, values);
+    ProbeSample& sample = samples[i] = unknown(p, values);
+    sample.interface_distance = distance_from(source.network->tree(), p);
     if (!source.box.contains(p)) return;
     sample.inside = true;
     sample.body = source.body_at(p, nullptr);
     sample.material = source.network->table().material(sample.body);
-    if (const auto closest = source.network->tree().closest(p))
-      sample.interface_distance = std::sqrt(closest->squared_distance);
     if (source.fields) source.fields->values(sample.material, p, sample.values);
   });
   return samples;

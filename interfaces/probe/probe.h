@@ -13,14 +13,14 @@ namespace adamas {
 /// What is known at a point.
 struct ProbeSample {
   Vec3 point;
-  bool inside = false;  ///< in the domain; if not, the rest is invalid, values and distance NaN
+  bool inside = false;  ///< in the domain; if not, material and body are invalid and the values NaN
   MaterialId material;
   BodyId body;
   /// All components of all fields, laid out as FieldInfo::offset says; NaN for a field that the material has
   /// not.
   std::vector<double> values;
-  /// From the nearest interface, in units of length: of a mesh as it interpolates its vertices' distances, of
-  /// a source as measured. NaN where there is none, or, in a mesh, where the cell knows of none.
+  /// From the nearest interface that the mesh shows or the source has, in units of length, from wherever the
+  /// point lies; NaN where there is no interface, or the point is not finite.
   double interface_distance = 0;
 };
 

@@ -149,6 +149,11 @@ std::string last_words(const AnonymousFile& words) {
   return text.empty() ? "" : " (it said: " + text + ")";
 }
 
+std::string took_longer(const ChildLimits& limits) {
+  return fmt::format("took longer than {:.6g} s",
+                     limits.whole_seconds > 0 ? limits.whole_seconds : limits.seconds);
+}
+
 std::string failure_of(int status, const ChildLimits& limits) {
   if (WIFEXITED(status)) {
     if (WEXITSTATUS(status) == 0) return "";
@@ -156,7 +161,7 @@ std::string failure_of(int status, const ChildLimits& limits) {
     return fmt::format("ended with status {}", WEXITSTATUS(status));
   }
   const int number = WTERMSIG(status);
-  if (number == SIGXCPU) return fmt::format("took longer than {:.6g} s", limits.seconds);
+  if (number == SIGXCPU) return took_longer(limits);
   return fmt::format("was ended by signal {}, {}", number, ::strsignal(number));
 }
 
@@ -185,7 +190,7 @@ ChildResult run_child_program(const std::filesystem::path& program, const std::v
   const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
   while (!guard.wait(WNOHANG)) {
     progress.check();
-    if (Clock::now() > deadline) return {fmt::format("took longer than {:.6g} s", limits.seconds), false, {}};
+    if (Clock::now() > deadline) return {took_longer(limits), false, {}};
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   const int status = guard.status();

@@ -11,6 +11,7 @@ namespace adamas {
 /// Limits of a child process, set before its program starts.
 struct ChildLimits {
   double seconds = 300;                             ///< by the clock
+  double whole_seconds = 0;                         ///< what they are left of, for messages; 0: nothing more
   std::size_t memory_bytes = std::size_t{8} << 30;  ///< of address space
 };
 

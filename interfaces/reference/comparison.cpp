@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/error.h"
 #include "interfaces/reference/own_mesh.h"
@@ -19,6 +20,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double kResolution = 0.01;
 /// Points that are nearer to a side of the box than this part of its diagonal are moved onto it.
 constexpr double kOntoBox = 1e-9;
+/// A last try gets as much, so that a limit is told by the child that reaches it.
+constexpr double kLeastSeconds = 0.01;
 
 /// What sizes are matched by.
 double matched_distance(const ComparedMesh& row) {
@@ -31,24 +34,39 @@ class Comparison {
       : source_(source), options_(options), progress_(progress) {}
 
   std::vector<ComparedMesh> run() {
-    std::vector<OwnMesh> own;
+    bool first = true;
     for (const double error : options_.interface_errors) {
       ResamplingOptions wanted = options_.resampling;
       wanted.interface_error = error;
-      own.push_back(make_own_mesh(source_, wanted, progress_));
-    }
-    stitch_input();
-    if (options_.tetgen) add_untouched(own.front());
-    for (const OwnMesh& each : own) {
-      rows_.push_back(each.row);
-      rows_.push_back(each.cut_row);
-      if (options_.tetgen) add_resampled(each);
-      if (options_.mesh3) add_mesh3(each);
+      const OwnMesh own = make_own_mesh(source_, wanted, progress_);
+      finish(own.row);
+      finish(own.cut_row);
+      if (std::exchange(first, false)) {
+        stitch_input();
+        if (options_.tetgen) add_untouched(own);
+      }
+      if (options_.tetgen) add_resampled(own);
+      if (options_.mesh3) add_mesh3(own);
     }
     return std::move(rows_);
   }
 
  private:
+  void finish(const ComparedMesh& row) {
+    rows_.push_back(row);
+    if (options_.finished) options_.finished(row);
+  }
+  void start_clock() { started_ = Clock::now(); }
+  [[nodiscard]] double seconds_left() const {
+    return options_.mesher.limits.seconds - std::chrono::duration<double>(Clock::now() - started_).count();
+  }
+  /// The time that is left of one mesh's.
+  [[nodiscard]] MesherOptions mesher() const {
+    MesherOptions result = options_.mesher;
+    result.limits.whole_seconds = result.limits.seconds;
+    result.limits.seconds = std::max(seconds_left(), kLeastSeconds);
+    return result;
+  }
   void stitch_input();
   [[nodiscard]] PiecewiseLinearComplex stitch(std::span<const Vec3> points,
                                               std::span<const BodyTriangle> triangles) const;
@@ -64,6 +82,7 @@ class Comparison {
     ReferenceResult result;
     double mismatch = 0;
     std::size_t trials = 0;
+    bool over = false;  ///< the time ended the search
   };
   SizingTrial try_mesh3(double wanted, double facet_distance, Mesh3Match& match);
   void add_optimised(const OwnMesh& own, const Mesh3Match& match, double wanted);
@@ -78,6 +97,7 @@ class Comparison {
   std::vector<ComparedMesh> rows_;
   std::optional<PiecewiseLinearComplex> input_;
   std::string input_fault_;
+  Clock::time_point started_ = Clock::now();  ///< work on one mesh of another generator
 };
 
 PiecewiseLinearComplex Comparison::stitch(std::span<const Vec3> points,
@@ -153,16 +173,17 @@ void Comparison::measure_fields(const ReferenceResult& result, const OwnMesh& ow
 /// points, which some inputs of few points do not survive.
 ReferenceResult Comparison::run_tetgen(const PiecewiseLinearComplex& complex, ComparedMesh& row) {
   ReferenceResult first;
+  start_clock();
   for (const char* more : {"", "T1e-14", "b0"}) {
     const std::string switches = options_.tetgen_switches + more;
     progress_.step("meshing by TetGen", -1);
-    ReferenceResult result = mesh_by_tetgen(complex, switches, options_.mesher, progress_);
+    ReferenceResult result = mesh_by_tetgen(complex, switches, mesher(), progress_);
     if (result.failure.empty() && *more != '\0')
       row.note += (row.note.empty() ? "failed with " : "; failed with ") + options_.tetgen_switches;
     row.switches = switches;
     if (result.failure.empty()) return result;
     if (*more == '\0') first = std::move(result);
-    if (!first.crashed && !first.failure.starts_with("lost")) break;
+    if ((!first.crashed && !first.failure.starts_with("lost")) || seconds_left() <= 0) break;
   }
   row.switches = options_.tetgen_switches;
   return first;
@@ -182,7 +203,7 @@ void Comparison::add_untouched(const OwnMesh& own) {
   if (row.failure.empty())
     row.note += std::string(row.note.empty() ? "" : "; ") +
                 "distance 0 by construction, but for facets joined that are coplanar within 0.1 degrees";
-  rows_.push_back(row);
+  finish(row);
 }
 
 void Comparison::add_resampled(const OwnMesh& own) {
@@ -196,7 +217,7 @@ void Comparison::add_resampled(const OwnMesh& own) {
   } catch (const Error& error) {
     row.failure = error.what();
   }
-  rows_.push_back(row);
+  finish(row);
 }
 
 /// Curves are followed by edges of this size, so that their arrows are about the distance where they are bent
@@ -211,6 +232,11 @@ Mesh3Criteria Comparison::criteria(double facet_distance) const {
 }
 
 SizingTrial Comparison::try_mesh3(double wanted, double facet_distance, Mesh3Match& match) {
+  using Outcome = SizingTrial::Outcome;
+  if (match.trials > 0 && seconds_left() <= 0) {
+    match.over = true;
+    return {Outcome::kOver, 0};
+  }
   ComparedMesh row = match.row;
   row.failure.clear(), row.note.clear(), row.figures = {};
   const Mesh3Criteria sizes = criteria(facet_distance);
@@ -219,13 +245,13 @@ SizingTrial Comparison::try_mesh3(double wanted, double facet_distance, Mesh3Mat
                   sizes.facet_distance, sizes.edge_size, sizes.facet_angle, sizes.radius_edge_ratio);
   const std::size_t trial = ++match.trials;
   progress_.step(fmt::format("meshing by Mesh_3, trial {}", trial), -1);
-  ReferenceResult result = mesh_by_mesh3(*input_, sizes, options_.mesher, progress_);
+  ReferenceResult result = mesh_by_mesh3(*input_, sizes, mesher(), progress_);
   measure(result, *row.interface_error, row);
-  using Outcome = SizingTrial::Outcome;
   const bool made = row.failure.empty();
   const double distance = matched_distance(row);
   const double mismatch = made ? std::abs(std::log(distance / wanted)) : std::numeric_limits<double>::max();
-  if (trial == 1 || mismatch < match.mismatch) match = {row, sizes, std::move(result), mismatch, trial};
+  if (trial == 1 || mismatch < match.mismatch)
+    match = {row, sizes, std::move(result), mismatch, trial, false};
   if (made) return {Outcome::kMeasured, distance};
   return {row.failure.starts_with("lost") ? Outcome::kTooCoarse : Outcome::kTooFine, 0};
 }
@@ -244,12 +270,19 @@ void Comparison::add_mesh3(const OwnMesh& own) {
     // Where there is next to no distance, sizes that are as coarse as may be come first.
     const bool exact = wanted <= kResolution * *row.interface_error;
     const double first = 0.5 * (exact ? *row.interface_error : wanted);
-    matched = search_sizing(wanted, first, [&](double size) { return try_mesh3(wanted, size, match); });
+    SizingOptions sizing;
+    sizing.greatest = source_.box.diagonal();
+    start_clock();
+    matched = search_sizing(
+        wanted, first, [&](double size) { return try_mesh3(wanted, size, match); }, sizing);
   }
   row.matched = matched;
   row.trials = match.trials;
+  if (match.over)
+    row.note += fmt::format("{}the time limit of {:g} s ended the search", row.note.empty() ? "" : "; ",
+                            options_.mesher.limits.seconds);
   if (row.failure.empty()) measure_fields(match.result, own, row);
-  rows_.push_back(row);
+  finish(row);
   if (row.failure.empty()) add_optimised(own, match, wanted);
 }
 
@@ -261,11 +294,12 @@ void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match, doub
   Mesh3Criteria sizes = match.criteria;
   sizes.optimise = 1;
   progress_.step("meshing by Mesh_3 with optimisers", -1);
-  const ReferenceResult result = mesh_by_mesh3(*input_, sizes, options_.mesher, progress_);
+  start_clock();
+  const ReferenceResult result = mesh_by_mesh3(*input_, sizes, mesher(), progress_);
   measure(result, *row.interface_error, row);
   row.matched = std::abs(matched_distance(row) / wanted - 1) <= SizingOptions().tolerance;
   if (row.failure.empty()) measure_fields(result, own, row);
-  rows_.push_back(row);
+  finish(row);
 }
 
 }  // namespace
@@ -286,6 +320,11 @@ std::string mesh_name(MeshKind kind) {
       return "Mesh_3 optimised";
   }
   return "";
+}
+
+std::size_t reference_count(const ComparisonOptions& options) {
+  const std::size_t errors = options.interface_errors.size();
+  return (options.tetgen ? 1 + errors : 0) + (options.mesh3 ? 2 * errors : 0);
 }
 
 std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const ComparisonOptions& options,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,14 +13,21 @@
 
 namespace adamas {
 
+struct ComparedMesh;
+
 /// What is compared, and how.
 struct ComparisonOptions {
   std::vector<double> interface_errors;  ///< wanted of the resampled meshes, in units of length
   ResamplingOptions resampling;          ///< all but the interface error
   bool tetgen = true, mesh3 = true;
   std::string tetgen_switches = "zpq1.414Q";
-  MesherOptions mesher;
+  MesherOptions mesher;  ///< its time limit is for all trials of one mesh together, with measuring
+  /// Called with each row as soon as it is finished; may be empty.
+  std::function<void(const ComparedMesh&)> finished;
 };
+
+/// How many meshes of other generators a comparison asks for.
+std::size_t reference_count(const ComparisonOptions& options);
 
 enum class MeshKind {
   kOwn,              ///< the resampled mesh
@@ -46,8 +54,8 @@ struct ComparedMesh {
   bool matched = true;     ///< sizing gave the wanted distance within 5%
 };
 
-/// The rows: those that belong to no error first, then group by group (docs/method.md, Reference meshes). A
-/// generator that fails gives a row with its reason.
+/// The rows, group by group (docs/method.md, Reference meshes); that of TetGen with the input's interfaces,
+/// which belongs to no error, comes in the first group. A generator that fails gives a row with its reason.
 std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const ComparisonOptions& options,
                                          Progress& progress = SilentProgress::instance());
 

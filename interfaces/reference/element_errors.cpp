@@ -165,8 +165,8 @@ std::vector<FieldFigures> ElementErrors::figures(const std::vector<char>& at_int
     for (std::size_t f = 0; f < fields; ++f) {
       const double error = errors[e * fields + f];
       if (std::isnan(error)) continue;
-      result[f].all.add(error);
-      if (at_interface[e] != 0) result[f].at_interfaces.add(error);
+      result[f].all.add(error, static_cast<std::uint32_t>(e));
+      if (at_interface[e] != 0) result[f].at_interfaces.add(error, static_cast<std::uint32_t>(e));
     }
   }
   return result;

@@ -32,9 +32,11 @@ double next_size(const std::optional<End>& low, const std::optional<End>& high) 
 bool search_sizing(double wanted, double first, const std::function<SizingTrial(double)>& attempt,
                    const SizingOptions& options) {
   std::optional<End> low, high;
-  double size = std::log(first);
+  const double greatest = std::log(options.greatest);
+  double size = std::min(std::log(first), greatest);
   for (int trial = 0; trial < options.most_trials; ++trial) {
     const SizingTrial found = attempt(std::exp(size));
+    if (found.outcome == SizingTrial::Outcome::kOver) return false;
     if (found.outcome == SizingTrial::Outcome::kTooCoarse) {
       high = End{size, std::nullopt};
     } else if (found.outcome == SizingTrial::Outcome::kTooFine) {
@@ -44,7 +46,9 @@ bool search_sizing(double wanted, double first, const std::function<SizingTrial(
       const double excess = std::log(found.distance / wanted);
       (excess > 0 ? high : low) = End{size, excess};
     }
-    size = next_size(low, high);
+    // What is too fine at the greatest size is so at all.
+    if (!high && size >= greatest) return false;
+    size = std::min(next_size(low, high), greatest);
   }
   return false;
 }

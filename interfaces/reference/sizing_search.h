@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 
 namespace adamas {
@@ -9,6 +10,7 @@ namespace adamas {
 struct SizingTrial {
   enum class Outcome {
     kMeasured,
+    kOver,       ///< there was no time for it
     kTooCoarse,  ///< there is no mesh, or not a whole one, but a smaller size may give one
     kTooFine,    ///< there is no mesh, since it would have taken too much
   };
@@ -19,6 +21,7 @@ struct SizingTrial {
 struct SizingOptions {
   double tolerance = 0.05;  ///< relative, of the distance
   int most_trials = 12;
+  double greatest = std::numeric_limits<double>::infinity();  ///< size that is tried
 };
 
 /// Looks for the size with which a measured distance is as wanted, given that it grows with the size, more or

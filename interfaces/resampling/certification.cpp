@@ -49,8 +49,8 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
   DistanceBound to =
       directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_);
   const auto set_distance = [&] {
-    distance_ =
-        InterfaceDistance{std::max(from.upper, to.upper), std::max(from.lower, to.lower), triangles.size()};
+    distance_ = InterfaceDistance{std::max(from.upper, to.upper), std::max(from.lower, to.lower),
+                                  from.lower >= to.lower ? from.worst : to.worst, triangles.size()};
   };
   set_distance();
   if (distance_->upper <= target) {
@@ -59,6 +59,7 @@ std::vector<TetrahedronId> Resampler::measure_distance() {
     options.each = false;
     // One direction need not be known better than the other.
     from.lower = to.lower = distance_->lower;
+    from.worst = to.worst = distance_->worst;
     tighten_distance_bound(network.points(), network.triangles(), approximation, options, from, progress_);
     to.lower = std::max(to.lower, from.lower);
     tighten_distance_bound(extracted.mesh.points, triangles, network.tree(), options, to, progress_);
@@ -123,11 +124,12 @@ std::vector<TetrahedronId> Resampler::leaves_far_from(const ClosestPointTree& ap
   return result;
 }
 
-void Resampler::certify() {
-  if (source_.network->triangles().empty()) return;
+RefinementEnd Resampler::refine_what_fails() {
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<TetrahedronId> failing = measure_distance();
-    if (failing.empty() || budget_spent_) return;
+    if (distance_->upper <= options_.interface_error) return RefinementEnd::kReached;
+    if (budget_spent_) return RefinementEnd::kBudget;
+    if (failing.empty()) return RefinementEnd::kSmallestCells;
     std::vector<Split> splits;
     std::vector<TetrahedronId> created;
     for (const TetrahedronId t : failing) {
@@ -142,11 +144,16 @@ void Resampler::certify() {
         break;
       }
     }
-    if (splits.empty()) return;
+    if (splits.empty()) return budget_spent_ ? RefinementEnd::kBudget : RefinementEnd::kDepth;
     created = process(splits);
     refine_to_targets(std::move(created));
   }
   measure_distance();
+  return distance_->upper <= options_.interface_error ? RefinementEnd::kReached : RefinementEnd::kRounds;
+}
+
+void Resampler::certify() {
+  if (!source_.network->triangles().empty()) interface_end_ = refine_what_fails();
 }
 
 }  // namespace adamas

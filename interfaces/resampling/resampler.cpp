@@ -189,4 +189,12 @@ TetrahedronId Resampler::leaf_at(const Vec3& p) const {
   return best;
 }
 
+BodyId Resampler::owner_at(const Vec3& p) const {
+  const TetrahedronId leaf = leaf_at(p);
+  CellOwnership owners;
+  ownership(leaf, owners);
+  if (owners.pure()) return BodyId(owners.problem.candidates[0].owner);
+  return BodyId(owners.problem.owner(frame(leaf).weights(p)));
+}
+
 }  // namespace adamas

@@ -40,8 +40,18 @@ struct CellRecord {
 /// of the latter.
 struct InterfaceDistance {
   double upper = 0;           ///< certified: no point of either is further from the other
-  double lower = 0;           ///< attained at some point
+  double lower = 0;           ///< attained at `worst`
+  Vec3 worst;                 ///< a point of either
   std::size_t triangles = 0;  ///< of the approximation
+};
+
+/// Why measuring and refining came to its end.
+enum class RefinementEnd {
+  kReached,        ///< within the targets
+  kBudget,         ///< the greatest number of tetrahedra
+  kSmallestCells,  ///< what is too far does not go away in cells far smaller than the target
+  kDepth,          ///< the hierarchy is as deep as it can be
+  kRounds,         ///< the greatest number of rounds of measuring
 };
 
 /// Builds a hierarchy that approximates the source within the wanted errors (docs/method.md, Building): the
@@ -65,6 +75,14 @@ class Resampler {
   [[nodiscard]] const ResamplingOptions& options() const { return options_; }
   /// Measured two-sided distance; none where `certify` is off or there are no interfaces.
   [[nodiscard]] const std::optional<InterfaceDistance>& interface_distance() const { return distance_; }
+  /// Why the interface error is not less; kReached where none was measured.
+  [[nodiscard]] RefinementEnd interface_end() const { return interface_end_; }
+  /// Whether the greatest number of tetrahedra has stopped refinement.
+  [[nodiscard]] bool budget_spent() const { return budget_spent_; }
+  /// The leaf that holds a point.
+  [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
+  /// The body that owns a point in the mesh.
+  [[nodiscard]] BodyId owner_at(const Vec3& p) const;
   /// The leaves, and what their vertices know; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells() const;
   /// Rows of all bodies that own a part of a leaf, at its vertices; for output.
@@ -97,8 +115,8 @@ class Resampler {
   void refine_to_targets(std::vector<TetrahedronId> cells);
   void undo(const std::vector<Split>& splits);
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;
-  [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
   void certify();
+  [[nodiscard]] RefinementEnd refine_what_fails();
   std::vector<TetrahedronId> measure_distance();
   [[nodiscard]] std::vector<TetrahedronId> leaves_far_from(const ClosestPointTree& approximation,
                                                            const DistanceBound& from) const;
@@ -114,6 +132,7 @@ class Resampler {
   std::vector<std::uint32_t> element_order_;
   bool fields_active_ = false;
   bool budget_spent_ = false;
+  RefinementEnd interface_end_ = RefinementEnd::kReached;
   std::optional<InterfaceDistance> distance_;
 };
 

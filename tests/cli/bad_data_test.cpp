@@ -62,8 +62,9 @@ TEST_F(BadData, WrongType) {
   run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
   expect_failure({"resample", "m.vtu", "-o", "n.vtu"}, {"m.vtu", "expected data on a grid", "found"});
   run_well({"generate", "scene", "sphere", "--interfaces", "s.vtp"});
-  expect_failure({"reconstruct", "s.vtp", "-o", "r.vtp"}, {"s.vtp", "expected data on a grid", "found"});
-  expect_failure({"slice", "s.vtp", "--plane", "x=0.5", "-o", "s.png"}, {"s.vtp", "expected", "found"});
+  run_well({"generate", "scene", "sphere", "--interfaces", "s.stl"});
+  expect_failure({"reconstruct", "s.stl", "-o", "r.vtp"}, {"s.stl", "expected data on a grid", "found"});
+  expect_failure({"slice", "s.stl", "--plane", "x=0.5", "-o", "s.png"}, {"s.stl", "expected", "found"});
 }
 
 TEST_F(BadData, AFolder) { expect_refused({"."}, {".", "expected", "found"}); }

@@ -41,7 +41,9 @@ TEST_F(Compare, WritesTableFiguresAndPicture) {
   const RunResult result = run_well({"compare", "scene.vtr", "--interface-error", "6%", "--interface-error",
                                      "4%", "-o", "c.svg", "--csv", "c.csv", "--json", "c.json"});
   EXPECT_NE(result.out.find("Mesh_3"), std::string::npos);
-  const auto rows = read_json("c.json")["meshes"];
+  const auto figures = read_json("c.json");
+  EXPECT_TRUE(figures["finished"].get<bool>());
+  const auto rows = figures["meshes"];
   ASSERT_EQ(rows.size(), 11u);
   double own = 0;
   for (const auto& row : rows) {
@@ -73,6 +75,47 @@ TEST_F(Compare, WritesTableFiguresAndPicture) {
   EXPECT_NE(read("c.svg").find("</svg>"), std::string::npos);
   const std::string csv = read("c.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 12);
+}
+
+TEST_F(Compare, SaysWhatItIsGoingToDo) {
+  replace_mesher("exit 3");
+  const std::string out = run_well({"compare", "scene.vtr", "--interface-error", "6%", "--interface-error",
+                                    "5%", "--time-limit", "20"})
+                              .out;
+  EXPECT_EQ(out.rfind("Comparing at 2 interface errors", 0), 0u) << out;
+  // TetGen with the input's interfaces, and for each error with ours; Mesh_3 twice for each error.
+  EXPECT_NE(out.find("7 meshes of other generators, at most 20 s each and 140 s in all"), std::string::npos);
+}
+
+TEST_F(Compare, FinishedRowsAreKeptWhenItIsCancelled) {
+  // The first mesh of another generator never comes.
+  replace_mesher("sleep 100");
+  RunOptions options;
+  options.interrupt_at = "meshing by TetGen";
+  const RunResult result = run({"compare", "scene.vtr", "--interface-error", "6%", "--csv", "c.csv", "--json",
+                                "c.json", "-o", "c.png", "--verbose"},
+                               options);
+  EXPECT_EQ(result.status, 130);
+  EXPECT_NE(result.out.find("\n  adamas cut"), std::string::npos) << result.out;
+  EXPECT_NE(result.err.find("stopped after 2 rows; they are in c.csv and c.json"), std::string::npos)
+      << result.err;
+  const auto figures = read_json("c.json");
+  EXPECT_FALSE(figures["finished"].get<bool>());
+  ASSERT_EQ(figures["meshes"].size(), 2u);
+  EXPECT_EQ(figures["meshes"][1]["name"], "adamas cut");
+  const std::string csv = read("c.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  EXPECT_EQ(files(), (std::set<std::string>{"c.csv", "c.json", "mesher", "scene.vtr"}));
+}
+
+TEST_F(Compare, OneLimitIsForAllTrialsOfAMesh) {
+  // Each call takes almost half of the limit and fails, so that a greater size is tried.
+  replace_mesher("sleep 0.5; exit 3");
+  const auto rows = references({"--time-limit", "1.2", "--reference", "mesh3"});
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_LE(rows[0]["trials"].get<int>(), 3);
+  ASSERT_TRUE(rows[0]["note"].is_string()) << rows[0].dump();
+  EXPECT_NE(std::string(rows[0]["note"]).find("the time limit of 1.2 s ended the search"), std::string::npos);
 }
 
 TEST_F(Compare, ChoosesReferences) {

@@ -141,6 +141,23 @@ TEST_F(Experiment, TakesDataOfOthers) {
   EXPECT_FALSE(files.contains("slice-1.png"));
 }
 
+TEST_F(Experiment, SlicesMaterialsWithoutAField) {
+  make_scene("voronoi10", 8);
+  const RunResult result = run({"experiment", "scene.vtr", "--interface-error", "6%", "--plane", "x=0.5",
+                                "--show-interface", "cell3", "--direction", "1,0,-0.2", "-o", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(folder_files("out").contains("slice-1.png"));
+  EXPECT_NE(read("out/report.html").find("x=0.5: the input; the mesh that holds"), std::string::npos);
+  // Data without any field.
+  std::string labels;
+  for (int i = 0; i < 512; ++i) labels += static_cast<char>(i % 8 < 4 ? 0 : 1);
+  write("labels.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n" + labels);
+  const RunResult bare = run({"experiment", "labels.nrrd", "--labels", "labels.nrrd", "--plane", "z=3", "-o",
+                              "bare", "--interface-error", "10%"});
+  ASSERT_EQ(bare.status, 0) << bare.err;
+  EXPECT_TRUE(folder_files("bare").contains("slice-1.png"));
+}
+
 TEST_F(Experiment, FoldersThatExist) {
   const std::vector<std::string> small{"experiment", "--generate",        "sphere", "--dimensions",
                                        "6",          "--interface-error", "10%"};
@@ -197,7 +214,9 @@ TEST_F(Experiment, WrongUsage) {
   expect_wrong_usage({"experiment", "--generate", "sphere", "-o", "out"}, {"--dimensions"});
   expect_wrong_usage({"experiment", "--generate", "impact", "--seed", "3", "-o", "out"}, {"--seed"});
   expect_wrong_usage({"experiment", "scene.vtr", "--seed", "3", "-o", "out"}, {"--seed", "--generate"});
-  expect_wrong_usage({"experiment", "scene.vtr", "--plane", "x=0.5", "-o", "out"}, {"--show and --plane"});
+  expect_wrong_usage({"experiment", "scene.vtr", "--show", "smooth", "-o", "out"}, {"--show", "--plane"});
+  expect_wrong_usage({"experiment", "scene.vtr", "--show-interface", "a|a", "-o", "out"},
+                     {"--show-interface", "two materials"});
   expect_wrong_usage({"experiment", "scene.vtr", "--show", "smooth", "--plane", "w=1", "-o", "out"},
                      {"--plane: expected x=NUMBER"});
   expect_wrong_usage({"experiment", "scene.vtr", "--detail", "0,1,0,1", "-o", "out"},

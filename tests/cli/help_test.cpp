@@ -35,6 +35,58 @@ TEST_F(Help, HelpAndCompletion) {
   EXPECT_NE(run_well({"generate", "scene", "--help"}).out.find("Example:"), std::string::npos);
 }
 
+TEST_F(Help, TheFirstStepsWorkAsTheyStand) {
+  const std::string help = run_well({"--help"}).out;
+  std::istringstream lines(help.substr(help.find("First steps:\n")));
+  std::string line;
+  std::getline(lines, line);
+  int steps = 0;
+  while (std::getline(lines, line)) {
+    if (line.find_first_not_of(' ') == std::string::npos) continue;
+    std::istringstream words(line);
+    std::vector<std::string> arguments;
+    for (std::string word; words >> word;) arguments.push_back(word);
+    ASSERT_EQ(arguments.front(), "adamas") << line;
+    arguments.erase(arguments.begin());
+    run_well(arguments);
+    ++steps;
+  }
+  EXPECT_EQ(steps, 5);
+  EXPECT_TRUE(files().contains("slice.png"));
+}
+
+TEST_F(Help, TheManualKnowsEveryOption) {
+  const std::string page = run_well({"man"}).out;
+  EXPECT_EQ(page.rfind(".TH ADAMAS 1", 0), 0u);
+  std::string plain;
+  for (std::size_t i = 0; i < page.size(); ++i) {
+    if (page[i] != '\\') plain += page[i];
+  }
+  for (const std::string command : {"info", "reconstruct", "resample", "compare", "slice", "probe",
+                                    "experiment", "store", "restore", "verify", "isosurface"}) {
+    const std::size_t section = plain.find(".SS " + command + "\n");
+    ASSERT_NE(section, std::string::npos) << command;
+    std::istringstream lines(run_well({command, "--help"}).out);
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t at = line.find("--");
+      if (line.rfind("  -", 0) != 0 || at == std::string::npos) continue;
+      const std::string option = line.substr(at, line.find_first_of(" ,=", at) - at);
+      EXPECT_NE(plain.find(option, option == "--help" ? 0 : section), std::string::npos)
+          << command << " " << option;
+    }
+  }
+  for (const char* status : {"0", "1", "2", "3", "130"})
+    EXPECT_NE(plain.find(std::string(".B ") + status + "\n"), std::string::npos) << status;
+  // The formatter of manual pages finds nothing to complain about.
+  write("adamas.1", page);
+  const std::string check =
+      "cd '" + folder().string() +
+      "' && if command -v man > /dev/null; then man --warnings -l adamas.1 2> warnings > "
+      "/dev/null; else : > warnings; fi";
+  EXPECT_EQ(std::system(check.c_str()), 0);
+  EXPECT_EQ(read("warnings"), "");
+}
+
 TEST_F(Help, HelpFitsTheScreen) {
   for (const std::string command : {"generate", "info", "reconstruct", "resample", "slice", "probe", "store",
                                     "restore", "verify", "isosurface"}) {

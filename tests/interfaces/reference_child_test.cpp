@@ -183,5 +183,30 @@ TEST(SizingSearch, FindsTheSizeOfADistance) {
   EXPECT_FALSE(search(0.05, 1, [](double) { return SizingTrial{Outcome::kTooCoarse, 0}; }));
 }
 
+TEST(SizingSearch, TriesNoSizeAboveTheGreatest) {
+  using Outcome = SizingTrial::Outcome;
+  SizingOptions options;
+  options.greatest = 1.7;
+  std::vector<double> sizes;
+  const auto fine = [&](double size) {
+    sizes.push_back(size);
+    return SizingTrial{Outcome::kMeasured, 1e-6 * size};
+  };
+  EXPECT_FALSE(search_sizing(1, 0.1, fine, options));
+  EXPECT_NEAR(*std::max_element(sizes.begin(), sizes.end()), 1.7, 1e-9);
+  EXPECT_EQ(std::count_if(sizes.begin(), sizes.end(), [](double s) { return s > 1.69; }), 1);
+  // Nor is there a trial when the time is over.
+  sizes.clear();
+  EXPECT_FALSE(search_sizing(
+      1, 5,
+      [&](double size) {
+        sizes.push_back(size);
+        return SizingTrial{Outcome::kOver, 0};
+      },
+      options));
+  ASSERT_EQ(sizes.size(), 1u);
+  EXPECT_NEAR(sizes[0], 1.7, 1e-9);
+}
+
 }  // namespace
 }  // namespace adamas

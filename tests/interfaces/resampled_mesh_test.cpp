@@ -149,7 +149,7 @@ TEST(GridFieldSource, ThinLayersHaveMixedFields) {
     field.values[site] = layer ? 7 : 3;
   }
   data.fields.push_back(field);
-  const GridFieldSource source(data, [](const Vec3&) { return MaterialId(0); });
+  const GridFieldSource source(data, std::vector<MaterialId>(count, MaterialId(0)));
   double value = 0;
   source.values(MaterialId(1), {4.5, 2.2, 3.1}, {&value, 1});
   EXPECT_NEAR(value, 7, 1e-6);

@@ -1,0 +1,63 @@
+#include "cli/network_figures.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "interfaces/network/network_measures.h"
+
+namespace adamas {
+
+namespace {
+
+/// More interfaces than this are only counted.
+constexpr std::size_t kMostRows = 40;
+
+using Pair = std::pair<MaterialId, MaterialId>;
+
+struct Sum {
+  std::size_t triangles = 0;
+  double area = 0;
+};
+
+Figures print_sums(const std::map<Pair, Sum>& sums, const IdVector<MaterialId, std::string>& materials,
+                   bool areas, bool print, Console& console) {
+  Figures figures = Figures::array();
+  std::vector<std::vector<std::string>> rows{{"interface", "triangles"}};
+  if (areas) rows[0].push_back("area");
+  for (const auto& [pair, sum] : sums) {
+    const std::string &a = materials[pair.first], &b = materials[pair.second];
+    Figures figure{{"materials", {a, b}}, {"triangles", sum.triangles}};
+    if (areas) figure["area"] = sum.area;
+    figures.push_back(std::move(figure));
+    if (rows.size() > kMostRows) continue;
+    rows.push_back({a + " | " + b, std::to_string(sum.triangles)});
+    if (areas) rows.back().push_back(volume_text(sum.area));
+  }
+  if (!print) return figures;
+  console.table(rows);
+  if (sums.size() > kMostRows) console.print("  ... and {} more\n", sums.size() - kMostRows);
+  return figures;
+}
+
+}  // namespace
+
+Figures print_interfaces(const InterfaceMesh& mesh, Console& console) {
+  std::map<Pair, Sum> sums;
+  for (const InterfaceTriangle& t : mesh.triangles) ++sums[std::minmax(t.front, t.back)].triangles;
+  return print_sums(sums, mesh.materials, false, true, console);
+}
+
+Figures print_interface_areas(const ResamplingSource& source, bool print, Console& console) {
+  const InterfaceNetwork& network = *source.network;
+  const NetworkMeasures measures = measure_network(network, source.box, source.materials.size());
+  std::map<Pair, Sum> sums;
+  for (InterfaceId i(0); i.value < measures.areas.size(); ++i.value) {
+    const auto& [a, b] = network.table().sides(i);
+    Sum& sum = sums[std::minmax(network.table().material(a), network.table().material(b))];
+    sum.triangles += network.interface(i).count;
+    sum.area += measures.areas[i];
+  }
+  return print_sums(sums, source.materials, true, print, console);
+}
+
+}  // namespace adamas

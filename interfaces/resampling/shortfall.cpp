@@ -1,0 +1,63 @@
+#include "interfaces/resampling/shortfall.h"
+
+#include <cmath>
+
+namespace adamas {
+
+namespace {
+
+std::string budget_reason(const Resampler& resampler) {
+  return fmt::format("the mesh may have no more than {} tetrahedra",
+                     resampler.options().max_tetrahedra.value_or(0));
+}
+
+constexpr const char* kDeep = "the hierarchy is as deep there as it can be";
+
+}  // namespace
+
+std::optional<Shortfall> interface_shortfall(const Resampler& resampler) {
+  const auto& distance = resampler.interface_distance();
+  if (!distance || distance->upper <= resampler.options().interface_error) return {};
+  const InterfaceNetwork& network = *resampler.source().network;
+  // Without approximated interfaces every point of the input's is as far.
+  const Vec3 place =
+      std::isfinite(distance->lower) ? distance->worst : network.points()[network.triangles()[0][0]];
+  switch (resampler.interface_end()) {
+    case RefinementEnd::kBudget:
+      return Shortfall{budget_reason(resampler), place};
+    case RefinementEnd::kDepth:
+      return Shortfall{kDeep, place};
+    case RefinementEnd::kRounds:
+      return Shortfall{"it still changed when measuring and refining had been repeated often enough", place};
+    case RefinementEnd::kSmallestCells:
+    case RefinementEnd::kReached:
+      break;
+  }
+  const bool open = network.has_open_border() || network.inconsistencies() > 0;
+  return Shortfall{
+      open ? "the input's interfaces have open borders or do not match, and cells far smaller than "
+             "the error do not bring the mesh's nearer"
+           : "cells far smaller than the error do not bring the mesh's interfaces nearer",
+      place};
+}
+
+std::optional<Shortfall> field_shortfall(const Resampler& resampler, std::size_t field,
+                                         const FieldError& errors) {
+  const auto& target = resampler.options().field_errors[field];
+  if (!target || errors.count == 0 || errors.max <= *target) return {};
+  const ResamplingSource& source = resampler.source();
+  const NativeElement& element = source.fields->native_elements()[errors.worst];
+  const MaterialId owner = source.network->table().material(resampler.owner_at(element.position));
+  const auto because = [&](std::string reason) { return Shortfall{std::move(reason), element.position}; };
+  if (owner != element.material) {
+    return because(
+        fmt::format("the input's value there is of '{}', but the mesh's interface, which may be off by its "
+                    "own error, leaves the place to '{}'",
+                    source.materials[element.material], source.materials[owner]));
+  }
+  if (resampler.budget_spent()) return because(budget_reason(resampler));
+  if (!resampler.hierarchy().can_split(resampler.leaf_at(element.position))) return because(kDeep);
+  return because("cells near by were refined after it had been reached there");
+}
+
+}  // namespace adamas

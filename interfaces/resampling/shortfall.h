@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "interfaces/resampling/resampler.h"
+
+namespace adamas {
+
+/// Why an error that was wanted was not reached, and where the greatest was seen.
+struct Shortfall {
+  std::string reason;
+  Vec3 place;
+};
+
+/// Of the interface error; none where it was reached, or not measured.
+std::optional<Shortfall> interface_shortfall(const Resampler& resampler);
+
+/// Of a field's error, given its errors in the whole mesh; none where it was reached, or not wanted.
+std::optional<Shortfall> field_shortfall(const Resampler& resampler, std::size_t field,
+                                         const FieldError& errors);
+
+}  // namespace adamas
