@@ -54,7 +54,7 @@ void Session::begin() {
   if (!threads.empty()) count = parse_count("--threads", threads);
   if (count > kMostThreads) wrong_usage("--threads: expected at most {}, found {}", kMostThreads, threads);
   set_thread_limit(static_cast<unsigned>(count));
-  outputs.protect(config);
+  outputs.protect_other(config);
   outputs.declare("--json", json, {".json"});
 }
 

@@ -89,17 +89,18 @@ void run(const Options& options, Session& session) {
   Console& console = session.console;
   const std::vector<ResamplingWishes> wishes = all_wishes(options);
   ComparisonOptions comparison = comparison_options(options);
+  comparison.mesher.program = find_reference_program();
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
   session.outputs.declare("--csv", options.csv, {".csv"});
-  comparison.mesher.program = find_reference_program();
+  comparison.interface_errors.resize(wishes.size());
+  print_plan(comparison, console);
   const Input input = load_input(options.input, console, [&wishes](const InputFacts& found) {
     for (const ResamplingWishes& wish : wishes) wish.check(found);
   });
   comparison.resampling = wishes.front().options(input.source);
-  for (const ResamplingWishes& wish : wishes)
-    comparison.interface_errors.push_back(wish.options(input.source).interface_error);
-  print_plan(comparison, console);
+  for (std::size_t i = 0; i < wishes.size(); ++i)
+    comparison.interface_errors[i] = wishes[i].options(input.source).interface_error;
   print_comparison_header(console);
   // Rows are kept as they come, whatever becomes of the rest.
   std::vector<ComparedMesh> rows;

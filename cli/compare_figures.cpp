@@ -171,6 +171,7 @@ void print_comparison_header(Console& console) {
   std::vector<std::string> names;
   for (const Column& column : kTable) names.emplace_back(column.name);
   print_line(names, console);
+  console.flush();
 }
 
 void print_comparison_row(const ComparedMesh& row, const ResamplingSource& source, Console& console) {

@@ -26,7 +26,8 @@ void to_stderr(const std::string& text) { std::fwrite(text.data(), 1, text.size(
 
 }  // namespace
 
-void Console::table(const std::vector<std::vector<std::string>>& rows) {
+void Console::table(std::vector<std::vector<std::string>> rows) {
+  for (auto& row : rows) std::transform(row.begin(), row.end(), row.begin(), visible_text);
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
@@ -62,13 +63,14 @@ void Console::flush() {
 }
 
 void Console::report(std::string_view stage, double fraction) {
-  if (quiet) return;
   // What follows a colon changes from step to step.
   const std::string_view name = stage.substr(0, stage.find(':'));
-  if (verbose && name != stage_) {
+  const bool is_new = name != stage_;
+  if (is_new) stage_ = name;
+  if (quiet) return;
+  if (verbose && is_new) {
     clear();
-    stage_ = name;
-    to_stderr(fmt::format("adamas: {:8.2f} s  {}\n", seconds(), name));
+    to_stderr(fmt::format("adamas: {:8.2f} s  {}\n", seconds(), visible_text(name)));
   }
   if (isatty(STDERR_FILENO) == 0 || Clock::now() - drawn_ < kBarInterval) return;
   std::string bar;
@@ -77,7 +79,7 @@ void Console::report(std::string_view stage, double fraction) {
     const auto full = static_cast<std::size_t>(part * static_cast<double>(kBarWidth));
     bar = fmt::format("[{:<{}}] {:3.0f}%  ", std::string(full, '#'), kBarWidth, 100 * part);
   }
-  to_stderr(fmt::format("\r\033[K{}{}  {:.1f} s", bar, stage, seconds()));
+  to_stderr(fmt::format("\r\033[K{}{}  {:.1f} s", bar, visible_text(stage), seconds()));
   bar_ = true;
   drawn_ = Clock::now();
 }

@@ -5,15 +5,18 @@
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/base/visible_text.h"
 
 namespace adamas {
 
 /// What the user sees of a run: results on stdout, notes and progress on stderr. Progress is a bar where
-/// stderr is a terminal, a line per stage with `verbose`, else nothing.
+/// stderr is a terminal, a line per stage with `verbose`, else nothing. Texts that are put into messages,
+/// which may be names of files and what files hold, cannot act on a terminal (visible_text).
 class Console final : public Progress {
  public:
   bool quiet = false;
@@ -22,23 +25,23 @@ class Console final : public Progress {
   /// Results; left out with `quiet`.
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) {
-    if (!quiet) write(fmt::format(format, std::forward<Args>(args)...));
+    if (!quiet) write(text<Args...>(format, args...));
   }
   /// Something odd that does not stop the run; left out with `quiet`.
   template <class... Args>
   void note(fmt::format_string<Args...> format, Args&&... args) {
-    if (!quiet) write_note(fmt::format(format, std::forward<Args>(args)...));
+    if (!quiet) write_note(text<Args...>(format, args...));
   }
   /// What a result lacks since the input is damaged: a note whatever `quiet` says, and another exit status.
   template <class... Args>
   void note_damage(fmt::format_string<Args...> format, Args&&... args) {
-    write_note(fmt::format(format, std::forward<Args>(args)...));
+    write_note(text<Args...>(format, args...));
     damage_noted_ = true;
   }
   [[nodiscard]] bool damage_noted() const { return damage_noted_; }
   /// Columns of text, the first one to the left and the others to the right.
-  void table(const std::vector<std::vector<std::string>>& rows);
-  /// To stdout, whatever `quiet` says.
+  void table(std::vector<std::vector<std::string>> rows);
+  /// To stdout as it is, whatever `quiet` says.
   void write(std::string_view text);
   /// Throws Error where stdout could not take everything, a closed pipe apart.
   void flush();
@@ -47,12 +50,27 @@ class Console final : public Progress {
   [[nodiscard]] bool cancelled() const override;
   /// Takes the bar away.
   void clear();
+  /// What is being done, as it was last reported; empty before.
+  [[nodiscard]] const std::string& stage() const { return stage_; }
   /// Seconds since the program started.
   [[nodiscard]] double seconds() const;
 
  private:
   using Clock = std::chrono::steady_clock;
   void write_note(const std::string& text);
+
+  template <class T>
+  static decltype(auto) shown(const T& value) {
+    if constexpr (std::is_convertible_v<const T&, std::string_view>) {
+      return visible_text(value);
+    } else {
+      return (value);
+    }
+  }
+  template <class... Args>
+  static std::string text(fmt::format_string<Args...> format, const std::remove_reference_t<Args>&... args) {
+    return fmt::format(fmt::runtime(fmt::string_view(format)), shown(args)...);
+  }
 
   Clock::time_point start_ = Clock::now(), drawn_{};
   std::string stage_;

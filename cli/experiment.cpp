@@ -114,7 +114,9 @@ void Experiment::show_input() {
   for (const auto& [pair, count] : counts)
     record_.triangles.emplace_back(mesh.materials[pair.first] + " | " + mesh.materials[pair.second], count);
   write_interfaces_of(mesh, "input-interfaces", false);
-  record_.input_pictures.push_back({"input-interfaces.png", "Interfaces of the input."});
+  record_.input_pictures.push_back(
+      {"input-interfaces.png",
+       "Interfaces of the input; each side has the colour of the material behind it."});
   slices_.name = input_.source.name;
   slices_.interfaces = std::move(mesh);
 }

@@ -11,6 +11,7 @@
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
 #include "cli/usage_message.h"
+#include "core/base/visible_text.h"
 
 namespace {
 
@@ -18,10 +19,8 @@ using adamas::kDone, adamas::kFailed, adamas::kIncomplete, adamas::kInterrupted,
 
 /// One line on stderr, whatever the text.
 void complain(std::string text) {
-  for (char& c : text) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  std::fprintf(stderr, "adamas: error: %s\n", text.c_str());
+  text.erase(text.find_last_not_of(" \r\n") + 1);
+  std::fprintf(stderr, "adamas: error: %s\n", adamas::visible_text(text).c_str());
 }
 
 int usage_status(const std::string& message, const std::string& command) {
@@ -30,11 +29,29 @@ int usage_status(const std::string& message, const std::string& command) {
   return kWrongUsage;
 }
 
+/// What goes wrong in a command names the input; where memory runs out, also what was being done.
+void run_command(adamas::Session& session) {
+  const adamas::OutputSet& outputs = session.outputs;
+  try {
+    session.run();
+  } catch (const adamas::Cancelled&) {
+    throw;
+  } catch (const adamas::UsageError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    const std::string& stage = session.console.stage();
+    throw adamas::Error(outputs.naming_input((stage.empty() ? "" : stage + ": ") +
+                                             "expected enough memory, found too little"));
+  } catch (const std::exception& e) {
+    throw adamas::Error(outputs.naming_input(e.what()));
+  }
+}
+
 int run(CLI::App& app, adamas::Session& session, int argc, char** argv) {
   try {
     app.parse(argc, argv);
     session.begin();
-    session.run();
+    run_command(session);
     session.console.clear();
     session.console.flush();
     return session.console.damage_noted() ? kIncomplete : kDone;

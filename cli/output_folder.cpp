@@ -88,6 +88,7 @@ void OutputFolder::commit() {
   if (code) fail("{}: could not be given its final name: {}", path_.string(), code.message());
   temporary_.clear();
   if (replace) fs::remove_all(old, code);
+  names_.reset();
 }
 
 }  // namespace adamas

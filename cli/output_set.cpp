@@ -47,13 +47,30 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
+void OutputSet::check_outputs_apart_from(const std::filesystem::path& input) const {
+  for (const auto& [option, file] : files_) check_apart(option, file->path(), input);
+}
+
 void OutputSet::protect(const std::filesystem::path& input) {
-  std::vector<std::filesystem::path> all = referred_files(input);
-  all.push_back(input);
-  for (const auto& each : all) {
-    for (const auto& [option, file] : files_) check_apart(option, file->path(), each);
-    inputs_.push_back(each);
-  }
+  check_outputs_apart_from(input);
+  if (!input.empty()) inputs_.push_back(input);
+  for (const auto& file : referred_files(input)) protect_other(file);
+}
+
+void OutputSet::protect_other(const std::filesystem::path& path) {
+  check_outputs_apart_from(path);
+  if (!path.empty()) others_.push_back(path);
+}
+
+std::string OutputSet::naming_input(const std::string& message) const {
+  const auto names = [&message](const std::filesystem::path& path) {
+    return message.find(path.string()) != std::string::npos;
+  };
+  const bool is_named = std::any_of(inputs_.begin(), inputs_.end(), names) ||
+                        std::any_of(others_.begin(), others_.end(), names) ||
+                        std::any_of(files_.begin(), files_.end(),
+                                    [&](const Declared& each) { return names(each.file->path()); });
+  return is_named || inputs_.empty() ? message : inputs_.front().string() + ": " + message;
 }
 
 void OutputSet::declare(const std::string& option, const std::string& path,
@@ -67,6 +84,7 @@ void OutputSet::declare(const std::string& option, const std::string& path,
     }
   }
   for (const auto& input : inputs_) check_apart(option, path, input);
+  for (const auto& other : others_) check_apart(option, path, other);
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&

@@ -20,6 +20,10 @@ class OutputSet {
   /// An input that no output may overwrite, nor any file that it refers to (referred_files), whether declared
   /// before or after; one that is no file is ignored. Throws UsageError.
   void protect(const std::filesystem::path& input);
+  /// The same of what is no data: a file of options, a folder for what is only kept meanwhile.
+  void protect_other(const std::filesystem::path& path);
+  /// A message of what went wrong, with the first input before it where it names none of all these files.
+  [[nodiscard]] std::string naming_input(const std::string& message) const;
   /// An output that will be written, to be declared before long work; an empty path is none. Throws
   /// UsageError for an extension that is not among those given, for a path declared before and for an input,
   /// and Error where its folder cannot be used.
@@ -42,9 +46,10 @@ class OutputSet {
     std::unique_ptr<OutputFile> file;
   };
   [[nodiscard]] OutputFile* find(const std::string& path) const;
+  void check_outputs_apart_from(const std::filesystem::path& input) const;
 
   std::vector<Declared> files_;
-  std::vector<std::filesystem::path> inputs_;
+  std::vector<std::filesystem::path> inputs_, others_;
 };
 
 }  // namespace adamas

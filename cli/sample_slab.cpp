@@ -72,6 +72,7 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
   MultiMaterialData data;
   data.source = name;
   data.grid = nodes_of(part, volume);
+  check_nodes(name, data.grid);
   data.materials = IdVector<MaterialId, std::string>(1, "volume");
   data.labels.assign(part.grid.samples(), 0);
   Field field;

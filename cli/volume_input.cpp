@@ -92,6 +92,7 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
     wrong_usage("--time: expected a file with several times, not {}", raw ? "--dimensions" : "--stack");
   if (raw && input.stack) wrong_usage("--stack and --dimensions: expected one of them");
   session.outputs.protect(input.path);
+  session.outputs.protect_other(input.scratch);
   if (raw) {
     RawVolume volume = raw_volume(input);
     volume.spacing = spacing;

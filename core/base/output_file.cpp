@@ -56,6 +56,7 @@ void OutputFile::publish() {
 void OutputFile::commit() {
   publish();
   committed_ = true;
+  names_.reset();
 }
 
 }  // namespace adamas

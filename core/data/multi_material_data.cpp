@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/geometry/length_limits.h"
 
 namespace adamas {
 
@@ -11,6 +12,8 @@ namespace {
 
 /// Sums of fractions that are off by less are right but for the rounding of numbers in files.
 constexpr double kRoundOff = 1e-5;
+
+}  // namespace
 
 void check_nodes(const std::string& source, const RectilinearGrid& grid) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -26,9 +29,15 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
         fail("{}: expected ascending coordinates along {}, found {} after {}", source, name, nodes[i],
              nodes[i - 1]);
       }
+      if (std::abs(nodes[i]) > kGreatestCoordinate || (i > 0 && nodes[i] - nodes[i - 1] < kLeastLength)) {
+        fail("{}: expected coordinates below {} that are more than {} apart, found {} after {} along {}",
+             source, kGreatestCoordinate, kLeastLength, nodes[i], nodes[i > 0 ? i - 1 : 0], name);
+      }
     }
   }
 }
+
+namespace {
 
 void check_array(const std::string& source, const std::string& name, const std::vector<float>& values,
                  std::size_t expected) {

@@ -3,12 +3,14 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/visible_text.h"
 #include "core/io/child_process.h"
 #include "core/io/input_file.h"
 #include "core/io/legacy_vtk_check.h"
 #include "core/io/meta_image_check.h"
 #include "core/io/nrrd_reader.h"
 #include "core/io/vtk_grid_reader.h"
+#include "core/io/vtk_xml_check.h"
 
 namespace adamas {
 
@@ -74,6 +76,12 @@ void check_sizes(const std::string& name, const GridFile& file) {
   }
 }
 
+/// Names as they are shown, since that is how they are asked for, and since XML cannot hold all characters.
+void show_names(GridFile& file) {
+  for (GridArray& array : file.arrays) array.name = visible_text(array.name);
+  for (std::string& name : file.material_names) name = visible_text(name);
+}
+
 }  // namespace
 
 std::vector<float> GridArray::take_floats() {
@@ -102,14 +110,17 @@ GridFile read_grid_file(const std::filesystem::path& path) {
   GridFile file;
   if (file_extension(path) == ".nrrd" || file_extension(path) == ".nhdr") {
     file = read_nrrd(path);
+    show_names(file);
     check_sizes(path.string(), file);
     return file;
   }
   if (file_extension(path) == ".vtk") check_legacy_vtk(path);
+  if (file_extension(path) == ".vti" || file_extension(path) == ".vtr") check_vtk_xml(path);
   if (file_extension(path) == ".mha" || file_extension(path) == ".mhd") check_meta_image(path);
   read_in_child(
       path.string(), size, [&path](ByteSink& sink) { send(read_grid_with_vtk(path), sink); },
       [&file](ByteSource& source) { file = receive(source); });
+  show_names(file);
   check_sizes(path.string(), file);
   return file;
 }

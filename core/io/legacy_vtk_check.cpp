@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
+#include "core/io/printable.h"
 
 namespace adamas {
 
@@ -46,6 +47,7 @@ class Walker {
         fail("{}: expected a legacy VTK header, found something else", name_);
       }
     }
+    check_dimensions();
     if (lower(line).rfind("binary", 0) != 0) return check_last_line();
     while (std::getline(stream_, line)) {
       if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
@@ -55,6 +57,28 @@ class Walker {
   }
 
  private:
+  /// Axes are made before any data are looked for: they must not be longer than any can be.
+  void check_dimensions() {
+    constexpr int kLines = 8;
+    constexpr std::int64_t kMostNodes = 1 << 24;
+    const auto begin = stream_.tellg();
+    std::string line, keyword;
+    for (int i = 0; i < kLines && std::getline(stream_, line); ++i) {
+      std::istringstream words(line);
+      words >> keyword;
+      if (lower(keyword) != "dimensions") continue;
+      const std::string found = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+      std::int64_t nodes = 0, sum = 0;
+      int count = 0;
+      while (words >> nodes && nodes >= 1 && nodes <= kMostNodes) sum += nodes, ++count;
+      if (count == 3 && words.eof() && sum <= kMostNodes) break;
+      fail("{}: expected DIMENSIONS of three numbers from 1 on, at most {} in all, found '{}'", name_,
+           kMostNodes, printable(found, 60));
+    }
+    stream_.clear();
+    stream_.seekg(begin);
+  }
+
   /// A number that was cut off looks like another number: a text file has to end its last line.
   void check_last_line() {
     stream_.seekg(-1, std::ios::end);

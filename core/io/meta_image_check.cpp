@@ -11,6 +11,7 @@
 #include "core/io/inflate_stream.h"
 #include "core/io/input_file.h"
 #include "core/io/meta_image_fields.h"
+#include "core/io/number_list.h"
 
 namespace adamas {
 
@@ -32,6 +33,20 @@ std::uint64_t element_bytes(const std::string& type) {
   return 0;
 }
 
+/// As many as there are axes: VTK does not stop at other numbers.
+std::vector<std::int64_t> sizes(const MetaImageFields& header, const std::string& name) {
+  constexpr std::uint64_t kMostAxes = 10;
+  const std::string axes = header.has("NDims") ? header.value("NDims") : "";
+  const auto count = parse_number_list<std::uint64_t>(axes);
+  if (!count || count->size() != 1 || count->front() < 1 || count->front() > kMostAxes)
+    fail("{}: NDims: expected a number from 1 to {}, found '{}'", name, kMostAxes, axes);
+  const auto found = parse_number_list<std::int64_t>(header.value("DimSize"));
+  if (!found || found->size() != count->front()) {
+    fail("{}: DimSize: expected {} whole numbers, found '{}'", name, count->front(), header.value("DimSize"));
+  }
+  return *found;
+}
+
 /// Bytes that the header promises; 0 where it does not say.
 std::uint64_t promised_bytes(const MetaImageFields& header, const std::string& name) {
   if (!header.has("DimSize") || !header.has("ElementType")) return 0;
@@ -41,9 +56,7 @@ std::uint64_t promised_bytes(const MetaImageFields& header, const std::string& n
     std::istringstream(header.value("ElementNumberOfChannels")) >> channels;
     bytes *= std::min<std::uint64_t>(channels, 1'000'000);
   }
-  std::istringstream sizes(header.value("DimSize"));
-  std::int64_t size = 0;
-  while (sizes >> size) {
+  for (const std::int64_t size : sizes(header, name)) {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 46;
     if (size < 1 || static_cast<std::uint64_t>(size) > kMost / std::max<std::uint64_t>(bytes, 1)) {
       fail("{}: expected sizes that can be, found DimSize {}", name, header.value("DimSize"));

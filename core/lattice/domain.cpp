@@ -5,14 +5,11 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/geometry/length_limits.h"
 #include "core/lattice/diamond.h"
 
 namespace adamas {
 namespace {
-
-// So that products of four lengths neither overflow nor underflow, their rounding errors included.
-constexpr double kMinSide = 1e-50;
-constexpr double kMaxSide = 1e50;
 
 void check_box(const Box3& box) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -22,9 +19,9 @@ void check_box(const Box3& box) {
       fail("domain: expected a finite box, found {} from {} to {}", name, low, high);
     }
     if (!(low < high)) fail("domain: expected a box with min < max, found {} from {} to {}", name, low, high);
-    if (high - low < kMinSide || std::max(std::abs(low), std::abs(high)) > kMaxSide) {
-      fail("domain: expected sides above {} and coordinates below {}, found {} from {} to {}", kMinSide,
-           kMaxSide, name, low, high);
+    if (high - low < kLeastLength || std::max(std::abs(low), std::abs(high)) > kGreatestCoordinate) {
+      fail("domain: expected sides above {} and coordinates below {}, found {} from {} to {}", kLeastLength,
+           kGreatestCoordinate, name, low, high);
     }
   }
 }

@@ -65,7 +65,10 @@ Ticks linear_ticks(double low, double high, int wanted) {
   ADAMAS_ASSERT(std::isfinite(low) && std::isfinite(high) && low <= high);
   Ticks ticks;
   const double range = high - low;
-  if (!(range > 1e-12 * std::max(std::abs(low), std::abs(high))) || !std::isfinite(range)) {
+  // Steps of the least ranges there are would be 0.
+  constexpr double kLeastRange = 1e-290;
+  if (!(range > 1e-12 * std::max(std::abs(low), std::abs(high))) || range < kLeastRange ||
+      !std::isfinite(range)) {
     ticks.positions = {low};
     ticks.labels = {tidy_number(low)};
     return ticks;

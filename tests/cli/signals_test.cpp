@@ -141,7 +141,6 @@ TEST_F(Signals, ComparisonsLeaveNoProcesses) {
   for (const bool at_once : {false, true}) {
     std::filesystem::remove(folder() / "pid");
     RunOptions options;
-    options.stdout_file = "/dev/full";
     options.interrupt_when = [this] { return std::filesystem::exists(folder() / "pid"); };
     options.act = [at_once](pid_t program) {
       kill(program, SIGSTOP);
@@ -157,6 +156,14 @@ TEST_F(Signals, ComparisonsLeaveNoProcesses) {
     wait_until_gone(started);
     EXPECT_FALSE(is_running(started));
   }
+  // Where nothing can be printed it stops before a mesher has begun.
+  std::filesystem::remove(folder() / "pid");
+  RunOptions full;
+  full.stdout_file = "/dev/full";
+  const RunResult result = run({"compare", "scene.vtr", "--interface-error", "8%"}, full);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(folder() / "pid"));
   EXPECT_FALSE(has_partial_files());
 }
 

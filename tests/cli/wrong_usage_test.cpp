@@ -15,7 +15,7 @@ TEST_F(WrongUsage, Commands) {
   expect_wrong_usage({"generate"}, {"expected one of scene", "found none"});
   expect_wrong_usage({"generate", "soup"}, {"expected one of scene", "found 'soup'"});
   expect_wrong_usage({"reconstruct", "x.vtr"}, {"output"});
-  expect_wrong_usage({"resample", "-o", "m.vtu"}, {"expected an INPUT or --interface", "found neither"});
+  expect_wrong_usage({"resample", "-o", "m.vtu"}, {"expected an INPUT, --interface, or files", "found none"});
   expect_wrong_usage({"resample", "x.vtr"}, {"nothing to write", "--interfaces-out", "found none"});
 }
 
@@ -30,10 +30,10 @@ TEST_F(WrongUsage, IsToldAsExpectedAndFound) {
   expect_wrong_usage({"resample", "x.vtr", "--ghost", "quadratic"},
                      {"--ghost: expected constant, linear or least-squares, found 'quadratic'"});
   expect_wrong_usage({"resample", "x.vtr", "--interface-error"},
-                     {"--interface-error: expected a value E|E%, found none"});
+                     {"--interface-error: expected a value E|E%|Evoxels, found none"});
   expect_wrong_usage({"slice", "x.vtr", "--draw-cells=maybe"},
                      {"--draw-cells: expected no value", "found 'maybe'"});
-  expect_wrong_usage({"info"}, {"expected INPUT, found none"});
+  expect_wrong_usage({"info"}, {"expected a FILE, or files in --fraction or --labels, found neither"});
   expect_wrong_usage({"info", "x.vtr", "--config", "none.toml"}, {"--config: expected a file", "none.toml"});
 }
 

@@ -190,5 +190,29 @@ TEST(Rasteriser, PointsMustBeFinite) {
   EXPECT_THROW(rasteriser.draw(bad), Error);
 }
 
+TEST(Rasteriser, EachSideHasItsColour) {
+  const Colour front{0.9, 0.1, 0.1}, back{0.1, 0.1, 0.9};
+  const std::array<Vec3, 3> points{Vec3{-1, -1, 0}, Vec3{1, -1, 0}, Vec3{0, 1, 0}};
+  const Box3 box{{-1, -1, -1}, {1, 1, 1}};
+  for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
+    for (const bool from_above : {true, false}) {
+      // The normal is z: from above its front is seen.
+      const Camera camera(projection, box, {0.1, 0.2, from_above ? -1.0 : 1.0}, 40, 40);
+      Rasteriser rasteriser(camera, 40, 40);
+      const std::vector<PictureTriangle> triangles{{points, front, back}};
+      rasteriser.draw(triangles);
+      ASSERT_EQ(rasteriser.triangle_at(20, 20), 0u);
+      EXPECT_EQ(rasteriser.facing_colour(0), from_above ? front : back);
+      const Raster::Pixel pixel = rasteriser.shade({.outlines = false}).at(20, 20);
+      EXPECT_EQ(pixel.r > pixel.b, from_above);
+    }
+  }
+  // With one colour both sides have it.
+  Rasteriser rasteriser(Camera(Projection::kOrthographic, box, {0, 0, 1}, 40, 40), 40, 40);
+  const std::vector<PictureTriangle> plain{{points, front}};
+  rasteriser.draw(plain);
+  EXPECT_EQ(rasteriser.facing_colour(0), front);
+}
+
 }  // namespace
 }  // namespace adamas
