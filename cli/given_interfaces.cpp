@@ -10,7 +10,8 @@
 #include "cli/usage_error.h"
 #include "core/io/array_names.h"
 #include "core/io/field_assembly.h"
-#include "core/io/grid_file.h"
+#include "core/io/grid_axes.h"
+#include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/cross_section/field_choice.h"
@@ -56,6 +57,8 @@ Box3 domain_of(const InterfaceMesh& mesh) {
 MultiMaterialData read_fields(const InputOptions& options) {
   if (!options.region.empty()) wrong_usage("--region: expected a grid with materials");
   GridFile file = read_grid_file(options.path);
+  require_laid_out(options.path, file);
+  choose_centering(options.path, options.centering(), Centering::kPoints, file);
   MultiMaterialData data;
   data.source = options.path;
   data.grid.nodes = file.nodes;
@@ -158,8 +161,8 @@ ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_
   if (!options.path.empty() && !gridded && input_kind(options.path) != InputKind::kNetwork) {
     fail("{}: expected a grid or a labelled network beside --interface, found a mesh", options.path);
   }
-  if (!gridded && !options.material_option().empty()) {
-    wrong_usage("{}: expected data on a grid as INPUT", options.material_option());
+  if (!gridded && !options.grid_option().empty()) {
+    wrong_usage("{}: expected data on a grid as INPUT", options.grid_option());
   }
   std::optional<Box3> box;
   if (!options.box.empty()) box = to_box(parse_bounds("--box", options.box));

@@ -10,11 +10,13 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
+#include "cli/grid_summary.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
 #include "cli/store_input.h"
 #include "cli/store_summary.h"
 #include "cli/usage_error.h"
+#include "cli/volume_summary.h"
 #include "core/io/array_names.h"
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
@@ -29,37 +31,10 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-void print_grid(const FileSummary& s, Console& console, Figures& figures) {
-  if (s.nodes[0] > 0) {
-    figures["nodes"] = s.nodes;
-    console.print("  {} x {} x {} nodes\n", s.nodes[0], s.nodes[1], s.nodes[2]);
-  }
-  figures["points"] = s.points;
-  figures["cells"] = s.cells;
-  console.print("  {} points, {} cells\n", s.points, s.cells);
-  if (s.points > 0) {
-    figures["box"] = box_figures(s.box);
-    console.print("  {}\n", box_text(s.box));
-  }
-}
-
-void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
-  figures["arrays"] = Figures::array();
-  Rows rows{{"array", "on", "type", "components", "from", "to"}};
-  for (const ArraySummary& a : s.arrays) {
-    const bool ranged = a.min <= a.max;
-    figures["arrays"].push_back({{"name", a.name},
-                                 {"on", a.of},
-                                 {"type", a.type},
-                                 {"components", a.components},
-                                 {"min", ranged ? Figures(a.min) : Figures(nullptr)},
-                                 {"max", ranged ? Figures(a.max) : Figures(nullptr)}});
-    rows.push_back({a.name, a.of, a.type, std::to_string(a.components),
-                    ranged ? fmt::format("{:.6g}", a.min) : "-",
-                    ranged ? fmt::format("{:.6g}", a.max) : "-"});
-  }
-  if (rows.size() > 1) console.table(rows);
-}
+struct Options {
+  InputOptions input;
+  VolumeInput volume;
+};
 
 void print_volumes(const IdVector<MaterialId, std::string>& names, const IdVector<MaterialId, double>& of,
                    Console& console, Figures& figures) {
@@ -222,29 +197,45 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
   }
 }
 
-void check_options(const InputOptions& options) {
+void check_options(const Options& all) {
+  const InputOptions& options = all.input;
   const InputKind kind = input_kind(options.path);
-  if ((kind != InputKind::kGrid || is_store(options.path)) && !options.material_option().empty()) {
-    wrong_usage("{}: expected data on a grid as INPUT", options.material_option());
+  const std::string of_volume = all.volume.option();
+  if (!of_volume.empty() && (is_store(options.path) || kind == InputKind::kMesh)) {
+    wrong_usage("{}: expected a volume as INPUT, found {}", of_volume, options.path);
+  }
+  if (!of_volume.empty() && !options.grid_option().empty())
+    wrong_usage("{} and {}: expected one of them", of_volume, options.grid_option());
+  if ((kind != InputKind::kGrid || is_store(options.path)) && !options.grid_option().empty()) {
+    wrong_usage("{}: expected data on a grid as INPUT", options.grid_option());
   }
   if (kind != InputKind::kNetwork && !options.region_names.empty()) {
     wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
   }
 }
 
-void run(const InputOptions& given, Session& session) {
-  const InputOptions options = with_main_file(given);
+void run(const Options& given, Session& session) {
+  const Options all{with_main_file(given.input), given.volume};
+  const InputOptions& options = all.input;
   if (options.path.empty()) wrong_usage("expected a FILE, or files in --fraction or --labels, found neither");
   protect_inputs(options, options.path, session.outputs);
-  check_options(options);
-  check_input_file(options.path);
+  check_options(all);
+  if (!all.volume.stack) check_input_file(options.path);
   if (is_store(options.path)) {
     const Figures figures = print_store(options.path, session);
     session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
     return session.outputs.commit();
   }
   session.console.step("reading " + options.path, -1);
-  const FileSummary summary = summarize_file(options.path);
+  if (auto volume = find_volume(options, all.volume, session)) {
+    const Figures figures = print_volume(std::move(*volume), options.path, session);
+    session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+    return session.outputs.commit();
+  }
+  // Labels and fractions are of cells where nothing is said.
+  const bool materials = !options.labels.empty() || !options.fractions.empty();
+  const FileSummary summary =
+      summarize_file(options.path, options.centering(), materials ? Centering::kCells : Centering::kPoints);
   Figures figures{{"file", options.path}, {"kind", summary.kind}};
   session.console.print("{}: {}\n", options.path, summary.kind);
   print_grid(summary, session.console, figures);
@@ -256,20 +247,22 @@ void run(const InputOptions& given, Session& session) {
 }  // namespace
 
 void add_info(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<InputOptions>();
+  const auto options = std::make_shared<Options>();
   CLI::App* command = add_command(app, session, "info", "What is in a file", "adamas info cth.vtr",
                                   [options, &session] { run(*options, session); });
   command
-      ->add_option("input", options->path,
+      ->add_option("input", options->input.path,
                    std::string("Any file that can be read: ") + kGridFiles +
                        ", a mesh (.vtu), interfaces (.vtp, .arec, .txt), a surface "
                        "(.obj, .off, .ply, .stl) or a store (.adm)")
       ->type_name("FILE");
-  add_material_options(*command, *options);
+  add_material_options(*command, options->input);
   command
-      ->add_option("--region-names", options->region_names, "Names of a network's labels, LABEL NAME a line")
+      ->add_option("--region-names", options->input.region_names,
+                   "Names of a network's labels, LABEL NAME a line")
       ->type_name("FILE")
       ->group("Input");
+  add_volume_options(*command, options->volume, "--origin,--first-sample");
 }
 
 }  // namespace adamas

@@ -67,6 +67,17 @@ std::string InputOptions::material_option() const {
   return region.empty() ? "" : "--region";
 }
 
+std::string InputOptions::grid_option() const {
+  if (const std::string option = material_option(); !option.empty()) return option;
+  return cells ? "--cells" : points ? "--points" : "";
+}
+
+std::optional<Centering> InputOptions::centering() const {
+  if (cells && points) wrong_usage("--cells and --points: expected one of them");
+  if (cells) return Centering::kCells;
+  return points ? std::optional(Centering::kPoints) : std::nullopt;
+}
+
 std::string InputOptions::interface_option() const {
   if (!region_names.empty()) return "--region-names";
   if (!box.empty()) return "--box";
@@ -101,6 +112,13 @@ void add_material_options(CLI::App& command, InputOptions& options, const char* 
   add_repeatable(command, "--extensive", options.extensive,
                  "A field of amounts per cell, to be divided by the material's volume there; repeatable")
       ->type_name("NAME");
+  command
+      .add_flag("--cells", options.cells,
+                "The values are of cells, whatever the file says (default, where it says nothing, for labels "
+                "and volume fractions)")
+      ->group("Input");
+  command.add_flag("--points", options.points, "The values are of points, whatever the file says")
+      ->group("Input");
   command.add_option("--region", options.region, "Keep what lies in this box")
       ->type_name("x0,x1,y0,y1,z0,z1")
       ->group("Input");
@@ -161,6 +179,8 @@ MaterialDataOptions material_options(const InputOptions& options) {
   result.labels = options.labels;
   result.extensive = options.extensive;
   if (!options.region.empty()) result.region = parse_bounds("--region", options.region);
+  result.centering = options.centering();
+  result.plain = options.plain;
   return result;
 }
 
@@ -181,7 +201,8 @@ InputFacts facts_of(const ResamplingSource& source) {
 
 MultiMaterialData load_data(const InputOptions& given, Console& console) {
   const InputOptions options = with_main_file(given);
-  const MaterialDataOptions how = material_options(options);
+  MaterialDataOptions how = material_options(options);
+  how.note = [&console](const std::string& text) { console.note("{}", text); };
   if (options.path.empty())
     wrong_usage("expected an INPUT, or files in --fraction or --labels, found neither");
   check_input_file(options.path);

@@ -3,6 +3,7 @@
 #include <CLI/App.hpp>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,10 +21,16 @@ struct InputOptions {
   std::string path;
   std::vector<std::string> fractions, fields, extensive, interfaces;
   std::string fraction_scale, rest, labels, region, box, region_names;
-  bool tolerant = false;
+  bool tolerant = false, cells = false, points = false;
+  bool plain = false;  ///< data without materials will do (MaterialDataOptions::plain); no option
 
-  /// The first option given that only gridded data can mean, for messages; empty where there is none.
+  /// The first option given that only gridded data with materials can mean, for messages; empty where there
+  /// is none.
   [[nodiscard]] std::string material_option() const;
+  /// The same of what any gridded data can mean.
+  [[nodiscard]] std::string grid_option() const;
+  /// What --cells or --points say. Throws UsageError where both are given.
+  [[nodiscard]] std::optional<Centering> centering() const;
   /// The same for one that only given interfaces can mean, --interface itself apart.
   [[nodiscard]] std::string interface_option() const;
 };

@@ -16,6 +16,7 @@
 #include "cli/store_input.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
+#include "core/data/volume_placement.h"
 #include "core/io/surface_writer.h"
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_normals.h"
@@ -43,7 +44,7 @@ double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
     unit = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   } else if (number.ends_with('%')) {
     number.remove_suffix(1);
-    unit = grid.box().diagonal() / 100;
+    unit = grid.frame_box().diagonal() / 100;
   }
   double value = 0;
   const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
@@ -63,13 +64,24 @@ std::vector<double> parse_isovalues(const std::vector<std::string>& texts) {
   return values;
 }
 
+/// In space.
+std::optional<Box3> wanted_region(const Options& options) {
+  if (options.region.empty()) return {};
+  return to_box(parse_bounds("--region", options.region));
+}
+
 SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
   SurfaceRequest request;
   request.strict = options.strict;
-  if (!options.error.empty()) request.error = parse_surface_error(options.error, grid);
+  if (!options.error.empty())
+    request.error = parse_surface_error(options.error, grid) / grid.greatest_stretch();
   if (!options.max_triangles.empty())
     request.max_triangles = parse_count("--max-triangles", options.max_triangles);
-  if (!options.region.empty()) request.region = to_box(parse_bounds("--region", options.region));
+  if (const auto wanted = wanted_region(options)) {
+    const FrameRegion region = region_in_frame(grid, *wanted);
+    request.region = region.box;
+    request.sides = region.sides;
+  }
   return request;
 }
 
@@ -89,11 +101,12 @@ void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isov
 }
 
 /// Throws where a surface cannot be: in a region outside of the data, or without cells.
-void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRequest& request) {
+void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRequest& request,
+                const std::optional<Box3>& region) {
   for (const std::uint64_t n : grid.dimensions) {
     if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
   }
-  const Box3 box = grid.box();
+  const Box3 box = grid.frame_box();
   for (int axis = 0; axis < 3; ++axis) {
     if (box.min[axis] < box.max[axis]) continue;
     fail("{}: expected samples at places that differ, found all at {} along {}", name, box.min[axis],
@@ -102,7 +115,7 @@ void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRe
   if (!request.region) return;
   for (int axis = 0; axis < 3; ++axis) {
     if (request.region->min[axis] < box.max[axis] && request.region->max[axis] > box.min[axis]) continue;
-    fail("{}: expected a region in {}, found {}", name, box_text(box), box_text(*request.region));
+    fail("{}: expected a region in {}, found {}", name, box_text(grid.box()), box_text(*region));
   }
 }
 
@@ -125,12 +138,12 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   const VolumeGrid& grid = file.header().grid;
   SurfaceRequest request = request_of(options, grid);
   const std::string& name = options.input.path;
-  check_data(name, grid, request);
+  check_data(name, grid, request, wanted_region(options));
   StoredPages<OrderedWord<Sample>> pages(file, 0, store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;
   surface.value_name = "isovalue";
-  IsosurfaceFigures figures(session);
+  IsosurfaceFigures figures(session, grid);
   const std::vector<double> isovalues = parse_isovalues(options.isovalues);
   std::vector<std::size_t> ends;
   for (const double isovalue : isovalues) {
@@ -146,10 +159,11 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
     append(found, std::move(normals.normals), isovalue, surface);
     ends.push_back(surface.triangles.size());
   }
+  place_in_space(grid, surface);
   session.outputs.write(options.output, [&](const auto& path) { write_surface(path, surface, console); });
   if (!options.picture.file.empty()) console.step("drawing", -1);
   session.outputs.write(options.picture.file, [&](const auto& path) {
-    write_isosurface_picture(path, surface, ends, isovalues, request.region.value_or(grid.box()),
+    write_isosurface_picture(path, surface, ends, isovalues, wanted_region(options).value_or(grid.box()),
                              options.picture);
   });
   figures.report(surface, pages.counts());
@@ -163,7 +177,9 @@ void run(const Options& options, Session& session) {
   parse_isovalues(options.isovalues);
   options.picture.check();
   store_memory(options.input);
-  request_of(options, {{1, 1, 1}, {}, {}, {}});
+  VolumeGrid any;
+  any.dimensions = {1, 1, 1};
+  request_of(options, any);
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
   with_sample_type(file->header().grid.type,
                    [&](auto sample) { extract_all<decltype(sample)>(options, *file, session); });

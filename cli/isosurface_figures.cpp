@@ -32,14 +32,15 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
   Console& console = session_.console;
   tetrahedra_ += surface.tetrahedra;
   diamonds_ += surface.diamonds;
-  max_error_ = std::max(max_error_, surface.max_error);
+  max_error_ = std::max(max_error_, stretch_ * surface.max_error);
   if (surface.contour.triangles.empty()) {
     const std::string reason = reason_for_none(request, range);
     console.note("no surface at isovalue {:.6g}{}{}", request.isovalue, reason.empty() ? "" : ": ", reason);
   } else if (surface.max_error > request.error && surface.lost.empty() &&
              (!request.max_triangles || request.error > 0)) {
     console.note("the error wanted was not reached{}: {:.4g} instead of {:.4g}",
-                 request.max_triangles ? " with so few triangles" : "", surface.max_error, request.error);
+                 request.max_triangles ? " with so few triangles" : "", stretch_ * surface.max_error,
+                 stretch_ * request.error);
   }
   if (!surface.lost.empty()) {
     console.note_damage("{}: the surface at isovalue {:.6g} is coarser there",
@@ -63,18 +64,22 @@ void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const Extract
 void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts& counts) {
   Console& console = session_.console;
   const double seconds = console.seconds();
-  console.table({{"triangles", std::to_string(surface.triangles.size())},
-                 {"vertices", std::to_string(surface.points.size())},
-                 {"tetrahedra", std::to_string(tetrahedra_)},
-                 {"isosurface error", fmt::format("{:.4g}", max_error_)},
-                 {"pages read", fmt::format("{}, and {} to predict them", counts.pages, counts.predictors)},
-                 {"bytes read", bytes_text(static_cast<double>(counts.bytes))},
-                 {"seconds", fmt::format("{:.2f}", seconds)}});
+  std::vector<std::vector<std::string>> rows{
+      {"triangles", std::to_string(surface.triangles.size())},
+      {"vertices", std::to_string(surface.points.size())},
+      {"tetrahedra", std::to_string(tetrahedra_)},
+      {"isosurface error", fmt::format("{:.4g}", max_error_)},
+      {"pages read", fmt::format("{}, and {} to predict them", counts.pages, counts.predictors)},
+      {"bytes read", bytes_text(static_cast<double>(counts.bytes))},
+      {"seconds", fmt::format("{:.2f}", seconds)}};
+  if (!space_.empty()) rows.push_back({"coordinates", space_});
+  console.table(rows);
   Figures figures{{"triangles", surface.triangles.size()},
                   {"vertices", surface.points.size()},
                   {"tetrahedra", tetrahedra_},
                   {"diamonds", diamonds_},
                   {"max_isosurface_error", max_error_}};
+  if (!space_.empty()) figures["space"] = space_;
   add_page_counts(counts, figures);
   figures["seconds"] = seconds;
   figures["peak_memory_bytes"] = peak_memory_bytes();

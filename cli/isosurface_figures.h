@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "core/data/triangle_surface.h"
+#include "core/data/volume.h"
 #include "isosurface/extraction/surface_request.h"
 #include "isosurface/storage/stored_pages.h"
 
@@ -14,7 +16,9 @@ namespace adamas {
 /// What is told of the surfaces of a run.
 class IsosurfaceFigures {
  public:
-  explicit IsosurfaceFigures(Session& session) : session_(session) {}
+  /// Of a store with this grid.
+  IsosurfaceFigures(Session& session, const VolumeGrid& grid)
+      : session_(session), stretch_(grid.greatest_stretch()), space_(grid.space) {}
 
   /// `range`: least and greatest sample of the store.
   void add(const SurfaceRequest& request, const ExtractedSurface& surface,
@@ -26,6 +30,8 @@ class IsosurfaceFigures {
 
  private:
   Session& session_;
+  double stretch_;     ///< from errors in the grid's frame to those in space
+  std::string space_;  ///< of coordinates
   std::uint64_t tetrahedra_ = 0, diamonds_ = 0;
   double max_error_ = 0;
 };

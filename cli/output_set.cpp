@@ -5,6 +5,7 @@
 
 #include "cli/usage_error.h"
 #include "core/base/error.h"
+#include "core/io/referred_files.h"
 
 namespace adamas {
 
@@ -19,10 +20,10 @@ std::string lower_case(std::string text) {
 void check_extension(const std::string& option, const std::filesystem::path& path,
                      std::initializer_list<const char*> extensions) {
   if (extensions.size() == 0) return;
-  const std::string found = lower_case(path.extension().string());
+  const std::string name = lower_case(path.filename().string());
   std::string known;
   for (const char* extension : extensions) {
-    if (found == extension) return;
+    if (name.size() > std::string_view(extension).size() && name.ends_with(extension)) return;
     known += (known.empty() ? "" : ", ") + std::string(extension);
   }
   wrong_usage("{}: expected a file name that ends in {}, found '{}'", option, known, path.string());
@@ -53,6 +54,7 @@ void OutputSet::check_outputs_apart_from(const std::filesystem::path& input) con
 void OutputSet::protect(const std::filesystem::path& input) {
   check_outputs_apart_from(input);
   if (!input.empty()) inputs_.push_back(input);
+  for (const auto& file : referred_files(input)) protect_other(file);
 }
 
 void OutputSet::protect_other(const std::filesystem::path& path) {

@@ -17,8 +17,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {
  public:
-  /// An input that no output may overwrite, whether declared before or after; one that is no file is
-  /// ignored. Throws UsageError.
+  /// An input that no output may overwrite, nor any file that it refers to (referred_files), whether declared
+  /// before or after; one that is no file is ignored. Throws UsageError.
   void protect(const std::filesystem::path& input);
   /// The same of what is no data: a file of options, a folder for what is only kept meanwhile.
   void protect_other(const std::filesystem::path& path);

@@ -128,7 +128,7 @@ void note_points_outside(const PointTable& table, const Box3& domain, Console& c
 
 /// Options that say nothing of a mesh.
 void check_mesh_options(const InputOptions& input) {
-  const std::string material = input.material_option(), interface = input.interface_option();
+  const std::string material = input.grid_option(), interface = input.interface_option();
   if (!material.empty()) wrong_usage("{}: expected data on a grid as INPUT", material);
   if (!interface.empty()) wrong_usage("{}: expected given interfaces as INPUT", interface);
   if (!input.interfaces.empty()) wrong_usage("--interface: expected data on a grid as INPUT");
@@ -144,7 +144,7 @@ void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".csv", ".txt"});
   const std::vector<Vec3> points = wanted_points(options);
   if (points.empty() && !options.output.empty()) {
-    wrong_usage("-o: expected --points, --point or --line as well");
+    wrong_usage("-o: expected --points-file, --point or --line as well");
   }
   Figures figures{{"points", points.size()}};
   PointTable table;
@@ -194,7 +194,7 @@ void add_probe(CLI::App& app, Session& session) {
                    std::string("What to probe: ") + kGridFiles +
                        ", interfaces (.vtp, .arec, .txt), or a mesh from adamas resample (.vtu)")
       ->type_name("FILE");
-  command->add_option("--points", options->points, "Points, x,y,z a line")->type_name("FILE");
+  command->add_option("--points-file", options->points, "Points, x,y,z a line")->type_name("FILE");
   command->add_option("--point", options->single, "A point; repeatable")
       ->type_name("x,y,z")
       ->allow_extra_args(false);

@@ -12,6 +12,7 @@
 #include "cli/option_values.h"
 #include "cli/store_input.h"
 #include "cli/volume_output.h"
+#include "core/data/volume_placement.h"
 
 namespace adamas {
 
@@ -27,7 +28,14 @@ void run(const Options& options, Session& session) {
   const std::size_t memory = store_memory(options.input);
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
   std::optional<Box3> region;
-  if (!options.region.empty()) region = to_box(parse_bounds("--region", options.region));
+  if (!options.region.empty()) {
+    const FrameRegion found =
+        region_in_frame(file->header().grid, to_box(parse_bounds("--region", options.region)));
+    region = found.box;
+    if (!found.sides.empty())
+      session.console.note("{}: its axes run aslant: the samples round the region, in a box along them",
+                           options.input.path);
+  }
   const int level = static_cast<int>(std::min<std::size_t>(parse_count("--level", options.level, 0), 99));
   const RestoredPart part = restored_part(file->header().grid, level, region, options.input.path);
   PageCounts counts;

@@ -9,9 +9,10 @@
 #include "cli/figures.h"
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
+#include "cli/resampling_setup.h"
 #include "cli/slice_panels.h"
 #include "cli/slice_polygons.h"
-#include "cli/store_slab.h"
+#include "cli/slice_samples.h"
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
@@ -22,8 +23,9 @@ namespace {
 
 struct Options {
   InputOptions input;
+  VolumeInput volume;
   std::string plane, origin, normal, original, mode, range, colour_map, size, output;
-  bool cells = false, no_cells = false, no_interfaces = false;
+  bool draw_cells = false, no_draw_cells = false, no_interfaces = false;
 };
 
 Plane parse_any_plane(const Options& options) {
@@ -98,13 +100,13 @@ SlicePicture make_picture(const Options& options, const SliceInput& input, const
   return picture;
 }
 
-/// Areas of the last section: the one with the materials, where there are several. The samples of a store
+/// Areas of the last section: the one with the materials, where there are several. Samples alone
 /// have none.
-void report_areas(const SliceInput& input, const CrossSection& section, bool stored, Session& session,
+void report_areas(const SliceInput& input, const CrossSection& section, bool plain, Session& session,
                   Figures& figures) {
   figures["area"] = section.area;
   figures["materials"] = Figures::array();
-  if (stored) return session.console.table({{"area", volume_text(section.area)}});
+  if (plain) return session.console.table({{"area", volume_text(section.area)}});
   std::vector<std::vector<std::string>> rows{{"material", "area", "part"}};
   for (MaterialId m(0); m.value < input.materials().size(); ++m.value) {
     const double area = m.value < section.material_area.size() ? section.material_area[m] : 0;
@@ -117,14 +119,18 @@ void report_areas(const SliceInput& input, const CrossSection& section, bool sto
   session.console.table(rows);
 }
 
-/// Options that would say nothing, and files that may not be written. `field`: what is shown.
-void check_options(const Options& options, const std::string& field, OutputSet& outputs) {
-  if (options.cells && options.no_cells) wrong_usage("--cells and --no-cells: expected one of them");
-  if (field.empty()) {
-    if (!options.range.empty()) wrong_usage("--range: expected --field as well");
-    if (!options.colour_map.empty()) wrong_usage("--colour-map: expected --field as well");
-    if (options.mode == "plain") wrong_usage("--mode plain: expected --field as well");
-  }
+/// Options that would say nothing where no field is shown.
+void check_field_options(const Options& options, const std::string& field) {
+  if (!field.empty()) return;
+  if (!options.range.empty()) wrong_usage("--range: expected --field as well");
+  if (!options.colour_map.empty()) wrong_usage("--colour-map: expected --field as well");
+  if (options.mode == "plain") wrong_usage("--mode plain: expected --field as well");
+}
+
+/// Options that cannot be, and files that may not be written.
+void check_options(const Options& options, OutputSet& outputs) {
+  if (options.draw_cells && options.no_draw_cells)
+    wrong_usage("--draw-cells and --no-draw-cells: expected one of them");
   parse_range(options);
   const std::string main = with_main_file(options.input).path;
   protect_inputs(options.input, options.original.empty() ? main : options.original, outputs);
@@ -134,25 +140,25 @@ void check_options(const Options& options, const std::string& field, OutputSet& 
 /// Cells are drawn as asked for, else those of a mesh and, beside it, those of its input where they are seen.
 void choose_cells(const Options& options, const SliceInput& input, const SliceOptions& size,
                   std::size_t panels, SliceStyle& style) {
-  style.mesh_cells = options.cells || !options.no_cells;
-  style.input_cells = options.cells || (!options.no_cells && input.mesh && input.data &&
-                                        shows_cells(input, style.plane, size, panels));
+  style.mesh_cells = options.draw_cells || !options.no_draw_cells;
+  style.input_cells = options.draw_cells || (!options.no_draw_cells && input.mesh && input.data &&
+                                             shows_cells(input, style.plane, size, panels));
 }
 
-/// The samples of a store round the plane.
-SliceInput load_store_slice(const Options& options, const Plane& plane,
-                            const std::function<void(const SliceInput&)>& check, Session& session) {
-  if (!options.original.empty())
-    wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.input.path);
-  if (const std::string unused = options.input.material_option(); !unused.empty() && unused != "--field")
-    wrong_usage("{}: expected data with materials as INPUT, found {}", unused, options.input.path);
-  SliceInput input;
-  input.name = options.input.path;
-  StoreInput store;
-  store.path = options.input.path;
-  input.data = std::make_unique<MultiMaterialData>(store_slab(store, plane, session));
-  check(input);
-  return input;
+/// The field of data without materials to show where none is named.
+std::string only_field(const SliceInput& input) {
+  std::string found;
+  for (const Field& field : input.data->fields) {
+    if (field.components != 1) continue;
+    if (!found.empty()) {
+      wrong_usage("{}: expected --field, found no materials and several fields ({})", input.name,
+                  field_names(field_infos(*input.data)));
+    }
+    found = field.name;
+  }
+  if (found.empty())
+    fail("{}: expected materials or a field, or --field NAME:0 of a vector, found none", input.name);
+  return found;
 }
 
 void run(const Options& options, Session& session) {
@@ -162,26 +168,31 @@ void run(const Options& options, Session& session) {
   const SliceOptions size = picture_size(options);
   InputOptions from = options.input;
   style.field = split_fields(from);
-  const bool stored = is_store(from.path);
-  if (stored && style.field.empty()) style.field = kSampleField;
-  style.interfaces = !options.no_interfaces && !stored;
-  check_options(options, style.field, session.outputs);
+  // Data without materials may do where no option is about them.
+  from.plain = from.material_option().empty() && options.original.empty();
+  check_options(options, session.outputs);
+  const SampleOrigin origin = sample_origin(options.input, options.volume, options.original);
+  style.interfaces = !options.no_interfaces && origin == SampleOrigin::kNone;
   const bool polygons = file_extension(options.output) == ".vtp";
 
   std::vector<SliceMode> wanted;
   const auto check = [&](const SliceInput& read) {
+    if (read.plain() && !read.interfaces) style.interfaces = false;
+    if (read.plain() && style.field.empty()) style.field = only_field(read);
+    check_field_options(options, style.field);
     wanted = modes(options, read, !style.field.empty());
     if (polygons && wanted.size() > 1) wrong_usage("--mode all: expected a picture as output, found a .vtp");
-    if (clip_plane(style.plane, read.box()).empty()) {
+    if (read.outline(style.plane).empty()) {
       fail("{}: expected a plane that cuts {}, found {}", read.name, box_text(read.box()),
            to_string(style.plane));
     }
     for (const SliceMode mode : wanted) choose_field(read, mode, style);
   };
   const SliceInput input =
-      stored ? load_store_slice(options, style.plane, check, session)
-             : load_slice_input(from, options.original,
-                                style.interfaces && !polygons ? &style.plane : nullptr, check, console);
+      origin != SampleOrigin::kNone
+          ? load_samples(options.input, options.volume, origin, style.field, style.plane, check, session)
+          : load_slice_input(from, options.original, style.interfaces && !polygons ? &style.plane : nullptr,
+                             check, console);
   choose_cells(options, input, size, wanted.size(), style);
   std::vector<CrossSection> sections;
   for (const SliceMode mode : wanted) {
@@ -189,7 +200,7 @@ void run(const Options& options, Session& session) {
     sections.push_back(cut(input, mode, style));
   }
   Figures figures{{"area", nullptr}, {"materials", nullptr}, {"plane", to_string(style.plane)}};
-  report_areas(input, sections.back(), stored, session, figures);
+  report_areas(input, sections.back(), input.plain(), session, figures);
   figures["pieces"] = sections.back().pieces.size();
   console.step("drawing", -1);
   session.outputs.write(options.output, [&](const auto& path) {
@@ -210,10 +221,10 @@ void add_drawing_options(CLI::App& command, Options& options) {
       ->check(one_of({"input", "plain", "materials", "all"}))
       ->group("Picture");
   command
-      .add_flag("--cells", options.cells,
+      .add_flag("--draw-cells", options.draw_cells,
                 "Draw the cells (default for a mesh, and for its input unless they are tiny)")
       ->group("Picture");
-  command.add_flag("--no-cells", options.no_cells, "Do not draw the cells")->group("Picture");
+  command.add_flag("--no-draw-cells", options.no_draw_cells, "Do not draw the cells")->group("Picture");
   command.add_flag("--no-interfaces", options.no_interfaces, "Do not draw the interfaces")->group("Picture");
   command.add_option("--range", options.range, "Values at the ends of the colour map")
       ->type_name("a,b")
@@ -258,6 +269,7 @@ void add_slice(CLI::App& app, Session& session) {
                        "NAME=FILE adds it first",
                        "NAME[=FILE-or-ARRAY]");
   add_interface_options(*command, options->input);
+  add_volume_options(*command, options->volume, "--first-sample");
 }
 
 }  // namespace adamas

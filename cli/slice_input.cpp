@@ -7,6 +7,7 @@
 #include "cli/given_interfaces.h"
 #include "cli/material_numbers.h"
 #include "cli/usage_error.h"
+#include "core/data/volume_placement.h"
 #include "core/io/field_assembly.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
@@ -83,8 +84,8 @@ void load_original(const InputOptions& options, Console& console, SliceInput& in
     wrong_usage("--region-names: expected a labelled network (.arec, .txt)");
   }
   if (!gridded && given) {
-    if (options.material_option().empty()) return;
-    wrong_usage("{}: expected data on a grid", options.material_option());
+    if (options.grid_option().empty()) return;
+    wrong_usage("{}: expected data on a grid", options.grid_option());
   }
   input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
   if (!input.mesh) return;
@@ -94,6 +95,13 @@ void load_original(const InputOptions& options, Console& console, SliceInput& in
 }
 
 }  // namespace
+
+std::vector<Vec3> SliceInput::outline(const Plane& plane) const {
+  if (!turned) return clip_plane(plane, box());
+  std::vector<Vec3> corners = clip_plane(plane_in_frame(*turned, plane), box());
+  for (Vec3& p : corners) p = turned->in_space(p);
+  return corners;
+}
 
 ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
   check_input_file(path);
@@ -134,14 +142,14 @@ SliceInput load_slice_input(const InputOptions& given, const std::string& origin
     from.path = original;
     if (!original.empty()) check_input_file(original);
     const std::string unused =
-        options.material_option().empty() ? options.interface_option() : options.material_option();
+        options.grid_option().empty() ? options.interface_option() : options.grid_option();
     if (original.empty() && !unused.empty()) wrong_usage("{}: expected --original DATA", unused);
   } else if (kind == InputKind::kSurface) {
     fail("{}: expected data on a grid, a resampled mesh (.vtu) or a network, found a surface", options.path);
   }
   if (!from.path.empty() || !from.interfaces.empty()) load_original(from, console, input);
   check(input);
-  if (!input.data || input.interfaces || plane == nullptr) return input;
+  if (!input.data || input.interfaces || plane == nullptr || input.plain()) return input;
   const auto near = near_plane(*input.data, *plane);
   input.interfaces = Reconstruction(near ? *near : *input.data, console).mesh();
   return input;

@@ -6,6 +6,7 @@
 
 #include "cli/input_options.h"
 #include "core/data/interface_mesh.h"
+#include "core/data/volume.h"
 #include "core/geometry/plane.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
@@ -19,7 +20,14 @@ struct SliceInput {
   std::optional<InterfaceMesh> interfaces;  ///< the original ones
   std::optional<ResampledMesh> mesh;
   std::optional<ResamplingSource> network;  ///< given interfaces without data
+  /// Of samples whose axes are not x, y and z: the data are in its frame.
+  std::optional<VolumeGrid> turned;
 
+  /// Whether the data know no materials.
+  [[nodiscard]] bool plain() const { return data && !mesh && is_plain(*data); }
+  /// What the plane cuts out of the domain, in space.
+  [[nodiscard]] std::vector<Vec3> outline(const Plane& plane) const;
+  /// Of the domain; of samples in their frame.
   [[nodiscard]] Box3 box() const {
     if (mesh) return mesh->box;
     return network ? network->box : data->grid.domain();

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/data/volume_placement.h"
 #include "core/picture/palette.h"
 
 namespace adamas {
@@ -108,6 +109,27 @@ std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vec
   return entries;
 }
 
+/// Puts a section from a grid's frame into space.
+void place_in_space(const VolumeGrid& grid, CrossSection& section) {
+  section.area = 0;
+  std::fill(section.material_area.begin(), section.material_area.end(), 0.0);
+  for (SectionPiece& piece : section.pieces) {
+    for (Vec3& p : piece.corners) p = grid.in_space(p);
+    if (grid.is_left_handed()) {
+      std::reverse(piece.corners.begin(), piece.corners.end());
+      std::reverse(piece.values.begin(), piece.values.end());
+    }
+    const double area = polygon_area(piece.corners);
+    section.area += area;
+    section.material_area[piece.material] += area;
+  }
+  for (auto* segments : {&section.cell_edges, &section.interface_edges}) {
+    for (Segment& segment : *segments) {
+      for (Vec3& p : segment) p = grid.in_space(p);
+    }
+  }
+}
+
 }  // namespace
 
 std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
@@ -124,6 +146,11 @@ CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& styl
   if (input.network)
     return cross_section(*input.network->network, input.box(), input.materials().size(), style.plane,
                          input.name);
+  if (of_data && input.turned) {
+    CrossSection section = cross_section(*input.data, plane_in_frame(*input.turned, style.plane), field);
+    place_in_space(*input.turned, section);
+    return section;
+  }
   if (of_data) return cross_section(*input.data, style.plane, field);
   return cross_section(*input.mesh, style.plane, field,
                        mode == SliceMode::kPlain ? SectionMode::kPlain : SectionMode::kPerMaterial);
@@ -153,7 +180,7 @@ bool shows_cells(const SliceInput& input, const Plane& plane, const SliceOptions
   constexpr double kLeastPixels = 6;
   const PlaneFrame frame = plane_frame(plane);
   Box2 window;
-  for (const Vec3& p : clip_plane(plane, input.box())) {
+  for (const Vec3& p : input.outline(plane)) {
     const auto [x, y] = frame.coordinates(p);
     window.extend({x, y});
   }

@@ -12,7 +12,6 @@
 #include "cli/option_values.h"
 #include "cli/store_summary.h"
 #include "cli/volume_input.h"
-#include "core/base/error.h"
 #include "isosurface/storage/store_builder.h"
 
 namespace adamas {
@@ -80,18 +79,10 @@ void report(const VolumeReader& reader, const StoreFigures& store, Session& sess
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
 }
 
-/// Throws Error where a volume has more samples along an axis than a store may.
-void check_dimensions(const std::string& name, const VolumeGrid& grid) {
-  constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
-  for (const std::uint64_t n : grid.dimensions) {
-    if (n > kMost) fail("{}: expected at most {} samples along each axis, found {}", name, kMost, n);
-  }
-}
-
 void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".adm"});
   VolumeReader reader = open_volume_input(options.input, session);
-  check_dimensions(options.input.path, reader.grid());
+  check_volume_dimensions(options.input.path, reader.grid());
   PlaneReader planes(reader);
   StoreOptions store;
   store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/store_input.h"
+#include "cli/volume_places.h"
 #include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/storage/sample_dispatch.h"
 
@@ -63,13 +64,11 @@ Figures print_store(const std::string& path, Session& session) {
                                                                  : "interpolation";
   console.print("{}: stored volume\n", path);
   console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
-  console.print("  {}, spacing {:.6g}, {:.6g}, {:.6g}\n", box_text(grid.box()), grid.spacing.x,
-                grid.spacing.y, grid.spacing.z);
+  print_places(grid, console);
   Figures figures{{"file", path},
                   {"kind", "store"},
                   {"dimensions", grid.dimensions},
                   {"type", sample_name(grid.type)},
-                  {"box", box_figures(grid.box())},
                   {"steps", header.steps},
                   {"levels", levels},
                   {"pages", file->grid().page_count()},
@@ -81,6 +80,7 @@ Figures print_store(const std::string& path, Session& session) {
                   {"bytes_errors", header.bytes.values},
                   {"bytes_gradients", header.bytes.gradients},
                   {"bytes_file", file->size()}};
+  add_places(grid, figures);
   print_range(*file, console, figures);
   console.print("  levels 0 to {}, {} pages, coding {}, subtrees {}, {} gradients\n\n", levels - 1,
                 file->grid().page_count(), coding, header.subtree_depth,

@@ -2,12 +2,20 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/meta_image_fields.h"
+#include "core/io/nrrd_header.h"
+#include "core/io/number_list.h"
 #include "core/io/volume_format.h"
 #include "core/io/volume_stack.h"
+#include "core/io/xml_tags.h"
+#include "isosurface/storage/page_grid.h"
 
 namespace adamas {
 
@@ -52,9 +60,21 @@ void check_array(const VolumeInput& input) {
 
 }  // namespace
 
+std::string VolumeInput::option() const {
+  if (stack) return "--stack";
+  const std::pair<const char*, const std::string*> options[] = {
+      {"--array", &array},     {"--dimensions", &dimensions},     {"--type", &type},
+      {"--spacing", &spacing}, {"--first-sample", &origin},       {"--endian", &endian},
+      {"--time", &time},       {"--header-bytes", &header_bytes}, {"--scratch", &scratch}};
+  for (const auto& [name, text] : options) {
+    if (!text->empty()) return name;
+  }
+  return {};
+}
+
 VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
   const Vec3 spacing = input.spacing.empty() ? Vec3{1, 1, 1} : parse_spacing(input.spacing);
-  const Vec3 origin = input.origin.empty() ? Vec3{} : parse_vector("--origin", input.origin);
+  const Vec3 origin = input.origin.empty() ? Vec3{} : parse_vector("--first-sample", input.origin);
   const bool raw = !input.dimensions.empty();
   const auto needs_raw = [&](const char* option, const std::string& text) {
     if (!raw && !text.empty()) wrong_usage("{}: expected --dimensions as well", option);
@@ -64,10 +84,12 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
   needs_raw("--header-bytes", input.header_bytes);
   if (!raw && !input.stack) {
     if (!input.spacing.empty()) wrong_usage("--spacing: expected --dimensions or --stack as well");
-    if (!input.origin.empty()) wrong_usage("--origin: expected --dimensions or --stack as well");
+    if (!input.origin.empty()) wrong_usage("--first-sample: expected --dimensions or --stack as well");
   }
   if ((raw || input.stack) && !input.array.empty())
     wrong_usage("--array: expected a file with several arrays, not {}", raw ? "--dimensions" : "--stack");
+  if ((raw || input.stack) && !input.time.empty())
+    wrong_usage("--time: expected a file with several times, not {}", raw ? "--dimensions" : "--stack");
   if (raw && input.stack) wrong_usage("--stack and --dimensions: expected one of them");
   session.outputs.protect(input.path);
   session.outputs.protect_other(input.scratch);
@@ -77,9 +99,53 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
     volume.origin = origin;
     return open_raw_volume(input.path, volume);
   }
-  if (input.stack) return open_volume_stack(match_stack(input.path), spacing, origin);
+  if (input.stack) {
+    const auto files = match_stack(input.path);
+    for (const auto& file : files) session.outputs.protect(file);
+    return open_volume_stack(files, spacing, origin, {{}, input.scratch, {}}, session.console);
+  }
   check_array(input);
-  return open_volume(input.path, {input.array, input.scratch}, session.console);
+  VolumeOptions options{input.array, input.scratch, {}};
+  if (!input.time.empty()) options.time = parse_count("--time", input.time, 0);
+  return open_volume(input.path, options, session.console);
+}
+
+bool has_one_array(const std::string& path) {
+  const std::string extension = file_extension(path);
+  const auto is = [&extension](std::initializer_list<const char*> list) {
+    return std::find(list.begin(), list.end(), extension) != list.end();
+  };
+  if (is({".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".h5", ".hdf5", ".he5"})) return true;
+  if (is({".nrrd", ".nhdr"})) return parse_nrrd_header(read_beginning(path), path).components == 1;
+  if (!is({".mha", ".mhd"})) return false;
+  const std::string channels =
+      parse_meta_image_fields(read_beginning(path), path).value("ElementNumberOfChannels");
+  return channels.empty() || channels == "1";
+}
+
+bool is_aslant_image(const std::string& path) {
+  if (file_extension(path) != ".vti") return false;
+  const std::string text = read_beginning(path);
+  XmlTags tags(text, path);
+  while (const auto tag = tags.next()) {
+    if (tag->name != "ImageData") continue;
+    const auto numbers = parse_number_list<double>(tag->value("Direction"));
+    if (!numbers || numbers->size() != 9) return false;
+    // A row, and so a column, with two numbers.
+    for (std::size_t row = 0; row < 3; ++row) {
+      const auto begin = numbers->begin() + 3 * static_cast<std::ptrdiff_t>(row);
+      if (std::count(begin, begin + 3, 0.0) < 2) return true;
+    }
+    return false;
+  }
+  return false;
+}
+
+void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
+  constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n > kMost) fail("{}: expected at most {} samples along each axis, found {}", name, kMost, n);
+  }
 }
 
 void add_volume_input(CLI::App& command, VolumeInput& input) {
@@ -90,6 +156,10 @@ void add_volume_input(CLI::App& command, VolumeInput& input) {
           "or .slc; with --dimensions a raw file, with --stack a pattern")
       ->required()
       ->type_name("FILE");
+  add_volume_options(command, input, "--origin,--first-sample");
+}
+
+void add_volume_options(CLI::App& command, VolumeInput& input, const char* origin) {
   command
       .add_flag("--stack", input.stack,
                 "INPUT is a pattern of slices, as \"ct_*.tif\" (in quotes) or ct_%04d.png")
@@ -114,8 +184,13 @@ void add_volume_input(CLI::App& command, VolumeInput& input) {
       ->type_name("x,y,z")
       ->group("Input");
   command
-      .add_option("--origin", input.origin, "Of the first sample of a raw file or a stack (default 0,0,0)")
+      .add_option(origin, input.origin,
+                  "The place of the first sample of a raw file or a stack (default 0,0,0)")
       ->type_name("x,y,z")
+      ->group("Input");
+  command
+      .add_option("--time", input.time, "Of a file with several times (NIfTI): the number of one, from 0 on")
+      ->type_name("N")
       ->group("Input");
   command
       .add_option("--scratch", input.scratch,

@@ -14,12 +14,29 @@ struct VolumeInput {
   std::string path;
   bool stack = false;
   std::string array, scratch;
-  std::string dimensions, type, spacing, origin, endian, header_bytes;
+  std::string dimensions, type, spacing, origin, endian, header_bytes, time;
+
+  /// The first option given that only a volume can mean, for messages; empty where there is none.
+  [[nodiscard]] std::string option() const;
 };
 
+/// The input and its options.
 void add_volume_input(CLI::App& command, VolumeInput& input);
+/// The options alone. `origin`: the names of that for the first sample.
+void add_volume_options(CLI::App& command, VolumeInput& input, const char* origin);
 
 /// Opens it. Throws UsageError where options do not go together.
 VolumeReader open_volume_input(const VolumeInput& input, Session& session);
+
+/// Whether a file is of a format that has nothing but the samples of one array, one number each; by its name
+/// and, of NRRD, its header.
+bool has_one_array(const std::string& path);
+
+/// Whether a .vti says that its axes are not parallel to x, y and z, so that it is no grid laid out along
+/// these.
+bool is_aslant_image(const std::string& path);
+
+/// Throws Error where a volume has more samples along an axis than pages can be made of.
+void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
 
 }  // namespace adamas

@@ -8,14 +8,15 @@ namespace adamas {
 
 void add_volume_output(CLI::App& command, std::string& output) {
   command
-      .add_option("-o,--output", output,
-                  "The volume: .vti, .nrrd, .mha, .nhdr or .mhd with a .raw beside it, or .raw alone")
+      .add_option(
+          "-o,--output", output,
+          "The volume: .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw alone")
       ->required()
       ->type_name("FILE");
 }
 
 void declare_volume_output(const std::string& output, OutputSet& outputs) {
-  outputs.declare("-o", output, {".vti", ".nrrd", ".nhdr", ".mha", ".mhd", ".raw"});
+  outputs.declare("-o", output, {".vti", ".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".raw"});
   outputs.declare("-o", volume_data_file(output).string());
 }
 
@@ -29,6 +30,7 @@ std::size_t write_volume_output(const std::string& output, const VolumeGrid& gri
     make([&](std::span<const std::byte> samples) { writer.write_plane(samples); });
     writer.finish();
   };
+  if (const std::string lost = lost_places(output, grid); !lost.empty()) session.console.note("{}", lost);
   const std::string data = volume_data_file(output).string();
   if (data.empty()) {
     outputs.write(output, write);

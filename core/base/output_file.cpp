@@ -13,7 +13,9 @@ namespace {
 /// A short name: the file's own may be as long as names can be, and outputs of outputs nest.
 std::filesystem::path temporary_name(const PartialNames& names, const std::filesystem::path& path) {
   constexpr std::size_t kLongestExtension = 32;
-  const std::string extension = path.extension().string();
+  std::string extension = path.extension().string();
+  // Those of compressed files tell what is compressed.
+  if (extension == ".gz") extension = path.stem().extension().string() + extension;
   return names.next(extension.size() <= kLongestExtension ? extension : "");
 }
 

@@ -1,10 +1,19 @@
 #include "core/data/volume.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
 
 namespace adamas {
+
+namespace {
+
+double determinant(const std::array<Vec3, 3>& columns) {
+  return dot(cross(columns[0], columns[1]), columns[2]);
+}
+
+}  // namespace
 
 const char* sample_name(SampleType type) {
   switch (type) {
@@ -20,10 +29,58 @@ const char* sample_name(SampleType type) {
   return "";
 }
 
-Box3 VolumeGrid::box() const {
+std::array<Vec3, 8> corners_of(const Box3& box) {
+  std::array<Vec3, 8> corners;
+  for (std::size_t c = 0; c < 8; ++c) {
+    corners[c] = {(c & 1) != 0 ? box.max.x : box.min.x, (c & 2) != 0 ? box.max.y : box.min.y,
+                  (c & 4) != 0 ? box.max.z : box.min.z};
+  }
+  return corners;
+}
+
+bool VolumeGrid::is_along_axes() const {
+  return std::all_of(directions.begin(), directions.end(), [](const Vec3& d) {
+    const int zeros = static_cast<int>(d.x == 0) + static_cast<int>(d.y == 0) + static_cast<int>(d.z == 0);
+    return zeros == 2 && std::abs(d.x + d.y + d.z) == 1;
+  });
+}
+
+bool VolumeGrid::is_left_handed() const { return determinant(directions) < 0; }
+
+Vec3 VolumeGrid::in_space(const Vec3& in_frame) const {
+  if (is_straight()) return in_frame;
+  const Vec3 way = in_frame - origin;
+  return origin + (way.x * directions[0] + way.y * directions[1] + way.z * directions[2]);
+}
+
+Vec3 VolumeGrid::in_frame(const Vec3& in_space) const {
+  if (is_straight()) return in_space;
+  const auto& [a, b, c] = directions;
+  const Vec3 way = (1 / determinant(directions)) * (in_space - origin);
+  return origin + Vec3{dot(cross(b, c), way), dot(cross(c, a), way), dot(cross(a, b), way)};
+}
+
+// The root of the greatest eigenvalue of the products of the directions, whose diagonal is 1, by the
+// trigonometric formula for symmetric matrices.
+double VolumeGrid::greatest_stretch() const {
+  const auto& [a, b, c] = directions;
+  const double ab = dot(a, b), bc = dot(b, c), ca = dot(c, a);
+  const double p = std::sqrt((ab * ab + bc * bc + ca * ca) / 3);
+  if (!(p > 0)) return 1;
+  const double r = std::clamp(ab * bc * ca / (p * p * p), -1.0, 1.0);
+  return std::sqrt(1 + 2 * p * std::cos(std::acos(r) / 3));
+}
+
+Box3 VolumeGrid::frame_box() const {
   Box3 box{origin, origin};
   for (int axis = 0; axis < 3; ++axis)
     box.max[axis] += spacing[axis] * (static_cast<double>(dimensions[static_cast<std::size_t>(axis)]) - 1);
+  return box;
+}
+
+Box3 VolumeGrid::box() const {
+  Box3 box;
+  for (const Vec3& corner : corners_of(frame_box())) box.extend(in_space(corner));
   return box;
 }
 
@@ -44,6 +101,22 @@ void VolumeGrid::check(const std::string& name) const {
     if (!std::isfinite(origin[axis])) {
       fail("{}: expected a finite origin along {}, found {}", name, "xyz"[axis], origin[axis]);
     }
+  }
+  constexpr double kRoundOff = 1e-6, kFlat = 1e-4;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Vec3& d = directions[axis];
+    if (!(std::abs(norm(d) - 1) <= kRoundOff)) {
+      fail("{}: expected a direction of length 1 for axis {}, found ({}, {}, {})", name, "ijk"[axis], d.x,
+           d.y, d.z);
+    }
+  }
+  if (!(std::abs(determinant(directions)) >= kFlat)) {
+    const auto& [a, b, c] = directions;
+    fail(
+        "{}: expected axes that are not in one plane, found ({:.6g}, {:.6g}, {:.6g}), ({:.6g}, {:.6g}, "
+        "{:.6g}) "
+        "and ({:.6g}, {:.6g}, {:.6g})",
+        name, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z);
   }
 }
 

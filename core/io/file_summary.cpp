@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/io/grid_file.h"
+#include "core/data/volume.h"
+#include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/polygon_soup.h"
@@ -33,8 +34,28 @@ void set_points(const std::vector<Vec3>& points, FileSummary& summary) {
   for (const Vec3& p : points) summary.box.extend(p);
 }
 
-FileSummary summarize_grid(const std::filesystem::path& path) {
-  const GridFile file = read_grid_file(path);
+void set_grid_box(const GridFile& file, FileSummary& summary) {
+  Box3 nodes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& along = file.nodes[static_cast<std::size_t>(axis)];
+    nodes.min[axis] = along.front();
+    nodes.max[axis] = along.back();
+  }
+  if (!file.aslant) {
+    summary.box = nodes;
+    return;
+  }
+  const auto& [a, b, c] = file.aslant->directions;
+  for (const Vec3& p : corners_of(nodes))
+    summary.box.extend(file.aslant->origin + p.x * a + p.y * b + p.z * c);
+  summary.directions = {normalized(a), normalized(b), normalized(c)};
+  summary.origin = file.aslant->origin + nodes.min.x * a + nodes.min.y * b + nodes.min.z * c;
+}
+
+FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Centering> wanted,
+                           Centering otherwise) {
+  GridFile file = read_grid_file(path);
+  choose_centering(path.string(), wanted, otherwise, file);
   FileSummary summary;
   summary.kind = file.kind;
   summary.points = summary.cells = 1;
@@ -44,16 +65,8 @@ FileSummary summarize_grid(const std::filesystem::path& path) {
     summary.points *= nodes.size();
     summary.cells *= nodes.size() - std::min<std::size_t>(nodes.size(), 1);
   }
-  if (summary.points > 0) {
-    const auto corner = [&file](bool last) {
-      const auto at = [&](std::size_t axis) {
-        return last ? file.nodes[axis].back() : file.nodes[axis].front();
-      };
-      return Vec3{at(0), at(1), at(2)};
-    };
-    summary.box.extend(corner(false));
-    summary.box.extend(corner(true));
-  }
+  if (summary.points > 0) set_grid_box(file, summary);
+  summary.space = file.space;
   for (const GridArray& array : file.arrays) {
     ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
                       array.components};
@@ -88,7 +101,8 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 
 }  // namespace
 
-FileSummary summarize_file(const std::filesystem::path& path) {
+FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted,
+                           Centering otherwise) {
   const std::string extension = file_extension(path);
   if (extension == ".vtu" || extension == ".vtp") return summarize_mesh(path);
   FileSummary summary;
@@ -106,7 +120,7 @@ FileSummary summarize_file(const std::filesystem::path& path) {
     summary.cells = soup.offsets.size() - 1;
     return summary;
   }
-  return summarize_grid(path);
+  return summarize_grid(path, wanted, otherwise);
 }
 
 }  // namespace adamas

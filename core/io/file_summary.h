@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/data/rectilinear_grid.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {
@@ -25,11 +27,18 @@ struct FileSummary {
   std::array<std::size_t, 3> nodes{};  ///< per axis, for a grid; else zeros
   std::size_t points = 0, cells = 0;   ///< cells: of a grid, tetrahedra, polygons, lines, triangles
   Box3 box;                            ///< of all points
+  /// Unit vectors of a grid's axes, not x, y and z where it could not be laid out along these, and the place
+  /// of its first node then.
+  std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3 origin;
+  std::string space;  ///< what places are told in, as of VolumeGrid; mostly empty
   std::vector<ArraySummary> arrays;
 };
 
 /// Reads a grid or image (read_grid_file), mesh (.vtu, .vtp), labelled network (.arec, .txt) or surface
-/// (.obj, .off, .ply, .stl) and says what is in it. Throws Error at unusable files.
-FileSummary summarize_file(const std::filesystem::path& path);
+/// (.obj, .off, .ply, .stl) and says what is in it; `wanted` and `otherwise`: see choose_centering. Throws
+/// Error at unusable files.
+FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
+                           Centering otherwise = Centering::kPoints);
 
 }  // namespace adamas

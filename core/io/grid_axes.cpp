@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/error.h"
 
@@ -15,8 +16,9 @@ struct Layout {
   std::array<bool, 3> reversed{};
 };
 
-/// By axis of space, the axis of the array that is parallel to it.
-std::array<std::size_t, 3> find_sources(const std::string& name, const GridAxes& axes) {
+/// By axis of space, the axis of the array that is parallel to it. Where there is none for some, and `name`
+/// is given, throws Error.
+std::optional<std::array<std::size_t, 3>> find_sources(const GridAxes& axes, const std::string* name) {
   std::array<std::size_t, 3> sources{};
   std::array<bool, 3> taken{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -28,10 +30,11 @@ std::array<std::size_t, 3> find_sources(const std::string& name, const GridAxes&
     const double across = std::abs(d[(along + 1) % 3]) + std::abs(d[(along + 2) % 3]);
     const auto s = static_cast<std::size_t>(along);
     if (!(std::abs(d[along]) > 0) || !(across <= kParallelAxes * std::abs(d[along])) || taken[s]) {
+      if (name == nullptr) return {};
       fail(
           "{}: expected axes parallel to x, y and z, one to each, found the {} axis along ({:.6g}, {:.6g}, "
           "{:.6g})",
-          name, std::array{"first", "second", "third"}[a], d.x, d.y, d.z);
+          *name, std::array{"first", "second", "third"}[a], d.x, d.y, d.z);
     }
     taken[s] = true;
     sources[s] = a;
@@ -76,16 +79,33 @@ void rearrange(GridArray& array, const Layout& layout, const GridFile& file) {
 
 }  // namespace
 
-void lay_out(const std::string& name, const GridAxes& axes, GridFile& file) {
-  Layout layout{find_sources(name, axes), {}};
-  std::array<std::vector<double>, 3> nodes;
+void require_laid_out(const std::string& name, const GridFile& file) {
+  if (file.aslant) find_sources(*file.aslant, &name);
+}
+
+void lay_out(const GridAxes& axes, GridFile& file) {
+  const auto sources = find_sources(axes, nullptr);
+  if (!sources) {
+    file.aslant = axes;
+    return;
+  }
+  Layout layout{*sources, {}};
+  std::array<std::vector<double>, 3> nodes, faces;
+  std::array<std::optional<Centering>, 3> stated;
   for (int axis = 0; axis < 3; ++axis) {
     const auto s = static_cast<std::size_t>(axis);
-    const double step = axes.directions[layout.source[s]][axis];
-    for (const double t : file.nodes[layout.source[s]]) nodes[s].push_back(axes.origin[axis] + step * t);
+    const std::size_t from = layout.source[s];
+    const double step = axes.directions[from][axis];
+    for (const double t : file.nodes[from]) nodes[s].push_back(axes.origin[axis] + step * t);
+    for (const double t : file.faces[from]) faces[s].push_back(axes.origin[axis] + step * t);
+    stated[s] = file.stated[from];
     // A file may also count backwards by a negative spacing.
     layout.reversed[s] = !nodes[s].empty() && nodes[s].front() > nodes[s].back();
-    if (layout.reversed[s]) std::reverse(nodes[s].begin(), nodes[s].end());
+    if (!layout.reversed[s] && nodes[s].size() == 1 && faces[s].size() == 2)
+      layout.reversed[s] = faces[s].front() > faces[s].back();
+    if (!layout.reversed[s]) continue;
+    std::reverse(nodes[s].begin(), nodes[s].end());
+    std::reverse(faces[s].begin(), faces[s].end());
   }
   const bool in_order =
       layout.source == std::array<std::size_t, 3>{0, 1, 2} &&
@@ -94,6 +114,8 @@ void lay_out(const std::string& name, const GridAxes& axes, GridFile& file) {
     if (!in_order) rearrange(array, layout, file);
   }
   file.nodes = std::move(nodes);
+  file.faces = std::move(faces);
+  file.stated = stated;
 }
 
 }  // namespace adamas

@@ -12,15 +12,12 @@ namespace adamas {
 /// precision.
 inline constexpr double kParallelAxes = 1e-4;
 
-/// Where the axes of a file's array lie in space: `t` along axis a leads to origin + t * directions[a].
-struct GridAxes {
-  std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  Vec3 origin;
-};
-
 /// Lays a grid out along x, y and z, where its nodes still are places along the array's axes: axes are
-/// exchanged and reversed with the arrays, so that positions are right and nodes ascend. Throws Error with
-/// `name` where the axes are not parallel to x, y and z, one to each.
-void lay_out(const std::string& name, const GridAxes& axes, GridFile& file);
+/// exchanged and reversed with the arrays, so that positions are right and nodes ascend. Where the axes are
+/// not parallel to x, y and z, one to each, they become `file.aslant`, and the grid stays as it is.
+void lay_out(const GridAxes& axes, GridFile& file);
+
+/// Throws Error with `name` where a grid could not be laid out.
+void require_laid_out(const std::string& name, const GridFile& file);
 
 }  // namespace adamas

@@ -30,6 +30,9 @@ void send(const GridFile& file, ByteSink& sink) {
   }
   sink.put(static_cast<std::uint64_t>(file.material_names.size()));
   for (const std::string& name : file.material_names) sink.put(name);
+  for (const auto& faces : file.faces) sink.put(faces);
+  sink.put(file.aslant);
+  sink.put(file.space);
 }
 
 GridFile receive(ByteSource& source) {
@@ -52,6 +55,9 @@ GridFile receive(ByteSource& source) {
   }
   const auto names = source.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < names; ++i) file.material_names.push_back(source.get_string());
+  for (auto& faces : file.faces) faces = source.get_vector<double>();
+  file.aslant = source.get<std::optional<GridAxes>>();
+  file.space = source.get_string();
   return file;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -10,6 +11,12 @@
 #include "core/data/rectilinear_grid.h"
 
 namespace adamas {
+
+/// Where the axes of a file's array lie in space: `t` along axis a leads to origin + t * directions[a].
+struct GridAxes {
+  std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3 origin;
+};
 
 /// An array of a grid file: whole numbers that fit stay so, everything else becomes float.
 struct GridArray {
@@ -34,6 +41,18 @@ struct GridFile {
   std::vector<GridArray> arrays;
   /// The strings of a field array "material_names", what the values of labels mean; mostly empty.
   std::vector<std::string> material_names;
+  /// Of a format that has samples, which may be values at points or of the cells round them: the faces of
+  /// these cells, one more than nodes. Its arrays are on points until choose_centering() is asked. Empty
+  /// where the format says what its arrays are on (VTK).
+  std::array<std::vector<double>, 3> faces;
+  /// What the file says of its samples, by axis.
+  std::array<std::optional<Centering>, 3> stated;
+
+  /// Of a grid whose axes are not parallel to x, y and z: its nodes are places along these.
+  std::optional<GridAxes> aslant;
+  std::string space;  ///< what places are told in, as of VolumeGrid; mostly empty
+
+  [[nodiscard]] bool has_samples() const { return !faces[0].empty(); }
 
   [[nodiscard]] const GridArray* find(const std::string& name) const;
   /// Names of all arrays, for messages: "'a', 'b'".
@@ -43,7 +62,7 @@ struct GridFile {
 /// Reads .vti, .vtr, legacy .vtk, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .tif(f) and the other image
 /// formats of VTK, in a child process (read_in_child). The array of a format that names none is called like
 /// the file. NIfTI values are scaled as their header says; axes that are parallel to x, y and z
-/// are exchanged and reversed so that positions are right, and others refused. Throws Error, with the file's
+/// are exchanged and reversed so that positions are right (lay_out). Throws Error, with the file's
 /// name, at anything that is not a whole file of its kind.
 GridFile read_grid_file(const std::filesystem::path& path);
 

@@ -94,6 +94,16 @@ void check_meta_image(const std::filesystem::path& path) {
   if (found < expected) fail("{}: expected {} bytes of data, found {}", name, expected, found);
 }
 
+std::string meta_image_space(const std::filesystem::path& path) {
+  return meta_image_space(read_fields(path));
+}
+
+std::string meta_image_space(const MetaImageFields& fields) {
+  const std::string text = fields.value("AnatomicalOrientation");
+  const bool known = text.size() == 3 && text.find_first_not_of("RLAPISrlapis") == std::string::npos;
+  return known ? "LPS" : "";
+}
+
 std::optional<std::array<Vec3, 3>> meta_image_directions(const std::filesystem::path& path) {
   return meta_image_directions(read_fields(path), path.string());
 }

@@ -21,4 +21,9 @@ std::optional<std::array<Vec3, 3>> meta_image_directions(const std::filesystem::
 std::optional<std::array<Vec3, 3>> meta_image_directions(const MetaImageFields& fields,
                                                          const std::string& name);
 
+/// The space of a header's coordinates, as of VolumeGrid: that of ITK where the header tells how its axes lie
+/// in a body (AnatomicalOrientation).
+std::string meta_image_space(const std::filesystem::path& path);
+std::string meta_image_space(const MetaImageFields& fields);
+
 }  // namespace adamas

@@ -9,6 +9,8 @@
 #include "core/io/array_names.h"
 #include "core/io/centering.h"
 #include "core/io/field_assembly.h"
+#include "core/io/grid_axes.h"
+#include "core/io/grid_centering.h"
 #include "core/io/grid_file.h"
 
 namespace adamas {
@@ -16,6 +18,14 @@ namespace adamas {
 namespace {
 
 constexpr std::size_t kMostLabels = 65535;
+
+/// Whether samples of a file lie on as many cells as the main file has.
+bool fits_cells(const GridFile& file, const GridFile& main) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (file.faces[axis].size() != main.nodes[axis].size()) return false;
+  }
+  return true;
+}
 
 /// Throws where two grids differ by more than a millionth of their size.
 void check_same_grid(const std::string& name, const GridFile& file, const std::string& main_name,
@@ -54,12 +64,16 @@ class Reader {
     progress_.step("read " + path_.filename().string(), 0);
     main_ = read_grid_file(path_);
     data_.source = path_.string();
-    data_.grid.nodes = main_.nodes;
+    require_laid_out(data_.source, main_);
+    plain_ = options_.plain && !has_materials();
+    const GridCentering centering = choose_centering(data_.source, options_.centering,
+                                                     plain_ ? Centering::kPoints : Centering::kCells, main_);
     if (!(options_.fraction_scale > 0)) {
       fail("{}: expected a positive scale of volume fractions, found {}", data_.source,
            options_.fraction_scale);
     }
     read_materials();
+    if (!plain_) tell(centering);
     read_fields();
     progress_.step("check materials", 0.9);
     if (options_.region) crop(*options_.region, data_);
@@ -71,7 +85,28 @@ class Reader {
   }
 
  private:
+  [[nodiscard]] bool has_materials() const {
+    if (!options_.labels.empty() || !options_.fractions.empty()) return true;
+    return std::any_of(main_.arrays.begin(), main_.arrays.end(), [this](const GridArray& array) {
+      return fraction_material(array.name) || is_written_labels(array);
+    });
+  }
+
+  /// Those of write_multi_material_data.
+  [[nodiscard]] bool is_written_labels(const GridArray& array) const {
+    return array.name == "labels" && array.integral() && array.components == 1 &&
+           !main_.material_names.empty();
+  }
+
+  void read_plain() {
+    if (!main_.arrays.empty()) data_.grid.centering = main_.arrays.front().centering;
+    add_material(kPlainMaterial);
+    data_.labels.assign(data_.grid.site_count(), 0);
+  }
+
   void read_materials() {
+    data_.grid.nodes = main_.nodes;
+    if (plain_) return read_plain();
     if (!options_.labels.empty()) return read_labels(resolve("labels", options_.labels));
     for (const auto& [name, value] : options_.fractions)
       add_fraction(name, resolve("fraction " + name, value));
@@ -87,14 +122,24 @@ class Reader {
     if (!options_.rest.empty()) add_rest();
   }
 
+  void tell(const GridCentering& centering) const {
+    if (!options_.note) return;
+    if (centering.assumed)
+      options_.note(data_.source +
+                    ": nothing says whether its values are of cells or points: taken for those of cells "
+                    "(--cells or --points chooses)");
+    if (centering.mixed)
+      options_.note(
+          data_.source +
+          ": cells along some axes, nodes along others: along these the samples are taken for those "
+          "of cells up to halfway to the next (--cells or --points chooses)");
+  }
+
   /// What write_multi_material_data has written, or else what the user may have meant.
   void read_labels_unasked() {
     for (std::size_t i = 0; i < main_.arrays.size(); ++i) {
       const GridArray& array = main_.arrays[i];
-      if (array.name == "labels" && array.integral() && array.components == 1 &&
-          !main_.material_names.empty()) {
-        return read_labels(take(i));
-      }
+      if (is_written_labels(array)) return read_labels(take(i));
     }
     const bool one = main_.arrays.size() == 1;
     const std::string name = main_.arrays.empty() ? "ARRAY" : as_argument(main_.arrays[0].name);
@@ -141,6 +186,9 @@ class Reader {
     }
     progress_.step("read " + file.filename().string(), 0.5);
     GridFile other = read_grid_file(file);
+    require_laid_out(file.string(), other);
+    choose_centering(file.string(), options_.centering,
+                     fits_cells(other, main_) ? Centering::kCells : Centering::kPoints, other);
     check_same_grid(file.string(), other, data_.source, main_);
     if (other.arrays.size() != 1) {
       fail("{}: {}: expected a file of one array, found {}", file.string(), option, other.array_names());
@@ -247,10 +295,16 @@ class Reader {
   Progress& progress_;
   GridFile main_;
   std::vector<std::string> taken_;  // arrays of the main file that have found their use
+  bool plain_ = false;
   MultiMaterialData data_;
 };
 
 }  // namespace
+
+bool is_plain(const MultiMaterialData& data) {
+  return !data.labels.empty() && data.materials.size() == 1 &&
+         data.materials[MaterialId(0)] == kPlainMaterial;
+}
 
 MultiMaterialData read_multi_material_data(const std::filesystem::path& path,
                                            const MaterialDataOptions& options, Progress& progress) {

@@ -1,20 +1,22 @@
 #include "core/io/nrrd_header.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/data/anatomical_space.h"
+#include "core/io/nrrd_places.h"
 #include "core/io/printable.h"
 
 namespace adamas {
 
 namespace {
 
-using Words = std::vector<std::string_view>;
+using Words = NrrdPlaces::Words;
+
+constexpr std::string_view kBlanks = " \t";
 
 Words split(std::string_view text, std::string_view separators) {
   Words words;
@@ -24,14 +26,6 @@ Words split(std::string_view text, std::string_view separators) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return words;
-}
-
-template <class T>
-std::optional<T> number(std::string_view word) {
-  T value{};
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (code != std::errc() || end != word.data() + word.size()) return {};
-  return value;
 }
 
 const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>>& types() {
@@ -93,10 +87,9 @@ class Parser {
            line_);
     }
     if (header_.type.empty()) fail("{}: expected a header with type, found none", name_);
-    if (sizes_.empty()) fail("{}: expected a header with sizes, found none", name_);
+    if (places_.sizes.empty()) fail("{}: expected a header with sizes, found none", name_);
     if (!has_encoding_) fail("{}: expected a header with encoding, found none", name_);
-    set_sizes();
-    set_places();
+    places_.apply(name_, header_);
     return header_;
   }
 
@@ -129,9 +122,9 @@ class Parser {
     if (field == "encoding") return read_encoding(value);
     if (field == "sizes") return read_sizes(value);
     if (field == "dimension") {
-      const auto dimension = number<int>(value);
+      const auto dimension = nrrd_number<int>(value);
       if (!dimension || *dimension < 2 || *dimension > 4) fail_field("two to four dimensions", value);
-      dimension_ = static_cast<std::size_t>(*dimension);
+      places_.dimension = static_cast<std::size_t>(*dimension);
     } else if (field == "endian") {
       if (value != "little" && value != "big") fail_field("endian little or big", value);
       header_.big_endian = value == "big";
@@ -140,23 +133,37 @@ class Parser {
         fail_field("one data file", value);
       header_.data_file = value;
     } else if (field == "line skip" || field == "lineskip") {
-      const auto skip = number<std::uint32_t>(value);
+      const auto skip = nrrd_number<std::uint32_t>(value);
       if (!skip) fail_field("a number of lines", value);
       header_.line_skip = *skip;
     } else if (field == "byte skip" || field == "byteskip") {
-      const auto skip = number<std::int64_t>(value);
+      const auto skip = nrrd_number<std::int64_t>(value);
       if (!skip || *skip < -1) fail_field("a number of bytes", value);
       header_.byte_skip = *skip;
     } else if (field == "spacings") {
-      spacings_ = split(value, " \t");
+      places_.spacings = split(value, kBlanks);
     } else if (field == "axis mins" || field == "axismins") {
-      mins_ = split(value, " \t");
+      places_.mins = split(value, kBlanks);
+    } else if (field == "axis maxs" || field == "axismaxs") {
+      places_.maxs = split(value, kBlanks);
+    } else if (field == "centers" || field == "centerings") {
+      read_centers(value);
     } else if (field == "kinds") {
-      kinds_ = split(value, " \t");
+      places_.kinds = split(value, kBlanks);
+    } else if (field == "space") {
+      header_.space = space_of_nrrd(value);
     } else if (field == "space origin") {
-      origin_ = split(value, " \t(),");
+      places_.origin = split(value, " \t(),");
     } else if (field == "space directions") {
       read_directions(value);
+    }
+  }
+
+  void read_centers(std::string_view value) {
+    places_.centers = split(value, kBlanks);
+    for (const std::string_view word : places_.centers) {
+      if (word != "cell" && word != "node" && word != "???" && word != "none")
+        fail_field("cell, node, ??? or none for each axis", value);
     }
   }
 
@@ -173,93 +180,39 @@ class Parser {
       header_.encoding = NrrdEncoding::kRaw;
     } else if (value == "gzip" || value == "gz") {
       header_.encoding = NrrdEncoding::kGzip;
+    } else if (value == "bzip2" || value == "bz2") {
+      header_.encoding = NrrdEncoding::kBzip2;
     } else if (value == "text" || value == "txt" || value == "ascii") {
       header_.encoding = NrrdEncoding::kText;
     } else {
-      fail_field("the encoding raw, gzip or text", value);
+      fail_field("the encoding raw, gzip, bzip2 or text", value);
     }
   }
 
   void read_sizes(std::string_view value) {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 44;
     std::uint64_t product = 1;
-    sizes_.clear();
-    for (const std::string_view word : split(value, " \t")) {
-      const auto size = number<std::uint64_t>(word);
+    places_.sizes.clear();
+    for (const std::string_view word : split(value, kBlanks)) {
+      const auto size = nrrd_number<std::uint64_t>(word);
       if (!size || *size == 0 || *size > kMost / product) fail_field("positive sizes", value);
       product *= *size;
-      sizes_.push_back(static_cast<std::size_t>(*size));
+      places_.sizes.push_back(static_cast<std::size_t>(*size));
     }
   }
 
   /// "(1,0,0) none (0,1,0)": three numbers, or none, per axis.
   void read_directions(std::string_view value) {
-    directions_.clear();
+    places_.directions.clear();
     while (!value.empty()) {
       const std::size_t open = value.find_first_not_of(" \t");
       if (open == std::string_view::npos) return;
       value.remove_prefix(open);
       const std::size_t end = value[0] == '(' ? value.find(')') : std::min(value.find(' '), value.size());
       if (end == std::string_view::npos) fail_field("directions in brackets", value);
-      directions_.push_back(split(value.substr(0, end), " (,"));
+      places_.directions.push_back(split(value.substr(0, end), " (,"));
       value.remove_prefix(std::min(end + 1, value.size()));
     }
-  }
-
-  void set_sizes() {
-    if (dimension_ != 0 && sizes_.size() != dimension_) {
-      fail("{}: expected {} sizes, found {}", name_, dimension_, sizes_.size());
-    }
-    if (sizes_.size() < 2 || sizes_.size() > 4)
-      fail("{}: expected two to four sizes, found {}", name_, sizes_.size());
-    const bool other_first =
-        (!kinds_.empty() && kinds_[0] != "domain" && kinds_[0] != "space" && kinds_[0] != "???") ||
-        (!directions_.empty() && directions_[0].size() < 2);
-    first_ = sizes_.size() == 4 || other_first ? 1 : 0;
-    if (sizes_.size() == 4 && !other_first && sizes_[0] > 9) {
-      fail("{}: expected three axes of space, found four", name_);
-    }
-    if (first_ == 1) header_.components = sizes_[0];
-    if (sizes_.size() - first_ < 2) fail("{}: expected two or three axes of space, found one", name_);
-    for (std::size_t axis = 0; axis + first_ < sizes_.size(); ++axis)
-      header_.sizes[axis] = sizes_[axis + first_];
-  }
-
-  /// A number of a list with an entry per axis; nothing where it is left out or "nan".
-  static std::optional<double> entry(const Words& words, std::size_t at) {
-    if (at >= words.size()) return {};
-    const auto value = number<double>(words[at]);
-    return value && std::isfinite(*value) ? value : std::nullopt;
-  }
-
-  void set_places() {
-    auto& [directions, origin] = header_.axes;
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::size_t at = static_cast<std::size_t>(axis) + first_;
-      const double spacing = entry(spacings_, at).value_or(1);
-      directions[static_cast<std::size_t>(axis)][axis] = spacing != 0 ? spacing : 1;
-      origin[axis] = entry(mins_, at).value_or(0);
-    }
-    if (directions_.empty()) return;
-    for (std::size_t axis = 0; axis + first_ < sizes_.size(); ++axis) {
-      directions[axis] = direction(axis + first_);
-    }
-    // The third axis of a plane image is across its two.
-    if (sizes_.size() - first_ == 2) directions[2] = normalized(cross(directions[0], directions[1]));
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis] = entry(origin_, static_cast<std::size_t>(axis)).value_or(0);
-    }
-  }
-
-  [[nodiscard]] Vec3 direction(std::size_t at) const {
-    if (at >= directions_.size() || directions_[at].size() < 2 || directions_[at].size() > 3) {
-      fail("{}: expected a space direction of two or three numbers for axis {}, found none", name_, at);
-    }
-    Vec3 result;
-    for (int i = 0; i < 3; ++i) {
-      result[i] = entry(directions_[at], static_cast<std::size_t>(i)).value_or(0);
-    }
-    return result;
   }
 
   std::string_view text_;
@@ -267,10 +220,7 @@ class Parser {
   std::size_t at_ = 0, line_ = 0;
   NrrdHeader header_;
   bool has_encoding_ = false;
-  std::size_t dimension_ = 0, first_ = 0;
-  std::vector<std::size_t> sizes_;
-  Words spacings_, mins_, kinds_, origin_;
-  std::vector<Words> directions_;
+  NrrdPlaces places_;
 };
 
 }  // namespace

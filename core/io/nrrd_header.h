@@ -3,14 +3,23 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "core/data/rectilinear_grid.h"
 #include "core/io/grid_axes.h"
 
 namespace adamas {
 
-enum class NrrdEncoding { kRaw, kGzip, kText };
+enum class NrrdEncoding { kRaw, kGzip, kBzip2, kText };
+
+/// What the samples along an axis stand for: nothing where the header does not say. As values of cells, the
+/// first cell begins `first_face` steps behind the first sample, and each is `cell` steps long.
+struct NrrdCentering {
+  std::optional<Centering> stated;
+  double first_face = -0.5, cell = 1;
+};
 
 /// What the header of an NRRD file says (teem.sourceforge.net/nrrd/format.html), for two or three axes of
 /// space and at most one other axis, the first, whose entries are components.
@@ -19,7 +28,9 @@ struct NrrdHeader {
   std::size_t type_bytes = 0;
   std::array<std::size_t, 3> sizes{1, 1, 1};
   std::size_t components = 1;
-  GridAxes axes;  ///< a step along each axis and the place of the first value
+  GridAxes axes;  ///< a step along each axis and the place of the first sample
+  std::array<NrrdCentering, 3> centers;
+  std::string space;  ///< as of VolumeGrid
   NrrdEncoding encoding = NrrdEncoding::kRaw;
   bool big_endian = false;
   std::string data_file;  ///< empty: the data follow the header

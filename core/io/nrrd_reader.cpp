@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/io/bunzip_stream.h"
 #include "core/io/inflate_stream.h"
 #include "core/io/input_file.h"
 #include "core/io/nrrd_header.h"
@@ -24,12 +25,17 @@ std::string data_of(const NrrdHeader& header, std::string_view content, const st
   }
   const std::size_t expected = header.value_count() * header.type_bytes;
   std::string data;
-  if (header.encoding == NrrdEncoding::kGzip) {
+  if (header.encoding == NrrdEncoding::kGzip || header.encoding == NrrdEncoding::kBzip2) {
     const auto skip = static_cast<std::size_t>(std::max<std::int64_t>(header.byte_skip, 0));
-    inflate_stream(content, name, [&](std::string_view piece) {
+    const auto take = [&](std::string_view piece) {
       data +=
           piece.substr(0, std::min(piece.size(), expected + skip - std::min(data.size(), expected + skip)));
-    });
+    };
+    if (header.encoding == NrrdEncoding::kGzip) {
+      inflate_stream(content, name, take);
+    } else {
+      bunzip_stream(supply_text(content), name, take);
+    }
     data.erase(0, std::min(skip, data.size()));
   } else {
     const std::size_t skip = header.byte_skip >= 0       ? static_cast<std::size_t>(header.byte_skip)
@@ -142,12 +148,17 @@ GridFile read_nrrd(const std::filesystem::path& path) {
   GridFile file;
   file.kind = "NRRD";
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < header.sizes[axis]; ++i) {
-      file.nodes[axis].push_back(static_cast<double>(i));
+    const NrrdCentering& center = header.centers[axis];
+    file.stated[axis] = center.stated;
+    for (std::size_t i = 0; i <= header.sizes[axis]; ++i) {
+      const auto place = static_cast<double>(i);
+      if (i < header.sizes[axis]) file.nodes[axis].push_back(place);
+      file.faces[axis].push_back(center.first_face + place * center.cell);
     }
   }
   file.arrays.push_back(std::move(array));
-  lay_out(name, header.axes, file);
+  file.space = header.space;
+  lay_out(header.axes, file);
   return file;
 }
 

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/io/inflate_stream.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
+#include "core/io/nifti_header.h"
 #include "core/io/volume_format.h"
 #include "core/io/volume_import.h"
 #include "core/io/volume_reader.h"
@@ -11,22 +12,6 @@
 namespace adamas {
 
 namespace {
-
-/// The first bytes of a NIfTI file, as they are once unpacked.
-std::string nifti_header(const std::filesystem::path& path) {
-  if (!file_extension(path).ends_with(".gz")) return read_beginning(path);
-  constexpr std::size_t kHeader = 352;
-  struct Enough {};
-  std::string header;
-  try {
-    inflate_stream(supply_file(FileHandle::open(path), 0), path.string(), [&](std::string_view piece) {
-      header += piece.substr(0, kHeader - header.size());
-      if (header.size() == kHeader) throw Enough();
-    });
-  } catch (const Enough&) {
-  }
-  return header;
-}
 
 /// The header of a pair, of whichever of its files.
 std::filesystem::path nifti_path(const std::filesystem::path& path) {
@@ -39,7 +24,10 @@ std::filesystem::path nifti_path(const std::filesystem::path& path) {
 
 VolumeSource find_source(const std::filesystem::path& path, const VolumeOptions& options,
                          Progress& progress) {
-  switch (find_volume_format(path)) {
+  const VolumeFormat format = find_volume_format(path);
+  if (options.time && format != VolumeFormat::kNifti)
+    fail("{}: expected NIfTI, which may have several times, found another format", path.string());
+  switch (format) {
     case VolumeFormat::kNrrd:
       return nrrd_source(read_beginning(path), path);
     case VolumeFormat::kMetaImage:
@@ -50,7 +38,7 @@ VolumeSource find_source(const std::filesystem::path& path, const VolumeOptions&
     }
     case VolumeFormat::kNifti: {
       const std::filesystem::path header = nifti_path(path);
-      return nifti_source(nifti_header(header), header);
+      return nifti_source(read_nifti_header(header), header, options.time);
     }
     case VolumeFormat::kHdf5:
       return import_hdf5(path, options, progress);

@@ -52,6 +52,7 @@ GridFile read_tiff_stack(const std::filesystem::path& path) {
   const std::array<std::size_t, 3> size{layout.width, layout.height, pages.page()};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < size[axis]; ++i) result.nodes[axis].push_back(static_cast<double>(i));
+    for (std::size_t i = 0; i <= size[axis]; ++i) result.faces[axis].push_back(static_cast<double>(i) - 0.5);
   }
   result.arrays.push_back(std::move(array));
   return result;

@@ -33,7 +33,7 @@ const GridArray& chosen_array(const std::string& name, const GridFile& file, con
   return *found;
 }
 
-/// Spacing and origin of evenly spaced nodes.
+/// Spacing and origin of evenly spaced nodes; where the axes are aslant, these are places along them.
 void set_places(const std::string& name, const GridFile& file, ImportedVolume& volume) {
   constexpr double kUneven = 1e-5;
   for (int axis = 0; axis < 3; ++axis) {
@@ -51,6 +51,17 @@ void set_places(const std::string& name, const GridFile& file, ImportedVolume& v
              nodes[i], nodes.front() + static_cast<double>(i) * step);
       }
     }
+  }
+}
+
+void set_directions(const GridAxes& axes, ImportedVolume& volume) {
+  const Vec3 first = volume.origin;
+  volume.origin = axes.origin;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3& step = axes.directions[static_cast<std::size_t>(axis)];
+    volume.origin += first[axis] * step;
+    volume.spacing[axis] *= norm(step);
+    volume.directions[static_cast<std::size_t>(axis)] = normalized(step);
   }
 }
 
@@ -90,6 +101,7 @@ VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions&
     const GridArray& array = chosen_array(name, file, options.array);
     ImportedVolume volume;
     set_places(name, file, volume);
+    if (file.aslant) set_directions(*file.aslant, volume);
     volume.stored = kept_type(array);
     const auto& n = volume.dimensions;
     if (array.size() != n[0] * n[1] * n[2]) {

@@ -22,6 +22,7 @@ VolumeSource checked_source(const std::string& name, std::uint64_t input_bytes,
   source.grid.dimensions = volume.dimensions;
   source.grid.spacing = volume.spacing;
   source.grid.origin = volume.origin;
+  source.grid.directions = volume.directions;
   source.grid.check(name);
   const auto& n = volume.dimensions;
   if (source.sample_file_bytes() / kGreatestExpansion > input_bytes) {

@@ -20,6 +20,7 @@ struct ImportedVolume {
   StoredType stored = StoredType::kUint8;
   Vec3 spacing{1, 1, 1};
   Vec3 origin;
+  std::array<Vec3, 3> directions = VolumeGrid::kStraight;
 };
 
 /// The end of an import in the child: the volume first, then its samples in order.

@@ -103,6 +103,7 @@ class Parser {
     for (int axis = 0; axis < 3; ++axis) {
       axes.directions[static_cast<std::size_t>(axis)] *= source_.grid.spacing[axis];
     }
+    source_.grid.space = meta_image_space(fields_);
     source_.set_axes(axes);
     if (source_.file != path_) source_.name += ": " + source_.file.string();
   }

@@ -10,6 +10,7 @@ VolumeSource nrrd_source(std::string_view text, const std::filesystem::path& pat
   source.name = path.string();
   const NrrdHeader header = parse_nrrd_header(text, source.name);
   if (header.encoding == NrrdEncoding::kGzip) source.coding = SamplePacking::kDeflate;
+  if (header.encoding == NrrdEncoding::kBzip2) source.coding = SamplePacking::kBzip2;
   if (header.encoding == NrrdEncoding::kText) source.coding = SamplePacking::kText;
   if (header.components != 1) {
     fail("{}: expected one value per sample, found {}", source.name, header.components);
@@ -29,6 +30,7 @@ VolumeSource nrrd_source(std::string_view text, const std::filesystem::path& pat
   source.set_stored(find_stored_type(header.type).value());
   source.big_endian = header.big_endian;
   for (std::size_t axis = 0; axis < 3; ++axis) source.grid.dimensions[axis] = header.sizes[axis];
+  source.grid.space = header.space;
   source.set_axes(header.axes);
   return source;
 }

@@ -34,19 +34,6 @@ Sample converted(Stored value) {
   return static_cast<Sample>(value);
 }
 
-/// Turns a plane round along x and y where the file counts down.
-template <class T>
-void turn(std::byte* samples, std::uint64_t nx, std::uint64_t ny, bool along_x, bool along_y) {
-  using Sample = std::array<std::byte, sizeof(T)>;
-  auto* first = reinterpret_cast<Sample*>(samples);
-  if (along_x) {
-    for (std::uint64_t j = 0; j < ny; ++j) std::reverse(first + j * nx, first + (j + 1) * nx);
-  }
-  for (std::uint64_t j = 0; along_y && j < ny / 2; ++j) {
-    std::swap_ranges(first + j * nx, first + (j + 1) * nx, first + (ny - 1 - j) * nx);
-  }
-}
-
 }  // namespace
 
 VolumeReader::VolumeReader(VolumeSource source) : source_(std::move(source)) {
@@ -138,18 +125,12 @@ void VolumeReader::read_plane_of(std::uint64_t at, std::span<std::byte> samples)
 void VolumeReader::read_plane(std::uint64_t k, std::span<std::byte> samples) {
   const VolumeGrid& volume = source_.grid;
   ADAMAS_ASSERT(k < volume.dimensions[2] && samples.size() == volume.plane_bytes());
-  const std::uint64_t plane = source_.reversed[2] ? volume.dimensions[2] - 1 - k : k;
-  const std::uint64_t at = begin_ + plane * volume.plane_samples() * stored_bytes(source_.stored);
+  const std::uint64_t at = begin_ + k * volume.plane_samples() * stored_bytes(source_.stored);
   const std::uint64_t changed_before = changed_;
   visit_stored_type(source_.stored, [&]<class Stored>(Stored) { read_plane_of<Stored>(at, samples); });
   was_read_.resize(volume.dimensions[2]);
   if (was_read_[k]) changed_ = changed_before;
   was_read_[k] = true;
-  const auto [nx, ny, nz] = volume.dimensions;
-  const auto [along_x, along_y, along_z] = source_.reversed;
-  if (sample_bytes(volume.type) == 1) return turn<std::uint8_t>(samples.data(), nx, ny, along_x, along_y);
-  if (sample_bytes(volume.type) == 2) return turn<std::uint16_t>(samples.data(), nx, ny, along_x, along_y);
-  turn<float>(samples.data(), nx, ny, along_x, along_y);
 }
 
 std::string VolumeReader::note() const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +27,7 @@ struct RawVolume {
 };
 
 /// Reads the planes of a volume in any order, a plane at a time, whatever the size of the file. Samples come
-/// in the machine's byte order, along ascending x, y and z; int8 becomes int16, and the types that VolumeGrid
+/// in the machine's byte order, in the file's order; int8 becomes int16, and the types that VolumeGrid
 /// does not know become float32.
 class VolumeReader {
  public:
@@ -68,6 +69,7 @@ class VolumeReader {
 struct VolumeOptions {
   std::string array;                     ///< of a file with several: the name of one
   std::filesystem::path scratch_folder;  ///< for unpacked samples; empty: the system's for temporary files
+  std::optional<std::uint64_t> time{};   ///< of a file with several (NIfTI): the number of one, from 0 on
 };
 
 /// Opens a volume of one value per sample, of the format that the name ends in or, where that says nothing,

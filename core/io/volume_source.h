@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,7 @@ namespace adamas {
 enum class SamplePacking : std::uint8_t {
   kRaw,
   kDeflate,    ///< one zlib or gzip stream, up to the file's end
+  kBzip2,      ///< bzip2 streams, up to the file's end
   kText,       ///< decimal numbers with blanks or commas between them
   kVtkBlocks,  ///< numbers and sizes of blocks, then a zlib stream for each
 };
@@ -43,20 +45,16 @@ struct VolumeSource {
   std::shared_ptr<const FileHandle> scratch;
   double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept
   std::string remark;               ///< what the header says and nobody follows; mostly empty
-  std::array<bool, 3> reversed{};   ///< axes along which the file counts down
   VolumeGrid grid;                  ///< with the type that the samples become
 
   [[nodiscard]] std::uint64_t sample_file_bytes() const { return grid.samples() * stored_bytes(stored); }
   [[nodiscard]] bool packed() const { return coding != SamplePacking::kRaw || base64; }
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   void set_stored(StoredType type);
-  /// Sets spacing, origin and `reversed` for grid.dimensions. Throws Error where an axis is not parallel to
-  /// that of its place in x, y, z: others cannot be read plane by plane.
+  /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error where a step has
+  /// no length or the axes lie in one plane.
   void set_axes(const GridAxes& axes);
 };
-
-/// Whether the axes are parallel to x, y and z, in this order.
-bool are_in_place(const GridAxes& axes);
 
 /// The text of a header, which begins the file `path`, as a source; sizes of files are not looked at. Throws
 /// Error, with the path, at anything but one value per sample.
@@ -65,8 +63,9 @@ VolumeSource meta_image_source(std::string_view text, const std::filesystem::pat
 /// Of the point array of that name or, where it is empty, the active scalars or the only array.
 VolumeSource vti_source(const XmlSkeleton& skeleton, const std::filesystem::path& path,
                         const std::string& array);
-/// NIfTI-1. The samples of a pair lie in the .img beside. Axes of the header that do not run along x, y and z
-/// in this order are left out, with a remark.
-VolumeSource nifti_source(std::string_view text, const std::filesystem::path& path);
+/// NIfTI-1 and NIfTI-2. The samples of a pair lie in the .img beside. Of several times, `time` is the number
+/// of the one to read, from 0 on.
+VolumeSource nifti_source(std::string_view text, const std::filesystem::path& path,
+                          std::optional<std::uint64_t> time = {});
 
 }  // namespace adamas

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/io/bunzip_stream.h"
 #include "core/io/byte_supply.h"
 #include "core/io/inflate_stream.h"
 #include "core/io/printable.h"
@@ -28,7 +29,8 @@ class Unpacker {
       case SamplePacking::kRaw:
         return copy_counted();
       case SamplePacking::kDeflate:
-        return inflate_all();
+      case SamplePacking::kBzip2:
+        return decompress_all();
       case SamplePacking::kText:
         return read_text();
       case SamplePacking::kVtkBlocks:
@@ -57,13 +59,19 @@ class Unpacker {
     for (std::string_view piece = part(); !piece.empty(); piece = part()) sink_.take(piece);
   }
 
-  void inflate_all() {
+  void decompress_all() {
     std::uint64_t skip = source_.skip_bytes;
-    inflate_stream(bytes_.part(~std::uint64_t{0}), name_, [&](std::string_view piece) {
+    const auto take = [&](std::string_view piece) {
       const std::size_t skipped = static_cast<std::size_t>(std::min<std::uint64_t>(skip, piece.size()));
       skip -= skipped;
       sink_.take(piece.substr(skipped));
-    });
+    };
+    const ByteSupply all = bytes_.part(~std::uint64_t{0});
+    if (source_.coding == SamplePacking::kBzip2) {
+      bunzip_stream(all, name_, take);
+    } else {
+      inflate_stream(all, name_, take);
+    }
   }
 
   void inflate_blocks() {
@@ -156,7 +164,8 @@ class Unpacker {
 /// Throws Error where not even the best compression could hold the samples in what is left of the file.
 void check_size(const VolumeSource& source, std::uint64_t left) {
   const std::uint64_t expected = source.sample_file_bytes();
-  if (expected / kGreatestInflation <= left) return;
+  const bool bunzip = source.coding == SamplePacking::kBzip2;
+  if (expected / (bunzip ? kGreatestBunzip : kGreatestInflation) <= left) return;
   const auto& n = source.grid.dimensions;
   fail("{}: expected {} bytes for {} x {} x {} samples of {}, found {} packed ones", source.name, expected,
        n[0], n[1], n[2], stored_name(source.stored), left);
@@ -169,7 +178,8 @@ VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& fol
   const auto file = FileHandle::open(source.file);
   // Behind a tag, an offset leads into text, where blanks count as characters.
   std::uint64_t begin = file->behind_lines(source.header_bytes, source.skip_lines, source.name);
-  if (source.coding != SamplePacking::kDeflate && source.coding != SamplePacking::kText) {
+  if (source.coding != SamplePacking::kDeflate && source.coding != SamplePacking::kBzip2 &&
+      source.coding != SamplePacking::kText) {
     begin += std::min(source.skip_bytes, file->size());
   }
   check_size(source, file->size() - std::min(begin, file->size()));

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/data/volume.h"
+#include "core/io/gzip_stream.h"
 #include "core/io/output_stream.h"
 
 namespace adamas {
@@ -22,9 +23,13 @@ struct VolumeWriterOptions {
   std::string data_name;            ///< what the header calls that file, where not by its own name
 };
 
-/// Writes a volume plane by plane, uncompressed: .vti (appended raw), .nrrd, .nhdr, .mha, .mhd, or .raw,
-/// which is samples alone. Equal samples give equal bytes, least byte first. Files get their names at
-/// finish().
+/// What of a grid's places a file does not keep or say, in a line; empty where it does.
+std::string lost_places(const std::filesystem::path& path, const VolumeGrid& grid);
+
+/// Writes a volume plane by plane, uncompressed: .vti (appended raw), .nrrd, .nhdr, .mha, .mhd, .nii, or
+/// .raw, which is samples alone; or compressed: .nii.gz. Equal samples give equal bytes, least byte first.
+/// NIfTI and MetaImage have coordinates in RAS and LPS: those of another known space are turned to it. Files
+/// get their names at finish().
 class VolumeWriter {
  public:
   /// Throws Error where the grid is none (VolumeGrid::check), the extension is another, a header cannot hold
@@ -43,7 +48,8 @@ class VolumeWriter {
   std::uint64_t planes_ = 0;
   std::unique_ptr<OutputStream> header_;  ///< with the samples, where there is no other file
   std::unique_ptr<OutputStream> data_;
-  std::string end_;  ///< of the header's file, behind the samples
+  std::unique_ptr<GzipStream> gzip_;  ///< into header_, where the file is compressed
+  std::string end_;                   ///< of the header's file, behind the samples
 };
 
 }  // namespace adamas

@@ -112,14 +112,19 @@ void add_arrays(vtkDataSetAttributes& attributes, Centering centering, GridFile&
   }
 }
 
-/// Nodes as distances along the array's axes.
-void add_axes(vtkImageData& image, GridFile& file) {
+/// Whether the arrays of a format are on cells or points, or samples that may be either.
+enum class ArrayPlaces { kStated, kSamples };
+
+/// Nodes, and the faces of cells round samples, as distances along the array's axes.
+void add_axes(vtkImageData& image, ArrayPlaces places, GridFile& file) {
   const int* extent = image.GetExtent();
   for (int axis = 0; axis < 3; ++axis) {
-    auto& nodes = file.nodes[static_cast<std::size_t>(axis)];
-    for (int i = extent[2 * axis]; i <= extent[2 * axis + 1]; ++i) {
-      nodes.push_back(i * image.GetSpacing()[axis]);
-    }
+    const auto a = static_cast<std::size_t>(axis);
+    const double step = image.GetSpacing()[axis];
+    const int first = extent[2 * axis], last = extent[2 * axis + 1];
+    for (int i = first; i <= last; ++i) file.nodes[a].push_back(i * step);
+    if (places == ArrayPlaces::kStated) continue;
+    for (int i = first; i <= last + 1; ++i) file.faces[a].push_back((i - 0.5) * step);
   }
 }
 
@@ -146,11 +151,11 @@ void add_axes(vtkRectilinearGrid& grid, GridFile& file) {
 }
 
 /// `axes`: where those of an image are, if its reader does not say so.
-void add_data(const std::string& name, vtkDataObject* data, GridFile& file,
+void add_data(const std::string& name, vtkDataObject* data, ArrayPlaces places, GridFile& file,
               const std::optional<GridAxes>& axes = {}) {
   auto* image = vtkImageData::SafeDownCast(data);
   if (image != nullptr) {
-    add_axes(*image, file);
+    add_axes(*image, places, file);
   } else if (auto* grid = vtkRectilinearGrid::SafeDownCast(data)) {
     add_axes(*grid, file);
   } else {
@@ -165,7 +170,7 @@ void add_data(const std::string& name, vtkDataObject* data, GridFile& file,
   for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i) {
     file.material_names.push_back(names->GetValue(i));
   }
-  if (image != nullptr) lay_out(name, axes.value_or(axes_of(*image)), file);
+  if (image != nullptr) lay_out(axes.value_or(axes_of(*image)), file);
 }
 
 template <class Reader>
@@ -217,7 +222,9 @@ GridFile read_nifti(const std::string& name, const VtkMessages& messages) {
   const auto reader = vtkSmartPointer<vtkNIFTIImageReader>::New();
   if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected NIfTI, found something else", name);
   const auto data = run(*reader, name, messages);
-  add_data(name, data, file, nifti_axes(*reader));
+  const auto axes = nifti_axes(*reader);
+  if (axes) file.space = "RAS";
+  add_data(name, data, ArrayPlaces::kSamples, file, axes);
   scale_nifti(*reader, file);
   return file;
 }
@@ -231,8 +238,9 @@ GridFile read_meta_image(const std::filesystem::path& path, const VtkMessages& m
   if (auto* image = vtkImageData::SafeDownCast(data)) {
     axes = axes_of(*image);
     if (const auto directions = meta_image_directions(path)) axes->directions = *directions;
+    file.space = meta_image_space(path);
   }
-  add_data(name, data, file, axes);
+  add_data(name, data, ArrayPlaces::kSamples, file, axes);
   return file;
 }
 
@@ -247,7 +255,7 @@ GridFile read_legacy(const std::string& name, const VtkMessages& messages) {
   reader->ReadAllColorScalarsOn();
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
-  add_data(name, run(*reader, name, messages), file);
+  add_data(name, run(*reader, name, messages), ArrayPlaces::kStated, file);
   return file;
 }
 
@@ -277,7 +285,7 @@ GridFile read_image(const std::filesystem::path& path, const std::string& extens
     file.kind = reader->GetDescriptiveName();
     data = run(*reader, name, messages);
   }
-  if (data != nullptr) add_data(name, data, file);
+  if (data != nullptr) add_data(name, data, ArrayPlaces::kSamples, file);
   if (file.arrays.size() == 1) file.arrays[0].name = file_stem(path);
   return file;
 }
@@ -290,11 +298,12 @@ GridFile read_grid_with_vtk(const std::filesystem::path& path) {
   GridFile file;
   if (extension == ".vti") {
     file.kind = "VTK XML image";
-    add_data(name, run_if_readable<vtkXMLImageDataReader>(name, "VTK XML image data", messages), file);
+    add_data(name, run_if_readable<vtkXMLImageDataReader>(name, "VTK XML image data", messages),
+             ArrayPlaces::kStated, file);
   } else if (extension == ".vtr") {
     file.kind = "VTK XML rectilinear grid";
     add_data(name, run_if_readable<vtkXMLRectilinearGridReader>(name, "a VTK XML rectilinear grid", messages),
-             file);
+             ArrayPlaces::kStated, file);
   } else if (extension == ".vtk") {
     file = read_legacy(name, messages);
   } else {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -56,15 +57,58 @@ BorderPoint between(const BorderPoint& a, const BorderPoint& b, double t) {
   return result;
 }
 
-/// The part of a contour before (beyond = 1) or behind (beyond = -1) a plane across an axis.
+/// A half space: what is not above a plane.
+class HalfSpace {
+ public:
+  /// Before (beyond = 1) or behind (beyond = -1) a plane across an axis.
+  HalfSpace(int axis, double plane, int beyond) : axis_(axis), plane_(beyond * plane) {
+    normal_[axis] = beyond;
+  }
+  /// `tolerance`: how near places along each axis count as one.
+  HalfSpace(const Plane& plane, const Vec3& tolerance)
+      : normal_(normalized(plane.normal)), plane_(dot(normal_, plane.origin)) {
+    constexpr double kRoundOff = 1e-12;
+    near_ = kRoundOff * (norm(plane.origin) + norm(tolerance));
+    for (int a = 0; a < 3; ++a) near_ += std::abs(normal_[a]) * tolerance[a];
+  }
+
+  /// Of planes across an axis.
+  [[nodiscard]] std::optional<int> axis() const { return axis_; }
+  /// Above the plane, 0 in it.
+  [[nodiscard]] double height(const Vec3& p) const {
+    if (axis_) return normal_[*axis_] * p[*axis_] - plane_;
+    const double result = dot(normal_, p) - plane_;
+    return std::abs(result) <= near_ ? 0 : result;
+  }
+  /// Where a line between points on both sides cuts the plane, as a part of the way.
+  [[nodiscard]] double cut(const Vec3& p, const Vec3& q) const {
+    if (axis_) return (at() - p[*axis_]) / (q[*axis_] - p[*axis_]);
+    const double from = height(p), to = height(q);
+    return -from / (to - from);
+  }
+  /// The point moved into a plane across an axis.
+  [[nodiscard]] Vec3 on_plane(Vec3 point) const {
+    if (axis_) point[*axis_] = at();
+    return point;
+  }
+
+ private:
+  [[nodiscard]] double at() const { return normal_[*axis_] * plane_; }
+
+  std::optional<int> axis_;
+  Vec3 normal_;
+  double plane_ = 0, near_ = 0;
+};
+
+/// The part of a contour in a half space.
 class PlaneClip {
  public:
   /// `tolerance`: how near places along each axis count as one.
-  PlaneClip(Contour& contour, int axis, double plane, int beyond, const Vec3& tolerance)
-      : contour_(contour), axis_(axis), plane_(plane), beyond_(beyond), tolerance_(tolerance) {}
+  PlaneClip(Contour& contour, const HalfSpace& inside, const Vec3& tolerance)
+      : contour_(contour), inside_(inside), tolerance_(tolerance) {}
 
   void run() {
-    if (tolerance_[axis_] > 0) move_near_points();
+    if (inside_.axis() && tolerance_[*inside_.axis()] > 0) move_near_points(*inside_.axis());
     std::vector<std::array<std::uint32_t, 3>> triangles;
     triangles.swap(contour_.triangles);
     for (const auto& triangle : triangles) clip(triangle);
@@ -75,13 +119,13 @@ class PlaneClip {
   using Polygon = SmallList<std::uint32_t, 4>;
 
   /// Puts points near the plane into it. They are no longer on edges.
-  void move_near_points() {
+  void move_near_points(int axis) {
     const std::size_t edge_count = contour_.edge_points.size(), count = contour_.points.size();
     std::unordered_map<std::uint32_t, std::uint32_t> moved;
     for (std::size_t p = 0; p < count; ++p) {
-      Vec3 point = contour_.points[p];
-      if (point[axis_] == plane_ || !(std::abs(point[axis_] - plane_) <= tolerance_[axis_])) continue;
-      point[axis_] = plane_;
+      const double height = inside_.height(contour_.points[p]);
+      if (height == 0 || !(std::abs(height) <= tolerance_[axis])) continue;
+      const Vec3 point = inside_.on_plane(contour_.points[p]);
       if (p >= edge_count) {
         contour_.points[p] = point;
       } else {
@@ -100,8 +144,8 @@ class PlaneClip {
 
   /// -1 inside, 0 on the plane, 1 beyond it.
   [[nodiscard]] int side(std::uint32_t point) const {
-    const double x = contour_.points[point][axis_];
-    return beyond_ * (static_cast<int>(x > plane_) - static_cast<int>(x < plane_));
+    const double height = inside_.height(contour_.points[point]);
+    return static_cast<int>(height > 0) - static_cast<int>(height < 0);
   }
 
   void clip(const std::array<std::uint32_t, 3>& triangle) {
@@ -116,7 +160,7 @@ class PlaneClip {
     }
     // What only touches the plane from beyond has no part inside.
     if (*greatest > 0 && *least >= 0) return;
-    if (*greatest >= 0 && tolerance_[axis_] > 0) note_near_points(polygon);
+    if (*greatest >= 0 && norm(tolerance_) > 0) note_near_points(polygon);
     for (std::size_t c = 2; c < polygon.size(); ++c)
       contour_.triangles.push_back({polygon[0], polygon[c - 1], polygon[c]});
   }
@@ -127,10 +171,9 @@ class PlaneClip {
     const auto [entry, is_new] = cuts_.try_emplace(std::uint64_t{a} << 32 | b, kNone);
     if (is_new) {
       const Vec3 p = contour_.points[a], q = contour_.points[b];
-      const double t = (plane_ - p[axis_]) / (q[axis_] - p[axis_]);
-      Vec3 point = point_between(p, q, t);
-      point[axis_] = plane_;
-      entry->second = add(point, between(as_mean(contour_, a), as_mean(contour_, b), t));
+      const double t = inside_.cut(p, q);
+      entry->second = add(inside_.on_plane(point_between(p, q, t)),
+                          between(as_mean(contour_, a), as_mean(contour_, b), t));
     }
     return entry->second;
   }
@@ -146,7 +189,7 @@ class PlaneClip {
   void note_near_points(const Polygon& polygon) {
     for (std::size_t c = 0; c < polygon.size(); ++c) {
       const std::uint32_t a = polygon[c], b = polygon[(c + 1) % polygon.size()];
-      if (contour_.points[a][axis_] != plane_ || contour_.points[b][axis_] != plane_) continue;
+      if (side(a) != 0 || side(b) != 0) continue;
       const Vec3 way = contour_.points[b] - contour_.points[a];
       bool is_near = true;
       for (int axis = 0; axis < 3; ++axis) is_near = is_near && std::abs(way[axis]) <= tolerance_[axis];
@@ -171,9 +214,7 @@ class PlaneClip {
   }
 
   Contour& contour_;
-  int axis_;
-  double plane_;
-  int beyond_;
+  const HalfSpace& inside_;
   Vec3 tolerance_;
   std::unordered_map<std::uint64_t, std::uint32_t> cuts_;    ///< by the two points of an edge
   std::unordered_map<std::uint32_t, std::uint32_t> merged_;  ///< points to lesser ones
@@ -217,21 +258,36 @@ Vec3 tolerance_in(const Box3& box, const Vec3& spacing) {
   return result;
 }
 
+void clip_by(const std::vector<HalfSpace>& sides, const Vec3& tolerance, Contour& contour) {
+  bool clipped = false;
+  for (const HalfSpace& side : sides) {
+    const auto is_outside = [&side](const Vec3& p) { return side.height(p) > 0; };
+    if (std::none_of(contour.points.begin(), contour.points.end(), is_outside)) continue;
+    PlaneClip(contour, side, tolerance).run();
+    clipped = true;
+  }
+  if (clipped) remove_unused_points(contour);
+}
+
 }  // namespace
 
 void clip_contour(Contour& contour, const Box3& box, const Vec3& spacing) {
-  const Vec3 tolerance = tolerance_in(box, spacing);
-  bool clipped = false;
+  std::vector<HalfSpace> sides;
   for (int axis = 0; axis < 3; ++axis) {
-    for (const int beyond : {1, -1}) {
-      const double plane = beyond > 0 ? box.max[axis] : box.min[axis];
-      const auto outside = [&](const Vec3& p) { return beyond * p[axis] > beyond * plane; };
-      if (std::none_of(contour.points.begin(), contour.points.end(), outside)) continue;
-      PlaneClip(contour, axis, plane, beyond, tolerance).run();
-      clipped = true;
-    }
+    sides.emplace_back(axis, box.max[axis], 1);
+    sides.emplace_back(axis, box.min[axis], -1);
   }
-  if (clipped) remove_unused_points(contour);
+  clip_by(sides, tolerance_in(box, spacing), contour);
+}
+
+void clip_contour(Contour& contour, std::span<const Plane> sides, const Vec3& spacing) {
+  if (sides.empty()) return;
+  Box3 box;
+  for (const Vec3& p : contour.points) box.extend(p);
+  const Vec3 tolerance = contour.points.empty() ? Vec3{} : tolerance_in(box, spacing);
+  std::vector<HalfSpace> all;
+  for (const Plane& side : sides) all.emplace_back(side, tolerance);
+  clip_by(all, tolerance, contour);
 }
 
 }  // namespace adamas

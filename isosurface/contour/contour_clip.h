@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+
+#include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 
@@ -14,5 +17,8 @@ namespace adamas {
 /// plane that are as near to each other become one. Rounding alone puts planes of samples beside points that
 /// lie in them. Points on edges with parameters of 1/1024 or more are farther from each other than that.
 void clip_contour(Contour& contour, const Box3& box, const Vec3& spacing = {});
+/// The same of what lies on the side of all planes that their normals point away from. Points near a plane
+/// that is not across an axis count as in it and stay where they are.
+void clip_contour(Contour& contour, std::span<const Plane> sides, const Vec3& spacing = {});
 
 }  // namespace adamas

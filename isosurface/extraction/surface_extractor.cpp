@@ -34,8 +34,9 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Pro
     if (!request_.others_follow) diamonds_.drop_values();
     surface = pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   }
-  if (request_.region)
-    clip_contour(surface.contour, *request_.region, contour_options(diamonds_, request_).spacing);
+  const Vec3 spacing = contour_options(diamonds_, request_).spacing;
+  if (request_.region) clip_contour(surface.contour, *request_.region, spacing);
+  clip_contour(surface.contour, request_.sides, spacing);
   return surface;
 }
 

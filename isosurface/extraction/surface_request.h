@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/storage/page_grid.h"
@@ -14,12 +15,14 @@ namespace adamas {
 /// Which surface of a store is wanted.
 struct SurfaceRequest {
   double isovalue = 0;
-  /// Diamonds with a greater isosurface error are split; units of length.
+  /// Diamonds with a greater isosurface error are split; units of length in the grid's frame.
   double error = 0;
   /// Never more triangles than these, but for those of the coarsest mesh: the greatest errors go first.
   std::optional<std::uint64_t> max_triangles;
-  /// The surface is clipped to it, and coarse outside.
+  /// In the grid's frame; the surface is clipped to it, and coarse outside.
   std::optional<Box3> region;
+  /// What lies on the side of these that their normals point to is cut off too.
+  std::vector<Plane> sides;
   /// See ContourOptions.
   double least_parameter = 1.0 / 1024;
   /// Pages that cannot be had are an Error, not a coarser surface.

@@ -102,6 +102,7 @@ RestoredPart restored_part(const VolumeGrid& volume, int level, const std::optio
   RestoredPart part;
   part.level = level;
   part.grid = volume;
+  Vec3 first = volume.origin;
   for (int axis = 0; axis < 3; ++axis) {
     const double step = std::ldexp(volume.spacing[axis], level);
     part.last[axis] = pages.last()[axis] >> level;
@@ -118,9 +119,10 @@ RestoredPart restored_part(const VolumeGrid& volume, int level, const std::optio
     }
     const auto a = static_cast<std::size_t>(axis);
     part.grid.dimensions[a] = static_cast<std::uint64_t>(part.last[axis] - part.first[axis] + 1);
-    part.grid.origin[axis] += part.first[axis] * step;
+    first[axis] += part.first[axis] * step;
     part.grid.spacing[axis] = step;
   }
+  part.grid.origin = volume.in_space(first);
   return part;
 }
 

@@ -21,8 +21,8 @@ struct RestoredPart {
   VolumeGrid grid;
 };
 
-/// The part of a volume at a level, whole or what of it lies in a region. Throws Error, which begins with
-/// `name`, where there is no such level or no sample in the region.
+/// The part of a volume at a level, whole or what of it lies in a region of the volume's frame. Throws Error,
+/// which begins with `name`, where there is no such level or no sample in the region.
 RestoredPart restored_part(const VolumeGrid& volume, int level, const std::optional<Box3>& region,
                            const std::string& name);
 

@@ -6,6 +6,7 @@
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
+#include "core/data/anatomical_space.h"
 #include "isosurface/preprocessing/error_scale.h"
 #include "isosurface/storage/byte_stream.h"
 
@@ -21,6 +22,10 @@ void write_grid(ByteWriter& out, const VolumeGrid& grid) {
   for (const std::uint64_t n : grid.dimensions) out.number(n);
   for (int axis = 0; axis < 3; ++axis) out.number(grid.spacing[axis]);
   for (int axis = 0; axis < 3; ++axis) out.number(grid.origin[axis]);
+  for (const Vec3& direction : grid.directions) {
+    for (int axis = 0; axis < 3; ++axis) out.number(direction[axis]);
+  }
+  out.sized_bytes(std::as_bytes(std::span(grid.space)));
 }
 
 VolumeGrid read_grid(ByteReader& in, std::string_view name) {
@@ -32,6 +37,13 @@ VolumeGrid read_grid(ByteReader& in, std::string_view name) {
   for (std::uint64_t& n : grid.dimensions) n = in.number<std::uint64_t>();
   for (int axis = 0; axis < 3; ++axis) grid.spacing[axis] = in.number<double>();
   for (int axis = 0; axis < 3; ++axis) grid.origin[axis] = in.number<double>();
+  for (Vec3& direction : grid.directions) {
+    for (int axis = 0; axis < 3; ++axis) direction[axis] = in.number<double>();
+  }
+  const auto space = in.sized_bytes();
+  grid.space.assign(reinterpret_cast<const char*>(space.data()), space.size());
+  if (!grid.space.empty() && !is_space(grid.space))
+    fail("{}: expected the name of a space of coordinates, found another", name);
   return grid;
 }
 

@@ -71,7 +71,13 @@ TEST_F(BadData, AFolder) { expect_refused({"."}, {".", "expected", "found"}); }
 
 TEST_F(BadData, NoMaterial) {
   write_image("a.nrrd", 4, [](std::size_t i) { return static_cast<float>(i) + 0.5f; });
-  expect_refused({"a.nrrd"}, {"a.nrrd", "expected", "Volume Fraction", "found"});
+  const std::vector<std::string> parts{"a.nrrd", "expected", "Volume Fraction", "found"};
+  expect_failure({"resample", "a.nrrd", "-o", "m.vtu"}, parts);
+  expect_failure({"reconstruct", "a.nrrd", "-o", "r.vtp"}, parts);
+  expect_failure({"probe", "a.nrrd", "--point", "1,1,1", "-o", "p.csv"}, parts);
+  // A slice shows plain values too, but not where materials are asked for.
+  run_well({"slice", "a.nrrd", "--plane", "x=1", "-o", "s.png"});
+  expect_failure({"slice", "a.nrrd", "--rest", "b", "--plane", "x=1", "-o", "s2.png"}, parts);
 }
 
 TEST_F(BadData, UnknownArrays) {
@@ -150,11 +156,12 @@ TEST_F(BadData, RegionsOutside) {
 TEST_F(BadData, PointsFiles) {
   make_scene("sphere");
   write("p.csv", "x,y,z\n0.5,0.5,0.5\n0.5,oops,0.5\n");
-  expect_failure({"probe", "scene.vtr", "--points", "p.csv", "-o", "o.csv"}, {"p.csv:3", "expected", "oops"});
+  expect_failure({"probe", "scene.vtr", "--points-file", "p.csv", "-o", "o.csv"},
+                 {"p.csv:3", "expected", "oops"});
   write("p.csv", "x,y,z\n");
-  expect_failure({"probe", "scene.vtr", "--points", "p.csv", "-o", "o.csv"},
+  expect_failure({"probe", "scene.vtr", "--points-file", "p.csv", "-o", "o.csv"},
                  {"p.csv", "expected", "found none"});
-  expect_failure({"probe", "scene.vtr", "--points", "none.csv", "-o", "o.csv"}, {"none.csv"});
+  expect_failure({"probe", "scene.vtr", "--points-file", "none.csv", "-o", "o.csv"}, {"none.csv"});
 }
 
 TEST_F(BadData, PointsFilesOfSpreadsheets) {
@@ -165,13 +172,14 @@ TEST_F(BadData, PointsFilesOfSpreadsheets) {
                                     "\xEF\xBB\xBFx;y;z\r\n0.25;0.5;0.5;7\r\n", "+0.25 0.5\t0.5\n",
                                     "# where\n\n\"x\",\"y\",\"z\"\n .25 , 5e-1, 0.5\n"}) {
     write("p.csv", content);
-    EXPECT_EQ(run_well({"probe", "scene.vtr", "--points", "p.csv"}).out, values) << content;
+    EXPECT_EQ(run_well({"probe", "scene.vtr", "--points-file", "p.csv"}).out, values) << content;
   }
   // Decimal commas would be taken for three numbers, and a bad first line for names.
   for (const std::string line :
        {"0,25;0,5;0,5", "0,25 0,5 0,5", ".5,oops,.5", "nan,0,0", "-,1,2", "1,,2,3"}) {
     write("p.csv", line + "\n0.5,0.5,0.5\n");
-    expect_failure({"probe", "scene.vtr", "--points", "p.csv", "-o", "o.csv"}, {"p.csv:1", "expected", line});
+    expect_failure({"probe", "scene.vtr", "--points-file", "p.csv", "-o", "o.csv"},
+                   {"p.csv:1", "expected", line});
   }
 }
 

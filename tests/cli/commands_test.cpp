@@ -305,6 +305,31 @@ TEST_F(Commands, QuietAndVerbose) {
   expect_wrong_usage({"resample", "scene.vtr", "--quiet", "--verbose"}, {"--quiet and --verbose"});
 }
 
+TEST_F(Commands, ValuesOfCellsOrPoints) {
+  // The lower half is one material: of 4 x 4 x 4 cells half, of points half of 3 x 3 x 3.
+  std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nspacings: 1 1 1\nencoding: raw\n";
+  std::string values;
+  for (std::size_t i = 0; i < 64; ++i) values += i < 32 ? '\1' : '\2';
+  write("a.nrrd", nrrd + "\n" + values);
+  const auto check = [this](const std::vector<std::string>& more, double expected, bool noted) {
+    std::vector<std::string> all{"info", "a.nrrd", "--labels", "a.nrrd", "--json", "j.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const RunResult result = run(all);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NEAR(volume(read_json("j.json"), "1"), expected, 1e-12);
+    EXPECT_EQ(result.err_lines().size(), noted ? 1u : 0u);
+    EXPECT_EQ(result.err.find("a.nrrd: nothing says") != std::string::npos, noted) << result.err;
+  };
+  check({}, 32, true);
+  check({"--cells"}, 32, false);
+  check({"--points"}, 13.5, false);
+  expect_wrong_usage({"info", "a.nrrd", "--cells", "--points"},
+                     {"--cells and --points: expected one of them"});
+  expect_wrong_usage({"info", "a.obj", "--points"}, {"--points: expected data on a grid as INPUT"});
+  write("a.nrrd", nrrd + "centers: cell cell cell\n\n" + values);
+  check({}, 32, false);
+}
+
 }  // namespace
 
 }  // namespace adamas::test

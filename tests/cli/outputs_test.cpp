@@ -71,8 +71,8 @@ TEST_F(Outputs, NoInputIsOverwritten) {
       {"resample", "sub/scene.vtr", "--field", "a=labels.vtp", "--interfaces-out", "sub/labels.vtp"},
       {"reconstruct", "sub/scene.vtr", "--labels", "sub/labels.vtp", "-o", "sub/labels.vtp"},
       {"slice", "m.vtu", "--plane", "x=0.5", "--original", "net.vtp", "-o", "net.vtp"},
-      {"probe", "scene.vtr", "--points", "p.csv", "-o", "p.csv"},
-      {"probe", "scene.vtr", "--points", "alias.csv", "-o", "p.csv"},
+      {"probe", "scene.vtr", "--points-file", "p.csv", "-o", "p.csv"},
+      {"probe", "scene.vtr", "--points-file", "alias.csv", "-o", "p.csv"},
       {"info", "scene.vtr", "--config", "c.json", "--json", "c.json"}};
   for (const auto& command : commands) {
     const std::string before = read(command.back());
@@ -80,6 +80,39 @@ TEST_F(Outputs, NoInputIsOverwritten) {
     EXPECT_EQ(read(command.back()), before);
   }
   expect_wrong_usage({"info", "scene.vtr", "--json", "scene.vtr"}, {"--json", "expected", ".json"});
+}
+
+TEST_F(Outputs, NoFileThatAnInputRefersToIsOverwritten) {
+  const std::string nrrd = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
+  const std::string meta = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n";
+  std::filesystem::create_directory(folder() / "sub");
+  for (const char* name : {"d.adm", "d.vtp", "sub/d.adm", "d002.adm", "d03.adm"})
+    write(name, "12345678");
+  write("one.nhdr", nrrd + "data file: d.adm\n");
+  write("two.nhdr", nrrd + "datafile: ./d.vtp\n");
+  write("sub/three.nhdr", nrrd + "data file: d.adm\n");
+  write("list.nhdr", nrrd + "data file: LIST\nd.adm\nd.vtp\n");
+  write("pattern.nhdr", nrrd + "data file: d%03d.adm 1 3 1\n");
+  write("one.mhd", meta + "ElementDataFile = d.adm\n");
+  write("list.mhd", meta + "ElementDataFile = LIST\nx.raw\nd.adm\n");
+  write("pattern.mhd", meta + "ElementDataFile = d%02d.adm 3 9 3\n");
+  const std::vector<std::vector<std::string>> commands{
+      {"store", "one.nhdr", "-o", "d.adm"},
+      {"store", "sub/three.nhdr", "-o", "sub/d.adm"},
+      {"store", "list.nhdr", "-o", "d.adm"},
+      {"store", "pattern.nhdr", "-o", "d002.adm"},
+      {"store", "one.mhd", "-o", "./d.adm"},
+      {"store", "list.mhd", "-o", "d.adm"},
+      {"store", "pattern.mhd", "-o", "d03.adm"},
+      {"slice", "two.nhdr", "--plane", "z=0.5", "-o", "d.vtp"},
+      {"reconstruct", "two.nhdr", "--labels", "two.nhdr", "-o", "d.vtp"},
+      {"resample", "one.nhdr", "--fraction", "a=two.nhdr", "--rest", "b", "--interfaces-out", "d.vtp"}};
+  for (const auto& command : commands) {
+    expect_wrong_usage(command, {"expected a file that is no input", command.back()});
+    EXPECT_EQ(read(command.back().substr(command.back().starts_with("./") ? 2 : 0)), "12345678");
+  }
+  // What only has a like name may be written.
+  run_well({"store", "one.nhdr", "-o", "e.adm"});
 }
 
 TEST_F(Outputs, DiskFull) {

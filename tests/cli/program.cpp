@@ -212,7 +212,7 @@ void ProgramTest::write_image(const std::string& name, std::size_t n,
                               const std::function<float(std::size_t)>& value) const {
   const std::string side = std::to_string(n);
   std::string content = "NRRD0004\ntype: float\ndimension: 3\nsizes: " + side + " " + side + " " + side +
-                        "\nspacings: 1 1 1\nendian: little\nencoding: raw\n\n";
+                        "\nspacings: 1 1 1\ncenters: node node node\nendian: little\nencoding: raw\n\n";
   for (std::size_t i = 0; i < n * n * n; ++i) {
     const float v = value(i);
     std::array<char, sizeof v> bytes;

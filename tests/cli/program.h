@@ -70,7 +70,7 @@ class ProgramTest : public ::testing::Test {
   [[nodiscard]] std::set<std::string> files() const;
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// A float image of equal cells, as NRRD; values x fastest.
+  /// A float image with values at points, one apart, as NRRD; x fastest.
   void write_image(const std::string& name, std::size_t n,
                    const std::function<float(std::size_t)>& value) const;
   /// A scene as scene.vtr.

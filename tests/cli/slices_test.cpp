@@ -32,8 +32,8 @@ TEST_F(Slices, LinesOfSlicesCanBeTold) {
     return read("s.svg");
   };
   // The input's cells are 5 pixels wide, or 17.
-  EXPECT_FALSE(slice("400,400", "all", "") == slice("400,400", "all", "--cells"));
-  EXPECT_TRUE(slice("1200,1200", "all", "") == slice("1200,1200", "all", "--cells"));
+  EXPECT_FALSE(slice("400,400", "all", "") == slice("400,400", "all", "--draw-cells"));
+  EXPECT_TRUE(slice("1200,1200", "all", "") == slice("1200,1200", "all", "--draw-cells"));
   // Red over grey.
   const std::string picture = slice("1200,1200", "materials", "");
   const std::size_t grey = picture.find("rgb(60%,60%,60%)"), red = picture.find("rgb(86%,8%,24%)");

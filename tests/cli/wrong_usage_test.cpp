@@ -31,7 +31,8 @@ TEST_F(WrongUsage, IsToldAsExpectedAndFound) {
                      {"--ghost: expected constant, linear or least-squares, found 'quadratic'"});
   expect_wrong_usage({"resample", "x.vtr", "--interface-error"},
                      {"--interface-error: expected a value E|E%, found none"});
-  expect_wrong_usage({"slice", "x.vtr", "--cells=maybe"}, {"--cells: expected no value", "found 'maybe'"});
+  expect_wrong_usage({"slice", "x.vtr", "--draw-cells=maybe"},
+                     {"--draw-cells: expected no value", "found 'maybe'"});
   expect_wrong_usage({"info"}, {"expected INPUT, found none"});
   expect_wrong_usage({"info", "x.vtr", "--config", "none.toml"}, {"--config: expected a file", "none.toml"});
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/io/bunzip_stream.h"
 #include "core/io/inflate_stream.h"
 #include "core/io/legacy_vtk_check.h"
 #include "core/io/meta_image_check.h"
@@ -44,6 +45,14 @@ inline void inflate(std::string_view bytes) {
   const std::size_t size =
       inflate_stream(bytes, "fuzz", [&received](std::string_view piece) { received += piece.size(); });
   require(size == received, "another size than the pieces'");
+}
+
+inline void bunzip(std::string_view bytes) {
+  std::uint64_t received = 0;
+  const std::uint64_t size = bunzip_stream(
+      supply_text(bytes), "fuzz", [&received](std::string_view piece) { received += piece.size(); });
+  require(size == received, "another size than the pieces'");
+  require(size <= bytes.size() * kGreatestBunzip, "more than bzip2 can pack");
 }
 
 /// A whole message is written as it was read.

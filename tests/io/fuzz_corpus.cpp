@@ -8,14 +8,15 @@ TEST(FuzzCorpus, NetworkText) { EXPECT_EQ(fuzz::replay("network_text", fuzz::net
 TEST(FuzzCorpus, RegionNames) { EXPECT_EQ(fuzz::replay("region_names", fuzz::region_names), 1u); }
 TEST(FuzzCorpus, NrrdHeader) { EXPECT_EQ(fuzz::replay("nrrd_header", fuzz::nrrd_header), 3u); }
 TEST(FuzzCorpus, Inflate) { EXPECT_EQ(fuzz::replay("inflate", fuzz::inflate), 3u); }
+TEST(FuzzCorpus, Bunzip) { EXPECT_EQ(fuzz::replay("bunzip", fuzz::bunzip), 3u); }
 TEST(FuzzCorpus, LegacyVtk) { EXPECT_EQ(fuzz::replay("legacy_vtk", fuzz::legacy_vtk), 4u); }
 TEST(FuzzCorpus, MetaImage) { EXPECT_EQ(fuzz::replay("meta_image", fuzz::meta_image), 2u); }
-TEST(FuzzCorpus, NrrdVolume) { EXPECT_EQ(fuzz::replay("nrrd_volume", fuzz::nrrd_volume), 4u); }
+TEST(FuzzCorpus, NrrdVolume) { EXPECT_EQ(fuzz::replay("nrrd_volume", fuzz::nrrd_volume), 7u); }
 TEST(FuzzCorpus, MetaImageVolume) {
   EXPECT_EQ(fuzz::replay("meta_image_volume", fuzz::meta_image_volume), 3u);
 }
 TEST(FuzzCorpus, VtiVolume) { EXPECT_EQ(fuzz::replay("vti_volume", fuzz::vti_volume), 2u); }
-TEST(FuzzCorpus, NiftiVolume) { EXPECT_EQ(fuzz::replay("nifti_volume", fuzz::nifti_volume), 4u); }
+TEST(FuzzCorpus, NiftiVolume) { EXPECT_EQ(fuzz::replay("nifti_volume", fuzz::nifti_volume), 5u); }
 TEST(FuzzCorpus, PackedVti) { EXPECT_EQ(fuzz::replay("packed_vti", fuzz::packed_vti), 5u); }
 TEST(FuzzCorpus, MesherReply) { EXPECT_EQ(fuzz::replay("mesher_reply", fuzz::mesher_reply), 2u); }
 

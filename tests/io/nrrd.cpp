@@ -1,6 +1,6 @@
 #include "core/io/grid_file.h"
 #include "core/io/nrrd_header.h"
-#include "tests/support/scratch.h"
+#include "tests/io/volume_files.h"
 
 namespace adamas {
 namespace {
@@ -70,8 +70,8 @@ TEST(NrrdHeader, BadHeadersAreNamedWithTheirLine) {
   EXPECT_TRUE(says(message(kStart + "sizes: 4 4 4\n"), "found the file's end"));
   EXPECT_TRUE(says(message(kStart + "\nx"), "expected a header with sizes"));
   EXPECT_TRUE(says(message(kStart + "data file: LIST\n"), "expected one data file"));
-  EXPECT_TRUE(
-      says(message("NRRD0004\ntype: float\nencoding: bzip2\n"), "encoding raw, gzip or text, found 'bzip2'"));
+  EXPECT_TRUE(says(message("NRRD0004\ntype: float\nencoding: hex\n"),
+                   "encoding raw, gzip, bzip2 or text, found 'hex'"));
 }
 
 TEST(NrrdReader, EncodingsByteOrdersAndDetachedData) {
@@ -83,6 +83,13 @@ TEST(NrrdReader, EncodingsByteOrdersAndDetachedData) {
   put_bytes(scratch / "cut.nrrd", head + "type: float\nencoding: text\n\n1 2.5\n-3 1e3");
   EXPECT_TRUE(
       says(error_of([&] { read_grid_file(scratch / "cut.nrrd"); }), "expected 4 values, found 3 whole ones"));
+  const auto bzip = [&](const std::string& more) {
+    put_bytes(scratch / "z.nrrd", head + "type: uchar\nencoding: bzip2\n\n" + test::bzipped("abcd") + more);
+    return std::get<1>(read_grid_file(scratch / "z.nrrd").arrays.at(0).values);
+  };
+  EXPECT_EQ(bzip(""), (std::vector<std::int32_t>{'a', 'b', 'c', 'd'}));
+  EXPECT_EQ(bzip("more"), (std::vector<std::int32_t>{'a', 'b', 'c', 'd'}));
+  EXPECT_TRUE(says(error_of([&] { bzip("BZh9broken"); }), "z.nrrd: expected whole data compressed by bzip2"));
   put_bytes(scratch / "b.nhdr",
             head + "type: uint16\nencoding: raw\nendian: big\nbyte skip: -1\ndata file: b.raw\n");
   EXPECT_TRUE(

@@ -1,6 +1,6 @@
 #include <cstring>
 
-#include "core/io/grid_file.h"
+#include "core/io/grid_axes.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
@@ -60,9 +60,21 @@ const std::vector<Case> kCases{
 const Vec3 kOrigin{10, -20, 30};
 
 void expect_read(const std::filesystem::path& path, const Case& c) {
-  if (c.parallel) return expect_places(read_grid_file(path), c.steps, kOrigin);
-  EXPECT_TRUE(says(error_of([&] { read_grid_file(path); }),
+  const GridFile file = read_grid_file(path);
+  if (c.parallel) {
+    require_laid_out(path.string(), file);
+    return expect_places(file, c.steps, kOrigin);
+  }
+  EXPECT_TRUE(says(error_of([&] { require_laid_out(path.string(), file); }),
                    path.filename().string() + ": expected axes parallel to x, y and z, one to each, found"));
+  ASSERT_TRUE(file.aslant);
+  const std::array<double, 3> last{file.nodes[0].back(), file.nodes[1].back(), file.nodes[2].back()};
+  Vec3 found = file.aslant->origin, expected = kOrigin;
+  for (std::size_t a = 0; a < 3; ++a) {
+    found += last[a] * file.aslant->directions[a];
+    expected += static_cast<double>(kSizes[a] - 1) * c.steps[a];
+  }
+  EXPECT_LT(distance(found, expected), 1e-5) << "the last voxel";
 }
 
 std::string join(const Vec3& v, const char* separator) {

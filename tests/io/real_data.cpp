@@ -87,10 +87,10 @@ TEST(RealData, BrainTissues) {
   options.fraction_scale = 255;
   options.rest = "rest";
   const MultiMaterialData data = read_multi_material_data(grey, options);
-  EXPECT_EQ(data.grid.centering, Centering::kPoints);
+  EXPECT_EQ(data.grid.centering, Centering::kCells);
   EXPECT_EQ(data.grid.site_count(), 197u * 233u * 189u);
-  EXPECT_EQ(data.grid.domain().min, (Vec3{-98, -134, -72}));
-  EXPECT_EQ(data.grid.domain().size(), (Vec3{196, 232, 188}));
+  EXPECT_EQ(data.grid.domain().min, (Vec3{-98.5, -134.5, -72.5}));
+  EXPECT_EQ(data.grid.domain().size(), (Vec3{197, 233, 189}));
   EXPECT_EQ(data.materials.size(), 3u);
   ASSERT_EQ(data.fields.size(), 1u);
   EXPECT_EQ(data.fields[0].name, "t1");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bzlib.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -91,6 +92,16 @@ inline std::string deflated(const std::string& bytes, Wrapping wrapping) {
   EXPECT_EQ(deflate(&zip, Z_FINISH), Z_STREAM_END);
   out.resize(zip.total_out);
   deflateEnd(&zip);
+  return out;
+}
+
+inline std::string bzipped(const std::string& bytes) {
+  std::string out(bytes.size() + bytes.size() / 100 + 600, '\0');
+  auto size = static_cast<unsigned>(out.size());
+  EXPECT_EQ(BZ2_bzBuffToBuffCompress(out.data(), &size, const_cast<char*>(bytes.data()),
+                                     static_cast<unsigned>(bytes.size()), 9, 0, 0),
+            BZ_OK);
+  out.resize(size);
   return out;
 }
 

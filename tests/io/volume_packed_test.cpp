@@ -11,6 +11,7 @@ namespace adamas {
 namespace {
 
 using test::bytes_of_values;
+using test::bzipped;
 using test::deflated;
 using test::message_of_volume;
 using test::put_bytes;
@@ -39,10 +40,17 @@ TEST(PackedVolume, EveryTypeOfNrrd) {
         // As bgzip and pigz write it: gzip streams one after the other.
         put_bytes(scratch / "d.nrrd", head + "gzip\n\n" + deflated(bytes.substr(0, 5), Wrapping::kGzip) +
                                           deflated(bytes.substr(5), Wrapping::kGzip));
+        put_bytes(scratch / "f.nrrd", head + "bzip2\n\n" + bzipped(bytes));
+        put_bytes(scratch / "g.nrrd",
+                  head + "bz2\nbyte skip: 3\nline skip: 1\n\nxyz\n" + bzipped("123" + bytes));
+        // As pbzip2 writes it.
+        put_bytes(scratch / "h.raw", bzipped(bytes.substr(0, 5)) + bzipped(bytes.substr(5)) + "and more");
+        put_bytes(scratch / "h.nhdr", head + "bzip2\ndata file: h.raw\n");
         std::string text;
         for (const T v : values) text += fmt::format("{}{}", +v, v == 3 ? ",\n" : " ");
         put_bytes(scratch / "e.nrrd", head + "ascii\n\n" + text);
-        for (const char* file : {"a.nrrd", "b.nrrd", "c.nhdr", "d.nrrd", "e.nrrd"}) {
+        for (const char* file :
+             {"a.nrrd", "b.nrrd", "c.nhdr", "d.nrrd", "e.nrrd", "f.nrrd", "g.nrrd", "h.nhdr"}) {
           VolumeReader reader = open_volume(scratch / file);
           EXPECT_EQ(reader.grid().type, sample_type_for(type));
           EXPECT_EQ(reader.grid().spacing, (Vec3{1, 2, 3}));
@@ -70,10 +78,9 @@ TEST(PackedVolume, CompressedMetaImages) {
   put_bytes(scratch / "c.mha", head + "BinaryData = False\nElementDataFile = LOCAL\n" + text);
   for (const char* file : {"a.mha", "b.mhd", "c.mha"}) {
     VolumeReader reader = open_volume(scratch / file);
-    EXPECT_EQ(reader.grid().origin, (Vec3{-4, 0, 0}));
-    auto turned = test::as_doubles(values);
-    for (std::size_t row = 0; row < 4; ++row) std::swap(turned[3 * row], turned[3 * row + 2]);
-    EXPECT_EQ(read_numbers(reader), turned) << file;
+    EXPECT_EQ(reader.grid().origin, (Vec3{0, 0, 0}));
+    EXPECT_EQ(reader.grid().box().min, (Vec3{-4, 0, 0}));
+    EXPECT_EQ(read_numbers(reader), test::as_doubles(values)) << file;
   }
   for (const char* file : {"a.mha", "c.mha"}) {
     test::expect_every_truncation_is_an_error(scratch / file, scratch / file,
@@ -84,22 +91,40 @@ TEST(PackedVolume, CompressedMetaImages) {
 TEST(PackedVolume, EveryTruncationAndEveryChangedByte) {
   const test::Scratch scratch;
   const auto values = test::typical_values<std::uint16_t>();
-  const std::string head = "NRRD0004\ntype: ushort\nendian: little\nsizes: 3 2 2\nencoding: gzip\n\n";
-  const std::string whole = head + deflated(bytes_of_values(values), Wrapping::kGzip);
-  put_bytes(scratch / "a.nrrd", whole);
-  test::expect_every_truncation_is_an_error(scratch / "a.nrrd", scratch / "a.nrrd", whole.size());
-  for (std::size_t at = head.size() + 10; at < whole.size(); ++at) {
-    std::string changed = whole;
-    changed[at] = static_cast<char>(changed[at] ^ 0x40);
-    put_bytes(scratch / "a.nrrd", changed);
-    // A few bits mean nothing.
-    try {
-      VolumeReader reader = open_volume(scratch / "a.nrrd");
-      EXPECT_EQ(test::read_as<std::uint16_t>(reader), values) << at;
-    } catch (const Error& error) {
-      EXPECT_TRUE(says(error.what(), "a.nrrd: expected")) << at;
+  const std::string bytes = bytes_of_values(values);
+  for (const bool bzip : {false, true}) {
+    const std::string head = fmt::format(
+        "NRRD0004\ntype: ushort\nendian: little\nsizes: 3 2 2\nencoding: {}\n\n", bzip ? "bzip2" : "gzip");
+    const std::string whole = head + (bzip ? bzipped(bytes) : deflated(bytes, Wrapping::kGzip));
+    put_bytes(scratch / "a.nrrd", whole);
+    test::expect_every_truncation_is_an_error(scratch / "a.nrrd", scratch / "a.nrrd", whole.size());
+    for (std::size_t at = head.size() + (bzip ? 0 : 10); at < whole.size(); ++at) {
+      std::string changed = whole;
+      changed[at] = static_cast<char>(changed[at] ^ 0x40);
+      put_bytes(scratch / "a.nrrd", changed);
+      // A few bits mean nothing.
+      try {
+        VolumeReader reader = open_volume(scratch / "a.nrrd");
+        EXPECT_EQ(test::read_as<std::uint16_t>(reader), values) << at;
+      } catch (const Error& error) {
+        EXPECT_TRUE(says(error.what(), "a.nrrd: expected")) << at;
+      }
     }
   }
+}
+
+TEST(PackedVolume, BzipMayPackFarMoreThanGzip) {
+  const test::Scratch scratch;
+  const std::string packed = bzipped(std::string(40'000'000, '\0'));
+  EXPECT_LT(packed.size(), 60u);
+  const std::string head = "NRRD0004\ntype: uchar\nencoding: bzip2\nsizes: 1000 1000 ";
+  put_bytes(scratch / "a.nrrd", head + "40\n\n" + packed);
+  VolumeReader reader = open_volume(scratch / "a.nrrd");
+  std::vector<std::byte> plane(1'000'000);
+  reader.read_plane(39, plane);
+  EXPECT_EQ(plane, std::vector<std::byte>(1'000'000));
+  put_bytes(scratch / "b.nrrd", head + "1000\n\n" + packed);
+  EXPECT_TRUE(says(message_of_volume(scratch / "b.nrrd"), "b.nrrd: expected 1000000000 bytes"));
 }
 
 TEST(PackedVolume, SizesThatCannotBe) {

@@ -118,7 +118,7 @@ TEST(VolumeReader, VtiOfOtherPrograms) {
   EXPECT_TRUE(test::says(first.note(), "a.vti: int8 samples are read as int16, without loss"));
 }
 
-TEST(VolumeReader, AxesThatCountDownAreTurned) {
+TEST(VolumeReader, SamplesStayInTheOrderOfTheFile) {
   const test::Scratch scratch;
   const std::string head = "NRRD0004\ntype: short\nencoding: raw\nsizes: 3 2 2\nspace origin: (10,20,30)\n";
   const std::vector<std::int16_t> values{0, 1, 2, 10, 11, 12, 100, 101, 102, 110, 111, 112};
@@ -129,15 +129,18 @@ TEST(VolumeReader, AxesThatCountDownAreTurned) {
   };
   VolumeReader x = read("(-2,0,0) (0,1,0) (0,0,1)");
   EXPECT_EQ(x.grid().spacing, (Vec3{2, 1, 1}));
-  EXPECT_EQ(x.grid().origin, (Vec3{6, 20, 30}));
-  EXPECT_EQ(read_as<std::int16_t>(x),
-            (std::vector<std::int16_t>{2, 1, 0, 12, 11, 10, 102, 101, 100, 112, 111, 110}));
-  VolumeReader yz = read("(1,0,0) (0,-1,0) (0,0,-0.5)");
-  EXPECT_EQ(yz.grid().origin, (Vec3{10, 19, 29.5}));
-  EXPECT_EQ(read_as<std::int16_t>(yz),
-            (std::vector<std::int16_t>{110, 111, 112, 100, 101, 102, 10, 11, 12, 0, 1, 2}));
-  EXPECT_TRUE(test::says(test::error_of([&] { read("(0,1,0) (1,0,0) (0,0,1)"); }),
-                         "expected axes parallel to x, y and z in this order, found the first axis"));
+  EXPECT_EQ(x.grid().directions, (std::array<Vec3, 3>{{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}));
+  EXPECT_EQ(x.grid().origin, (Vec3{10, 20, 30}));
+  EXPECT_EQ(x.grid().box().min, (Vec3{6, 20, 30}));
+  EXPECT_EQ(read_as<std::int16_t>(x), values);
+  VolumeReader exchanged = read("(0,0,-0.5) (3,0,0) (0,1,0)");
+  EXPECT_EQ(exchanged.grid().spacing, (Vec3{0.5, 3, 1}));
+  EXPECT_EQ(exchanged.grid().directions, (std::array<Vec3, 3>{{{0, 0, -1}, {1, 0, 0}, {0, 1, 0}}}));
+  EXPECT_EQ(read_as<std::int16_t>(exchanged), values);
+  EXPECT_TRUE(test::says(test::error_of([&] { read("(0,1,0) (0,2,0) (0,0,1)"); }),
+                         "a.nrrd: expected axes that are not in one plane, found (0, 1, 0), (0, 1, 0) and"));
+  EXPECT_TRUE(test::says(test::error_of([&] { read("(0,0,0) (0,2,0) (0,0,1)"); }),
+                         "a.nrrd: expected a positive spacing along x, found 0"));
 }
 
 template <class T>

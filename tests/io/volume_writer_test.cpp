@@ -34,7 +34,7 @@ double value_at(const std::vector<std::byte>& samples, SampleType type, std::siz
 }
 
 void expect_read_back(const std::filesystem::path& path, const VolumeGrid& grid,
-                      const std::vector<std::byte>& samples) {
+                      const std::vector<std::byte>& samples, double tolerance = 1e-12) {
   GridFile file = read_grid_file(path);
   ASSERT_EQ(file.arrays.size(), 1u) << path;
   EXPECT_EQ(file.arrays[0].type, sample_name(grid.type)) << path;
@@ -43,7 +43,7 @@ void expect_read_back(const std::filesystem::path& path, const VolumeGrid& grid,
     ASSERT_EQ(nodes.size(), grid.dimensions[static_cast<std::size_t>(axis)]) << path;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const double expected = grid.origin[axis] + static_cast<double>(i) * grid.spacing[axis];
-      EXPECT_NEAR(nodes[i], expected, 1e-12 * (std::abs(expected) + grid.spacing[axis])) << path;
+      EXPECT_NEAR(nodes[i], expected, tolerance * (std::abs(expected) + grid.spacing[axis])) << path;
     }
   }
   const std::vector<float> values = file.arrays[0].take_floats();
@@ -61,12 +61,17 @@ TEST(VolumeWriter, OtherReadersFindEverySample) {
       test::write_volume(scratch / name, grid, samples);
       expect_read_back(scratch / name, grid, samples);
     }
+    // In single precision.
+    for (const char* name : {"g.nii", "h.nii.gz"}) {
+      test::write_volume(scratch / name, grid, samples);
+      expect_read_back(scratch / name, grid, samples, 1e-6);
+    }
     test::write_volume(scratch / "f.raw", grid, samples);
     const std::string all(reinterpret_cast<const char*>(samples.data()), samples.size());
     for (const char* name : {"c.raw", "e.raw", "f.raw"}) {
       EXPECT_EQ(test::bytes_of(scratch / name), all) << name;
     }
-    EXPECT_EQ(scratch.entries(), 8);
+    EXPECT_EQ(scratch.entries(), 10);
   }
 }
 
@@ -105,7 +110,8 @@ TEST(VolumeWriter, WhatCannotBeWrittenIsRefused) {
     return error_of([&] { VolumeWriter(scratch / name, grid); });
   };
   const VolumeGrid good{{2, 2, 2}, SampleType::kUint8, {1, 1, 1}, {}};
-  EXPECT_TRUE(says(message("a.png", good), "a.png: expected .vti, .nrrd, .nhdr, .mha, .mhd or .raw"));
+  EXPECT_TRUE(
+      says(message("a.png", good), "a.png: expected .vti, .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz or .raw"));
   EXPECT_TRUE(says(message("none/a.vti", good), "expected an existing output folder"));
   EXPECT_TRUE(says(message("%.nhdr", good), "name a header can hold, found '%.raw'"));
   EXPECT_TRUE(says(message("LIST.mhd", good), "name a header can hold, found 'LIST.raw'"));

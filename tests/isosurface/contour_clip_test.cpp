@@ -117,6 +117,38 @@ TEST_P(ContourClip, AsksForNoValuesFarBeyond) {
   test::expect_closed(half, {{0, 0, 0}, domain.position(last)});
 }
 
+TEST_P(ContourClip, PlanesCutAsSidesOfABoxDo) {
+  const LatticePoint all = kUnit * LatticePoint{16, 8, 8};
+  const Contour whole = contour(coarse, 0.5, all);
+  const Box3 box{{0.21, 0.11, 0.32}, {1.7, 0.83, 0.91}};
+  Contour by_box = whole, by_planes = whole;
+  clip_contour(by_box, box);
+  std::vector<Plane> sides;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 normal;
+    normal[axis] = 3;
+    sides.push_back({box.max, normal});
+    sides.push_back({box.min, -normal});
+  }
+  clip_contour(by_planes, sides);
+  ASSERT_EQ(by_planes.triangles, by_box.triangles);
+  for (std::size_t p = 0; p < by_box.points.size(); ++p)
+    EXPECT_LT(distance(by_planes.points[p], by_box.points[p]), 1e-12);
+  // The two sides of a plane that runs aslant are the whole.
+  const Plane aslant{{1, 0.5, 0.5}, {1, -2, 0.7}};
+  Contour below = whole, above = whole;
+  clip_contour(below, std::vector<Plane>{aslant});
+  clip_contour(above, std::vector<Plane>{{aslant.origin, -aslant.normal}});
+  const auto area = [](const Contour& c) {
+    double sum = 0;
+    for (const auto& [i, j, k] : c.triangles)
+      sum += 0.5 * norm(cross(c.points[j] - c.points[i], c.points[k] - c.points[i]));
+    return sum;
+  };
+  EXPECT_NEAR(area(below) + area(above), area(whole), 1e-9 * (1 + area(whole)));
+  for (const Vec3& p : below.points) EXPECT_LE(dot(aslant.normal, p - aslant.origin), 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(Splits, ContourClip, testing::Values(0, 3, 20, 60));
 
 TEST(ContourClipping, TrianglesOnThePlaneStay) {

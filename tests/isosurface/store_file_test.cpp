@@ -64,6 +64,8 @@ class StoreOfRandomPages : public testing::Test {
     header_.grid.type = SampleType::kUint16;
     header_.grid.spacing = {1, 2, 0.5};
     header_.grid.origin = {-3, 0, 7};
+    header_.grid.directions = {{{0, 1, 0}, {-0.6, 0, 0.8}, {0.8, 0, 0.6}}};
+    header_.grid.space = "LAS";
     header_.coding = SampleCoding::kSplitEdge;
     header_.subtree_depth = 1;
     header_.steps = 2;
@@ -119,6 +121,8 @@ TEST_F(StoreOfRandomPages, GivesThemBack) {
     EXPECT_EQ(file.header().grid.type, header_.grid.type);
     EXPECT_EQ(file.header().grid.spacing.y, 2);
     EXPECT_EQ(file.header().grid.origin.z, 7);
+    EXPECT_EQ(file.header().grid.directions, header_.grid.directions);
+    EXPECT_EQ(file.header().grid.space, "LAS");
     EXPECT_EQ(file.header().coding, header_.coding);
     EXPECT_EQ(file.header().subtree_depth, 1);
     EXPECT_EQ(file.header().steps, 2u);

@@ -26,7 +26,7 @@ OWNED = {
     r"tbb/.*|oneapi/tbb.*": ["core"],
     r"CGAL/.*": ["core/io", "interfaces", "tests"],
     r"Eigen/.*": ["interfaces", "tests"],
-    r"tiffio\.h|zlib\.h|png\.h|hdf5\.h": ["core/io", "tests"],
+    r"tiffio\.h|zlib\.h|bzlib\.h|png\.h|hdf5\.h": ["core/io", "tests"],
     r"CLI/.*": ["cli", "tests"],
     r"nlohmann/.*": ["cli", "tests"],
 }

@@ -240,7 +240,10 @@ void make(const std::filesystem::path& folder) {
   make_gradients(folder, {"split_complete", kEdge, {4, 4, 4}, true, 2});
   make_store(folder, "one_sample", grid_of(SampleType::kUint8, {1, 1, 1}), 1);
   make_store(folder, "floats", grid_of(SampleType::kFloat32, {20, 17, 9}), 2);
-  make_store(folder, "copies", grid_of(SampleType::kUint16, {130, 20, 20}), 1);
+  VolumeGrid turned = grid_of(SampleType::kUint16, {130, 20, 20});
+  turned.directions = {{{0, -1, 0}, {0.6, 0, 0.8}, {-0.8, 0, 0.6}}};
+  turned.space = "LPS";
+  make_store(folder, "copies", turned, 1);
   make_store(folder, "rod", grid_of(SampleType::kInt16, {300, 1, 2}), 1);
 }
 

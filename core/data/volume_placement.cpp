@@ -1,0 +1,47 @@
+#include "core/data/volume_placement.h"
+
+#include <utility>
+
+namespace adamas {
+
+namespace {
+
+/// A vector that is at right angles to a surface in space, from one that is so in the frame: by the inverse
+/// transpose of the directions, times their determinant.
+Vec3 across_in_space(const VolumeGrid& grid, const Vec3& v) {
+  const auto& [a, b, c] = grid.directions;
+  const Vec3 result = v.x * cross(b, c) + v.y * cross(c, a) + v.z * cross(a, b);
+  return grid.is_left_handed() ? -result : result;
+}
+
+}  // namespace
+
+void place_in_space(const VolumeGrid& grid, TriangleSurface& surface) {
+  if (grid.is_straight()) return;
+  for (Vec3& p : surface.points) p = grid.in_space(p);
+  for (Vec3& n : surface.normals) n = normalized(across_in_space(grid, n));
+  if (!grid.is_left_handed()) return;
+  for (auto& corners : surface.triangles) std::swap(corners[1], corners[2]);
+}
+
+Plane plane_in_frame(const VolumeGrid& grid, const Plane& plane) {
+  if (grid.is_straight()) return plane;
+  const auto& [a, b, c] = grid.directions;
+  return {grid.in_frame(plane.origin), {dot(a, plane.normal), dot(b, plane.normal), dot(c, plane.normal)}};
+}
+
+FrameRegion region_in_frame(const VolumeGrid& grid, const Box3& in_space) {
+  if (grid.is_straight()) return {in_space, {}};
+  FrameRegion region;
+  for (const Vec3& corner : corners_of(in_space)) region.box.extend(grid.in_frame(corner));
+  if (grid.is_along_axes()) return region;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 normal;
+    normal[axis] = 1;
+    region.sides.push_back(plane_in_frame(grid, {in_space.max, normal}));
+    region.sides.push_back(plane_in_frame(grid, {in_space.min, -normal}));
+  }
+  return region;
+}
+
+}  // namespace adamas

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "core/data/triangle_surface.h"
+#include "core/data/volume.h"
+#include "core/geometry/plane.h"
+
+namespace adamas {
+
+// What is in the frame of a grid and what is in space, beside points (VolumeGrid::in_space).
+
+/// Puts a surface from the grid's frame into space: its points, its normals as those of level sets turn, and
+/// the order of corners so that triangles still face the same values.
+void place_in_space(const VolumeGrid& grid, TriangleSurface& surface);
+
+/// A plane in space as one in the frame.
+Plane plane_in_frame(const VolumeGrid& grid, const Plane& plane);
+
+/// What of the frame is in a box in space: what lies in `box` and, where the axes run aslant, on that side of
+/// all `sides` which their normals point away from.
+struct FrameRegion {
+  Box3 box;
+  std::vector<Plane> sides;
+};
+FrameRegion region_in_frame(const VolumeGrid& grid, const Box3& in_space);
+
+}  // namespace adamas

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "core/io/byte_supply.h"
+
+namespace adamas {
+
+/// Decompresses a bzip2 stream and those that follow it, and hands them out piece by piece. Throws Error with
+/// `name` where one is corrupt or ends early; what follows their end is left alone. Returns their size once
+/// decompressed.
+std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& name,
+                            const std::function<void(std::string_view)>& receive);
+
+/// No bzip2 stream is longer once decompressed than this many times itself: a block of 900 kB, in which 259
+/// equal bytes are five, takes 39 bytes or more.
+inline constexpr std::uint64_t kGreatestBunzip = 2'000'000;
+
+}  // namespace adamas

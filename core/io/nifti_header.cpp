@@ -1,0 +1,206 @@
+#include "core/io/nifti_header.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include "core/base/error.h"
+#include "core/io/inflate_stream.h"
+#include "core/io/input_file.h"
+
+namespace adamas {
+
+namespace {
+
+struct Datatype {
+  int code;
+  StoredType type;
+};
+constexpr Datatype kDatatypes[] = {{2, StoredType::kUint8},    {4, StoredType::kInt16},
+                                   {8, StoredType::kInt32},    {16, StoredType::kFloat32},
+                                   {64, StoredType::kFloat64}, {256, StoredType::kInt8},
+                                   {512, StoredType::kUint16}, {768, StoredType::kUint32},
+                                   {1024, StoredType::kInt64}, {1280, StoredType::kUint64}};
+
+/// Where the fields of a version begin, and the types of their numbers.
+struct Version1 {
+  static constexpr std::size_t kBytes = 348, kMagic = 344;
+  static constexpr std::string_view kSingle{"n+1\0", 4}, kPair{"ni1\0", 4};
+  static constexpr std::size_t kDim = 40, kDatatype = 70, kBits = 72, kPixdim = 76, kOffset = 108,
+                               kSlope = 112, kIntercept = 116, kUnits = 123, kQcode = 252, kScode = 254,
+                               kQuaternion = 256, kQoffset = 268, kSrow = 280;
+  using Size = std::int16_t;
+  using Real = float;
+  using Offset = float;
+  using Code = std::int16_t;
+  using Units = std::int8_t;
+};
+struct Version2 {
+  static constexpr std::size_t kBytes = 540, kMagic = 4;
+  static constexpr std::string_view kSingle{"n+2\0\r\n\x1a\n", 8}, kPair{"ni2\0\r\n\x1a\n", 8};
+  static constexpr std::size_t kDim = 16, kDatatype = 12, kBits = 14, kPixdim = 104, kOffset = 168,
+                               kSlope = 176, kIntercept = 184, kUnits = 500, kQcode = 344, kScode = 348,
+                               kQuaternion = 352, kQoffset = 376, kSrow = 400;
+  using Size = std::int64_t;
+  using Real = double;
+  using Offset = std::int64_t;
+  using Code = std::int32_t;
+  using Units = std::int32_t;
+};
+
+template <class T>
+T number(std::string_view text, std::size_t at, bool big_endian) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), text.data() + at, sizeof(T));
+  if (big_endian) std::reverse(bytes.begin(), bytes.end());
+  return std::bit_cast<T>(bytes);
+}
+
+template <class V>
+NiftiHeader parse_version(std::string_view text, bool big_endian, const std::string& name) {
+  if (text.size() < V::kBytes) {
+    fail("{}: expected a NIfTI header of {} bytes, found {}", name, V::kBytes, text.size());
+  }
+  const std::string_view magic = text.substr(V::kMagic, V::kSingle.size());
+  if (magic != V::kSingle && magic != V::kPair) fail("{}: expected NIfTI, found something else", name);
+  NiftiHeader header;
+  header.big_endian = big_endian;
+  header.single = magic == V::kSingle;
+  header.bytes = V::kBytes;
+  const auto read = [&]<class T>(T, std::size_t at, auto& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<std::remove_reference_t<decltype(values[0])>>(
+          number<T>(text, at + i * sizeof(T), big_endian));
+    }
+  };
+  using Real = typename V::Real;
+  const auto real = [&](std::size_t at) { return static_cast<double>(number<Real>(text, at, big_endian)); };
+  read(typename V::Size{}, V::kDim, header.dim);
+  read(Real{}, V::kPixdim, header.pixdim);
+  read(Real{}, V::kQuaternion, header.quaternion);
+  read(Real{}, V::kQoffset, header.qoffset);
+  for (std::size_t row = 0; row < 3; ++row) read(Real{}, V::kSrow + row * 4 * sizeof(Real), header.srow[row]);
+  header.datatype = number<std::int16_t>(text, V::kDatatype, big_endian);
+  header.bits = number<std::int16_t>(text, V::kBits, big_endian);
+  header.offset = static_cast<double>(number<typename V::Offset>(text, V::kOffset, big_endian));
+  header.slope = real(V::kSlope);
+  header.intercept = real(V::kIntercept);
+  header.qform_code = static_cast<int>(number<typename V::Code>(text, V::kQcode, big_endian));
+  header.sform_code = static_cast<int>(number<typename V::Code>(text, V::kScode, big_endian));
+  return header;
+}
+
+GridAxes sform(const NiftiHeader& header) {
+  GridAxes axes;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t a = 0; a < 3; ++a) axes.directions[a][static_cast<int>(row)] = header.srow[row][a];
+    axes.origin[static_cast<int>(row)] = header.srow[row][3];
+  }
+  return axes;
+}
+
+/// The rotation of a unit quaternion whose first part is not stored.
+GridAxes qform(const NiftiHeader& header) {
+  const auto [b, c, d] = header.quaternion;
+  const double a = std::sqrt(std::max(0.0, 1 - (b * b + c * c + d * d)));
+  GridAxes axes;
+  axes.directions = {{{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)},
+                      {2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)},
+                      {2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - b * b - c * c}}};
+  if (header.pixdim[0] < 0) axes.directions[2] *= -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    axes.directions[static_cast<std::size_t>(axis)] *= header.spacing(axis);
+    axes.origin[axis] = header.qoffset[static_cast<std::size_t>(axis)];
+  }
+  return axes;
+}
+
+template <class V>
+std::string header_bytes(const VolumeGrid& grid) {
+  // Four bytes say that no extension follows.
+  std::string bytes(V::kBytes + 4, '\0');
+  const auto put = [&bytes]<class T>(std::size_t at, T value) { std::memcpy(&bytes[at], &value, sizeof(T)); };
+  using Real = typename V::Real;
+  put(0, static_cast<std::int32_t>(V::kBytes));
+  std::memcpy(&bytes[V::kMagic], V::kSingle.data(), V::kSingle.size());
+  for (std::size_t i = 0; i < 8; ++i) {
+    const std::uint64_t size = i == 0 ? 3 : i <= 3 ? grid.dimensions[i - 1] : 1;
+    const double step = i == 0 || i > 3 ? 1 : grid.spacing[static_cast<int>(i) - 1];
+    put(V::kDim + i * sizeof(typename V::Size), static_cast<typename V::Size>(size));
+    put(V::kPixdim + i * sizeof(Real), static_cast<Real>(step));
+  }
+  const auto* datatype = std::find_if(std::begin(kDatatypes), std::end(kDatatypes),
+                                      [&](const Datatype& d) { return d.type == stored_type(grid.type); });
+  put(V::kDatatype, static_cast<std::int16_t>(datatype->code));
+  put(V::kBits, static_cast<std::int16_t>(8 * sample_bytes(grid.type)));
+  put(V::kOffset, static_cast<typename V::Offset>(bytes.size()));
+  put(V::kSlope, Real{1});
+  // Of the scanner, in millimetres, or aligned with something unknown, in unknown units.
+  const bool known = grid.space == "RAS";
+  put(V::kUnits, static_cast<typename V::Units>(known ? 2 : 0));
+  put(V::kScode, static_cast<typename V::Code>(known ? 1 : 2));
+  for (int row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      const double value = column == 3
+                               ? grid.origin[row]
+                               : grid.spacing[static_cast<int>(column)] * grid.directions[column][row];
+      put(V::kSrow + (4 * static_cast<std::size_t>(row) + column) * sizeof(Real), static_cast<Real>(value));
+    }
+  }
+  return bytes;
+}
+
+}  // namespace
+
+NiftiHeader NiftiHeader::parse(std::string_view text, const std::string& name) {
+  if (text.size() < sizeof(std::int32_t))
+    fail("{}: expected a NIfTI header, found {} bytes", name, text.size());
+  for (const bool big_endian : {false, true}) {
+    const auto size = number<std::int32_t>(text, 0, big_endian);
+    if (size == Version1::kBytes) return parse_version<Version1>(text, big_endian, name);
+    if (size == Version2::kBytes) return parse_version<Version2>(text, big_endian, name);
+  }
+  fail("{}: expected NIfTI, found something else", name);
+}
+
+std::optional<GridAxes> NiftiHeader::axes() const {
+  if (sform_code > 0) return sform(*this);
+  return qform_code > 0 ? std::optional(qform(*this)) : std::nullopt;
+}
+
+double NiftiHeader::spacing(int axis) const {
+  const double step = std::abs(pixdim[static_cast<std::size_t>(axis) + 1]);
+  return step > 0 && std::isfinite(step) ? step : 1;
+}
+
+std::optional<StoredType> NiftiHeader::type() const {
+  const auto* found = std::find_if(std::begin(kDatatypes), std::end(kDatatypes),
+                                   [this](const Datatype& d) { return d.code == datatype; });
+  return found == std::end(kDatatypes) ? std::nullopt : std::optional(found->type);
+}
+
+std::string read_nifti_header(const std::filesystem::path& path) {
+  if (!file_extension(path).ends_with(".gz")) return read_beginning(path);
+  constexpr std::size_t kHeader = NiftiHeader::kMostBytes;
+  struct Enough {};
+  std::string header;
+  try {
+    inflate_stream(supply_file(FileHandle::open(path), 0), path.string(), [&](std::string_view piece) {
+      header += piece.substr(0, kHeader - header.size());
+      if (header.size() == kHeader) throw Enough();
+    });
+  } catch (const Enough&) {
+  }
+  return header;
+}
+
+std::string nifti_file_header(const VolumeGrid& grid) {
+  constexpr std::uint64_t kMost = 32767;
+  const bool large =
+      std::any_of(grid.dimensions.begin(), grid.dimensions.end(), [](std::uint64_t n) { return n > kMost; });
+  return large ? header_bytes<Version2>(grid) : header_bytes<Version1>(grid);
+}
+
+}  // namespace adamas

@@ -1,0 +1,110 @@
+#include "core/io/referred_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/io/input_file.h"
+#include "core/io/number_list.h"
+
+namespace adamas {
+
+namespace {
+
+/// More names than a header may sensibly have.
+constexpr std::int64_t kMostNames = 1'000'000;
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+/// What a line says of the data, behind any of the names of that field.
+std::optional<std::string_view> data_field(std::string_view line) {
+  for (const std::string_view name : {"data file:", "datafile:", "ElementDataFile"}) {
+    if (!line.starts_with(name)) continue;
+    std::string_view value = trimmed(line.substr(name.size()));
+    if (name.back() == ':') return value;
+    if (value.starts_with('=')) return trimmed(value.substr(1));
+  }
+  return {};
+}
+
+/// The names of "slice%03d.raw 1 20 1": a pattern with a number, the first, the last and the step.
+std::vector<std::string> names_of_pattern(std::string_view value) {
+  const std::size_t percent = value.find('%');
+  std::size_t end = percent + 1;
+  while (end < value.size() && std::isdigit(static_cast<unsigned char>(value[end])) != 0) ++end;
+  const std::size_t blank = std::min(value.find_first_of(" \t", end), value.size());
+  const auto range = parse_number_list<std::int64_t>(value.substr(blank));
+  if (end >= value.size() || value[end] != 'd' || !range || range->size() < 2) return {};
+  const std::string digits(value.substr(percent + 1, end - percent - 1));
+  // As wide as is asked for, and no wider than a name may be.
+  const std::size_t width =
+      std::min<std::size_t>(digits.empty() ? 0 : std::strtoul(digits.c_str(), nullptr, 10), 255);
+  const char fill = digits.starts_with('0') ? '0' : ' ';
+  const std::int64_t first = (*range)[0], last = (*range)[1], step = range->size() > 2 ? (*range)[2] : 1;
+  std::vector<std::string> names;
+  for (std::int64_t n = first; step > 0 && n <= last && std::ssize(names) < kMostNames; n += step) {
+    std::string number = std::to_string(n);
+    if (number.size() < width) number.insert(0, width - number.size(), fill);
+    names.push_back(
+        fmt::format("{}{}{}", value.substr(0, percent), number, value.substr(end + 1, blank - end - 1)));
+  }
+  return names;
+}
+
+std::vector<std::string> names_in_header(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(kLongestHeader, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  std::vector<std::string> names;
+  bool listed = false;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (listed) {
+      if (!line.empty()) names.emplace_back(line);
+      continue;
+    }
+    // The samples follow.
+    if (line.empty()) break;
+    const auto value = data_field(line);
+    if (!value) continue;
+    listed = value->starts_with("LIST");
+    if (listed) continue;
+    if (value->find('%') != std::string_view::npos) return names_of_pattern(*value);
+    return {std::string(*value)};
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> referred_files(const std::filesystem::path& path) {
+  const std::string extension = file_extension(path);
+  const auto is = [&extension](std::string_view one) { return extension == one; };
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) return {};
+  std::vector<std::filesystem::path> files;
+  if (is(".nhdr") || is(".nrrd") || is(".mhd") || is(".mha")) {
+    for (const std::string& name : names_in_header(path)) files.push_back(path.parent_path() / name);
+  }
+  if (extension.starts_with(".hdr") || extension.starts_with(".img")) {
+    const bool header = extension.starts_with(".hdr");
+    for (const char* other :
+         {header ? ".img" : ".hdr", header ? ".img.gz" : ".hdr.gz", header ? ".IMG" : ".HDR"})
+      files.push_back(path.parent_path() / (file_stem(path) + other));
+  }
+  return files;
+}
+
+}  // namespace adamas

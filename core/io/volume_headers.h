@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/data/volume.h"
+
+namespace adamas {
+
+// The text or bytes that go before the samples of a volume in files of some formats, and after them.
+
+/// `data_name`: the file of the samples, empty where they follow.
+std::string nrrd_header_text(const VolumeGrid& grid, const std::string& data_name);
+std::string meta_image_header_text(VolumeGrid grid, const std::string& data_name);
+/// `array`: the name of the samples. Throws Error with `name` where there are too many along an axis.
+std::string vti_header_text(const std::string& name, const VolumeGrid& grid, const std::string& array);
+inline constexpr const char* kVtiEnd = "\n  </AppendedData>\n</VTKFile>\n";
+std::string nifti_header_bytes(VolumeGrid grid);
+
+}  // namespace adamas
