@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/geometry/length_limits.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/sample_dispatch.h"
 
@@ -46,6 +47,11 @@ MultiMaterialData store_slab(const StoreInput& input, const Plane& plane, Sessio
   const std::unique_ptr<StoreFile> file = open_store(input, session);
   const VolumeGrid& volume = file->header().grid;
   const Box3 box = volume.box();
+  for (const std::uint64_t n : volume.dimensions) {
+    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", input.path, n);
+  }
+  check_lengths(input.path, box);
+  check_lengths(input.path, {volume.origin, volume.origin + volume.spacing});
   if (clip_plane(plane, box).empty())
     fail("{}: expected a plane that cuts {}, found {}", input.path, box_text(box), to_string(plane));
   RestoredPart part;
@@ -61,7 +67,6 @@ MultiMaterialData store_slab(const StoreInput& input, const Plane& plane, Sessio
   MultiMaterialData data;
   data.source = input.path;
   data.grid = nodes_of(part.grid);
-  check_nodes(input.path, data.grid);
   data.materials = IdVector<MaterialId, std::string>(1, "volume");
   data.labels.assign(part.grid.samples(), 0);
   Field field;
