@@ -8,6 +8,7 @@
 #include "cli/material_numbers.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
+#include "core/geometry/length_limits.h"
 #include "core/io/array_names.h"
 #include "core/io/field_assembly.h"
 #include "core/io/grid_axes.h"
@@ -179,6 +180,7 @@ ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_
     data->labels.clear();
   }
   if (!box && !mesh.triangles.empty()) box = data ? data->grid.domain() : domain_of(mesh);
+  if (box) check_lengths(mesh.source, *box);
   if (box) check_domain(mesh, *box);
   if (check && box) {
     check({mesh.source, *box, data ? field_infos(*data) : std::vector<FieldInfo>(),

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
+#include "core/geometry/length_limits.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/sample_dispatch.h"
 
@@ -56,6 +57,11 @@ using PlaneSink = std::function<void(std::span<const std::byte>)>;
 SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& plane,
                 const std::function<void(const RestoredPart&, const PlaneSink&)>& read, Session& session) {
   check_volume_dimensions(name, volume);
+  for (const std::uint64_t n : volume.dimensions) {
+    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
+  }
+  check_lengths(name, volume.frame_box());
+  check_lengths(name, {volume.origin, volume.origin + volume.spacing});
   const Plane in_frame = plane_in_frame(volume, plane);
   if (clip_plane(in_frame, volume.frame_box()).empty())
     fail("{}: expected a plane that cuts {}, found {}", name, box_text(volume.box()), to_string(plane));
@@ -72,7 +78,6 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
   MultiMaterialData data;
   data.source = name;
   data.grid = nodes_of(part, volume);
-  check_nodes(name, data.grid);
   data.materials = IdVector<MaterialId, std::string>(1, "volume");
   data.labels.assign(part.grid.samples(), 0);
   Field field;

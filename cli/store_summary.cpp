@@ -5,8 +5,8 @@
 
 #include "cli/store_input.h"
 #include "cli/volume_places.h"
-#include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/storage/sample_range.h"
 
 namespace adamas {
 
@@ -16,17 +16,14 @@ namespace {
 void print_range(StoreFile& file, Console& console, Figures& figures) {
   with_sample_type(file.header().grid.type, [&](auto sample) {
     using Sample = decltype(sample);
-    try {
-      StoredPages<OrderedWord<Sample>> pages(file, 0, 0);
-      const auto [low, high] = StoredDiamonds<Sample>(pages).range();
-      if (low > high) return;
-      console.print("  values from {:.6g} to {:.6g}\n", low, high);
-      figures["min"] = low;
-      figures["max"] = high;
-    } catch (const PageLost& lost) {
-      console.note_damage("{}: {} is damaged, which tells the range of values", file.name(),
-                          page_name(lost.damaged));
-    }
+    StoredPages<OrderedWord<Sample>> pages(file, 0, 0);
+    const auto found = sample_range<Sample>(pages);
+    if (!found) return console.note_damage("{}: what tells the range of values is damaged", file.name());
+    const auto [low, high] = *found;
+    if (low > high) return;
+    console.print("  values from {:.6g} to {:.6g}\n", low, high);
+    figures["min"] = low;
+    figures["max"] = high;
   });
 }
 

@@ -13,8 +13,6 @@ namespace {
 /// Sums of fractions that are off by less are right but for the rounding of numbers in files.
 constexpr double kRoundOff = 1e-5;
 
-}  // namespace
-
 void check_nodes(const std::string& source, const RectilinearGrid& grid) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto& nodes = grid.nodes[static_cast<std::size_t>(axis)];
@@ -36,8 +34,6 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
     }
   }
 }
-
-namespace {
 
 void check_array(const std::string& source, const std::string& name, const std::vector<float>& values,
                  std::size_t expected) {

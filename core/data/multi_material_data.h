@@ -35,10 +35,6 @@ struct FractionReport {
   std::size_t renormalised = 0;     ///< sites whose fractions did not add up to one, but for round-off
 };
 
-/// Throws Error that names the source where a grid is not one in which lengths can be computed with: finite
-/// ascending coordinates, two or more along each axis, within the bounds of core/geometry/length_limits.h.
-void check_nodes(const std::string& source, const RectilinearGrid& grid);
-
 /// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a
 /// label per site, and fields.
 struct MultiMaterialData {

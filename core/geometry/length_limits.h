@@ -1,10 +1,20 @@
 #pragma once
 
+#include <string>
+
+#include "core/geometry/vec3.h"
+
 namespace adamas {
 
 /// Lengths of cells above the one and coordinates below the other: so products of four lengths neither
 /// overflow nor underflow, their rounding errors included.
 inline constexpr double kLeastLength = 1e-50;
 inline constexpr double kGreatestCoordinate = 1e50;
+/// How many times longer a box may be along one axis than along another: beyond it the square of the shorter
+/// side is lost in that of the longer one, and so are distances.
+inline constexpr double kGreatestAspect = 1e8;
+
+/// Throws Error with `name` where the sides or the places of a box are not within these bounds.
+void check_lengths(const std::string& name, const Box3& box);
 
 }  // namespace adamas

@@ -24,6 +24,13 @@ void check_box(const Box3& box) {
            kGreatestCoordinate, name, low, high);
     }
   }
+  const Vec3 size = box.size();
+  const auto [shortest, longest] = std::minmax({size.x, size.y, size.z});
+  if (longest > kGreatestAspect * shortest) {
+    fail(
+        "domain: expected sides of which none is more than {:g} times as long as another, found {} x {} x {}",
+        kGreatestAspect, size.x, size.y, size.z);
+  }
 }
 
 /// Levels until cells get so small that rounded positions could turn a tetrahedron inside out.

@@ -8,6 +8,7 @@
 
 #include "isosurface/compression/wide_lanes.h"
 #include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/storage/sample_range.h"
 
 namespace adamas {
 
@@ -184,21 +185,9 @@ int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
 template <class Sample>
 std::array<double, 2> StoredDiamonds<Sample>::range() {
   const PageId coarsest{grid_.top(), {0, 0, 0}};
-  const PageEntry& all = entry(coarsest);
-  if (grid_.depth() > 0) return {value(static_cast<Word>(all.low)), value(static_cast<Word>(all.high))};
-  // No diamond has a range where all samples are corners of the domain.
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::array<double, 2> range{kInfinity, -kInfinity};
-  const PagePoints<Word>& page = samples(coarsest);
-  const LatticePoint last = grid_.last();
-  for (std::int32_t corner = 0; corner < 8; ++corner) {
-    const LatticePoint p{corner & 1, corner >> 1 & 1, corner >> 2};
-    if (p.i > last.i || p.j > last.j || p.k > last.k) continue;
-    const double found = value(page[PageGrid::place(p, 0)]);
-    if (!std::isfinite(found)) continue;
-    range = {std::min(range[0], found), std::max(range[1], found)};
-  }
-  return range;
+  const auto found = sample_range<Sample>(pages_);
+  if (!found) throw PageLost{coarsest, coarsest};
+  return *found;
 }
 
 template class StoredDiamonds<std::uint8_t>;

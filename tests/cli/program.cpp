@@ -30,6 +30,10 @@ namespace {
     const rlimit limit{*options.file_size_limit, *options.file_size_limit};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (options.address_space) {
+    const rlimit limit{*options.address_space, *options.address_space};
+    setrlimit(RLIMIT_AS, &limit);
+  }
   const int in = open("/dev/null", O_RDONLY);
   dup2(in, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);

@@ -24,6 +24,7 @@ struct RunResult {
 
 struct RunOptions {
   std::optional<std::size_t> file_size_limit;
+  std::optional<std::size_t> address_space;  ///< the program's, in bytes
   /// Send SIGINT as soon as stderr holds this text.
   std::string interrupt_at;
   /// Or as soon as this is so.

@@ -46,6 +46,20 @@ TEST(Domain, BadBoxesAreRefusedInOneLine) {
   EXPECT_NE(message_of(Box3(), {1, 1, 1}), "");
 }
 
+TEST(Domain, SidesOfOtherOrdersAreRefused) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Box3 box{{0, 0, 0}, {1, 1, 1}};
+    for (const double side : {1e8, 1e-8}) {
+      box.max[axis] = side;
+      EXPECT_EQ(message_of(box, {1, 1, 1}), "");
+    }
+    for (const double side : {1.01e8, 0.99e-8, 1e20}) {
+      box.max[axis] = side;
+      EXPECT_NE(message_of(box, {1, 1, 1}).find("none is more than 1e+08 times"), std::string::npos) << side;
+    }
+  }
+}
+
 TEST(Domain, BadNumbersOfRootsAreRefused) {
   const Box3 box{{0, 0, 0}, {1, 1, 1}};
   EXPECT_NE(message_of(box, {1, 0, 1}).find("found 0 along y"), std::string::npos);
