@@ -1,6 +1,4 @@
 #include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -251,6 +249,7 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
 void run(const ExperimentOptions& options, Session& session) {
   const ExperimentWishes wishes(options);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
+  session.outputs.protect_other(options.output);
   OutputFolder folder(options.output, options.overwrite, {"metrics.json", "report.html"});
   ExperimentRecord record;
   Figures figures;

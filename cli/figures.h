@@ -32,5 +32,7 @@ std::string bytes_text(double bytes);
 
 /// "[0, 1] x [0, 1] x [0, 1]".
 std::string box_text(const Box3& box);
+/// "(x, y, z)", for a place or a direction.
+std::string place_text(const Vec3& p);
 
 }  // namespace adamas

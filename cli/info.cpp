@@ -1,6 +1,4 @@
 #include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -215,9 +213,8 @@ void check_options(const Options& all) {
 }
 
 void run(const Options& given, Session& session) {
-  const Options all{with_main_file(given.input), given.volume};
+  const Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
   const InputOptions& options = all.input;
-  if (options.path.empty()) wrong_usage("expected a FILE, or files in --fraction or --labels, found neither");
   protect_inputs(options, options.path, session.outputs);
   check_options(all);
   if (!all.volume.stack) check_input_file(options.path);

@@ -194,17 +194,22 @@ InputOptions with_main_file(const InputOptions& options) {
   return result;
 }
 
+InputOptions with_needed_main_file(const InputOptions& options, const char* expected) {
+  InputOptions result = with_main_file(options);
+  if (result.path.empty())
+    wrong_usage("expected {}, or files in --fraction or --labels, found neither", expected);
+  return result;
+}
+
 InputFacts facts_of(const ResamplingSource& source) {
   return {source.name, source.box, source.fields ? source.fields->fields() : std::vector<FieldInfo>(),
           source.voxel};
 }
 
 MultiMaterialData load_data(const InputOptions& given, Console& console) {
-  const InputOptions options = with_main_file(given);
+  const InputOptions options = with_needed_main_file(given);
   MaterialDataOptions how = material_options(options);
   how.note = [&console](const std::string& text) { console.note("{}", text); };
-  if (options.path.empty())
-    wrong_usage("expected an INPUT, or files in --fraction or --labels, found neither");
   check_input_file(options.path);
   switch (input_kind(options.path)) {
     case InputKind::kMesh:

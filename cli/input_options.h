@@ -31,7 +31,7 @@ struct InputOptions {
   [[nodiscard]] std::string grid_option() const;
   /// What --cells or --points say. Throws UsageError where both are given.
   [[nodiscard]] std::optional<Centering> centering() const;
-  /// The same for one that only given interfaces can mean, --interface itself apart.
+  /// The first option given that only given interfaces can mean, --interface itself apart.
   [[nodiscard]] std::string interface_option() const;
 };
 
@@ -62,6 +62,10 @@ MaterialDataOptions material_options(const InputOptions& options);
 /// The same options with the file that gives the grid as the input's path: where none was given, the first of
 /// those that hold volume fractions or labels.
 InputOptions with_main_file(const InputOptions& options);
+
+/// The same where a file is needed: throws UsageError where there is none. `expected` is what the input is
+/// called.
+InputOptions with_needed_main_file(const InputOptions& options, const char* expected = "an INPUT");
 
 /// Reads a gridded input; notes what was mended in its volume fractions beyond round-off.
 MultiMaterialData load_data(const InputOptions& options, Console& console);

@@ -2,54 +2,50 @@
 
 #include <unistd.h>
 
-#include <array>
+#include <atomic>
 #include <cerrno>
-#include <csignal>
 
+#include "cli/exit_status.h"
 #include "core/base/abrupt_end.h"
+#include "core/base/parallel.h"
+#include "core/base/stopping_signals.h"
 
 namespace adamas {
 
 namespace {
 
-constexpr int kInterruptedStatus = 130;
-constexpr std::array<int, 4> kStopping{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
-
-volatile std::sig_atomic_t flag = 0;
+std::atomic<bool> flag = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void handle_signal(int) {
   const int before = errno;
-  if (flag != 0) {
+  if (flag.exchange(true)) {
     clean_up_at_abrupt_end();
-    _exit(kInterruptedStatus);
+    _exit(kInterrupted);
   }
-  flag = 1;
   errno = before;
-}
-
-bool is_ignored(int number) {
-  struct sigaction now {};
-  return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
 }  // namespace
 
 void catch_signals() {
+  const sigset_t stopping = stopping_signals();
   struct sigaction action {};
   action.sa_handler = handle_signal;
   action.sa_flags = SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  // Two signals at once must not both be the first.
-  for (const int number : kStopping) sigaddset(&action.sa_mask, number);
-  for (const int number : kStopping) {
+  // Two signals that wait together are handled one after the other before the run goes on, and by one thread.
+  action.sa_mask = stopping;
+  block_signals_in_workers(stopping);
+  for (const int number : kStoppingSignals) {
     if (!is_ignored(number)) sigaction(number, &action, nullptr);
   }
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, nullptr);
   sigaction(SIGXFSZ, &ignore, nullptr);
+  pthread_sigmask(SIG_UNBLOCK, &stopping, nullptr);
 }
 
-bool interrupted() { return flag != 0; }
+bool interrupted() { return flag; }
 
 }  // namespace adamas

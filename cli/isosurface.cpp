@@ -1,6 +1,4 @@
 #include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include "cli/option_values.h"
 #include "cli/store_input.h"
 #include "cli/usage_error.h"
+#include "cli/volume_input.h"
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "core/io/surface_writer.h"
@@ -103,9 +102,7 @@ void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isov
 /// Throws where a surface cannot be: in a region outside of the data, or without cells.
 void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRequest& request,
                 const std::optional<Box3>& region) {
-  for (const std::uint64_t n : grid.dimensions) {
-    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
-  }
+  check_two_samples(name, grid);
   const Box3 box = grid.frame_box();
   for (int axis = 0; axis < 3; ++axis) {
     if (box.min[axis] < box.max[axis]) continue;

@@ -47,6 +47,20 @@ Figures print_interfaces(const InterfaceMesh& mesh, Console& console) {
   return print_sums(sums, mesh.materials, false, true, console);
 }
 
+Figures print_network_volumes(const ResamplingSource& source, const char* key, bool print, Console& console) {
+  Figures figures = Figures::array();
+  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
+  const bool known = !source.volumes.empty();
+  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
+    figures.push_back(
+        {{"name", source.materials[m]}, {key, known ? Figures(source.volumes[m]) : Figures(nullptr)}});
+    rows.push_back({source.materials[m], known ? volume_text(source.volumes[m]) : "-"});
+  }
+  if (print) console.table(rows);
+  if (!known) console.note("{}: the interfaces are not closed, so that volumes are not known", source.name);
+  return figures;
+}
+
 Figures print_interface_areas(const ResamplingSource& source, bool print, Console& console) {
   const InterfaceNetwork& network = *source.network;
   const NetworkMeasures measures = measure_network(network, source.box, source.materials.size());

@@ -10,7 +10,11 @@ namespace adamas {
 /// Prints how many triangles each interface has, "A | B"; the figures are a list of interfaces.
 Figures print_interfaces(const InterfaceMesh& mesh, Console& console);
 
-/// The same for given interfaces, with their areas in the domain.
+/// Prints the volumes that given interfaces enclose, where they are closed; the figures are a list of
+/// materials with `key` for the volume.
+Figures print_network_volumes(const ResamplingSource& source, const char* key, bool print, Console& console);
+
+/// As print_interfaces for given interfaces, with their areas in the domain.
 Figures print_interface_areas(const ResamplingSource& source, bool print, Console& console);
 
 }  // namespace adamas

@@ -63,8 +63,18 @@ void OutputSet::protect_other(const std::filesystem::path& path) {
 }
 
 std::string OutputSet::naming_input(const std::string& message) const {
-  const auto names = [&message](const std::filesystem::path& path) {
-    return message.find(path.string()) != std::string::npos;
+  // A name that is part of a longer word names nothing.
+  const auto ends_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-';
+  };
+  const auto names = [&](const std::filesystem::path& path) {
+    const std::string name = path.string();
+    for (std::size_t at = 0; !name.empty() && (at = message.find(name, at)) != std::string::npos; ++at) {
+      const std::size_t end = at + name.size();
+      if ((at == 0 || ends_word(message[at - 1])) && (end == message.size() || ends_word(message[end])))
+        return true;
+    }
+    return false;
   };
   const bool is_named = std::any_of(inputs_.begin(), inputs_.end(), names) ||
                         std::any_of(others_.begin(), others_.end(), names) ||

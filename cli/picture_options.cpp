@@ -1,8 +1,5 @@
 #include "cli/picture_options.h"
 
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
@@ -32,10 +29,12 @@ InterfacePictureOptions PictureOptions::sizes() const {
 
 void PictureOptions::check() const {
   const PictureOptions none;
-  const bool given =
-      direction != none.direction || projection != none.projection || !focus.empty() || !size.empty();
-  if (own_file && file.empty() && given)
-    wrong_usage("expected --picture as well, found only options of a picture");
+  const char* given = direction != none.direction     ? "--direction"
+                      : projection != none.projection ? "--projection"
+                      : !focus.empty()                ? "--focus"
+                      : !size.empty()                 ? "--size"
+                                                      : nullptr;
+  if (own_file && file.empty() && given != nullptr) wrong_usage("{}: expected --picture as well", given);
   InterfacePicture unused;
   aim(unused);
   static_cast<void>(sizes());

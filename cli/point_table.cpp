@@ -9,19 +9,12 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/trimmed.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
 
 namespace {
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// The cells of a line: between semicolons where there are any, else between commas, else between blanks.
 std::vector<std::string_view> split_cells(std::string_view line) {

@@ -1,6 +1,4 @@
 #include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -101,20 +99,9 @@ void report_integrals(const IdVector<MaterialId, MaterialIntegral>& integrals,
 
 /// Volumes and areas of given interfaces.
 void report_network(const ResamplingSource& source, bool print, Console& console, Figures& figures) {
-  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
-  const bool known = !source.volumes.empty();
-  figures["materials"] = Figures::array();
-  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
-    figures["materials"].push_back(
-        {{"name", source.materials[m]}, {"volume", known ? Figures(source.volumes[m]) : Figures(nullptr)}});
-    rows.push_back({source.materials[m], known ? volume_text(source.volumes[m]) : "-"});
-  }
-  if (print) {
-    console.print("  domain {}\n", box_text(source.box));
-    console.table(rows);
-  }
+  if (print) console.print("  domain {}\n", box_text(source.box));
+  figures["materials"] = print_network_volumes(source, "volume", print, console);
   figures["interfaces"] = print_interface_areas(source, print, console);
-  if (!known) console.note("{}: the interfaces are not closed, so that volumes are not known", source.name);
 }
 
 /// Points beside the domain have no values, which is easily overlooked in a long table.

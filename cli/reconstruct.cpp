@@ -1,6 +1,4 @@
 #include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -39,20 +37,6 @@ Figures print_volumes(const MultiMaterialData& data, const Reconstruction& resul
   return figures;
 }
 
-/// The same for interfaces that are given: there is nothing to compare with.
-Figures print_volumes(const ResamplingSource& source, Console& console) {
-  Figures figures = Figures::array();
-  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
-  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
-    const bool known = !source.volumes.empty();
-    rows.push_back({source.materials[m], known ? volume_text(source.volumes[m]) : "-"});
-    figures.push_back({{"name", source.materials[m]},
-                       {"volume_reconstructed", known ? Figures(source.volumes[m]) : Figures(nullptr)}});
-  }
-  console.table(rows);
-  return figures;
-}
-
 /// The interfaces of an input, with what is printed of them.
 struct Interfaces {
   InterfaceMesh mesh;
@@ -74,7 +58,7 @@ Interfaces take_given(const Options& options, Figures& figures, Console& console
   const Input input = load_input(options.input, console);
   const ResamplingSource& source = input.source;
   options.picture.check_materials(source.materials, source.name);
-  figures["materials"] = print_volumes(source, console);
+  figures["materials"] = print_network_volumes(source, "volume_reconstructed", true, console);
   figures["interfaces"] = print_interface_areas(source, true, console);
   figures["bodies"] = source.network->table().body_count();
   return {network_mesh(*source.network, source.materials, source.name), source.box};

@@ -1,6 +1,4 @@
 #include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -26,8 +24,6 @@ namespace {
 std::string shown_length(double length) {
   return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
 }
-
-std::string place_text(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z); }
 
 struct Options {
   InputOptions input;

@@ -5,9 +5,11 @@
 #include <cstring>
 #include <functional>
 
+#include "cli/volume_input.h"
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/length_limits.h"
+#include "core/io/multi_material_reader.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/sample_dispatch.h"
 
@@ -57,9 +59,7 @@ using PlaneSink = std::function<void(std::span<const std::byte>)>;
 SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& plane,
                 const std::function<void(const RestoredPart&, const PlaneSink&)>& read, Session& session) {
   check_volume_dimensions(name, volume);
-  for (const std::uint64_t n : volume.dimensions) {
-    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
-  }
+  check_two_samples(name, volume);
   check_lengths(name, volume.frame_box());
   check_lengths(name, {volume.origin, volume.origin + volume.spacing});
   const Plane in_frame = plane_in_frame(volume, plane);
@@ -70,15 +70,13 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
     part = restored_part(volume, level, layers_at(volume, in_frame, level), name);
     if (part.grid.samples() <= kMostSamples) break;
   }
-  for (const std::uint64_t n : part.grid.dimensions) {
-    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
-  }
+  check_two_samples(name, part.grid);
   if (part.level > 0)
     session.console.note("the section is of one sample in {} along each axis", 1 << part.level);
   MultiMaterialData data;
   data.source = name;
   data.grid = nodes_of(part, volume);
-  data.materials = IdVector<MaterialId, std::string>(1, "volume");
+  data.materials = IdVector<MaterialId, std::string>(1, kPlainMaterial);
   data.labels.assign(part.grid.samples(), 0);
   Field field;
   field.name = kSampleField;

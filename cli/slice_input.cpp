@@ -115,9 +115,7 @@ ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
 
 SliceInput load_slice_input(const InputOptions& given, const std::string& original, const Plane* plane,
                             const std::function<void(const SliceInput&)>& check, Console& console) {
-  const InputOptions options = with_main_file(given);
-  if (options.path.empty())
-    wrong_usage("expected an INPUT, or files in --fraction or --labels, found neither");
+  const InputOptions options = with_needed_main_file(given);
   SliceInput input;
   input.name = options.path;
   InputOptions from = options;
@@ -133,9 +131,9 @@ SliceInput load_slice_input(const InputOptions& given, const std::string& origin
     check(input);
     return input;
   }
-  for (const char* option : {"--box", "--tolerant"}) {
-    if (option == std::string("--box") ? options.box.empty() : !options.tolerant) continue;
-    wrong_usage("{}: expected interfaces as INPUT, found {}", option, options.path);
+  if (!options.box.empty() || options.tolerant) {
+    wrong_usage("{}: expected interfaces as INPUT, found {}", options.box.empty() ? "--tolerant" : "--box",
+                options.path);
   }
   if (meshed) {
     input.mesh = load_resampled_mesh(options.path, console);

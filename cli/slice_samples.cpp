@@ -27,6 +27,7 @@ SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
   if (!of_volume.empty()) {
     if (!original.empty()) wrong_usage("{} and --original: expected one of them", of_volume);
     if (about_grid) wrong_usage("{} and {}: expected one of them", of_volume, option);
+    if (input.path.empty()) wrong_usage("{}: expected a volume as INPUT, found none", of_volume);
     return SampleOrigin::kVolume;
   }
   if (about_grid || !original.empty() || input_kind(input.path) != InputKind::kGrid ||

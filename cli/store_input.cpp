@@ -1,7 +1,5 @@
 #include "cli/store_input.h"
 
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/option_checks.h"

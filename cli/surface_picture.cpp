@@ -1,12 +1,11 @@
 #include "cli/surface_picture.h"
 
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
 
 #include "cli/usage_error.h"
 #include "core/base/error.h"
+#include "core/base/trimmed.h"
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 
@@ -17,17 +16,12 @@ namespace {
 /// More names than this make no legend.
 constexpr std::size_t kMostNames = 24;
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 /// The materials that a choice names: two of an interface, or one and none.
 std::array<std::string, 2> chosen_names(const std::string& text) {
   const std::size_t bar = text.find('|');
-  if (bar == std::string::npos) return {trimmed(text), ""};
-  return {trimmed(text.substr(0, bar)), trimmed(text.substr(bar + 1))};
+  if (bar == std::string::npos) return {std::string(trimmed(text)), ""};
+  const std::string_view view = text;
+  return {std::string(trimmed(view.substr(0, bar))), std::string(trimmed(view.substr(bar + 1)))};
 }
 
 MaterialId find_material(const IdVector<MaterialId, std::string>& materials, const std::string& name,

@@ -1,13 +1,12 @@
 #include "cli/volume_input.h"
 
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 
 #include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
+#include "core/io/grid_axes.h"
 #include "core/io/input_file.h"
 #include "core/io/meta_image_fields.h"
 #include "core/io/nrrd_header.h"
@@ -131,14 +130,18 @@ bool is_aslant_image(const std::string& path) {
     if (tag->name != "ImageData") continue;
     const auto numbers = parse_number_list<double>(tag->value("Direction"));
     if (!numbers || numbers->size() != 9) return false;
-    // A row, and so a column, with two numbers.
-    for (std::size_t row = 0; row < 3; ++row) {
-      const auto begin = numbers->begin() + 3 * static_cast<std::ptrdiff_t>(row);
-      if (std::count(begin, begin + 3, 0.0) < 2) return true;
-    }
-    return false;
+    GridAxes axes;
+    for (std::size_t column = 0; column < 3; ++column)
+      axes.directions[column] = {(*numbers)[column], (*numbers)[3 + column], (*numbers)[6 + column]};
+    return !are_parallel(axes);
   }
   return false;
+}
+
+void check_two_samples(const std::string& name, const VolumeGrid& grid) {
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
+  }
 }
 
 void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {

@@ -39,4 +39,7 @@ bool is_aslant_image(const std::string& path);
 /// Throws Error where a volume has more samples along an axis than pages can be made of.
 void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
 
+/// Throws Error where an axis has fewer than two samples: nothing lies between them.
+void check_two_samples(const std::string& name, const VolumeGrid& grid);
+
 }  // namespace adamas

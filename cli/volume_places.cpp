@@ -6,11 +6,6 @@ namespace adamas {
 
 namespace {
 
-std::string vector_text(const Vec3& v) {
-  // No zero has a sign.
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x + 0.0, v.y + 0.0, v.z + 0.0);
-}
-
 Figures vector_figures(const Vec3& v) { return Figures{v.x, v.y, v.z}; }
 
 }  // namespace
@@ -24,8 +19,8 @@ void print_places(const VolumeGrid& grid, Console& console) {
 void print_axes(const VolumeGrid& grid, Console& console) {
   if (!grid.is_straight()) {
     const auto& [i, j, k] = grid.directions;
-    console.print("  axes {}, {}, {}, first sample at {}{}\n", vector_text(i), vector_text(j), vector_text(k),
-                  vector_text(grid.origin), grid.is_left_handed() ? ", left-handed" : "");
+    console.print("  axes {}, {}, {}, first sample at {}{}\n", place_text(i), place_text(j), place_text(k),
+                  place_text(grid.origin), grid.is_left_handed() ? ", left-handed" : "");
   }
   if (!grid.space.empty()) console.print("  coordinates are {}\n", grid.space);
 }

@@ -79,7 +79,7 @@ void CellFractions::visit(const LocalScene& parent, const Box3& box, int level, 
 }
 
 void CellFractions::cut(const LocalScene& local, const Box3& box, double weight, std::vector<double>& sums) {
-  cube_.sample(local, box_corners(box));
+  cube_.sample(local, box.corners());
   const auto candidates = local.candidates();
   if (candidates.size() == 2 && local.functions().size() == 2) return cut_pair(local, weight, sums);
   for (std::size_t t = 0; t < kCubeTetrahedra.size(); ++t) {

@@ -99,15 +99,6 @@ std::optional<MaterialId> LocalScene::sole_owner() const {
   return sole ? std::optional(first) : std::nullopt;
 }
 
-std::array<Vec3, 8> box_corners(const Box3& box) {
-  std::array<Vec3, 8> corners;
-  for (unsigned c = 0; c < 8; ++c) {
-    corners[c] = {(c & 1u) ? box.max.x : box.min.x, (c & 2u) ? box.max.y : box.min.y,
-                  (c & 4u) ? box.max.z : box.min.z};
-  }
-  return corners;
-}
-
 void CubeValues::sample(const LocalScene& local, const std::array<Vec3, 8>& corners) {
   const auto& functions = local.scene().functions();
   values_.resize(functions.size());

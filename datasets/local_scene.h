@@ -64,7 +64,4 @@ class CubeValues {
   std::vector<std::array<double, 8>> values_;  // by function
 };
 
-/// Corners of a box, numbered as in kCubeTetrahedra.
-std::array<Vec3, 8> box_corners(const Box3& box);
-
 }  // namespace adamas

@@ -10,6 +10,26 @@
 
 namespace adamas {
 
+namespace {
+
+/// What block_signals_in_workers has said, before there is any worker.
+struct Keeper {
+  bool known = false;
+  pthread_t thread{};
+  sigset_t signals{};
+} keeper;
+
+/// Once for each thread that comes here.
+void leave_signals_to_keeper() {
+  thread_local bool done = false;
+  if (done) return;
+  done = true;
+  if (keeper.known && pthread_equal(pthread_self(), keeper.thread) == 0)
+    pthread_sigmask(SIG_BLOCK, &keeper.signals, nullptr);
+}
+
+}  // namespace
+
 void parallel_chunks(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   grain = std::max<std::size_t>(grain, 1);
@@ -18,6 +38,7 @@ void parallel_chunks(std::size_t count, std::size_t grain,
   // lock.
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+      leave_signals_to_keeper();
       const std::size_t begin = chunk * grain;
       body(begin, std::min(begin + grain, count));
     });
@@ -29,5 +50,7 @@ void set_thread_limit(unsigned threads) {
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
 }
+
+void block_signals_in_workers(const sigset_t& signals) { keeper = {true, pthread_self(), signals}; }
 
 }  // namespace adamas

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <signal.h>
+
 #include <cstddef>
 #include <functional>
 
@@ -21,5 +23,9 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
 
 /// Bounds the number of threads of all later parallel loops; 0 means all cores.
 void set_thread_limit(unsigned threads);
+
+/// Has later threads of parallel loops leave signals to the thread that calls this. For the program's own
+/// use, once, before the first loop.
+void block_signals_in_workers(const sigset_t& signals);
 
 }  // namespace adamas

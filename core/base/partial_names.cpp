@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <map>
 #include <mutex>
-#include <set>
 #include <string_view>
 #include <system_error>
 #include <vector>

@@ -27,9 +27,9 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
         fail("{}: expected ascending coordinates along {}, found {} after {}", source, name, nodes[i],
              nodes[i - 1]);
       }
-      if (std::abs(nodes[i]) > kGreatestCoordinate || (i > 0 && nodes[i] - nodes[i - 1] < kLeastLength)) {
+      if (i > 0 && !within_length_limits(nodes[i - 1], nodes[i])) {
         fail("{}: expected coordinates below {} that are more than {} apart, found {} after {} along {}",
-             source, kGreatestCoordinate, kLeastLength, nodes[i], nodes[i > 0 ? i - 1 : 0], name);
+             source, kGreatestCoordinate, kLeastLength, nodes[i], nodes[i - 1], name);
       }
     }
   }

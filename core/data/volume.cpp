@@ -29,15 +29,6 @@ const char* sample_name(SampleType type) {
   return "";
 }
 
-std::array<Vec3, 8> corners_of(const Box3& box) {
-  std::array<Vec3, 8> corners;
-  for (std::size_t c = 0; c < 8; ++c) {
-    corners[c] = {(c & 1) != 0 ? box.max.x : box.min.x, (c & 2) != 0 ? box.max.y : box.min.y,
-                  (c & 4) != 0 ? box.max.z : box.min.z};
-  }
-  return corners;
-}
-
 bool VolumeGrid::is_along_axes() const {
   return std::all_of(directions.begin(), directions.end(), [](const Vec3& d) {
     const int zeros = static_cast<int>(d.x == 0) + static_cast<int>(d.y == 0) + static_cast<int>(d.z == 0);
@@ -66,7 +57,7 @@ double VolumeGrid::greatest_stretch() const {
   const auto& [a, b, c] = directions;
   const double ab = dot(a, b), bc = dot(b, c), ca = dot(c, a);
   const double p = std::sqrt((ab * ab + bc * bc + ca * ca) / 3);
-  if (!(p > 0)) return 1;
+  if (!(p > 1e-30)) return 1;
   const double r = std::clamp(ab * bc * ca / (p * p * p), -1.0, 1.0);
   return std::sqrt(1 + 2 * p * std::cos(std::acos(r) / 3));
 }
@@ -80,7 +71,7 @@ Box3 VolumeGrid::frame_box() const {
 
 Box3 VolumeGrid::box() const {
   Box3 box;
-  for (const Vec3& corner : corners_of(frame_box())) box.extend(in_space(corner));
+  for (const Vec3& corner : frame_box().corners()) box.extend(in_space(corner));
   return box;
 }
 

@@ -28,9 +28,6 @@ constexpr std::size_t sample_bytes(SampleType type) {
 /// "uint8", "uint16", "int16", "float32".
 const char* sample_name(SampleType type);
 
-/// The eight corners of a box, x running fastest.
-std::array<Vec3, 8> corners_of(const Box3& box);
-
 /// What a volume is, its samples apart: a regular grid of samples, i running fastest.
 struct VolumeGrid {
   static constexpr std::array<Vec3, 3> kStraight{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

@@ -33,7 +33,7 @@ Plane plane_in_frame(const VolumeGrid& grid, const Plane& plane) {
 FrameRegion region_in_frame(const VolumeGrid& grid, const Box3& in_space) {
   if (grid.is_straight()) return {in_space, {}};
   FrameRegion region;
-  for (const Vec3& corner : corners_of(in_space)) region.box.extend(grid.in_frame(corner));
+  for (const Vec3& corner : in_space.corners()) region.box.extend(grid.in_frame(corner));
   if (grid.is_along_axes()) return region;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 normal;

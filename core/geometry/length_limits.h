@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/geometry/vec3.h"
@@ -13,6 +15,11 @@ inline constexpr double kGreatestCoordinate = 1e50;
 /// How many times longer a box may be along one axis than along another: beyond it the square of the shorter
 /// side is lost in that of the longer one, and so are distances.
 inline constexpr double kGreatestAspect = 1e8;
+
+/// Whether two coordinates along an axis, the lower one first, are within these bounds.
+inline bool within_length_limits(double low, double high) {
+  return high - low >= kLeastLength && std::max(std::abs(low), std::abs(high)) <= kGreatestCoordinate;
+}
 
 /// Throws Error with `name` where the sides or the places of a box are not within these bounds.
 void check_lengths(const std::string& name, const Box3& box);

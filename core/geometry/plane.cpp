@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/trimmed.h"
+#include "core/geometry/box_clip.h"
 
 namespace adamas {
 
@@ -14,24 +16,6 @@ namespace {
 Vec3 direction(const Vec3& v) {
   const double greatest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   return normalized({v.x / greatest, v.y / greatest, v.z / greatest});
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
-}
-
-std::vector<Vec3> clip(const std::vector<Vec3>& polygon, int axis, double limit, double sign) {
-  std::vector<Vec3> kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const double dp = sign * (limit - p[axis]), dq = sign * (limit - q[axis]);
-    if (dp >= 0) kept.push_back(p);
-    if ((dp >= 0) == (dq >= 0)) continue;
-    kept.push_back(p + (dp / (dp - dq)) * (q - p));
-    kept.back()[axis] = limit;
-  }
-  return kept;
 }
 
 }  // namespace
@@ -93,10 +77,8 @@ std::vector<Vec3> clip_plane(const Plane& plane, const Box3& box) {
   const PlaneFrame frame = plane_frame(plane);
   const Vec3 u = reach * frame.right, v = reach * frame.up;
   std::vector<Vec3> polygon{middle - u - v, middle + u - v, middle + u + v, middle - u + v};
-  for (int axis = 0; axis < 3; ++axis) {
-    polygon = clip(polygon, axis, box.max[axis], 1);
-    polygon = clip(polygon, axis, box.min[axis], -1);
-  }
+  std::vector<Vec3> scratch;
+  clip_to_box(polygon, box, scratch);
   return polygon;
 }
 

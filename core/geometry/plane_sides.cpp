@@ -15,11 +15,6 @@ bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && 
 
 double greatest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-Vec3 corner(const Box3& box, unsigned c) {
-  return {(c & 1u) != 0 ? box.max.x : box.min.x, (c & 2u) != 0 ? box.max.y : box.min.y,
-          (c & 4u) != 0 ? box.max.z : box.min.z};
-}
-
 /// Corners of the sides of a box, counter-clockwise seen from outside.
 constexpr std::array<std::array<std::uint8_t, 4>, 6> kSides{
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
@@ -48,7 +43,7 @@ PlaneSides::PlaneSides(const Plane& plane, const Box3& box, std::string_view sou
   }
   std::size_t below = 0, in_plane = 0;
   for (unsigned c = 0; c < 8; ++c) {
-    const double d = distance(corner(box, c));
+    const double d = distance(box.corner(c));
     if (d < 0) ++below;
     if (d == 0) ++in_plane;
   }
@@ -68,7 +63,7 @@ void cut_box(const PlaneSides& sides, const Box3& box, std::vector<Vec3>& corner
   std::array<bool, 8> above{};
   std::size_t count = 0;
   for (unsigned c = 0; c < 8; ++c) {
-    d[c] = sides.distance(corner(box, c));
+    d[c] = sides.distance(box.corner(c));
     above[c] = sides.above(d[c]);
     count += above[c] ? 1 : 0;
   }
@@ -90,7 +85,7 @@ void cut_box(const PlaneSides& sides, const Box3& box, std::vector<Vec3>& corner
   std::size_t edge = first;
   do {
     const auto low = static_cast<unsigned>(edge % 8), high = low | (1u << (edge / 8));
-    const Vec3 p = PlaneSides::crossing(corner(box, low), d[low], corner(box, high), d[high]);
+    const Vec3 p = PlaneSides::crossing(box.corner(low), d[low], box.corner(high), d[high]);
     if (corners.empty() || !(p == corners.back())) corners.push_back(p);
     edge = next[edge];
   } while (edge != first);

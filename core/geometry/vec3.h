@@ -55,6 +55,15 @@ struct Box3 {
     const Vec3 s = size();
     return s.x * s.y * s.z;
   }
+  /// One of the eight corners; the bits 1, 2, 4 of its number say where it is the greater one of x, y, z.
+  [[nodiscard]] constexpr Vec3 corner(unsigned c) const {
+    return {(c & 1u) != 0 ? max.x : min.x, (c & 2u) != 0 ? max.y : min.y, (c & 4u) != 0 ? max.z : min.z};
+  }
+  [[nodiscard]] constexpr std::array<Vec3, 8> corners() const {
+    std::array<Vec3, 8> all;
+    for (unsigned c = 0; c < 8; ++c) all[c] = corner(c);
+    return all;
+  }
   [[nodiscard]] constexpr bool contains(const Vec3& p) const {
     return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z;
   }

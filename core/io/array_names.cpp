@@ -2,17 +2,17 @@
 
 #include <cctype>
 
+#include "core/base/trimmed.h"
+
 namespace adamas {
 
 namespace {
 
-bool is_separator(char c) { return c == ' ' || c == '_' || c == '-' || c == ':' || c == '.' || c == '/'; }
+constexpr std::string_view kSeparators = " _-:./";
 
-std::string trimmed(std::string_view text) {
-  while (!text.empty() && is_separator(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_separator(text.back())) text.remove_suffix(1);
-  return std::string(text);
-}
+bool is_separator(char c) { return kSeparators.find(c) != std::string_view::npos; }
+
+std::string bare(std::string_view text) { return std::string(trimmed(text, kSeparators)); }
 
 char plain(char c) { return c == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
@@ -37,11 +37,11 @@ std::string without_preposition(std::string text) {
   for (const std::string_view word : {"for", "of", "in"}) {
     const std::size_t n = word.size();
     if (text.size() > n && alike(std::string_view(text).substr(0, n), word) && is_separator(text[n])) {
-      return trimmed(std::string_view(text).substr(n));
+      return bare(std::string_view(text).substr(n));
     }
     if (text.size() > n && alike(std::string_view(text).substr(text.size() - n), word) &&
         is_separator(text[text.size() - n - 1])) {
-      return trimmed(std::string_view(text).substr(0, text.size() - n));
+      return bare(std::string_view(text).substr(0, text.size() - n));
     }
   }
   return text;
@@ -53,7 +53,7 @@ std::string split_unit(std::string& name) {
   const std::size_t open = name.rfind(name.back() == ')' ? '(' : '[');
   if (open == std::string::npos || open == 0 || (name.back() == ')' && name[open - 1] != ' ')) return {};
   std::string unit = name.substr(open + 1, name.size() - open - 2);
-  name = trimmed(std::string_view(name).substr(0, open));
+  name = bare(std::string_view(name).substr(0, open));
   return unit;
 }
 
@@ -62,9 +62,9 @@ std::optional<std::string> without_material(std::string_view text, std::string_v
   const std::size_t n = material.size();
   if (n == 0 || text.size() <= n + 1) return {};
   if (alike(text.substr(text.size() - n), material) && is_separator(text[text.size() - n - 1])) {
-    return without_preposition(trimmed(text.substr(0, text.size() - n)));
+    return without_preposition(bare(text.substr(0, text.size() - n)));
   }
-  if (alike(text.substr(0, n), material) && is_separator(text[n])) return trimmed(text.substr(n));
+  if (alike(text.substr(0, n), material) && is_separator(text[n])) return bare(text.substr(n));
   return {};
 }
 
@@ -77,10 +77,10 @@ std::optional<int> split_axis(std::string& name) {
   std::optional<int> axis;
   if (is_separator(name[1])) axis = axis_of(name[0]);
   if (axis) {
-    name = trimmed(std::string_view(name).substr(2));
+    name = bare(std::string_view(name).substr(2));
   } else if (is_separator(name[name.size() - 2])) {
     axis = axis_of(name.back());
-    if (axis) name = trimmed(std::string_view(name).substr(0, name.size() - 2));
+    if (axis) name = bare(std::string_view(name).substr(0, name.size() - 2));
   }
   return axis;
 }
@@ -102,8 +102,8 @@ std::optional<std::string> fraction_material(const std::string& array) {
        {"volume fractions", "volume fraction", "volumefraction", "vol frac"}) {
     const std::size_t at = find_alike(array, pattern);
     if (at == std::string::npos) continue;
-    const std::string before = trimmed(std::string_view(array).substr(0, at));
-    const std::string after = trimmed(std::string_view(array).substr(at + pattern.size()));
+    const std::string before = bare(std::string_view(array).substr(0, at));
+    const std::string after = bare(std::string_view(array).substr(at + pattern.size()));
     if (!before.empty() && after.empty()) return without_preposition(before);
     if (before.empty() && !after.empty()) return without_preposition(after);
     if (!before.empty()) return before + " " + without_preposition(after);

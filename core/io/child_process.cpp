@@ -14,6 +14,7 @@
 #include <new>
 
 #include "core/base/error.h"
+#include "core/base/stopping_signals.h"
 
 namespace adamas {
 
@@ -79,11 +80,10 @@ rlim_t mapped_bytes() {
   return size > 0 ? std::strtoull(text.data(), nullptr, 10) * page : 0;
 }
 
-/// What is ignored stays ignored: nohup says so of hanging up.
+/// What is ignored stays ignored.
 void let_signals_stop() {
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
-    struct sigaction now {};
-    if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) ::signal(number, SIG_DFL);
+  for (const int number : kStoppingSignals) {
+    if (!is_ignored(number)) ::signal(number, SIG_DFL);
   }
 }
 
@@ -125,7 +125,8 @@ void confine(pid_t parent, std::size_t input_bytes) {
 [[noreturn]] void fail_stopped(const std::string& name, int status) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
-    if (number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGQUIT) throw Cancelled();
+    const auto& stopping = kStoppingSignals;
+    if (std::find(stopping.begin(), stopping.end(), number) != stopping.end()) throw Cancelled();
     if (number == SIGALRM) fail("{}: expected a readable file, found none within the time limit", name);
     fail("{}: expected a readable file, found a corrupt one (its reader ended by signal {}, {})", name,
          number, ::strsignal(number));

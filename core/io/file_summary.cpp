@@ -46,8 +46,7 @@ void set_grid_box(const GridFile& file, FileSummary& summary) {
     return;
   }
   const auto& [a, b, c] = file.aslant->directions;
-  for (const Vec3& p : corners_of(nodes))
-    summary.box.extend(file.aslant->origin + p.x * a + p.y * b + p.z * c);
+  for (const Vec3& p : nodes.corners()) summary.box.extend(file.aslant->origin + p.x * a + p.y * b + p.z * c);
   summary.directions = {normalized(a), normalized(b), normalized(c)};
   summary.origin = file.aslant->origin + nodes.min.x * a + nodes.min.y * b + nodes.min.z * c;
 }

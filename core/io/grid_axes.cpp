@@ -83,6 +83,8 @@ void require_laid_out(const std::string& name, const GridFile& file) {
   if (file.aslant) find_sources(*file.aslant, &name);
 }
 
+bool are_parallel(const GridAxes& axes) { return find_sources(axes, nullptr).has_value(); }
+
 void lay_out(const GridAxes& axes, GridFile& file) {
   const auto sources = find_sources(axes, nullptr);
   if (!sources) {

@@ -17,6 +17,9 @@ inline constexpr double kParallelAxes = 1e-4;
 /// not parallel to x, y and z, one to each, they become `file.aslant`, and the grid stays as it is.
 void lay_out(const GridAxes& axes, GridFile& file);
 
+/// Whether a grid can be laid out so: whether its axes are parallel to x, y and z, one to each.
+bool are_parallel(const GridAxes& axes);
+
 /// Throws Error with `name` where a grid could not be laid out.
 void require_laid_out(const std::string& name, const GridFile& file);
 

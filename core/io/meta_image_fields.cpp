@@ -3,17 +3,13 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/trimmed.h"
 
 namespace adamas {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\f\v";
-  const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
-  text.remove_prefix(begin);
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
-}
+constexpr std::string_view kBlanks = " \t\r\f\v";
 
 }  // namespace
 
@@ -42,8 +38,8 @@ MetaImageFields parse_meta_image_fields(std::string_view text, const std::string
     fields.header_bytes = std::min(end + 1, text.size());
     const std::size_t equal = line.find('=');
     if (equal == std::string_view::npos) continue;
-    const std::string key(trimmed(line.substr(0, equal)));
-    fields.values[key] = trimmed(line.substr(equal + 1));
+    const std::string key(trimmed(line.substr(0, equal), kBlanks));
+    fields.values[key] = trimmed(line.substr(equal + 1), kBlanks);
     if (key == "ElementDataFile") return fields;
   }
   fail("{}: expected a MetaImage header with ElementDataFile, found none", name);

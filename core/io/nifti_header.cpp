@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 #include "core/base/error.h"
@@ -198,8 +199,16 @@ std::string read_nifti_header(const std::filesystem::path& path) {
 
 std::string nifti_file_header(const VolumeGrid& grid) {
   constexpr std::uint64_t kMost = 32767;
-  const bool large =
+  bool large =
       std::any_of(grid.dimensions.begin(), grid.dimensions.end(), [](std::uint64_t n) { return n > kMost; });
+  // Lengths of the first version are in single precision.
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double length : {grid.spacing[axis], grid.origin[axis]}) {
+      const auto single = static_cast<float>(length);
+      large = large || !std::isfinite(single) ||
+              (length != 0 && std::abs(single) < std::numeric_limits<float>::min());
+    }
+  }
   return large ? header_bytes<Version2>(grid) : header_bytes<Version1>(grid);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/trimmed.h"
 #include "core/io/input_file.h"
 #include "core/io/number_list.h"
 
@@ -17,13 +18,7 @@ namespace adamas {
 namespace {
 
 /// More names than a header may sensibly have.
-constexpr std::int64_t kMostNames = 1'000'000;
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
-}
+constexpr std::int64_t kMostNames = 10'000;
 
 /// What a line says of the data, behind any of the names of that field.
 std::optional<std::string_view> data_field(std::string_view line) {
@@ -51,11 +46,14 @@ std::vector<std::string> names_of_pattern(std::string_view value) {
   const char fill = digits.starts_with('0') ? '0' : ' ';
   const std::int64_t first = (*range)[0], last = (*range)[1], step = range->size() > 2 ? (*range)[2] : 1;
   std::vector<std::string> names;
-  for (std::int64_t n = first; step > 0 && n <= last && std::ssize(names) < kMostNames; n += step) {
+  for (std::int64_t n = first; step > 0 && n <= last && std::ssize(names) < kMostNames;) {
     std::string number = std::to_string(n);
     if (number.size() < width) number.insert(0, width - number.size(), fill);
     names.push_back(
         fmt::format("{}{}{}", value.substr(0, percent), number, value.substr(end + 1, blank - end - 1)));
+    if (static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(n) < static_cast<std::uint64_t>(step))
+      break;
+    n += step;
   }
   return names;
 }
@@ -79,7 +77,7 @@ std::vector<std::string> names_in_header(const std::filesystem::path& path) {
     if (line.empty()) break;
     const auto value = data_field(line);
     if (!value) continue;
-    listed = value->starts_with("LIST");
+    listed = *value == "LIST" || value->starts_with("LIST ");
     if (listed) continue;
     if (value->find('%') != std::string_view::npos) return names_of_pattern(*value);
     return {std::string(*value)};

@@ -50,8 +50,9 @@ std::string lost_places(const std::filesystem::path& path, const VolumeGrid& gri
     return path.string() + ": axes, origin and space of the volume are not kept";
   }
   if (extension == ".nii" || extension == ".nii.gz") {
-    if (anatomical || grid.is_straight()) return {};
-    return path.string() + ": the space of coordinates is not known: NIfTI takes them for RAS";
+    if (anatomical || (grid.is_straight() && grid.space.empty())) return {};
+    return fmt::format("{}: the space of coordinates is {}: NIfTI takes them for RAS", path.string(),
+                       grid.space.empty() ? "not known" : grid.space);
   }
   if (grid.space.empty() || extension == ".nrrd" || extension == ".nhdr") return {};
   if (anatomical && extension != ".vti") return {};

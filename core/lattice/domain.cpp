@@ -19,7 +19,7 @@ void check_box(const Box3& box) {
       fail("domain: expected a finite box, found {} from {} to {}", name, low, high);
     }
     if (!(low < high)) fail("domain: expected a box with min < max, found {} from {} to {}", name, low, high);
-    if (high - low < kLeastLength || std::max(std::abs(low), std::abs(high)) > kGreatestCoordinate) {
+    if (!within_length_limits(low, high)) {
       fail("domain: expected sides above {} and coordinates below {}, found {} from {} to {}", kLeastLength,
            kGreatestCoordinate, name, low, high);
     }

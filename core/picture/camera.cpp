@@ -13,15 +13,6 @@ namespace {
 
 constexpr double kFieldOfView = 28 * std::numbers::pi / 180;  // of the image's longer side
 
-std::array<Vec3, 8> corners(const Box3& box) {
-  std::array<Vec3, 8> result;
-  for (std::size_t i = 0; i < 8; ++i) {
-    result[i] = {(i & 1u) != 0 ? box.max.x : box.min.x, (i & 2u) != 0 ? box.max.y : box.min.y,
-                 (i & 4u) != 0 ? box.max.z : box.min.z};
-  }
-  return result;
-}
-
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 }  // namespace
@@ -50,7 +41,7 @@ Camera::Camera(Projection projection, const Box3& box, const Vec3& direction, do
   const Vec3 centre = box.center();
   if (projection == Projection::kOrthographic) {
     Box2 extent;
-    for (const Vec3& p : corners(box)) extent.extend({dot(p - centre, right_), dot(p - centre, up_)});
+    for (const Vec3& p : box.corners()) extent.extend({dot(p - centre, right_), dot(p - centre, up_)});
     const Vec2 size = extent.size();
     scale_ = std::min(size.x > 0 ? 2 * half_x / size.x : std::numeric_limits<double>::infinity(),
                       size.y > 0 ? 2 * half_y / size.y : std::numeric_limits<double>::infinity());
@@ -59,7 +50,7 @@ Camera::Camera(Projection projection, const Box3& box, const Vec3& direction, do
   }
   scale_ = std::max(middle_.x, middle_.y) / std::tan(0.5 * kFieldOfView);
   double away = 0;
-  for (const Vec3& p : corners(box)) {
+  for (const Vec3& p : box.corners()) {
     const Vec3 d = p - centre;
     const double depth = dot(d, forward_);
     away = std::max({away, std::abs(dot(d, right_)) * scale_ / half_x - depth,

@@ -50,13 +50,9 @@ std::vector<LegendEntry> visible_materials(const InterfacePicture& picture, cons
 
 void draw_box(const Rasteriser& rasteriser, Raster& raster, const Camera& camera, const Box3& box,
               double width) {
-  const auto corner = [&](unsigned i) {
-    return Vec3{(i & 1u) != 0 ? box.max.x : box.min.x, (i & 2u) != 0 ? box.max.y : box.min.y,
-                (i & 4u) != 0 ? box.max.z : box.min.z};
-  };
   unsigned farthest = 0;
   for (unsigned i = 1; i < 8; ++i) {
-    if (camera.distance_of(corner(i)) > camera.distance_of(corner(farthest))) farthest = i;
+    if (camera.distance_of(box.corner(i)) > camera.distance_of(box.corner(farthest))) farthest = i;
   }
   for (const bool hidden : {true, false}) {  // the three edges at the back first
     for (unsigned i = 0; i < 8; ++i) {
@@ -64,7 +60,7 @@ void draw_box(const Rasteriser& rasteriser, Raster& raster, const Camera& camera
         const bool back = i == farthest || (i ^ bit) == farthest;
         if ((i & bit) != 0 || back != hidden) continue;
         const Colour colour = back ? mix(kFrame, {1, 1, 1}, kLightestEdgeShare) : kFrame;
-        rasteriser.draw_line(raster, corner(i), corner(i | bit), width, colour);
+        rasteriser.draw_line(raster, box.corner(i), box.corner(i | bit), width, colour);
       }
     }
   }

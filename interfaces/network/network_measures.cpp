@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometry/box_clip.h"
+
 namespace adamas {
 
 namespace {
@@ -14,23 +16,6 @@ constexpr double kOnFace = 1e-9;  // in relation to the box's diagonal
 constexpr double kInside = 1e-7;
 
 using Polygon = std::vector<Vec3>;
-
-/// The part of a convex polygon where sign * p[axis] <= sign * wall, with the points on the wall exactly
-/// there.
-void clip(Polygon& polygon, int axis, double wall, double sign, Polygon& scratch) {
-  scratch.clear();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const double a = sign * (p[axis] - wall), b = sign * (q[axis] - wall);
-    if (a <= 0) scratch.push_back(p);
-    if ((a < 0 && b > 0) || (a > 0 && b < 0)) {
-      Vec3 cut = p + (a / (a - b)) * (q - p);
-      cut[axis] = wall;
-      scratch.push_back(cut);
-    }
-  }
-  polygon.swap(scratch);
-}
 
 /// Sums the parts of one network; coordinates are counted from the box's lower corner.
 class Measure {
@@ -46,10 +31,7 @@ class Measure {
     for (std::uint32_t t = 0; t < network_.triangles().size(); ++t) {
       polygon.clear();
       for (const Vec3& p : network_.triangle_corners(t)) polygon.push_back(snapped(p - box_.min));
-      for (int axis = 0; axis < 3; ++axis) {
-        clip(polygon, axis, 0, -1, scratch);
-        clip(polygon, axis, size_[axis], 1, scratch);
-      }
+      clip_to_box(polygon, {{}, size_}, scratch);
       for (Vec3& p : polygon) p = snapped(p);
       if (polygon.size() >= 3) add(t, polygon);
     }

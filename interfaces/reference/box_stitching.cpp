@@ -71,10 +71,7 @@ bool Stitcher::within_a_side(const std::array<std::uint32_t, 3>& t) const {
 void Stitcher::add_interfaces(std::span<const Vec3> points, std::span<const BodyTriangle> triangles) {
   points_.reserve(points.size() + 8);
   for (const Vec3& p : points) points_.push_back(onto_box(p));
-  for (int corner = 0; corner < 8; ++corner) {
-    points_.push_back({corner & 1 ? box_.max.x : box_.min.x, corner & 2 ? box_.max.y : box_.min.y,
-                       corner & 4 ? box_.max.z : box_.min.z});
-  }
+  for (const Vec3& corner : box_.corners()) points_.push_back(corner);
   const std::vector<std::uint32_t> welded = weld_points(points_);
   for (BodyTriangle t : triangles) {
     for (std::uint32_t& p : t.points) {

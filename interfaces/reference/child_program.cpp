@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "core/base/abrupt_end.h"
+#include "core/base/stopping_signals.h"
 
 namespace adamas {
 
@@ -96,8 +97,10 @@ struct ChildSetup {
   if (::getppid() != setup.parent) ::_exit(kNotStarted);
   struct sigaction standard {};
   standard.sa_handler = SIG_DFL;
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXFSZ, SIGALRM})
-    ::sigaction(number, &standard, nullptr);
+  for (const int number : kStoppingSignals) {
+    if (!is_ignored(number)) ::sigaction(number, &standard, nullptr);
+  }
+  for (const int number : {SIGPIPE, SIGXFSZ, SIGALRM}) ::sigaction(number, &standard, nullptr);
   for (int stream = 0; stream < 3; ++stream) ::dup2(setup.streams[static_cast<std::size_t>(stream)], stream);
   ::setrlimit(RLIMIT_CORE, &setup.core);
   ::setrlimit(RLIMIT_FSIZE, &setup.file_size);

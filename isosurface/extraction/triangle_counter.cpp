@@ -21,8 +21,13 @@ bool TriangleCounter<Sample>::is_inside(const Diamond& diamond) const {
   if (p.i + s > last.i || p.j + s > last.j || p.k + s > last.k) return false;
   if (!request_.region) return true;
   const Domain& domain = diamonds_.domain();
-  return request_.region->contains(domain.position(p - LatticePoint{s, s, s})) &&
-         request_.region->contains(domain.position(p + LatticePoint{s, s, s}));
+  const Box3 box{domain.position(p - LatticePoint{s, s, s}), domain.position(p + LatticePoint{s, s, s})};
+  if (!request_.region->contains(box.min) || !request_.region->contains(box.max)) return false;
+  const std::array<Vec3, 8> corners = box.corners();
+  return std::all_of(request_.sides.begin(), request_.sides.end(), [&](const Plane& side) {
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](const Vec3& corner) { return dot(side.normal, corner - side.origin) < 0; });
+  });
 }
 
 template <class Sample>
@@ -33,6 +38,7 @@ std::int64_t TriangleCounter<Sample>::count_clipped(const Diamond& diamond, int 
       .add(diamond, 1u << slot, [this](LatticePoint p) { return diamonds_.sample(p); });
   Contour contour = builder.finish();
   if (request_.region) clip_contour(contour, *request_.region, options.spacing);
+  if (!request_.sides.empty()) clip_contour(contour, request_.sides, options.spacing);
   return static_cast<std::int64_t>(contour.triangles.size());
 }
 

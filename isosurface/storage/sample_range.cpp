@@ -16,15 +16,17 @@ std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample
   const auto value = [](auto word) {
     return static_cast<double>(from_ordered<Sample>(static_cast<Word>(word)));
   };
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (grid.depth() > 0) {
     const std::optional<PageEntry> all = pages.entry(coarsest);
     if (!all) return {};
+    // The words of an empty range are no numbers.
+    if (all->low > all->high) return std::array{kInfinity, -kInfinity};
     return std::array{value(all->low), value(all->high)};
   }
   // No diamond has a range where all samples are corners of the domain.
   const PageSamples<Word>* page = pages.samples(coarsest);
   if (page == nullptr) return {};
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::array<double, 2> range{kInfinity, -kInfinity};
   const LatticePoint last = grid.last();
   for (std::int32_t corner = 0; corner < 8; ++corner) {

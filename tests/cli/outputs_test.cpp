@@ -86,8 +86,7 @@ TEST_F(Outputs, NoFileThatAnInputRefersToIsOverwritten) {
   const std::string nrrd = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
   const std::string meta = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n";
   std::filesystem::create_directory(folder() / "sub");
-  for (const char* name : {"d.adm", "d.vtp", "sub/d.adm", "d002.adm", "d03.adm"})
-    write(name, "12345678");
+  for (const char* name : {"d.adm", "d.vtp", "sub/d.adm", "d002.adm", "d03.adm"}) write(name, "12345678");
   write("one.nhdr", nrrd + "data file: d.adm\n");
   write("two.nhdr", nrrd + "datafile: ./d.vtp\n");
   write("sub/three.nhdr", nrrd + "data file: d.adm\n");
@@ -113,6 +112,30 @@ TEST_F(Outputs, NoFileThatAnInputRefersToIsOverwritten) {
   }
   // What only has a like name may be written.
   run_well({"store", "one.nhdr", "-o", "e.adm"});
+}
+
+TEST_F(Outputs, PatternsOfNamesThatHaveNoEnd) {
+  for (const char* range :
+       {"0 9223372036854775807 9223372036854775807",
+        "-9223372036854775807 9223372036854775807 9223372036854775806", "0 1000000000 1"}) {
+    write(
+        "x.nhdr",
+        std::string("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: x%d.raw ") +
+            range + "\n");
+    expect_failure({"store", "x.nhdr", "-o", "x.adm"}, {"x.nhdr"});
+  }
+}
+
+/// What is wrong with an output is not blamed on the input, whose name may be part of any word.
+TEST_F(Outputs, AreNamedInTheirErrors) {
+  make_scene("sphere", 6);
+  std::filesystem::create_directory(folder() / "out");
+  write("out/notes", "not ours");
+  const RunResult result = run({"experiment", "scene.vtr", "-o", "out"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.err.rfind("adamas: error: out: expected", 0), 0u) << result.err;
+  write("a", "no data");
+  expect_failure({"resample", "a", "-o", "m.vtu"}, {"error: a: expected"});
 }
 
 TEST_F(Outputs, DiskFull) {

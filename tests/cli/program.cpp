@@ -60,9 +60,10 @@ char state_of(pid_t process) {
   return state.empty() ? 'X' : state[0];
 }
 
-bool is_pending(pid_t process, int number) {
-  const std::string pending = status_line(process, "ShdPnd:\t");
-  return !pending.empty() && (std::stoull(pending, nullptr, 16) >> (number - 1) & 1) != 0;
+/// Whether a signal is in a set of a file of /proc.
+bool is_in(pid_t process, const std::string& set, int number) {
+  const std::string members = status_line(process, set + ":\t");
+  return !members.empty() && (std::stoull(members, nullptr, 16) >> (number - 1) & 1) != 0;
 }
 
 }  // namespace
@@ -78,6 +79,11 @@ void wait_until_stopped(pid_t process) {
 
 void wait_until_gone(pid_t process) {
   while (is_running(process)) usleep(100);
+}
+
+void wait_until_deferred(pid_t process, int number) {
+  while (is_running(process) && !is_in(process, "SigBlk", number) && !is_in(process, "SigCgt", number))
+    usleep(20);
 }
 
 namespace {
@@ -105,7 +111,7 @@ void collect(pid_t child, int out, int err, const RunOptions& options, RunResult
       for (int i = 0; !options.act && i < options.interrupts; ++i) {
         kill(child, SIGINT);
         // Signals that wait together become one.
-        while (is_running(child) && is_pending(child, SIGINT)) usleep(100);
+        while (is_running(child) && is_in(child, "ShdPnd", SIGINT)) usleep(100);
       }
     }
   }

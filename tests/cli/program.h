@@ -42,6 +42,8 @@ bool is_running(pid_t process);
 /// Waits for what a signal does: for ever, or as long as tests may run.
 void wait_until_stopped(pid_t process);
 void wait_until_gone(pid_t process);
+/// Waits until a signal does not end the process at once: it is blocked or has a handler.
+void wait_until_deferred(pid_t process, int number);
 
 /// Runs the built program in a folder.
 RunResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,

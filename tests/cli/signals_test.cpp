@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 
 #include "program.h"
@@ -47,6 +48,27 @@ TEST_F(Signals, EachStopsTheRun) {
     EXPECT_EQ(result.status, 130) << number << result.err;
     EXPECT_EQ(result.err_lines().back(), "adamas: cancelled") << number;
     EXPECT_EQ(files(), before) << number;
+  }
+}
+
+/// Also while the libraries of the program are loaded.
+TEST_F(Signals, StopTheRunFromItsStart) {
+  const auto before = files();
+  const std::array<int, 4> numbers{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+  for (unsigned time = 0; time < 40; ++time) {
+    const int number = numbers[time % numbers.size()];
+    RunOptions options;
+    options.interrupt_when = [] { return true; };
+    options.act = [&](pid_t program) {
+      wait_until_deferred(program, number);
+      usleep(1500 * time);
+      kill(program, number);
+    };
+    const RunResult result =
+        run({"resample", "scene.vtr", "--interface-error", "0.02%", "-o", "m.vtu"}, options);
+    EXPECT_EQ(result.status, 130) << time << result.err;
+    EXPECT_EQ(result.err, "adamas: cancelled\n") << time;
+    EXPECT_EQ(files(), before) << time;
   }
 }
 

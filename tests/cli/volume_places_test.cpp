@@ -349,6 +349,19 @@ TEST_F(VolumePlaces, TheSameFilesForInfoSliceAndStore) {
   EXPECT_FALSE(read("s.png") == read("v.png"));
 }
 
+/// Triangles that the sides of a region cut away do not count.
+TEST_F(VolumePlaces, BudgetsAreUsedInRegionsOfAslantVolumes) {
+  for (const std::size_t n : {0u, 4u}) {
+    write_ball("a.nii", affines()[n]);
+    run_well({"store", "a.nii", "-o", "a.adm"});
+    run_well({"isosurface", "a.adm", "--isovalue", "0", "--region", "10,30,-40,-19,7.5,40", "--max-triangles",
+              "600", "-o", "a.obj", "--json", "a.json"});
+    const std::size_t found = read_obj("a.obj").triangles.size();
+    EXPECT_LE(found, 600u) << n;
+    EXPECT_GE(found, 540u) << n;
+  }
+}
+
 }  // namespace
 
 }  // namespace adamas::test

@@ -75,6 +75,14 @@ TEST_F(VolumeGrids, DistancesAreStretchedByNoMore) {
   }
 }
 
+TEST_F(VolumeGrids, AxesThatAreHardlyAslantStretchNothing) {
+  for (const double aslant : {1e-20, 1e-120, 1e-200, 1e-310}) {
+    VolumeGrid g = grid(true);
+    g.directions = {{{1, aslant, 0}, {0, 1, 0}, {0, 0, 1}}};
+    EXPECT_NEAR(g.greatest_stretch(), 1, 1e-12) << aslant;
+  }
+}
+
 TEST_F(VolumeGrids, RegionsAreTheSameInTheFrame) {
   for (int n = 0; n < 50; ++n) {
     const VolumeGrid g = grid(n % 2 == 0);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <signal.h>
+
+#include <array>
+
+namespace adamas {
+
+/// The signals that ask a program to end.
+inline constexpr std::array<int, 4> kStoppingSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+
+/// The same as a set of POSIX.
+inline sigset_t stopping_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int number : kStoppingSignals) sigaddset(&set, number);
+  return set;
+}
+
+/// Whether a signal is ignored, as nohup has it of hanging up.
+inline bool is_ignored(int number) {
+  struct sigaction now {};
+  return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
+}  // namespace adamas
