@@ -37,6 +37,20 @@ Figures print_volumes(const MultiMaterialData& data, const Reconstruction& resul
   return figures;
 }
 
+/// How well the volumes in cells agree with the fractions there.
+Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
+  if (agreement.mixed_cells > 0) {
+    console.print(
+        "  of {} mixed cells {} hold a material by more than 0.1% of the cell too much or too little, at "
+        "most {:.2g}%\n",
+        agreement.mixed_cells, agreement.cells_off, 100 * agreement.greatest);
+  }
+  return {{"number", agreement.mixed_cells},
+          {"off", agreement.cells_off},
+          {"greatest_difference", agreement.greatest},
+          {"mean_difference", agreement.mean}};
+}
+
 /// The interfaces of an input, with what is printed of them.
 struct Interfaces {
   InterfaceMesh mesh;
@@ -48,6 +62,7 @@ Interfaces reconstruct(const Options& options, Figures& figures, Console& consol
   options.picture.check_materials(data.materials, data.source);
   Reconstruction result(data, console);
   figures["materials"] = print_volumes(data, result, console);
+  figures["mixed_cells"] = print_agreement(result.agreement(), console);
   figures["interfaces"] = print_interfaces(result.mesh(), console);
   figures["bodies"] = result.body_materials().size();
   return {result.take_mesh(), data.grid.domain()};

@@ -189,8 +189,7 @@ void run(const Options& options, Session& session) {
   const SliceInput input =
       origin != SampleOrigin::kNone
           ? load_samples(options.input, options.volume, origin, style.field, style.plane, check, session)
-          : load_slice_input(from, options.original, style.interfaces && !polygons ? &style.plane : nullptr,
-                             check, console);
+          : load_slice_input(from, options.original, style.interfaces && !polygons, check, console);
   choose_cells(options, input, size, wanted.size(), style);
   std::vector<CrossSection> sections;
   for (const SliceMode mode : wanted) {

@@ -8,7 +8,6 @@
 #include "cli/material_numbers.h"
 #include "cli/usage_error.h"
 #include "core/data/volume_placement.h"
-#include "core/io/field_assembly.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
@@ -18,34 +17,6 @@
 namespace adamas {
 
 namespace {
-
-/// Sites on either side of a plane that its part of the interfaces depends on, and some more.
-constexpr std::size_t kReach = 3;
-
-/// The materials of the few layers of sites round a plane at right angles to an axis: all that the interfaces
-/// in it depend on. None for other planes, and for one beside the domain.
-std::optional<MultiMaterialData> near_plane(const MultiMaterialData& data, const Plane& plane) {
-  const auto axis = plane.axis();
-  const Box3 box = data.grid.domain();
-  if (!axis || !(plane.origin[*axis] >= box.min[*axis] && plane.origin[*axis] <= box.max[*axis])) return {};
-  const std::size_t n = data.grid.sites(*axis);
-  std::size_t above = 0;
-  while (above < n && data.grid.site_coordinate(*axis, above) < plane.origin[*axis]) ++above;
-  const std::size_t first = above > kReach ? above - kReach : 0, last = std::min(above + kReach, n - 1);
-  if (last - first + 1 >= n) return {};
-  std::array<double, 6> bounds{box.min.x, box.max.x, box.min.y, box.max.y, box.min.z, box.max.z};
-  const auto a = static_cast<std::size_t>(2 * *axis);
-  bounds[a] = data.grid.site_coordinate(*axis, first);
-  bounds[a + 1] = data.grid.site_coordinate(*axis, last);
-  MultiMaterialData near;
-  near.source = data.source;
-  near.grid = data.grid;
-  near.materials = data.materials;
-  near.fractions = data.fractions;
-  near.labels = data.labels;
-  crop(bounds, near);
-  return near;
-}
 
 /// The data's materials in the order of the mesh's, by name; the mesh may have more.
 void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
@@ -113,7 +84,7 @@ ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
   return from_unstructured_mesh(mesh, path);
 }
 
-SliceInput load_slice_input(const InputOptions& given, const std::string& original, const Plane* plane,
+SliceInput load_slice_input(const InputOptions& given, const std::string& original, bool with_interfaces,
                             const std::function<void(const SliceInput&)>& check, Console& console) {
   const InputOptions options = with_needed_main_file(given);
   SliceInput input;
@@ -147,9 +118,8 @@ SliceInput load_slice_input(const InputOptions& given, const std::string& origin
   }
   if (!from.path.empty() || !from.interfaces.empty()) load_original(from, console, input);
   check(input);
-  if (!input.data || input.interfaces || plane == nullptr || input.plain()) return input;
-  const auto near = near_plane(*input.data, *plane);
-  input.interfaces = Reconstruction(near ? *near : *input.data, console).mesh();
+  if (!input.data || input.interfaces || !with_interfaces || input.plain()) return input;
+  input.interfaces = Reconstruction(*input.data, console).mesh();
   return input;
 }
 

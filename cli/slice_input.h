@@ -43,10 +43,9 @@ ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
 
 /// Reads the positional input, a resampled mesh, gridded data or given interfaces, and for a mesh the
 /// original data or interfaces, where given; the original data get the mesh's order of materials. `check`
-/// looks at what was read before long work and may throw. Interfaces of gridded data are reconstructed round
-/// `plane`, unless it is null. Throws Error where the original has another box or other materials than the
-/// mesh.
-SliceInput load_slice_input(const InputOptions& options, const std::string& original, const Plane* plane,
+/// looks at what was read before long work and may throw. Interfaces of gridded data are reconstructed where
+/// they are wanted. Throws Error where the original has another box or other materials than the mesh.
+SliceInput load_slice_input(const InputOptions& options, const std::string& original, bool with_interfaces,
                             const std::function<void(const SliceInput&)>& check, Console& console);
 
 }  // namespace adamas

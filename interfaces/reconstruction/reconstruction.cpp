@@ -25,7 +25,11 @@ struct Reconstruction::Layer {
   std::vector<std::pair<Part, MaterialId>> pointless;
 };
 
-Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress) : lattice_(data) {
+Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress)
+    : Reconstruction(data, SiteValues(data), progress) {}
+
+Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress)
+    : agreement_(correct_volumes(data, values, progress)), lattice_(data, values) {
   const std::uint32_t layers = lattice_.points(2) - 1;
   mesh_.source = data.source;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
@@ -73,7 +77,7 @@ void Reconstruction::extract_layer(std::uint32_t k, Layer& layer) const {
   }
 }
 
-void Reconstruction::extract_cell(const FractionLattice::Index& cell, Layer& layer) const {
+void Reconstruction::extract_cell(const MaterialLattice::Index& cell, Layer& layer) const {
   const Vec3 low = lattice_.position(cell), high = lattice_.position({cell[0] + 1, cell[1] + 1, cell[2] + 1});
   const double volume = Box3{low, high}.volume();
   const std::uint32_t first = lattice_.point_index(cell);
@@ -82,17 +86,17 @@ void Reconstruction::extract_cell(const FractionLattice::Index& cell, Layer& lay
   for (std::uint32_t c = 0; c < 8 && uniform; ++c) {
     const std::uint32_t p =
         lattice_.point_index({cell[0] + (c & 1u), cell[1] + (c >> 1 & 1u), cell[2] + (c >> 2)});
-    uniform = lattice_.pure(p) && lattice_.owner(p) == owner;
+    uniform = lattice_.owner(p) == owner;
   }
   if (uniform) {
     layer.volume[owner] += volume;
     return;
   }
-  for (std::size_t path = 0; path < FractionLattice::kPaths.size(); ++path)
+  for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path)
     extract_tetrahedron(cell, path, volume / 6, layer);
 }
 
-void Reconstruction::extract_tetrahedron(const FractionLattice::Index& cell, std::size_t path, double volume,
+void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std::size_t path, double volume,
                                          Layer& layer) const {
   thread_local OwnershipProblem problem;
   thread_local std::vector<OwnedTetrahedron> parts;
@@ -104,6 +108,11 @@ void Reconstruction::extract_tetrahedron(const FractionLattice::Index& cell, std
     ids[c] = points[c] = lattice_.point_index(corners[c]);
     positions[c] = lattice_.position(corners[c]);
   }
+  if (std::all_of(points.begin(), points.end(),
+                  [&](std::uint32_t p) { return lattice_.owner(p) == lattice_.owner(points[0]); })) {
+    layer.volume[lattice_.owner(points[0])] += volume;
+    return;
+  }
   lattice_.ownership(points, problem);
   parts.clear();
   partition_tetrahedron(problem, parts);
@@ -113,28 +122,27 @@ void Reconstruction::extract_tetrahedron(const FractionLattice::Index& cell, std
   if (problem.candidates.size() < 2) return;
   // Also what round-off has taken: the tetrahedra on either side of a face agree on what lies on it.
   keep_owners(problem);
-  for (auto& candidate : problem.candidates) {
-    const MaterialId m(candidate.owner);
-    candidate.owner = part_in(cell, path, points, m);
-    if (is_pointless(candidate.owner)) layer.pointless.emplace_back(candidate.owner, m);
+  const std::vector<OwnershipProblem::Candidate> owners = problem.candidates;
+  for (std::size_t c = 0; c < owners.size(); ++c) {
+    const MaterialId m(owners[c].owner);
+    const Part part = problem.candidates[c].owner = part_in(cell, path, points, owners, m);
+    if (is_pointless(part)) layer.pointless.emplace_back(part, m);
   }
   layer.contacts.add(ids, positions, problem);
 }
 
-Reconstruction::Part Reconstruction::part_in(const FractionLattice::Index& cell, std::size_t path,
+Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell, std::size_t path,
                                              const std::array<std::uint32_t, 4>& corners,
+                                             const std::vector<OwnershipProblem::Candidate>& owners,
                                              MaterialId m) const {
   for (const std::uint32_t p : corners) {
     if (lattice_.owner(p) == m) return p;
   }
   // A tetrahedron has at most four regions that hold a corner; those that hold none are told apart by the
-  // position of their material among those that may own something. More than four such in one tetrahedron,
+  // position of their material among those that own something. More than four such in one tetrahedron,
   // which hardly comes about, count as one.
-  OwnershipProblem problem;
-  lattice_.ownership(corners, problem);
-  drop_hopeless(problem);
   std::uint32_t slot = 0;
-  for (const auto& candidate : problem.candidates) {
+  for (const auto& candidate : owners) {
     if (candidate.owner == m.value) break;
     const bool holds = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t p) {
       return lattice_.owner(p).value == candidate.owner;
@@ -153,7 +161,7 @@ void Reconstruction::join_points() {
       for (std::uint32_t i = 0; i < lattice_.points(0); ++i) {
         const std::uint32_t p = lattice_.point_index({i, j, k});
         for (std::uint32_t d = 1; d < 8; ++d) {
-          const FractionLattice::Index other{i + (d & 1u), j + (d >> 1 & 1u), k + (d >> 2)};
+          const MaterialLattice::Index other{i + (d & 1u), j + (d >> 1 & 1u), k + (d >> 2)};
           if (other[0] >= lattice_.points(0) || other[1] >= lattice_.points(1) ||
               other[2] >= lattice_.points(2))
             continue;
@@ -331,13 +339,14 @@ BodyId Reconstruction::body_at(const Vec3& p) const {
   std::array<std::uint32_t, 4> points{};
   for (std::size_t c = 0; c < 4; ++c) points[c] = lattice_.point_index(corners[c]);
   const bool uniform = std::all_of(points.begin(), points.end(), [&](std::uint32_t q) {
-    return lattice_.pure(q) && lattice_.owner(q) == lattice_.owner(points[0]);
+    return lattice_.owner(q) == lattice_.owner(points[0]);
   });
   if (uniform) return body_of_point_[points[0]];
   OwnershipProblem problem;
   lattice_.ownership(points, problem);
-  const Part part =
-      part_in(location.cell, location.path, points, MaterialId(problem.owner(location.weights)));
+  const MaterialId owner(problem.owner(location.weights));
+  keep_owners(problem);
+  const Part part = part_in(location.cell, location.path, points, problem.candidates, owner);
   if (part < body_of_point_.size()) return body_of_point_[part];
   const auto found = body_of_pointless_.find(part);
   return found != body_of_pointless_.end() ? found->second : body_of_point_[points[0]];

@@ -9,14 +9,16 @@
 #include "core/base/progress.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
-#include "interfaces/reconstruction/fraction_lattice.h"
+#include "interfaces/reconstruction/material_lattice.h"
+#include "interfaces/reconstruction/volume_correction.h"
 
 namespace adamas {
 
-/// Material interfaces reconstructed from volume fractions (Bonnell et al., Material interface
-/// reconstruction, 2003; D 3.4.1): where the greatest of linearly interpolated fractions changes
-/// from one material to another. No gap, no overlap, triple lines come out by themselves. The connected parts
-/// of each material's region, its bodies, are found on the lattice, exactly.
+/// Material interfaces reconstructed from volume fractions: where the greatest of linearly interpolated
+/// values changes from one material to another (as in Bonnell et al., Material interface reconstruction,
+/// 2003; D 3.4.1), with values for which each mixed cell holds its fractions. No gap, no overlap, triple
+/// lines come out by themselves. The connected parts of each material's region, its bodies, are found on the
+/// lattice, exactly.
 class Reconstruction {
  public:
   explicit Reconstruction(const MultiMaterialData& data, Progress& progress = SilentProgress::instance());
@@ -35,6 +37,8 @@ class Reconstruction {
   [[nodiscard]] const IdVector<MaterialId, double>& volume_reconstructed() const {
     return volume_reconstructed_;
   }
+  /// How well volumes agree cell by cell.
+  [[nodiscard]] const VolumeAgreement& agreement() const { return agreement_; }
 
  private:
   /// A part of a material's region: the lattice point it holds, or a number above all points for a part that
@@ -43,11 +47,12 @@ class Reconstruction {
   struct Layer;
 
   void extract_layer(std::uint32_t k, Layer& layer) const;
-  void extract_cell(const FractionLattice::Index& cell, Layer& layer) const;
-  void extract_tetrahedron(const FractionLattice::Index& cell, std::size_t path, double volume,
+  void extract_cell(const MaterialLattice::Index& cell, Layer& layer) const;
+  void extract_tetrahedron(const MaterialLattice::Index& cell, std::size_t path, double volume,
                            Layer& layer) const;
-  [[nodiscard]] Part part_in(const FractionLattice::Index& cell, std::size_t path,
-                             const std::array<std::uint32_t, 4>& corners, MaterialId m) const;
+  [[nodiscard]] Part part_in(const MaterialLattice::Index& cell, std::size_t path,
+                             const std::array<std::uint32_t, 4>& corners,
+                             const std::vector<OwnershipProblem::Candidate>& owners, MaterialId m) const;
   [[nodiscard]] bool is_pointless(Part part) const { return part >= lattice_.point_count(); }
   [[nodiscard]] MaterialId material_of(Part part) const;
   void join_points();
@@ -58,7 +63,11 @@ class Reconstruction {
   void join(Part a, Part b);
   void number_bodies();
 
-  FractionLattice lattice_;
+  /// For data whose values have been corrected.
+  Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress);
+
+  VolumeAgreement agreement_;
+  MaterialLattice lattice_;
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<BodyId, MaterialId> body_materials_;

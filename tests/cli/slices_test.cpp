@@ -69,7 +69,7 @@ TEST_F(Slices, ComponentsOfVectorsGoByTheirAxes) {
   EXPECT_TRUE(read("1.svg") == read("y.svg"));
 }
 
-TEST_F(Slices, InterfacesRoundAPlaneAreThoseOfTheWhole) {
+TEST_F(Slices, TheirInterfacesAreThoseOfTheWhole) {
   make_scene("reflex", 12);
   run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
   run_well({"reconstruct", "scene.vtr", "-o", "r.vtp"});

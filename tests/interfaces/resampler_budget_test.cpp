@@ -61,7 +61,7 @@ void expect_budgets(const std::string& scene, bool meshes, bool fields,
 
 TEST(ResamplerBudget, IsKeptUsedAndGrowsTheSameMesh) {
   expect_budgets("sphere", true, false, {100, 200, 400, 1600});
-  expect_budgets("tjunction", false, false, {100, 200, 400, 800});
+  expect_budgets("voronoi10", false, false, {1000, 2000, 4000});
   expect_budgets("plate", false, false, {1000, 2000});
 }
 

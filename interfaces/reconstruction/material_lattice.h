@@ -6,17 +6,18 @@
 
 #include "core/data/multi_material_data.h"
 #include "core/geometry/partition.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas {
 
-/// Volume fractions as a function of space that is linear in tetrahedra (docs/method.md, Interfaces from
+/// Values of materials as functions of space that are linear in tetrahedra (docs/method.md, Interfaces from
 /// volume fractions): the points of the lattice are the sites of the data and, where sites are cell centres,
-/// points on the domain's boundary with values extrapolated linearly and normalised. Each lattice cell is six
-/// tetrahedra round its main diagonal. A point belongs to the material with the greatest fraction, ties to
-/// the one whose name comes first.
-class FractionLattice {
+/// points on the domain's boundary with values continued linearly. Each lattice cell is six tetrahedra round
+/// its main diagonal. A point belongs to the material with the greatest value, ties to the one whose name
+/// comes first.
+class MaterialLattice {
  public:
-  explicit FractionLattice(const MultiMaterialData& data);
+  MaterialLattice(const MultiMaterialData& data, const SiteValues& values);
 
   using Index = std::array<std::uint32_t, 3>;
   /// The path of a tetrahedron of a lattice cell from its lowest corner to its highest: the order of the
@@ -34,20 +35,14 @@ class FractionLattice {
   [[nodiscard]] Vec3 position(const Index& p) const {
     return {coordinates_[0][p[0]], coordinates_[1][p[1]], coordinates_[2][p[2]]};
   }
-  [[nodiscard]] std::size_t material_count() const { return rank_.size(); }
-  /// Fraction of a material at a lattice point.
-  [[nodiscard]] float fraction(MaterialId m, std::uint32_t point) const {
-    return !of_labels_ ? fractions_[m][point] : (owner_[point] == m.value ? 1.0f : 0.0f);
-  }
-  /// Material with the greatest fraction at a lattice point.
-  [[nodiscard]] MaterialId owner(std::uint32_t point) const { return MaterialId(owner_[point]); }
-  /// Whether one material has the fraction 1 there.
-  [[nodiscard]] bool pure(std::uint32_t point) const { return of_labels_ || pure_[point]; }
+  [[nodiscard]] std::size_t material_count() const { return by_name_.size(); }
+  /// Material with the greatest value at a lattice point.
+  [[nodiscard]] MaterialId owner(std::uint32_t point) const { return by_name_[owner_[point]]; }
 
   /// Corners of a tetrahedron of the lattice cell at `cell`, from the lowest on.
   [[nodiscard]] std::array<Index, 4> tetrahedron(const Index& cell, std::size_t path) const;
-  /// Who owns what of a tetrahedron; materials without any fraction at its corners are left out. Owners are
-  /// materials.
+  /// Who owns what of a tetrahedron, whose corners have two owners or more; materials that are far from all
+  /// of them are left out. Owners are materials.
   void ownership(const std::array<std::uint32_t, 4>& corners, OwnershipProblem& problem) const;
   /// The lattice cell, the tetrahedron and the weights of a point; points outside the domain count as the
   /// nearest inside.
@@ -59,17 +54,23 @@ class FractionLattice {
   [[nodiscard]] Location locate(const Vec3& p) const;
 
  private:
-  void extend(const MultiMaterialData& data);
-  void normalise();
-  void find_owners();
+  void add_values(const MultiMaterialData& data, const SiteValues& values);
+  void find_owners(const MultiMaterialData& data, const SiteValues& values);
+  [[nodiscard]] std::size_t nearest_site(const MultiMaterialData& data, const Index& p) const;
+  [[nodiscard]] double value(std::uint32_t point, std::uint16_t material) const;
 
   std::array<std::vector<double>, 3> coordinates_;
-  std::array<std::uint32_t, 3> margin_{};     ///< 1 along an axis with extra boundary points
-  IdVector<MaterialId, std::uint32_t> rank_;  ///< position in the order of names
-  IdVector<MaterialId, std::vector<float>> fractions_;
-  bool of_labels_ = false;
+  std::array<std::uint32_t, 3> margin_{};  ///< 1 along an axis with extra boundary points
+  std::vector<MaterialId> by_name_;        ///< in the order of names; numbers below are places in it
+  struct Entry {
+    double value;
+    std::uint16_t material;
+    bool settled;  ///< as SiteValues has it of the nearest site
+  };
+  std::vector<std::uint32_t> first_;  ///< of the values of a point
+  std::vector<Entry> entries_;
+  double far_ = 0;
   std::vector<std::uint16_t> owner_;
-  std::vector<bool> pure_;
 };
 
 }  // namespace adamas

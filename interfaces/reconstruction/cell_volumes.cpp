@@ -1,0 +1,259 @@
+#include "interfaces/reconstruction/cell_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "interfaces/reconstruction/positive_part.h"
+
+namespace adamas {
+
+CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells)
+    : grid_(grid), values_(values), cells_(cells) {
+  for (std::size_t a = 0; a < 3; ++a) sites_[a] = static_cast<std::int64_t>(grid.sites(static_cast<int>(a)));
+}
+
+void CellVolumes::go_to(std::size_t site) {
+  const auto s = static_cast<std::int64_t>(site);
+  place_ = {s % sites_[0], s / sites_[0] % sites_[1], s / (sites_[0] * sites_[1])};
+  cell_ = &cells_.at(static_cast<std::size_t>(place_[0]), static_cast<std::size_t>(place_[1]),
+                     static_cast<std::size_t>(place_[2]), scratch_);
+  const std::span<const SiteValues::Entry> own = values_.at(site);
+  count_ = own.size();
+  round_.resize(count_);
+  settled_.resize(count_);
+  at_nodes_.resize(count_);
+  volumes_.resize(count_);
+  for (auto& row : round_) row.fill(values_.far());
+  for (auto& row : settled_) row.fill(true);
+  at_border_ = false;
+  for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+    const auto other = neighbour(n);
+    if (!other) {
+      at_border_ = grid_.centering == Centering::kCells;
+      continue;
+    }
+    const std::span<const SiteValues::Entry> there = values_.at(*other);
+    auto entry = there.begin();
+    for (std::size_t m = 0; m < count_; ++m) {
+      while (entry != there.end() && entry->material < own[m].material) ++entry;
+      if (entry != there.end() && entry->material == own[m].material)
+        round_[m][n] = entry->value, settled_[m][n] = entry->settled();
+    }
+  }
+}
+
+std::optional<std::size_t> CellVolumes::neighbour(std::size_t n) const {
+  const auto m = static_cast<std::int64_t>(n);
+  const std::int64_t i = place_[0] + m % 3 - 1, j = place_[1] + m / 3 % 3 - 1, k = place_[2] + m / 9 - 1;
+  if (i < 0 || j < 0 || k < 0 || i >= sites_[0] || j >= sites_[1] || k >= sites_[2]) return {};
+  return static_cast<std::size_t>(i + sites_[0] * (j + sites_[1] * k));
+}
+
+const std::vector<double>& CellVolumes::measure(bool growth) {
+  with_growth_ = growth;
+  pairs_.clear();
+  if (at_border_) extend();
+  for (std::size_t m = 0; m < count_; ++m) {
+    at_nodes_[m].resize(cell_->nodes.size());
+    for (std::size_t n = 0; n < cell_->nodes.size(); ++n) {
+      const SiteCell::Node& node = cell_->nodes[n];
+      double sum = 0;
+      for (std::size_t c = 0; c < 4; ++c) sum += node.weights[c] * round_[m][node.points[c]];
+      at_nodes_[m][n] = sum;
+    }
+  }
+  std::fill(volumes_.begin(), volumes_.end(), 0.0);
+  for (const SiteCell::Part& part : cell_->parts) measure_part(part);
+  if (at_border_) {
+    for (Pair& pair : pairs_) fold(pair.growth);
+  }
+  return volumes_;
+}
+
+double CellVolumes::border_step(int axis, bool high) const {
+  const std::size_t n = grid_.sites(axis);
+  if (n < 2) return 0;
+  const auto& x = grid_.nodes[static_cast<std::size_t>(axis)];
+  const double near = grid_.site_coordinate(axis, high ? n - 1 : 0),
+               next = grid_.site_coordinate(axis, high ? n - 2 : 1);
+  return ((high ? x.back() : x.front()) - near) / (near - next);
+}
+
+/// Calls visit(point, nearest, next, step) for the lattice points on the border along an axis, which continue
+/// the values at the nearest and the next point.
+template <class Visit>
+void CellVolumes::for_each_border(Visit&& visit) const {
+  std::size_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis, stride *= 3) {
+    const auto a = static_cast<std::size_t>(axis);
+    for (const bool high : {false, true}) {
+      if (place_[a] != (high ? sites_[a] - 1 : 0)) continue;
+      const double step = border_step(axis, high);
+      for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+        if (n / stride % 3 != (high ? 2u : 0u)) continue;
+        const std::size_t nearest = high ? n - stride : n + stride;
+        const std::size_t next = sites_[a] < 2 ? nearest : high ? n - 2 * stride : n + 2 * stride;
+        visit(n, nearest, next, step);
+      }
+    }
+  }
+}
+
+/// Values at lattice points on the border of the domain, along one axis after another.
+void CellVolumes::extend() {
+  for_each_border([&](std::size_t n, std::size_t nearest, std::size_t next, double step) {
+    for (std::size_t m = 0; m < count_; ++m) {
+      auto& row = round_[m];
+      settled_[m][n] = settled_[m][nearest];
+      row[n] = continued(row[nearest], row[next], step, values_.far(), settled_[m][n]);
+    }
+  });
+}
+
+/// Turns how a volume depends on points on the border into how it depends on sites, the other way round.
+void CellVolumes::fold(std::array<double, SiteCell::kNeighbours>& round) const {
+  struct Step {
+    std::size_t n, nearest, next;
+    double step;
+  };
+  thread_local std::vector<Step> steps;
+  steps.clear();
+  for_each_border([&](std::size_t n, std::size_t nearest, std::size_t next, double step) {
+    steps.push_back({n, nearest, next, step});
+  });
+  for (auto s = steps.rbegin(); s != steps.rend(); ++s) {
+    const double growth = round[s->n];
+    round[s->n] = 0;
+    round[s->nearest] += (1 + s->step) * growth;
+    round[s->next] -= s->step * growth;
+  }
+}
+
+void CellVolumes::measure_part(const SiteCell::Part& part) {
+  if (count_ == 2) return share_between_two(part, 0, 1);
+  // Those that may own something: their greatest value is not below what another has everywhere.
+  double sure = -std::numeric_limits<double>::infinity();
+  for (std::size_t m = 0; m < count_; ++m) {
+    const Values v = at_corners(part, m);
+    sure = std::max(sure, *std::min_element(v.begin(), v.end()));
+  }
+  contenders_.clear();
+  for (std::size_t m = 0; m < count_; ++m) {
+    const Values v = at_corners(part, m);
+    if (*std::max_element(v.begin(), v.end()) >= sure) contenders_.push_back(m);
+  }
+  if (contenders_.size() == 1) {
+    volumes_[contenders_[0]] += part.volume;
+  } else if (contenders_.size() == 2) {
+    share_between_two(part, contenders_[0], contenders_[1]);
+  } else {
+    share_between_all(part);
+  }
+}
+
+void CellVolumes::share_between_two(const SiteCell::Part& part, std::size_t m, std::size_t n) {
+  Values difference = at_corners(part, m);
+  const Values other = at_corners(part, n);
+  for (std::size_t c = 0; c < 4; ++c) difference[c] -= other[c];
+  const PositivePart found = positive_part(difference);
+  volumes_[m] += part.volume * found.volume;
+  volumes_[n] += part.volume * (1 - found.volume);
+  if (with_growth_ && found.volume > 0 && found.volume < 1) add_growth(part, m, n, found.growth);
+}
+
+/// Of each pair what the two divide between them where both are above all others: the volume of the first,
+/// and how it grows at the other's cost.
+void CellVolumes::share_between_all(const SiteCell::Part& part) {
+  const std::size_t count = contenders_.size();
+  const auto difference = [&](std::size_t m, std::size_t n) {
+    Values d = at_corners(part, contenders_[m]);
+    const Values other = at_corners(part, contenders_[n]);
+    for (std::size_t c = 0; c < 4; ++c) d[c] -= other[c];
+    return d;
+  };
+  const auto at = [](const Values& v, const Weights& w) {
+    return v[0] * w[0] + v[1] * w[1] + v[2] * w[2] + v[3] * w[3];
+  };
+  double rest = 1;
+  for (std::size_t m = 0; m + 1 < count; ++m) {
+    double own = 0;
+    // Without growth one other is enough.
+    for (std::size_t n = with_growth_ ? m + 1 : count - 1; n < count; ++n) {
+      pieces_.assign(1, {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, 1});
+      for (std::size_t l = 0; l < count; ++l) {
+        if (l != m && l != n) keep_positive(difference(m, l));
+      }
+      const Values d = difference(m, n);
+      Values growth{};
+      own = 0;
+      for (const Piece& piece : pieces_) {
+        const auto& [p, q, r, s] = piece.corners;
+        const PositivePart found = positive_part({at(d, p), at(d, q), at(d, r), at(d, s)});
+        own += piece.volume * found.volume;
+        for (std::size_t c = 0; c < 4; ++c) {
+          for (std::size_t i = 0; i < 4; ++i)
+            growth[i] += piece.volume * found.growth[c] * piece.corners[c][i];
+        }
+      }
+      if (with_growth_) add_growth(part, contenders_[m], contenders_[n], growth);
+    }
+    volumes_[contenders_[m]] += part.volume * own;
+    rest -= own;
+  }
+  volumes_[contenders_.back()] += part.volume * rest;
+}
+
+/// Leaves of the pieces what lies where a linear function is positive.
+void CellVolumes::keep_positive(const Values& function) {
+  kept_.clear();
+  for (const Piece& piece : pieces_) {
+    Values d{};
+    std::array<std::size_t, 4> o{0, 1, 2, 3};
+    for (std::size_t c = 0; c < 4; ++c) {
+      for (std::size_t i = 0; i < 4; ++i) d[c] += function[i] * piece.corners[c][i];
+    }
+    std::sort(o.begin(), o.end(), [&](auto i, auto j) { return d[i] != d[j] ? d[i] > d[j] : i < j; });
+    if (d[o[0]] <= 0) continue;
+    if (d[o[3]] >= 0) {
+      kept_.push_back(piece);
+      continue;
+    }
+    const auto corner = [&](std::size_t i) { return piece.corners[o[i]]; };
+    const auto cut = [&](std::size_t i, std::size_t j) {
+      const double t = d[o[i]] / (d[o[i]] - d[o[j]]);
+      Weights w{};
+      for (std::size_t c = 0; c < 4; ++c) w[c] = (1 - t) * corner(i)[c] + t * corner(j)[c];
+      return w;
+    };
+    const auto keep = [&](const std::array<Weights, 4>& corners) {
+      const double volume = std::abs(volume_fraction(corners));
+      if (volume > 0) kept_.push_back({corners, volume});
+    };
+    if (d[o[1]] <= 0) {
+      keep({corner(0), cut(0, 1), cut(0, 2), cut(0, 3)});
+    } else if (d[o[2]] <= 0) {
+      keep({corner(0), corner(1), cut(1, 2), cut(1, 3)});
+      keep({corner(0), cut(0, 2), cut(0, 3), cut(1, 3)});
+      keep({corner(0), cut(0, 2), cut(1, 2), cut(1, 3)});
+    } else {
+      keep({corner(0), corner(1), corner(2), cut(2, 3)});
+      keep({corner(0), corner(1), cut(1, 3), cut(2, 3)});
+      keep({corner(0), cut(0, 3), cut(1, 3), cut(2, 3)});
+    }
+  }
+  pieces_.swap(kept_);
+}
+
+void CellVolumes::add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth) {
+  auto pair = std::find_if(pairs_.begin(), pairs_.end(),
+                           [&](const Pair& p) { return p.first == m && p.second == n; });
+  if (pair == pairs_.end()) pair = pairs_.insert(pair, {m, n, {}});
+  for (std::size_t c = 0; c < 4; ++c) {
+    const SiteCell::Node& node = cell_->nodes[part.nodes[c]];
+    for (std::size_t i = 0; i < 4; ++i)
+      pair->growth[node.points[i]] += part.volume * growth[c] * node.weights[i];
+  }
+}
+
+}  // namespace adamas

@@ -1,0 +1,263 @@
+#include "interfaces/reconstruction/interface_planes.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/geometry/plane.h"
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/site_values.h"
+
+namespace adamas {
+
+namespace {
+
+/// Gradients below this, in fractions per cell, say nothing of where the material lies.
+constexpr double kLeastGradient = 0.05;
+constexpr int kMostRounds = 24;
+/// A normal rests when neither it nor one beside it has turned by more.
+constexpr double kSettled = 1e-6;
+/// A piece belongs to another surface where its normal differs by more than the angle of this cosine.
+constexpr double kAlike = 0.7;
+
+/// The part of a box of sides m round the origin where x + y + z <= s, for m in ascending order: Scardovelli
+/// and Zaleski, 2000.
+double part_below(const std::array<double, 3>& m, double s) {
+  const double total = m[0] + m[1] + m[2], alpha = s + 0.5 * total;
+  if (alpha <= 0) return 0;
+  if (alpha >= total) return 1;
+  // From the nearer corner, where nothing cancels.
+  if (alpha > 0.5 * total) return 1 - part_below(m, -s);
+  if (m[1] <= 1e-9 * m[2]) return alpha / m[2];
+  if (m[0] <= 1e-6 * m[2]) {
+    const double a = alpha;
+    const double area = a < m[1] ? a * a / 2 : m[1] * (a - m[1] / 2);
+    return area / (m[1] * m[2]);
+  }
+  const auto cube = [](double x) { return x > 0 ? x * x * x : 0; };
+  return (cube(alpha) - cube(alpha - m[0]) - cube(alpha - m[1]) - cube(alpha - m[2]) +
+          cube(alpha - m[0] - m[1])) /
+         (6 * m[0] * m[1] * m[2]);
+}
+
+/// The signed distance of a cell's centre from the plane that cuts off the part f of the cell behind it, on
+/// which side the unit vector points.
+double plane_distance(const Vec3& towards, const Vec3& size, double f) {
+  std::array<double, 3> m{std::abs(towards.x) * size.x, std::abs(towards.y) * size.y,
+                          std::abs(towards.z) * size.z};
+  std::sort(m.begin(), m.end());
+  // Between values on either side, by the secant of which one end is halved when it stays (Illinois).
+  double low = -0.5 * (m[0] + m[1] + m[2]), high = -low, below = -f, above = 1 - f, middle = 0;
+  int kept = 0;
+  for (int step = 0; step < 60 && high - low > 1e-15 * size.x; ++step) {
+    middle = low + (high - low) * below / (below - above);
+    const double value = part_below(m, middle) - f;
+    if (std::abs(value) < 1e-15) break;
+    if (value < 0) {
+      low = middle, below = value;
+      if (kept == -1) above *= 0.5;
+      kept = -1;
+    } else {
+      high = middle, above = value;
+      if (kept == 1) below *= 0.5;
+      kept = 1;
+    }
+  }
+  return middle;
+}
+
+/// The gradient of a material's fractions at a site by least squares with Youngs' weights, one-sided at the
+/// border.
+Vec3 gradient(const GridSites& sites, std::size_t site, const std::vector<float>& fractions) {
+  const Vec3 centre = sites.position(site);
+  const auto value = static_cast<double>(fractions[site]);
+  std::array<double, 6> a{};  // xx, yy, zz, xy, xz, yz
+  Vec3 b;
+  sites.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+    const Vec3 d = sites.position(other) - centre;
+    const double w = (di == 0 ? 2.0 : 1.0) * (dj == 0 ? 2.0 : 1.0) * (dk == 0 ? 2.0 : 1.0);
+    a[0] += w * d.x * d.x, a[1] += w * d.y * d.y, a[2] += w * d.z * d.z;
+    a[3] += w * d.x * d.y, a[4] += w * d.x * d.z, a[5] += w * d.y * d.z;
+    b += w * (static_cast<double>(fractions[other]) - value) * d;
+  });
+  // Axes along which there is one site only say nothing.
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (a[i] == 0) a[i] = 1;
+  }
+  const Vec3 x{a[0], a[3], a[4]}, y{a[3], a[1], a[5]}, z{a[4], a[5], a[2]};
+  const double det = dot(x, cross(y, z));
+  return (1 / det) * (b.x * cross(y, z) + b.y * cross(z, x) + b.z * cross(x, y));
+}
+
+/// The piece of a plane in its cell.
+struct Piece {
+  Vec3 middle;
+  double area = 0;
+};
+
+Piece piece_of(const InterfacePlane& plane, const Vec3& site, const Box3& cell) {
+  const std::vector<Vec3> polygon = clip_plane({site - plane.distance * plane.towards, plane.towards}, cell);
+  Piece piece;
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    const double area = 0.5 * norm(cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]));
+    piece.area += area;
+    piece.middle += area / 3 * (polygon[0] + polygon[i - 1] + polygon[i]);
+  }
+  if (piece.area > 0) piece.middle *= 1 / piece.area;
+  return piece;
+}
+
+/// The normal of the plane that lies best between points, by the eigenvector of their covariance; zero where
+/// they lie along a line.
+Vec3 fitted_normal(const std::vector<std::pair<Vec3, double>>& points, const Vec3& about) {
+  Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  double weights = 0;
+  for (const auto& [p, w] : points) {
+    const Eigen::Vector3d d(p.x - about.x, p.y - about.y, p.z - about.z);
+    sums += w * d * d.transpose();
+    first += w * d;
+    weights += w;
+  }
+  if (!(weights > 0)) return {};
+  sums -= first * first.transpose() / weights;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> found(sums);
+  const Eigen::Vector3d& by = found.eigenvalues();
+  if (!(by[1] > 0.02 * by[2])) return {};
+  const Eigen::Vector3d n = found.eigenvectors().col(0);
+  return {n[0], n[1], n[2]};
+}
+
+/// The planes of mixed sites' entries, from gradients on.
+class PlaneFit {
+ public:
+  PlaneFit(const MultiMaterialData& data, const SiteValues& values)
+      : data_(data),
+        values_(values),
+        sites_(data.grid),
+        planes_(values.entries().size()),
+        pieces_(planes_.size()) {}
+
+  std::vector<InterfacePlane> run() {
+    if (values_.mixed().empty()) return planes_;
+    next_ = planes_;
+    for_each_entry([&](std::size_t site, const Entry& entry) {
+      const Vec3 size = sites_.cell(site).size();
+      const Vec3 g = gradient(sites_, site, data_.fractions[values_.material(entry.material)]);
+      if (norm(g) * std::min({size.x, size.y, size.z}) >= kLeastGradient) place(site, entry, normalized(g));
+    });
+    last_.assign(planes_.size(), 1);
+    std::vector<double> turned(planes_.size());
+    for (int round = 0; round < kMostRounds; ++round) {
+      planes_ = next_;
+      for_each_entry([&](std::size_t site, const Entry& entry) {
+        const std::size_t e = index(entry);
+        if (planes_[e].known() && last_[e] > kSettled)
+          pieces_[e] = piece_of(planes_[e], sites_.position(site), sites_.cell(site));
+      });
+      for_each_entry([&](std::size_t site, const Entry& entry) { turned[index(entry)] = turn(site, entry); });
+      last_.swap(turned);
+      if (*std::max_element(last_.begin(), last_.end()) <= kSettled) break;
+    }
+    // Of two materials each has the other's plane, from its other side.
+    for (const std::uint32_t site : values_.mixed()) {
+      const Entry* twin = nullptr;
+      const Entry* first = lesser_of_two(site, &twin);
+      if (first != nullptr)
+        next_[index(*twin)] = {-next_[index(*first)].towards, -next_[index(*first)].distance};
+    }
+    return next_;
+  }
+
+ private:
+  using Entry = SiteValues::Entry;
+
+  [[nodiscard]] std::size_t index(const Entry& entry) const {
+    return static_cast<std::size_t>(&entry - values_.entries().data());
+  }
+  static bool is_in_part(const Entry& entry) { return entry.fraction > 0 && entry.fraction < 1; }
+
+  /// Where two materials share a cell: the one with the lesser fraction, which is the more exact number.
+  const Entry* lesser_of_two(std::size_t site, const Entry** other) const {
+    std::array<const Entry*, 2> two{};
+    std::size_t count = 0;
+    for (const Entry& entry : values_.at(site)) {
+      if (entry.fraction <= 0) continue;
+      if (count < 2) two[count] = &entry;
+      ++count;
+    }
+    if (count != 2) return nullptr;
+    if (two[1]->fraction < two[0]->fraction) std::swap(two[0], two[1]);
+    *other = two[1];
+    return two[0];
+  }
+
+  /// Calls visit(site, entry) for those that need a plane of their own.
+  template <class Visit>
+  void for_each_entry(const Visit& visit) const {
+    const auto& mixed = values_.mixed();
+    parallel_for(mixed.size(), 128, [&](std::size_t n) {
+      const Entry* twin = nullptr;
+      if (const Entry* first = lesser_of_two(mixed[n], &twin)) return visit(std::size_t{mixed[n]}, *first);
+      for (const Entry& entry : values_.at(mixed[n])) {
+        if (is_in_part(entry)) visit(std::size_t{mixed[n]}, entry);
+      }
+    });
+  }
+
+  void place(std::size_t site, const Entry& entry, const Vec3& towards) {
+    const Box3 cell = sites_.cell(site);
+    next_[index(entry)] = {towards,
+                           plane_distance(towards, cell.size(), static_cast<double>(entry.fraction)) +
+                               dot(towards, sites_.position(site) - cell.center())};
+  }
+
+  /// Turns a plane as those round it lie; returns how far.
+  double turn(std::size_t site, const Entry& entry) {
+    const InterfacePlane plane = planes_[index(entry)];
+    if (!plane.known()) return 0;
+    thread_local std::vector<std::pair<Vec3, double>> points;
+    const Piece own = pieces_[index(entry)];
+    points.assign(1, {own.middle, own.area});
+    Vec3 mean;
+    double moved = last_[index(entry)];
+    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      const Entry* twin = nullptr;
+      const Entry* first = lesser_of_two(other, &twin);
+      for (const Entry& there : values_.at(other)) {
+        if (there.material != entry.material || !is_in_part(there)) continue;
+        const bool turned = first != nullptr && &there == twin;
+        const std::size_t o = index(turned ? *first : there);
+        const Vec3 normal = turned ? -planes_[o].towards : planes_[o].towards;
+        if (!planes_[o].known() || dot(normal, plane.towards) <= kAlike) continue;
+        points.emplace_back(pieces_[o].middle, pieces_[o].area);
+        moved = std::max(moved, last_[o]);
+        mean += pieces_[o].area * normal;
+      }
+    });
+    if (moved <= kSettled) return 0;
+    Vec3 normal = fitted_normal(points, own.middle);
+    if (squared_norm(normal) == 0) normal = normalized(mean);
+    if (dot(normal, plane.towards) < 0) normal = -normal;
+    if (dot(normal, plane.towards) <= kAlike) return 0;
+    place(site, entry, normal);
+    return distance(normal, plane.towards);
+  }
+
+  const MultiMaterialData& data_;
+  const SiteValues& values_;
+  GridSites sites_;
+  std::vector<InterfacePlane> planes_, next_;
+  std::vector<Piece> pieces_;
+  std::vector<double> last_;  // how far normals turned
+};
+
+}  // namespace
+
+std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values) {
+  return PlaneFit(data, values).run();
+}
+
+}  // namespace adamas

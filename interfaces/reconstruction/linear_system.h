@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace adamas {
+
+/// How volumes of materials in cells depend on unknowns, for small moves: sparse, and each exchange between
+/// two materials of a cell is there once for both.
+struct LinearSystem {
+  /// The rows of the two volumes, and the coefficients of the unknowns.
+  struct Exchange {
+    std::uint32_t gains, loses, first, count;
+  };
+  struct Coefficient {
+    std::uint32_t unknown;
+    float by;
+  };
+  std::vector<Exchange> exchanges;
+  std::vector<Coefficient> coefficients;
+  std::vector<double> missing;  ///< by row
+  std::size_t cells_off = 0;
+
+  /// Takes over the exchanges of another one.
+  void append(const LinearSystem& other);
+  /// The shortest move of the unknowns that gives what is missing, nearly: conjugate gradients for the normal
+  /// equations, damped and stopped early, so that unknowns do not swing on which volumes hardly depend.
+  [[nodiscard]] std::vector<double> solve(std::size_t unknowns, double damping) const;
+
+ private:
+  void multiply(const std::vector<double>& x, std::vector<double>& rows) const;
+  void multiply_transposed(const std::vector<double>& rows, std::vector<double>& x) const;
+};
+
+double sum_of_squares(const std::vector<double>& v);
+
+}  // namespace adamas

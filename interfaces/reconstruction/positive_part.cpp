@@ -1,0 +1,50 @@
+#include "interfaces/reconstruction/positive_part.h"
+
+#include <cstddef>
+#include <utility>
+
+namespace adamas {
+
+PositivePart positive_part(const std::array<double, 4>& v) {
+  // Most are not cut.
+  if (v[0] <= 0 && v[1] <= 0 && v[2] <= 0 && v[3] <= 0) return {0, {}};
+  if (v[0] > 0 && v[1] > 0 && v[2] > 0 && v[3] > 0) return {1, {}};
+  std::array<std::size_t, 4> o{0, 1, 2, 3};  // from the greatest value on
+  const auto order = [&](std::size_t i, std::size_t j) {
+    if (v[o[i]] < v[o[j]]) std::swap(o[i], o[j]);
+  };
+  order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+  const double a = v[o[0]], b = v[o[1]], c = v[o[2]], d = v[o[3]];
+  PositivePart result{a > 0 ? 1.0 : 0.0, {}};
+  if (a <= 0 || d >= 0) return result;
+  auto& g = result.growth;
+  // A corner that is cut off keeps a / (a - b) and so on of its edges.
+  if (b <= 0) {
+    const double ab = 1 / (a - b), ac = 1 / (a - c), ad = 1 / (a - d), part = a * a * a * ab * ac * ad;
+    result.volume = part;
+    g[o[0]] = part * (3 / a - ab - ac - ad);
+    g[o[1]] = part * ab, g[o[2]] = part * ac, g[o[3]] = part * ad;
+    return result;
+  }
+  if (c >= 0) {
+    const double ad = 1 / (a - d), bd = 1 / (b - d), cd = 1 / (c - d), part = -d * d * d * ad * bd * cd;
+    result.volume = 1 - part;
+    g[o[0]] = part * ad, g[o[1]] = part * bd, g[o[2]] = part * cd;
+    g[o[3]] = -part * (3 / d + ad + bd + cd);
+    return result;
+  }
+  // What lies between the edge of two positive corners and the four points on the edges that are cut.
+  const double ac = 1 / (a - c), ad = 1 / (a - d), bc = 1 / (b - c), bd = 1 / (b - d);
+  const double p = a * ac, q = a * ad, r = b * bc, t = b * bd;
+  result.volume = r * t + p * q * (1 - t) + p * t * (1 - r);
+  const double by_p = q * (1 - t) + t * (1 - r), by_q = p * (1 - t), by_r = t - p * t,
+               by_t = r - p * q + p * (1 - r);
+  // a / (a - c) grows by -c / (a - c)^2 with a and by a / (a - c)^2 with c.
+  g[o[0]] = -by_p * c * ac * ac - by_q * d * ad * ad;
+  g[o[1]] = -by_r * c * bc * bc - by_t * d * bd * bd;
+  g[o[2]] = by_p * a * ac * ac + by_r * b * bc * bc;
+  g[o[3]] = by_q * a * ad * ad + by_t * b * bd * bd;
+  return result;
+}
+
+}  // namespace adamas

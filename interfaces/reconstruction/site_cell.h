@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "core/data/rectilinear_grid.h"
+
+namespace adamas {
+
+/// The cell of a site, divided into parts of the tetrahedra of the lattice round it (docs/method.md,
+/// Interfaces from volume fractions). Values at the lattice points are known by where these lie: the
+/// neighbour at (dx, dy, dz) has the number dx + 1 + 3 (dy + 1) + 9 (dz + 1).
+struct SiteCell {
+  static constexpr std::size_t kNeighbours = 27, kSelf = 13;
+
+  /// A corner of parts: where the values of at most four lattice points are interpolated.
+  struct Node {
+    std::array<std::uint8_t, 4> points;
+    std::array<double, 4> weights;
+  };
+  struct Part {
+    std::array<std::uint16_t, 4> nodes;
+    double volume;  ///< as a part of the cell's
+  };
+  std::vector<Node> nodes;
+  std::vector<Part> parts;
+};
+
+/// The cells of all sites of a grid; cells that are alike are made once.
+class SiteCells {
+ public:
+  explicit SiteCells(const RectilinearGrid& grid);
+
+  /// The cell of site (i, j, k); `scratch` holds it where cells are hardly ever alike.
+  const SiteCell& at(std::size_t i, std::size_t j, std::size_t k, SiteCell& scratch) const;
+
+ private:
+  /// How the cell lies between the lattice points before and behind its site along an axis: how much of the
+  /// interval it takes, and the interval's length in relation to the cell's.
+  struct Side {
+    double reach, length;
+    auto operator<=>(const Side&) const = default;
+  };
+  using Shape = std::array<Side, 2>;
+
+  static Shape shape_at(const RectilinearGrid& grid, int axis, std::size_t i);
+  static void make(const std::array<Shape, 3>& shapes, SiteCell& cell);
+
+  std::array<std::vector<Shape>, 3> shapes_;            // that differ
+  std::array<std::vector<std::uint32_t>, 3> shape_of_;  // by site along the axis
+  std::vector<SiteCell> cells_;                         // of all combinations, where these are few
+};
+
+}  // namespace adamas

@@ -1,0 +1,127 @@
+#include "interfaces/reconstruction/site_values.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/geometry/vec3.h"
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/interface_planes.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+}  // namespace
+
+SiteValues::SiteValues(const MultiMaterialData& data) {
+  const GridSites sites(data.grid);
+  const std::size_t count = data.grid.site_count();
+  double widest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& x = data.grid.nodes[static_cast<std::size_t>(axis)];
+    for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
+  }
+  far_ = -32 * widest;
+  find_entries(data);
+  const std::vector<InterfacePlane> planes = interface_planes(data, *this);
+  const auto mixed_entry = [](const Entry& e) { return e.fraction > 0 && e.fraction < 1; };
+  parallel_for(mixed_.size(), 1024, [&](std::size_t n) {
+    const Vec3 size = sites.cell(mixed_[n]).size();
+    for (std::size_t e = first_[mixed_[n]]; e < first_[mixed_[n] + 1]; ++e) {
+      if (!mixed_entry(entries_[e])) continue;
+      entries_[e].value = planes[e].known() ? planes[e].distance
+                                            : (static_cast<double>(entries_[e].fraction) - 0.5) *
+                                                  std::min({size.x, size.y, size.z});
+    }
+  });
+  // Beside them: the mean of what their planes say, on the right side.
+  parallel_for(count, 4096, [&](std::size_t site) {
+    if (first_[site] == first_[site + 1]) return;
+    const Vec3 centre = sites.position(site), size = sites.cell(site).size();
+    const double half = 0.5 * std::min({size.x, size.y, size.z});
+    for (std::size_t e = first_[site]; e < first_[site + 1]; ++e) {
+      Entry& entry = entries_[e];
+      if (mixed_entry(entry)) continue;
+      double sum = 0, weights = 0;
+      sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+        const Vec3 d = centre - sites.position(other);
+        for (std::size_t o = first_[other]; o < first_[other + 1]; ++o) {
+          if (entries_[o].material != entry.material || !planes[o].known()) continue;
+          const double w = 1 / squared_norm(d);
+          sum += w * (planes[o].distance + dot(planes[o].towards, d));
+          weights += w;
+        }
+      });
+      const double side = entry.fraction > 0 ? 1 : -1;
+      const double mean = weights > 0 ? sum / weights : 0;
+      entry.value = side * std::clamp(side * mean, half, greatest());
+    }
+  });
+}
+
+/// Who has values where: materials that a site or a neighbour holds, unless that is one material alone.
+void SiteValues::find_entries(const MultiMaterialData& data) {
+  const GridSites sites(data.grid);
+  const std::size_t count = data.grid.site_count(), materials = data.materials.size();
+  sole_.resize(count);
+  for (MaterialId m(0); m.value < materials; ++m.value) by_name_.push_back(m);
+  std::stable_sort(by_name_.begin(), by_name_.end(),
+                   [&](MaterialId a, MaterialId b) { return data.materials[a] < data.materials[b]; });
+  std::vector<std::uint16_t> numbers(materials);
+  for (std::size_t n = 0; n < materials; ++n) numbers[by_name_[n].value] = static_cast<std::uint16_t>(n);
+  parallel_for(count, 1 << 14, [&](std::size_t site) {
+    sole_[site] = static_cast<std::uint16_t>(materials);
+    if (!data.labels.empty()) {
+      sole_[site] = numbers[data.labels[site]];
+      return;
+    }
+    for (std::size_t n = 0; n < materials; ++n) {
+      if (data.fractions[by_name_[n]][site] >= 1) sole_[site] = static_cast<std::uint16_t>(n);
+    }
+  });
+  const auto find = [&](std::size_t site, std::vector<std::uint16_t>& found) {
+    found.clear();
+    const auto add = [&](std::size_t m) {
+      const auto number = static_cast<std::uint16_t>(m);
+      if (std::find(found.begin(), found.end(), number) == found.end()) found.push_back(number);
+    };
+    const auto add_site = [&](std::size_t s) {
+      if (sole_[s] < materials) return add(sole_[s]);
+      for (std::size_t n = 0; n < materials; ++n) {
+        if (data.fractions[by_name_[n]][s] > 0) add(n);
+      }
+    };
+    add_site(site);
+    sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) { add_site(other); });
+    if (found.size() == 1 && sole_[site] < materials) found.clear();
+    std::sort(found.begin(), found.end());
+  };
+  first_.assign(count + 1, 0);
+  parallel_for(count, 4096, [&](std::size_t site) {
+    thread_local std::vector<std::uint16_t> found;
+    find(site, found);
+    first_[site + 1] = static_cast<std::uint32_t>(found.size());
+  });
+  std::uint64_t total = 0;
+  for (std::size_t site = 0; site < count; ++site) {
+    total += first_[site + 1];
+    if (total > 0xffffffffu)
+      fail("{}: expected at most {} materials beside sites, found more", data.source, 0xffffffffu);
+    first_[site + 1] = static_cast<std::uint32_t>(total);
+    if (sole_[site] == materials) mixed_.push_back(static_cast<std::uint32_t>(site));
+  }
+  entries_.resize(total);
+  parallel_for(count, 4096, [&](std::size_t site) {
+    thread_local std::vector<std::uint16_t> found;
+    if (first_[site] == first_[site + 1]) return;
+    find(site, found);
+    for (std::size_t n = 0; n < found.size(); ++n)
+      entries_[first_[site] + n] = {0, data.fraction(by_name_[found[n]], site), found[n]};
+  });
+}
+
+}  // namespace adamas

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/data/multi_material_data.h"
+
+namespace adamas {
+
+/// A value per site and material near it, whose greatest says who owns a point (docs/method.md, Interfaces
+/// from volume fractions): lengths, about the signed distance from the material's boundary. Sites all of
+/// whose neighbours hold what they hold alone have no values.
+class SiteValues {
+ public:
+  struct Entry {
+    double value;
+    float fraction;
+    std::uint16_t material;  ///< its number in the order of names
+
+    /// Whether the material fills the cell or is absent from it.
+    [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
+  };
+
+  /// Values from the planes that cut off each mixed cell's fractions.
+  explicit SiteValues(const MultiMaterialData& data);
+
+  [[nodiscard]] std::span<const Entry> at(std::size_t site) const {
+    return {entries_.data() + first_[site], entries_.data() + first_[site + 1]};
+  }
+  [[nodiscard]] std::span<Entry> at(std::size_t site) {
+    return {entries_.data() + first_[site], entries_.data() + first_[site + 1]};
+  }
+  [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
+  [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
+  /// The material with a number in the order of names, on which nothing else may depend.
+  [[nodiscard]] MaterialId material(std::uint16_t number) const { return by_name_[number]; }
+  /// The number of the one material of a site that has no values.
+  [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_[site]; }
+  /// The value of a material that has none near a site: less than any that counts.
+  [[nodiscard]] double far() const { return far_; }
+  /// What no value is greater than.
+  [[nodiscard]] double greatest() const { return -far_ / 8; }
+  /// Sites where two materials or more have a fraction, in order.
+  [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
+
+ private:
+  void find_entries(const MultiMaterialData& data);
+
+  std::vector<MaterialId> by_name_;
+  std::vector<std::uint16_t> sole_;  // by site; the number of materials where there are several
+  std::vector<std::uint32_t> first_;
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> mixed_;
+  double far_ = 0;
+};
+
+/// The value at a lattice point on the border, beyond the sites, `step` times as far from the nearest as that
+/// is from the next one: continued linearly, or that of the nearest where the other is far. No interface gets
+/// into a cell that a material fills or is absent from: there the value keeps its sign (`settled`).
+inline double continued(double nearest, double next, double step, double far, bool settled) {
+  constexpr double kLeastPart = 0.05;
+  if (nearest == far || next == far) return nearest;
+  const double value = nearest + step * (nearest - next);
+  if (!settled) return value;
+  const double least = kLeastPart * nearest;
+  return nearest > 0 ? std::max(value, least) : std::min(value, least);
+}
+
+}  // namespace adamas

@@ -1,0 +1,327 @@
+#include "interfaces/reconstruction/volume_correction.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/cell_volumes.h"
+#include "interfaces/reconstruction/linear_system.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+/// Sweeps over cells that are far off, rounds of the method for all, steps of each, and rounds that close
+/// totals.
+constexpr int kMostSweeps = 6, kMostRounds = 16, kMostClosings = 6;
+/// A cell is far off where a volume differs by more than this part of the cell's.
+constexpr double kFarOff = 0.03;
+/// Cells that differ by more are counted.
+constexpr double kCellOff = 1e-3;
+/// Rounds end when no more mixed cells, as a part of all, are off, or when the sum of squares gains less.
+constexpr double kMostOff = 8e-3, kLeastGain = 0.01;
+/// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
+/// would make the surface rough.
+constexpr double kDamping = 1e-4;
+/// Of the domain.
+constexpr double kTotalTolerance = 2e-11;
+
+class Correction {
+ public:
+  Correction(const MultiMaterialData& data, SiteValues& values)
+      : data_(data), values_(values), cells_(data.grid), step_(data.grid.least_spacing()) {
+    const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
+    row_of_.push_back(0);
+    for (const std::uint32_t site : values.mixed()) {
+      colours_[site % nx % 2 + 2 * (site / nx % ny % 2) + 4 * (site / (nx * ny) % 2)].push_back(site);
+      row_of_.push_back(row_of_.back() + static_cast<std::uint32_t>(entries(site).size()));
+    }
+  }
+
+  void run(Progress& progress) {
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+      progress.step("correcting volumes", -1);
+      std::size_t off = 0;
+      for (const auto& sites : colours_) off += correct(sites);
+      if (off == 0) break;
+    }
+    find_unknowns();
+    correct_all(progress);
+    close_totals(progress);
+  }
+
+  [[nodiscard]] VolumeAgreement agreement() const {
+    const auto& mixed = values_.mixed();
+    std::vector<double> differences(mixed.size());
+    parallel_chunks(mixed.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+      CellVolumes cell(data_.grid, values_, cells_);
+      for (std::size_t n = begin; n < end; ++n) {
+        cell.go_to(mixed[n]);
+        differences[n] = greatest_difference(entries(mixed[n]), cell.measure());
+      }
+    });
+    VolumeAgreement result;
+    result.mixed_cells = mixed.size();
+    for (const double d : differences) {
+      result.cells_off += d > kCellOff ? 1 : 0;
+      result.greatest = std::max(result.greatest, d);
+      result.mean += d / static_cast<double>(mixed.size());
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t kChunk = 64;
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  [[nodiscard]] std::span<const Entry> entries(std::size_t site) const {
+    return static_cast<const SiteValues&>(values_).at(site);
+  }
+
+  static double greatest_difference(std::span<const Entry> entries, const std::vector<double>& volumes) {
+    double greatest = 0;
+    for (std::size_t m = 0; m < entries.size(); ++m)
+      greatest = std::max(greatest, std::abs(volumes[m] - static_cast<double>(entries[m].fraction)));
+    return greatest;
+  }
+
+  /// Corrects those that are far off of sites that do not touch each other, one by one; returns how many
+  /// were. What has no surface yet in a cell that should hold one gets it here.
+  std::size_t correct(const std::vector<std::uint32_t>& sites) {
+    std::vector<std::size_t> off((sites.size() + kChunk - 1) / kChunk);
+    parallel_chunks(sites.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+      CellVolumes cell(data_.grid, values_, cells_);
+      for (std::size_t n = begin; n < end; ++n) off[begin / kChunk] += correct(sites[n], cell) ? 1 : 0;
+    });
+    std::size_t sum = 0;
+    for (const std::size_t n : off) sum += n;
+    return sum;
+  }
+
+  bool correct(std::size_t site, CellVolumes& cell) {
+    const std::span<Entry> own = values_.at(site);
+    cell.go_to(site);
+    if (greatest_difference(own, cell.measure()) <= kFarOff) return false;
+    std::vector<std::size_t> present;
+    for (std::size_t m = 0; m < own.size(); ++m) {
+      if (own[m].fraction > 0) present.push_back(m);
+    }
+    if (present.size() == 2) {
+      raise(own, cell, present[0], present[1]);
+    } else {
+      for (const std::size_t m : present) raise(own, cell, m, m);
+    }
+    for (std::size_t m = 0; m < own.size(); ++m) own[m].value = cell.own(m);
+    return true;
+  }
+
+  /// Raises the m-th value, and lowers the n-th as much where that is another, until the m-th volume is
+  /// right, by two steps of the secant method: volumes grow with values.
+  void raise(std::span<const Entry> own, CellVolumes& cell, std::size_t m, std::size_t n) const {
+    const double first_m = cell.own(m), first_n = cell.own(n), most = values_.greatest();
+    const auto set = [&](double shift) {
+      const double part = m == n ? shift : 0.5 * shift;
+      cell.own(m) = std::clamp(first_m + part, -most, most);
+      if (m != n) cell.own(n) = std::clamp(first_n - part, -most, most);
+    };
+    const double before = cell.measure()[m], missing = static_cast<double>(own[m].fraction) - before;
+    const double guess = std::clamp(2.5 * missing * step_, -step_, step_);
+    if (guess == 0) return;
+    set(guess);
+    const double slope = (cell.measure()[m] - before) / guess;
+    if (slope * step_ > 0.02) set(std::clamp(missing / slope, -2 * step_, 2 * step_));
+  }
+
+  /// The values of materials in mixed cells that have a part of them.
+  void find_unknowns() {
+    unknown_of_.assign(values_.entries().size(), kNone);
+    for (const std::uint32_t site : values_.mixed()) {
+      for (const Entry& entry : entries(site)) {
+        if (entry.fraction <= 0) continue;
+        unknown_of_[index_of(entry)] = static_cast<std::uint32_t>(unknowns_.size());
+        unknowns_.push_back(static_cast<std::uint32_t>(index_of(entry)));
+      }
+    }
+  }
+  [[nodiscard]] std::size_t index_of(const Entry& entry) const {
+    return static_cast<std::size_t>(&entry - values_.entries().data());
+  }
+  [[nodiscard]] std::uint32_t unknown(std::size_t site, std::uint16_t material) const {
+    for (const Entry& entry : entries(site)) {
+      if (entry.material == material) return unknown_of_[index_of(entry)];
+    }
+    return kNone;
+  }
+
+  /// Moves all values together, until most volumes are right: Gauss and Newton's method with steps that are
+  /// halved where they lead too far.
+  void correct_all(Progress& progress) {
+    std::vector<double> move;
+    double best = 0, share = 1;
+    for (int round = 0; round < kMostRounds && !unknowns_.empty(); ++round) {
+      progress.step("correcting volumes", static_cast<double>(round) / kMostRounds);
+      const LinearSystem system = linearise();
+      const double sum = sum_of_squares(system.missing);
+      if (round > 0 && sum > best) {
+        share *= 0.5;
+        apply(move, -share);
+        if (share < 0.1) {
+          apply(move, -share);
+          return;
+        }
+        continue;
+      }
+      const bool settled = round > 0 && sum > (1 - kLeastGain) * best;
+      best = sum;
+      if (settled ||
+          static_cast<double>(system.cells_off) <= kMostOff * static_cast<double>(values_.mixed().size()))
+        return;
+      move = system.solve(unknowns_.size(), kDamping / (step_ * step_));
+      for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
+      share = 1;
+      apply(move, share);
+    }
+  }
+
+  void apply(const std::vector<double>& move, double share) {
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+      double& value = values_.entries()[unknowns_[i]].value;
+      value += share * move[i];
+    }
+  }
+
+  [[nodiscard]] LinearSystem linearise() const {
+    const auto& mixed = values_.mixed();
+    std::vector<LinearSystem> chunks((mixed.size() + kChunk - 1) / kChunk);
+    LinearSystem system;
+    system.missing.resize(row_of_.back());
+    parallel_chunks(mixed.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+      LinearSystem& part = chunks[begin / kChunk];
+      CellVolumes cell(data_.grid, values_, cells_);
+      for (std::size_t n = begin; n < end; ++n) {
+        const std::span<const Entry> own = entries(mixed[n]);
+        cell.go_to(mixed[n]);
+        const std::vector<double>& volumes = cell.measure(true);
+        part.cells_off += greatest_difference(own, volumes) > kCellOff ? 1 : 0;
+        for (std::size_t m = 0; m < own.size(); ++m)
+          system.missing[row_of_[n] + m] = static_cast<double>(own[m].fraction) - volumes[m];
+        for (const CellVolumes::Pair& pair : cell.pairs()) add_exchange(own, cell, pair, row_of_[n], part);
+      }
+    });
+    for (const LinearSystem& part : chunks) system.append(part);
+    return system;
+  }
+
+  void add_exchange(std::span<const Entry> own, const CellVolumes& cell, const CellVolumes::Pair& pair,
+                    std::uint32_t row, LinearSystem& system) const {
+    const auto first = static_cast<std::uint32_t>(system.coefficients.size());
+    for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+      const auto site = cell.neighbour(n);
+      if (!site || pair.growth[n] == 0) continue;
+      const auto by = static_cast<float>(pair.growth[n]);
+      const std::uint32_t gains = unknown(*site, own[pair.first].material),
+                          loses = unknown(*site, own[pair.second].material);
+      if (gains != kNone) system.coefficients.push_back({gains, by});
+      if (loses != kNone) system.coefficients.push_back({loses, -by});
+    }
+    system.exchanges.push_back({row + static_cast<std::uint32_t>(pair.first),
+                                row + static_cast<std::uint32_t>(pair.second), first,
+                                static_cast<std::uint32_t>(system.coefficients.size()) - first});
+  }
+
+  /// One offset per material, the same everywhere: Newton's method for the volumes in the whole domain.
+  void close_totals(Progress& progress) {
+    const auto count = static_cast<Eigen::Index>(data_.materials.size());
+    if (count < 2) return;
+    const auto wanted = data_.volumes();
+    const double domain = data_.grid.domain().volume();
+    for (int round = 0; round < kMostClosings; ++round) {
+      progress.step("closing volumes", static_cast<double>(round) / kMostClosings);
+      Eigen::MatrixXd growth = Eigen::MatrixXd::Zero(count, count);
+      const std::vector<double> totals = measure_totals(growth);
+      Eigen::VectorXd missing(count);
+      for (Eigen::Index m = 0; m < count; ++m)
+        missing[m] =
+            wanted[values_.material(static_cast<std::uint16_t>(m))] - totals[static_cast<std::size_t>(m)];
+      // Adding one number to all offsets changes nothing, and what fractions are beyond 1 cannot be had.
+      missing.array() -= missing.mean();
+      const double scale = growth.diagonal().maxCoeff();
+      if (!(scale > 0) || missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
+      growth.diagonal().array() += 1e-9 * scale;
+      Eigen::VectorXd offsets = growth.ldlt().solve(missing);
+      offsets.array() -= offsets.mean();
+      for (Entry& entry : values_.entries())
+        entry.value +=
+            std::clamp(offsets[static_cast<Eigen::Index>(entry.material)], -0.1 * step_, 0.1 * step_);
+    }
+  }
+
+  /// The materials' volumes in the domain, and how they grow with offsets.
+  std::vector<double> measure_totals(Eigen::MatrixXd& growth) const {
+    struct Sum {
+      std::vector<double> volumes;
+      std::vector<std::array<std::uint16_t, 2>> pairs;
+      std::vector<double> growth;
+    };
+    const RectilinearGrid& grid = data_.grid;
+    std::vector<Sum> layers(grid.sites(2));
+    parallel_for(layers.size(), 1, [&](std::size_t k) {
+      Sum& sum = layers[k];
+      sum.volumes.assign(data_.materials.size(), 0);
+      CellVolumes cell(grid, values_, cells_);
+      for (std::size_t j = 0; j < grid.sites(1); ++j) {
+        for (std::size_t i = 0; i < grid.sites(0); ++i) {
+          const std::size_t site = grid.site_index(i, j, k);
+          const double volume = grid.site_volume(i, j, k);
+          const std::span<const Entry> own = entries(site);
+          if (own.empty()) {
+            sum.volumes[values_.sole_material(site)] += volume;
+            continue;
+          }
+          cell.go_to(site);
+          const std::vector<double>& parts = cell.measure(true);
+          for (std::size_t m = 0; m < own.size(); ++m) sum.volumes[own[m].material] += parts[m] * volume;
+          for (const CellVolumes::Pair& pair : cell.pairs()) {
+            sum.pairs.push_back({own[pair.first].material, own[pair.second].material});
+            double by = 0;
+            for (const double g : pair.growth) by += g;
+            sum.growth.push_back(by * volume);
+          }
+        }
+      }
+    });
+    std::vector<double> totals(data_.materials.size(), 0);
+    for (const Sum& sum : layers) {
+      for (std::size_t m = 0; m < totals.size(); ++m) totals[m] += sum.volumes[m];
+      for (std::size_t p = 0; p < sum.pairs.size(); ++p) {
+        const Eigen::Index a = sum.pairs[p][0], b = sum.pairs[p][1];
+        growth(a, a) += sum.growth[p], growth(b, b) += sum.growth[p];
+        growth(a, b) -= sum.growth[p], growth(b, a) -= sum.growth[p];
+      }
+    }
+    return totals;
+  }
+
+  const MultiMaterialData& data_;
+  SiteValues& values_;
+  SiteCells cells_;
+  double step_;
+  std::array<std::vector<std::uint32_t>, 8> colours_;  // mixed sites that do not touch each other
+  std::vector<std::uint32_t> row_of_;                  // of a mixed cell's volumes
+  std::vector<std::uint32_t> unknowns_;                // entries that are moved
+  std::vector<std::uint32_t> unknown_of_;              // by entry
+};
+
+}  // namespace
+
+VolumeAgreement correct_volumes(const MultiMaterialData& data, SiteValues& values, Progress& progress) {
+  Correction correction(data, values);
+  correction.run(progress);
+  return correction.agreement();
+}
+
+}  // namespace adamas

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/base/progress.h"
+#include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/site_values.h"
+
+namespace adamas {
+
+/// How well the volumes of materials in the cells of sites agree with the fractions there.
+struct VolumeAgreement {
+  std::size_t mixed_cells = 0;
+  /// Mixed cells where a material's volume differs by more than a thousandth of the cell's.
+  std::size_t cells_off = 0;
+  double greatest = 0, mean = 0;  ///< difference in a mixed cell, as a part of the cell's volume
+};
+
+/// Changes values until the volume of each material in each mixed cell is that of its fraction, as far as
+/// that can be had (see VolumeAgreement), and then, by one offset per material, until the materials' volumes
+/// in the whole domain agree to round-off.
+VolumeAgreement correct_volumes(const MultiMaterialData& data, SiteValues& values,
+                                Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas
