@@ -177,7 +177,6 @@ class PlaneFit {
   [[nodiscard]] std::size_t index(const Entry& entry) const {
     return static_cast<std::size_t>(&entry - values_.entries().data());
   }
-  static bool is_in_part(const Entry& entry) { return entry.fraction > 0 && entry.fraction < 1; }
 
   /// Where two materials share a cell: the one with the lesser fraction, which is the more exact number.
   const Entry* lesser_of_two(std::size_t site, const Entry** other) const {
@@ -202,7 +201,7 @@ class PlaneFit {
       const Entry* twin = nullptr;
       if (const Entry* first = lesser_of_two(mixed[n], &twin)) return visit(std::size_t{mixed[n]}, *first);
       for (const Entry& entry : values_.at(mixed[n])) {
-        if (is_in_part(entry)) visit(std::size_t{mixed[n]}, entry);
+        if (!entry.settled()) visit(std::size_t{mixed[n]}, entry);
       }
     });
   }
@@ -227,7 +226,7 @@ class PlaneFit {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(other, &twin);
       for (const Entry& there : values_.at(other)) {
-        if (there.material != entry.material || !is_in_part(there)) continue;
+        if (there.material != entry.material || there.settled()) continue;
         const bool turned = first != nullptr && &there == twin;
         const std::size_t o = index(turned ? *first : there);
         const Vec3 normal = turned ? -planes_[o].towards : planes_[o].towards;

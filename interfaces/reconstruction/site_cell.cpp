@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/geometry/vec3.h"
+#include "interfaces/reconstruction/material_lattice.h"
 
 namespace adamas {
 
@@ -107,8 +108,6 @@ const SiteCell& SiteCells::at(std::size_t i, std::size_t j, std::size_t k, SiteC
 }
 
 void SiteCells::make(const std::array<Shape, 3>& shapes, SiteCell& cell) {
-  constexpr std::array<std::array<int, 3>, 6> kPaths{
-      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   cell.nodes.clear();
   cell.parts.clear();
   std::map<std::array<double, 3>, std::uint16_t> numbers;
@@ -125,7 +124,7 @@ void SiteCells::make(const std::array<Shape, 3>& shapes, SiteCell& cell) {
       measure *= sides[a].reach > 0 ? sides[a].length : 0;
     }
     if (measure == 0) continue;
-    for (const auto& path : kPaths) {
+    for (const auto& path : MaterialLattice::kPaths) {
       Tetrahedron4 whole{};
       for (std::size_t step = 0; step < 3; ++step) {
         for (std::size_t c = step + 1; c < 4; ++c) whole[c][path[step]] = 1;

@@ -28,11 +28,10 @@ SiteValues::SiteValues(const MultiMaterialData& data) {
   far_ = -32 * widest;
   find_entries(data);
   const std::vector<InterfacePlane> planes = interface_planes(data, *this);
-  const auto mixed_entry = [](const Entry& e) { return e.fraction > 0 && e.fraction < 1; };
   parallel_for(mixed_.size(), 1024, [&](std::size_t n) {
     const Vec3 size = sites.cell(mixed_[n]).size();
     for (std::size_t e = first_[mixed_[n]]; e < first_[mixed_[n] + 1]; ++e) {
-      if (!mixed_entry(entries_[e])) continue;
+      if (entries_[e].settled()) continue;
       entries_[e].value = planes[e].known() ? planes[e].distance
                                             : (static_cast<double>(entries_[e].fraction) - 0.5) *
                                                   std::min({size.x, size.y, size.z});
@@ -45,7 +44,7 @@ SiteValues::SiteValues(const MultiMaterialData& data) {
     const double half = 0.5 * std::min({size.x, size.y, size.z});
     for (std::size_t e = first_[site]; e < first_[site + 1]; ++e) {
       Entry& entry = entries_[e];
-      if (mixed_entry(entry)) continue;
+      if (!entry.settled()) continue;
       double sum = 0, weights = 0;
       sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
         const Vec3 d = centre - sites.position(other);

@@ -1,6 +1,6 @@
 #include "interfaces/reconstruction/volume_correction.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -241,7 +241,7 @@ class Correction {
     const double domain = data_.grid.domain().volume();
     for (int round = 0; round < kMostClosings; ++round) {
       progress.step("closing volumes", static_cast<double>(round) / kMostClosings);
-      Eigen::MatrixXd growth = Eigen::MatrixXd::Zero(count, count);
+      Eigen::SparseMatrix<double> growth(count, count);
       const std::vector<double> totals = measure_totals(growth);
       Eigen::VectorXd missing(count);
       for (Eigen::Index m = 0; m < count; ++m)
@@ -249,10 +249,10 @@ class Correction {
             wanted[values_.material(static_cast<std::uint16_t>(m))] - totals[static_cast<std::size_t>(m)];
       // Adding one number to all offsets changes nothing, and what fractions are beyond 1 cannot be had.
       missing.array() -= missing.mean();
-      const double scale = growth.diagonal().maxCoeff();
+      const double scale = Eigen::VectorXd(growth.diagonal()).maxCoeff();
       if (!(scale > 0) || missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
-      growth.diagonal().array() += 1e-9 * scale;
-      Eigen::VectorXd offsets = growth.ldlt().solve(missing);
+      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(growth + shift(count, 1e-9 * scale));
+      Eigen::VectorXd offsets = solver.solve(missing);
       offsets.array() -= offsets.mean();
       for (Entry& entry : values_.entries())
         entry.value +=
@@ -260,8 +260,14 @@ class Correction {
     }
   }
 
-  /// The materials' volumes in the domain, and how they grow with offsets.
-  std::vector<double> measure_totals(Eigen::MatrixXd& growth) const {
+  static Eigen::SparseMatrix<double> shift(Eigen::Index count, double by) {
+    Eigen::SparseMatrix<double> identity(count, count);
+    identity.setIdentity();
+    return by * identity;
+  }
+
+  /// The materials' volumes in the domain, and how they grow with offsets: few of many materials meet.
+  std::vector<double> measure_totals(Eigen::SparseMatrix<double>& growth) const {
     struct Sum {
       std::vector<double> volumes;
       std::vector<std::array<std::uint16_t, 2>> pairs;
@@ -295,14 +301,17 @@ class Correction {
       }
     });
     std::vector<double> totals(data_.materials.size(), 0);
+    std::vector<Eigen::Triplet<double>> sums;
     for (const Sum& sum : layers) {
       for (std::size_t m = 0; m < totals.size(); ++m) totals[m] += sum.volumes[m];
       for (std::size_t p = 0; p < sum.pairs.size(); ++p) {
-        const Eigen::Index a = sum.pairs[p][0], b = sum.pairs[p][1];
-        growth(a, a) += sum.growth[p], growth(b, b) += sum.growth[p];
-        growth(a, b) -= sum.growth[p], growth(b, a) -= sum.growth[p];
+        const int a = sum.pairs[p][0], b = sum.pairs[p][1];
+        for (const int m : {a, b}) {
+          for (const int n : {a, b}) sums.emplace_back(m, n, m == n ? sum.growth[p] : -sum.growth[p]);
+        }
       }
     }
+    growth.setFromTriplets(sums.begin(), sums.end());
     return totals;
   }
 
