@@ -142,12 +142,6 @@ Figures row_figures(const ComparedMesh& row, const ResamplingSource& source) {
   return figures;
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
 }  // namespace
 
 void print_plan(const ComparisonOptions& options, Console& console) {
@@ -225,7 +219,7 @@ std::string comparison_csv(const std::vector<ComparedMesh>& rows, const Resampli
     for (const char* column : kColumns) {
       const Figures& value = figures[column];
       if (value.is_string()) {
-        csv += quoted(value.get<std::string>());
+        csv += csv_text(value.get<std::string>());
       } else if (!value.is_null()) {
         csv += value.dump();
       }

@@ -9,8 +9,8 @@
 
 namespace adamas {
 
-/// Says what a comparison is going to do, and how long other generators may take. Of the interface errors only
-/// the number need be known.
+/// Says what a comparison is going to do, and how long other generators may take. Of the interface errors
+/// only the number need be known.
 void print_plan(const ComparisonOptions& options, Console& console);
 
 /// The rows of a comparison as a table on stdout, each as soon as it is there, with what has to be known of

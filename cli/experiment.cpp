@@ -228,7 +228,7 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
   const auto add = [&](const std::string& name, const ExperimentRun& run) {
     rows.push_back({name, std::to_string(run.figures.tetrahedra),
                     std::to_string(run.figures.interface_tetrahedra),
-                    run.distance ? fmt::format("{:.4g}", run.distance->upper) : "-",
+                    run.certificate ? fmt::format("{:.4g}", run.certificate->networks.upper) : "-",
                     fmt::format("{:.2f}", run.seconds)});
   };
   add("interfaces", record.interfaces);

@@ -28,7 +28,7 @@ void add_pictures(HtmlReport& report, const std::vector<ExperimentPicture>& pict
 }
 
 double upper(const ExperimentRun& run) {
-  return run.distance ? run.distance->upper : std::numeric_limits<double>::quiet_NaN();
+  return run.certificate ? run.certificate->networks.upper : std::numeric_limits<double>::quiet_NaN();
 }
 
 Plot interface_plot(const std::vector<ExperimentRun>& runs) {
@@ -42,7 +42,7 @@ Plot interface_plot(const std::vector<ExperimentRun>& runs) {
     for (PlotSeries& series : plot.series) series.x.push_back(static_cast<double>(run.figures.tetrahedra));
     plot.series[0].y.push_back(run.options.interface_error);
     plot.series[1].y.push_back(upper(run));
-    plot.series[2].y.push_back(run.distance ? run.distance->lower : 0);
+    plot.series[2].y.push_back(run.certificate ? run.certificate->networks.lower : 0);
   }
   return plot;
 }
@@ -78,7 +78,7 @@ ReportTable runs_table(const ExperimentRecord& record, const std::vector<Experim
   }
   for (const ExperimentRun& run : runs) {
     table.rows.push_back({number(run.options.interface_error), number(upper(run)),
-                          number(run.distance ? run.distance->lower : 0),
+                          number(run.certificate ? run.certificate->networks.lower : 0),
                           std::to_string(run.figures.tetrahedra),
                           std::to_string(run.figures.interface_tetrahedra),
                           std::to_string(run.figures.vertices), fmt::format("{:.2f}", run.seconds)});

@@ -49,7 +49,7 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
   ExperimentRun run;
   run.options = options;
   run.figures = measure(resampler, console);
-  run.distance = resampler.interface_distance();
+  run.certificate = resampler.certificate();
   run.seconds = elapsed.count();
   run.json = resample_json(run.figures, resampler);
   run.json["seconds"] = run.seconds;

@@ -23,7 +23,7 @@ struct NestedSummary {
 struct ExperimentRun {
   ResamplingOptions options;
   ResampleFigures figures;
-  std::optional<InterfaceDistance> distance;
+  std::optional<InterfaceCertificate> certificate;
   std::vector<NestedSummary> nested;  ///< per field; empty without a mesh
   Figures json;
   double seconds = 0;

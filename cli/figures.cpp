@@ -51,4 +51,11 @@ std::string box_text(const Box3& box) {
                      box.min.y, box.max.y, box.min.z, box.max.z);
 }
 
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
 }  // namespace adamas

@@ -35,4 +35,7 @@ std::string box_text(const Box3& box);
 /// "(x, y, z)", for a place or a direction.
 std::string place_text(const Vec3& p);
 
+/// A cell of a table of comma-separated values: in quotes where it would be taken for several.
+std::string csv_text(const std::string& text);
+
 }  // namespace adamas

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "cli/figures.h"
 #include "core/base/error.h"
 #include "core/base/trimmed.h"
 #include "core/io/input_file.h"
@@ -54,14 +55,6 @@ bool holds_names(const std::vector<std::string_view>& cells) {
   return !cells.empty() && std::any_of(cells[0].begin(), cells[0].end(), is_letter) && !parse_cell(cells[0]);
 }
 
-/// A cell of text: in quotes where it would be taken for several.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
 void append_number(std::string& line, double value) {
   line += ',';
   if (std::isfinite(value)) fmt::format_to(std::back_inserter(line), "{:.10g}", value);
@@ -105,13 +98,13 @@ std::string PointTable::csv() const {
     const std::string unit = f.unit.empty() ? "" : " [" + f.unit + "]";
     for (int c = 0; c < f.components; ++c) {
       const std::string index = f.components > 1 ? fmt::format(":{}", c) : std::string();
-      text += ',' + quoted(f.name + index + unit);
+      text += ',' + csv_text(f.name + index + unit);
     }
   }
   text += '\n';
   for (const ProbeSample& s : samples) {
     fmt::format_to(std::back_inserter(text), "{:.10g},{:.10g},{:.10g},", s.point.x, s.point.y, s.point.z);
-    if (s.inside) text += quoted(materials[s.material]);
+    if (s.inside) text += csv_text(materials[s.material]);
     append_number(text, s.interface_distance);
     for (const double value : s.values) append_number(text, value);
     text += '\n';

@@ -1,4 +1,5 @@
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -6,11 +7,13 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"
+#include "cli/ledger.h"
 #include "cli/resample_figures.h"
 #include "cli/resampling_setup.h"
 #include "cli/surface_picture.h"
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
+#include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/cut_mesh.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
@@ -29,8 +32,61 @@ struct Options {
   InputOptions input;
   ResamplingText text;
   SurfacePictureOptions picture;
-  std::string output, interfaces, cut;
+  std::string output, interfaces, cut, ledger;
 };
+
+/// Says which of the distances are greater than wanted, and why.
+void note_shortfalls(const InterfaceCertificate& certificate, const Resampler& resampler, Console& console) {
+  const auto note = [&](const std::string& what, const InterfaceDistance& distance) {
+    const auto shortfall = interface_shortfall(resampler, distance);
+    if (!shortfall) return false;
+    console.note("{} was not reached: {} instead of {:.4g}, at {}: {}", what, shown_length(distance.upper),
+                 resampler.options().interface_error, place_text(shortfall->place), shortfall->reason);
+    return true;
+  };
+  if (!note("the interface error wanted", certificate.networks))
+    note(fmt::format("the interface error wanted for the boundary of '{}'",
+                     resampler.source().materials[certificate.worst_material]),
+         certificate.materials);
+  if (certificate.junctions)
+    note("the interface error wanted for the lines where three materials meet", *certificate.junctions);
+}
+
+/// Names what the mesh does not show as the input has it.
+void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+  constexpr std::size_t kMost = 10;
+  for (const MaterialId material : lost_materials(m, source)) {
+    const bool known = !source.volumes.empty();
+    console.note("the mesh shows nothing of the material '{}'{}", source.materials[material],
+                 known ? fmt::format(" of volume {}", volume_text(source.volumes[material])) : "");
+  }
+  std::size_t noted = 0;
+  for (const BodyFigures& body : m.bodies) {
+    if (!body.lost && !body.changed) continue;
+    if (++noted > kMost) continue;
+    const std::string volume =
+        body.volume_input ? fmt::format(" of volume {}", volume_text(*body.volume_input)) : "";
+    const std::string what = fmt::format("a body of '{}'{} at {}", source.materials[body.material], volume,
+                                         place_text(body.place));
+    if (body.lost) {
+      console.note("the mesh shows nothing of {}", what);
+    } else {
+      console.note(
+          "the mesh shows {} in {} pieces, and its boundary has the Euler characteristic {} instead of {}",
+          what, body.topology_mesh.pieces, body.topology_mesh.euler, body.topology_input.euler);
+    }
+  }
+  if (noted > kMost) console.note("... and {} more bodies that are lost or torn", noted - kMost);
+  if (m.contacts.empty()) return;
+  std::string pairs;
+  for (std::size_t i = 0; i < std::min(m.contacts.size(), kMost); ++i) {
+    const auto& [a, b] = m.contacts[i];
+    pairs += fmt::format("{}'{}' and '{}'", i == 0 ? "" : ", ", source.materials[m.bodies[a.value].material],
+                         source.materials[m.bodies[b.value].material]);
+  }
+  console.note("{} pairs of bodies touch in the mesh and not in the input: {}{}", m.contacts.size(), pairs,
+               m.contacts.size() > kMost ? ", ..." : "");
+}
 
 void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& console) {
   const double target = resampler.options().interface_error;
@@ -38,19 +94,31 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
                                              {"vertices", std::to_string(m.vertices)},
                                              {"interface tetrahedra", std::to_string(m.interface_tetrahedra)},
                                              {"interface error wanted", fmt::format("{:.4g}", target)}};
-  if (const auto& d = resampler.interface_distance()) {
-    rows.push_back({"interface error certified", shown_length(d->upper)});
-    rows.push_back({"interface error found", shown_length(d->lower)});
+  const auto& certificate = resampler.certificate();
+  const auto add_distance = [&](const std::string& name, const InterfaceDistance& d) {
+    rows.push_back({name + " certified", shown_length(d.upper)});
+    rows.push_back({name + " found", shown_length(d.lower)});
+  };
+  if (certificate) {
+    add_distance("interface error", certificate->networks);
+    // Of two materials each one's boundary is the whole.
+    if (resampler.source().materials.size() > 2)
+      add_distance("interface error per material", certificate->materials);
+    if (certificate->junctions) add_distance("junction error", *certificate->junctions);
   }
   rows.push_back({"lost interfaces", std::to_string(m.lost_interfaces)});
+  const auto count = [&](bool BodyFigures::*what) {
+    return std::to_string(
+        std::count_if(m.bodies.begin(), m.bodies.end(), [what](const auto& b) { return b.*what; }));
+  };
+  rows.push_back({"bodies, lost, torn", std::to_string(m.bodies.size()) + ", " + count(&BodyFigures::lost) +
+                                            ", " + count(&BodyFigures::changed)});
+  rows.push_back({"contacts the input has not", std::to_string(m.contacts.size())});
   if (m.flagged_vertices > 0)
     rows.push_back({"vertices of doubtful material", std::to_string(m.flagged_vertices)});
   console.table(rows);
-  if (const auto shortfall = interface_shortfall(resampler)) {
-    console.note("the interface error wanted was not reached: {} instead of {:.4g}, at {}: {}",
-                 shown_length(resampler.interface_distance()->upper), target, place_text(shortfall->place),
-                 shortfall->reason);
-  }
+  if (certificate) note_shortfalls(*certificate, resampler, console);
+  note_bodies(m, resampler.source(), console);
 }
 
 void print_fields(const ResampleFigures& m, const Resampler& resampler, Console& console) {
@@ -80,6 +148,22 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
   }
 }
 
+/// Says whether volumes are conserved, where that was wanted.
+void print_conservation(const ResampleFigures& m, const Resampler& resampler, Console& console) {
+  if (!resampler.options().conserve) return;
+  const BodyFigures* worst = nullptr;
+  for (const BodyFigures& body : m.bodies) {
+    if (body.volume_input && (worst == nullptr || body.missing() > worst->missing())) worst = &body;
+  }
+  const double whole = resampler.source().box.volume();
+  if (worst == nullptr || worst->missing() <= kConserved * whole) return;
+  console.note(
+      "volumes were not conserved: a body of '{}' at {} has {} instead of {}; an interface may move by no "
+      "more than half the interface error",
+      resampler.source().materials[worst->material], place_text(worst->place), volume_text(worst->volume),
+      volume_text(*worst->volume_input));
+}
+
 void print_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
   constexpr std::size_t kMost = 40;
   const bool stated = !source.volumes.empty();
@@ -100,7 +184,9 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
   if (source.materials.size() > kMost) console.print("  ... and {} more\n", source.materials.size() - kMost);
 }
 
-void write_outputs(const Options& options, Resampler& resampler, Session& session) {
+/// Writes what is asked for; returns the ledger of the input and of all meshes that were written.
+std::vector<Ledger> write_outputs(const Options& options, const Input& input, Resampler& resampler,
+                                  Session& session) {
   Console& console = session.console;
   const std::string& picture = options.picture.camera.file;
   if (!options.interfaces.empty() || !picture.empty()) {
@@ -112,26 +198,42 @@ void write_outputs(const Options& options, Resampler& resampler, Session& sessio
       write_surface_picture(path, interfaces, resampler.source().box, options.picture);
     });
   }
-  if (options.output.empty() && options.cut.empty()) return;
+  std::vector<Ledger> ledgers;
+  if (input.data) {
+    ledgers.push_back({"input", material_integrals(*input.data)});
+  } else if (!input.source.volumes.empty()) {
+    ledgers.push_back(volume_ledger("input", input.source.volumes));
+  }
+  if (options.output.empty() && options.cut.empty() && options.ledger.empty()) return ledgers;
   console.step("completing fields", -1);
   const ResampledMesh mesh = take_mesh(resampler);
+  ledgers.push_back({"mesh", material_integrals(mesh)});
   session.outputs.write(options.output, [&](const auto& path) {
     console.step("writing " + options.output, -1);
     write_unstructured_mesh(path, to_unstructured_mesh(mesh));
   });
   session.outputs.write(options.cut, [&](const auto& path) {
     console.step("writing " + options.cut, -1);
-    write_unstructured_mesh(path, cut_mesh(mesh));
+    const UnstructuredMesh cut = cut_mesh(mesh);
+    ledgers.push_back({"cut mesh", material_integrals(cut, mesh.materials.size())});
+    write_unstructured_mesh(path, cut);
   });
+  session.outputs.write(options.ledger, [&](const auto& path) {
+    OutputStream stream(path);
+    stream.write(ledger_csv(ledgers, mesh.materials, mesh.fields));
+    stream.finish();
+  });
+  return ledgers;
 }
 
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   const ResamplingWishes wishes(options.text);
-  if (options.output.empty() && options.interfaces.empty() && options.cut.empty() &&
+  if (options.output.empty() && options.interfaces.empty() && options.cut.empty() && options.ledger.empty() &&
       options.picture.camera.file.empty() && session.json.empty()) {
     wrong_usage(
-        "nothing to write: expected -o, --interfaces-out, --cut-mesh, --picture or --json, found none");
+        "nothing to write: expected -o, --interfaces-out, --cut-mesh, --ledger, --picture or --json, found "
+        "none");
   }
   options.picture.check();
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
@@ -139,6 +241,7 @@ void run(const Options& options, Session& session) {
   session.outputs.declare("--interfaces-out", options.interfaces,
                           {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   session.outputs.declare("--cut-mesh", options.cut, {".vtu"});
+  session.outputs.declare("--ledger", options.ledger, {".csv"});
   session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf"});
   const Input input =
       load_input(options.input, console, [&](const InputFacts& found) { wishes.check(found); });
@@ -150,8 +253,12 @@ void run(const Options& options, Session& session) {
   print_mesh(measured, resampler, console);
   print_fields(measured, resampler, console);
   print_materials(measured, input.source, console);
+  print_conservation(measured, resampler, console);
   Figures figures = resample_json(measured, resampler);
-  write_outputs(options, resampler, session);
+  const std::vector<Ledger> ledgers = write_outputs(options, input, resampler, session);
+  figures["ledger"] =
+      ledger_figures(ledgers, input.source.materials,
+                     input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>());
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
@@ -180,6 +287,10 @@ void add_resample(CLI::App& app, Session& session) {
                    "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
       ->type_name("FILE");
   command->add_option("--cut-mesh", options->cut, "The mesh with cells cut along the interfaces: .vtu")
+      ->type_name("FILE");
+  command
+      ->add_option("--ledger", options->ledger,
+                   "Volumes and integrals of fields per material, of the input and of what is written: .csv")
       ->type_name("FILE");
   options->picture.triangle_edges = true;
   add_surface_picture_options(*command, options->picture);

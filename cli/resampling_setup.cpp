@@ -39,6 +39,9 @@ void add_other_resampling_options(CLI::App& command, ResamplingText& text) {
       .add_option("--ghost", text.ghost, "How a material's field goes on beyond the material, within a cell")
       ->check(one_of({"constant", "linear", "least-squares"}))
       ->capture_default_str();
+  command.add_flag(
+      "--conserve", text.conserve,
+      "Move the interfaces, within the interface error, until every body has its volume in the input");
   command
       .add_option("--distance", text.distance,
                   "What vertices measure: the distance to an interface, or to the nearest vertex of its mesh")
@@ -59,6 +62,7 @@ ResamplingWishes::ResamplingWishes(const ResamplingText& text)
   if (!text.max_tetrahedra.empty()) max_tetrahedra = parse_count("--max-tetrahedra", text.max_tetrahedra);
   if (text.ghost == "linear") ghost = GhostMode::kLinear;
   if (text.ghost == "least-squares") ghost = GhostMode::kLeastSquares;
+  conserve = text.conserve;
   if (text.distance == "nearest-vertex") distance = DistanceMode::kNearestVertex;
 }
 
@@ -87,11 +91,14 @@ ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) cons
   const InputFacts input = facts_of(source);
   const auto& fields = input.fields;
   check(input);
+  if (conserve && source.body_volumes.empty() && !source.network->triangles().empty())
+    fail("{}: --conserve: expected interfaces that enclose volumes, found open ones", input.name);
   ResamplingOptions result;
   result.interface_error = interface_error_of("--interface-error", interface_error, input);
   result.max_tetrahedra = max_tetrahedra;
   result.ghost = ghost;
   result.distance = distance;
+  result.conserve = conserve;
   result.field_errors.resize(fields.size());
   for (const auto& [name, target] : field_errors) {
     const auto found = find_by_name(fields, name);

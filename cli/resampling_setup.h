@@ -14,6 +14,7 @@ namespace adamas {
 struct ResamplingText {
   std::string interface_error = "1%", max_tetrahedra, ghost = "constant", distance = "exact";
   std::vector<std::string> field_errors;
+  bool conserve = false;
 };
 
 void add_resampling_options(CLI::App& command, ResamplingText& text);
@@ -35,6 +36,7 @@ struct ResamplingWishes {
   std::optional<std::size_t> max_tetrahedra;
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;
+  bool conserve = false;
 };
 
 /// An interface error in units of length. Throws UsageError that names the option where it is not less than

@@ -17,6 +17,17 @@ std::vector<MaterialId> materials_of(const std::vector<BodyId>& bodies, const In
   return materials;
 }
 
+/// Volumes of the network's bodies, so that those of each material add up to what the input states.
+IdVector<BodyId, double> body_volumes(const InterfaceNetwork& network, const Box3& box,
+                                      const IdVector<MaterialId, double>& stated) {
+  NetworkMeasures measures = measure_network(network, box, stated.size());
+  for (BodyId b(0); b.value < measures.body_volumes.size(); ++b.value) {
+    const MaterialId m = network.table().material(b);
+    if (measures.volumes[m] > 0) measures.body_volumes[b] *= stated[m] / measures.volumes[m];
+  }
+  return std::move(measures.body_volumes);
+}
+
 }  // namespace
 
 ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progress) {
@@ -32,6 +43,8 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progr
     source.network = std::make_shared<InterfaceNetwork>(
         mesh, source.box, Bodies{reconstruction->take_bodies(), reconstruction->body_materials()});
   }
+  if (!source.network->triangles().empty())
+    source.body_volumes = body_volumes(*source.network, source.box, source.volumes);
   source.body_at = [reconstruction](const Vec3& p, bool* flagged) {
     if (flagged != nullptr) *flagged = false;
     return reconstruction->body_at(p);
@@ -76,8 +89,11 @@ ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, co
   source.network = network;
   if (data != nullptr) source.voxel = data->grid.least_spacing();
   // What leaks through an open border or a wrong side has no volume.
-  if (!network->has_open_border() && network->inconsistencies() == 0)
-    source.volumes = measure_network(*network, box, source.materials.size()).volumes;
+  if (!network->has_open_border() && network->inconsistencies() == 0) {
+    NetworkMeasures measures = measure_network(*network, box, source.materials.size());
+    source.volumes = std::move(measures.volumes);
+    source.body_volumes = std::move(measures.body_volumes);
+  }
   source.body_at = [network](const Vec3& p, bool* flagged) { return network->body_at(p, flagged); };
   if (fields) {
     progress.step("finding owners of sites", -1);

@@ -20,7 +20,9 @@ struct ResamplingSource {
   std::function<BodyId(const Vec3&, bool* flagged)> body_at;
   std::shared_ptr<const FieldSource> fields;  ///< null where the input has none
   IdVector<MaterialId, double>
-      volumes;       ///< of the materials, as the input states them; empty where it does not
+      volumes;  ///< of the materials, as the input states them; empty where it does not
+  /// Of the bodies of the network; those of a material add up to its volume. Empty where not known.
+  IdVector<BodyId, double> body_volumes;
   double voxel = 0;  ///< the least spacing of the grid that the input is given on; 0 where there is none
 };
 

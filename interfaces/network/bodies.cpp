@@ -1,35 +1,17 @@
 #include "interfaces/network/bodies.h"
 
 #include <algorithm>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 
 #include "core/base/parallel.h"
 #include "interfaces/network/body_rays.h"
+#include "interfaces/network/disjoint_sets.h"
 #include "interfaces/network/edge_fans.h"
 
 namespace adamas {
 
 namespace {
-
-/// Disjoint sets; the lowest member stands for each.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t i, std::uint32_t j) {
-    i = find(i);
-    j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 std::uint32_t side_index(std::uint32_t triangle, int side) {
   return 2 * triangle + static_cast<std::uint32_t>(side);

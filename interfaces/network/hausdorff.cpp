@@ -174,12 +174,23 @@ Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optio
   return result.result();
 }
 
-/// The four parts of a piece.
-void divide(const Piece& piece, const ClosestPointTree& to, std::span<Piece, 4> parts) {
+/// A line is a triangle whose second and third corner are one.
+bool is_line(const Piece& piece) { return piece.corners[1] == piece.corners[2]; }
+
+std::size_t parts_of(const Piece& piece) { return is_line(piece) ? 2 : 4; }
+
+/// The two parts of a line, or the four of a triangle.
+void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
   const auto& [a, b, c] = piece.corners;
   const auto& [at_a, at_b, at_c] = piece.closest;
   const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-  const Closest at_ab = find_closest(to, ab), at_bc = find_closest(to, bc), at_ca = find_closest(to, ca);
+  const Closest at_ab = find_closest(to, ab);
+  if (is_line(piece)) {
+    parts[0] = {{a, ab, ab}, {at_a, at_ab, at_ab}, piece.triangle};
+    parts[1] = {{ab, b, b}, {at_ab, at_b, at_b}, piece.triangle};
+    return;
+  }
+  const Closest at_bc = find_closest(to, bc), at_ca = find_closest(to, ca);
   parts[0] = {{a, ab, ca}, {at_a, at_ab, at_ca}, piece.triangle};
   parts[1] = {{ab, b, bc}, {at_ab, at_b, at_bc}, piece.triangle};
   parts[2] = {{ca, bc, c}, {at_ca, at_bc, at_c}, piece.triangle};
@@ -193,7 +204,7 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
                   std::vector<double>& triangle_lower, DistanceBound& bound) {
   std::vector<Piece> next;
   std::vector<Measure> measures;
-  std::vector<std::size_t> loose;
+  std::vector<std::size_t> loose, places;
   for (std::size_t measured = 0; !pieces.empty(); pieces.swap(next)) {
     progress.check();
     measures.assign(pieces.size(), {});
@@ -224,10 +235,11 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
         loose.push_back(i);
       }
     }
-    next.resize(4 * loose.size());
-    parallel_for(loose.size(), 64, [&](std::size_t i) {
-      divide(pieces[loose[i]], to, std::span<Piece, 4>(next.data() + 4 * i, 4));
-    });
+    places.assign(1, 0);
+    for (const std::size_t i : loose) places.push_back(places.back() + parts_of(pieces[i]));
+    next.resize(places.back());
+    parallel_for(loose.size(), 64,
+                 [&](std::size_t i) { divide(pieces[loose[i]], to, next.data() + places[i]); });
   }
 }
 

@@ -39,7 +39,8 @@ struct DistanceBound {
 
 /// Bounds the distance of the triangles from the surface in the tree. The distance to one triangle is convex,
 /// so that over a piece it is greatest at a corner; pieces are divided until the least such bound, over
-/// triangles close to the piece, is good enough. Infinite where the tree is empty. The result does not depend
+/// triangles close to the piece, is good enough. Triangles whose last two points are one are lines. Infinite
+/// where the tree is empty. The result does not depend
 /// on the number of threads. Throws Cancelled where `progress` says so.
 DistanceBound directed_distance_bound(std::span<const Vec3> points,
                                       std::span<const ClosestPointTree::Triangle> triangles,

@@ -23,6 +23,7 @@ class Measure {
   Measure(const InterfaceNetwork& network, const Box3& box, std::size_t materials)
       : network_(network), box_(box), size_(box.size()), tolerance_(kOnFace * box.diagonal()) {
     result_.volumes = IdVector<MaterialId, double>(materials, 0.0);
+    result_.body_volumes = IdVector<BodyId, double>(network.table().body_count(), 0.0);
     result_.areas = IdVector<InterfaceId, double>(network.table().interface_count(), 0.0);
   }
 
@@ -36,7 +37,9 @@ class Measure {
       if (polygon.size() >= 3) add(t, polygon);
     }
     const Vec3 corner = box_.max - kInside * size_;
-    result_.volumes[network_.table().material(network_.body_at(corner))] += size_.x * size_.y * size_.z;
+    result_.body_volumes[network_.body_at(corner)] += size_.x * size_.y * size_.z;
+    for (BodyId b(0); b.value < result_.body_volumes.size(); ++b.value)
+      result_.volumes[network_.table().material(b)] += result_.body_volumes[b];
     return std::move(result_);
   }
 
@@ -52,8 +55,8 @@ class Measure {
   /// The front of a triangle gains so much volume, and the back loses it.
   void give(std::uint32_t triangle, double volume) {
     const auto& [front, back] = network_.table().sides(network_.interface_of(triangle));
-    result_.volumes[network_.table().material(front)] += volume;
-    result_.volumes[network_.table().material(back)] -= volume;
+    result_.body_volumes[front] += volume;
+    result_.body_volumes[back] -= volume;
   }
 
   void add(std::uint32_t t, const Polygon& polygon) {

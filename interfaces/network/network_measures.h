@@ -9,8 +9,9 @@ namespace adamas {
 
 /// What a network encloses in a box.
 struct NetworkMeasures {
-  IdVector<MaterialId, double> volumes;  ///< of each material, in the cube of the unit of length
-  IdVector<InterfaceId, double> areas;   ///< of each interface of the network, inside the box
+  IdVector<MaterialId, double> volumes;   ///< of each material, in the cube of the unit of length
+  IdVector<BodyId, double> body_volumes;  ///< of each body, alike
+  IdVector<InterfaceId, double> areas;    ///< of each interface of the network, inside the box
 };
 
 /// Volumes of so many materials and areas of the interfaces, to round-off, by the divergence theorem: what a

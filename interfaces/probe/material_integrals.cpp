@@ -1,5 +1,6 @@
 #include "interfaces/probe/material_integrals.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/base/parallel.h"
@@ -65,6 +66,35 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& m
   });
   Integrals integrals = zeros(mesh.materials.size(), values);
   for (const Integrals& sums : partial) add(integrals, sums);
+  find_means(integrals);
+  return integrals;
+}
+
+IdVector<MaterialId, MaterialIntegral> material_integrals(const UnstructuredMesh& cut,
+                                                          std::size_t materials) {
+  std::size_t values = 0;
+  for (const NamedArray& array : cut.point_arrays) values += static_cast<std::size_t>(array.components);
+  Integrals integrals = zeros(materials, values);
+  const auto named = std::find_if(cut.cell_arrays.begin(), cut.cell_arrays.end(),
+                                  [](const NamedArray& array) { return array.name == "material"; });
+  const auto& owners = std::get<std::vector<std::int32_t>>(named->values);
+  for (std::size_t cell = 0; cell < cut.cell_count(); ++cell) {
+    const std::uint32_t* p = cut.connectivity.data() + cut.offsets[cell];
+    MaterialIntegral& sum = integrals[MaterialId(static_cast<std::uint32_t>(owners[cell]))];
+    const double volume =
+        signed_volume(cut.points[p[0]], cut.points[p[1]], cut.points[p[2]], cut.points[p[3]]);
+    sum.volume += volume;
+    std::size_t row = 0;
+    for (const NamedArray& array : cut.point_arrays) {
+      const auto& given = std::get<std::vector<double>>(array.values);
+      const auto components = static_cast<std::size_t>(array.components);
+      for (std::size_t c = 0; c < components; ++c, ++row) {
+        double mean = 0;
+        for (std::size_t v = 0; v < 4; ++v) mean += 0.25 * given[p[v] * components + c];
+        sum.integral[row] += volume * mean;
+      }
+    }
+  }
   find_means(integrals);
   return integrals;
 }

@@ -4,6 +4,7 @@
 
 #include "core/base/typed_id.h"
 #include "core/data/multi_material_data.h"
+#include "core/data/unstructured_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
 namespace adamas {
@@ -23,5 +24,9 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& m
 /// Integrals of data on a grid: sums over the sites of volume times fraction times value. A mixed field's
 /// value counts for each material that the site holds.
 IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialData& data);
+
+/// Integrals of a cut mesh as files hold it (cut_mesh): exact, to round-off, from its points and their
+/// values.
+IdVector<MaterialId, MaterialIntegral> material_integrals(const UnstructuredMesh& cut, std::size_t materials);
 
 }  // namespace adamas

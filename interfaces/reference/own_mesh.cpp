@@ -90,9 +90,9 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
   figures.volumes = material_volumes(mesh.table, mesh.cell_set(), source.materials.size());
   figures.distance =
       measure_distance(source, extracted.mesh.points, triangles, options.interface_error, progress);
-  const auto& certified = resampler.interface_distance();
-  own.half_width = std::max(options.interface_error, certified ? certified->upper : 0);
-  if (certified && certified->upper > options.interface_error)
+  const auto& certified = resampler.certificate();
+  own.half_width = std::max(options.interface_error, certified ? certified->materials.upper : 0);
+  if (certified && certified->networks.upper > options.interface_error)
     row.note = "the interface error wanted was not reached";
   if (source.fields) {
     const ElementErrors errors =

@@ -95,7 +95,8 @@ void Resampler::evaluate_vertices(const std::vector<VertexId>& vertices) {
     record.distances.near.reserve(near.size());
     record.closest.reserve(near.size());
     for (const NearInterface& n : near) {
-      record.distances.near.push_back({n.interface, rounded(n.signed_distance, record.distances.radius)});
+      const double d = rounded(n.signed_distance, record.distances.radius);
+      record.distances.near.push_back({n.interface, d + shifts_[n.interface]});
       record.closest.push_back(n.closest);
     }
     list_known_bodies(source_.network->table(), record.distances);
@@ -161,7 +162,35 @@ std::vector<TetrahedronId> Resampler::process(const std::vector<Split>& splits) 
   evaluate_vertices(vertices);
   parallel_for(parents.size(), 16, [&](std::size_t i) { distribute(parents[i]); });
   if (fields_active_) measure_fields(created);
+  if (recorded_ != nullptr) recorded_->splits.insert(recorded_->splits.end(), splits.begin(), splits.end());
   return created;
+}
+
+/// Gives a tetrahedron back what its children have, before they go.
+void Resampler::collect(TetrahedronId parent) {
+  CellRecord& to = hierarchy_.payload(parent);
+  if (to.evaluated) return;
+  for (const TetrahedronId child : hierarchy_.children(parent)) {
+    const auto& from = hierarchy_.payload(child).triangles;
+    to.triangles.insert(to.triangles.end(), from.begin(), from.end());
+  }
+  std::sort(to.triangles.begin(), to.triangles.end());
+  to.triangles.erase(std::unique(to.triangles.begin(), to.triangles.end()), to.triangles.end());
+}
+
+/// Merges what the splits have made, the last ones first.
+void Resampler::undo(const std::vector<Split>& splits) {
+  std::vector<TetrahedronId> restored;
+  for (auto split = splits.rbegin(); split != splits.rend(); ++split) {
+    const DiamondId diamond = hierarchy_.diamond(split->parent);
+    if (!hierarchy_.is_split(diamond)) continue;
+    for (const TetrahedronId t : hierarchy_.tetrahedra(diamond)) collect(t);
+    hierarchy_.merge(diamond, restored);
+  }
+  // Some of those are gone again by now.
+  restored = leaves();
+  std::erase_if(restored, [&](TetrahedronId t) { return hierarchy_.payload(t).evaluated; });
+  parallel_for(restored.size(), 16, [&](std::size_t i) { evaluate_interface(restored[i]); });
 }
 
 }  // namespace adamas

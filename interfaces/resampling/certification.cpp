@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "interfaces/resampling/resampler.h"
@@ -10,111 +13,77 @@ namespace {
 
 /// Measuring and refining again usually ends after two or three rounds; the bound is for what cannot be
 /// mended.
-constexpr int kMostRounds = 12;
+constexpr int kMostRounds = 20;
 /// Cells this small, in relation to the target, are not split further: what is wrong there does not go away,
 /// as where the input's interfaces have an open border and the approximation closes the gap.
 constexpr double kFinestForInput = 1e-3;
 constexpr double kFinestForApproximation = 0.25;
-/// Relative slack of the measured bounds: to tell what is within the target, and for the figure that is
-/// reported.
-constexpr double kSharp = 0.005;
-constexpr double kTight = 0.03;
-/// Of a distance, in relation to the domain's diagonal.
-constexpr double kRoundOff = 1e-15;
-
-std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
-  std::vector<ClosestPointTree::Triangle> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const InterfaceTriangle& t : mesh.triangles) triangles.push_back(t.points);
-  return triangles;
-}
+constexpr double kFinestForJunctions = 0.0625;
+constexpr double kFinestForContacts = 0.0625;
+/// Cells much smaller than the thickness of a body show it, if any do.
+constexpr double kFinestForThickness = 0.25;
+/// How far apart the places are that are looked at for a body that is torn, in relation to the target, and
+/// how thick it may be there.
+constexpr double kTornSpacing = 0.5;
+constexpr double kMostTornThickness = 4;
 
 }  // namespace
 
-/// Measures both ways and returns the leaves where the distance is, or may be, greater than wanted.
-std::vector<TetrahedronId> Resampler::measure_distance() {
-  const InterfaceNetwork& network = *source_.network;
+/// The leaves where what was measured is, or may be, farther away than wanted.
+std::vector<TetrahedronId> Resampler::failing_leaves(const InterfaceMesh& shown) const {
   const double target = options_.interface_error;
-  const auto extracted = extract_interfaces(network.table(), cells(), source_.box, progress_);
-  const auto triangles = indices(extracted.mesh);
-  const ClosestPointTree approximation(extracted.mesh.points, triangles);
-  HausdorffOptions options;
-  options.domain = source_.box;
-  options.accept = target;
-  options.relative = kSharp;
-  options.each = true;
-  report("measuring interfaces");
-  DistanceBound from =
-      directed_distance_bound(network.points(), network.triangles(), approximation, options, progress_);
-  DistanceBound to =
-      directed_distance_bound(extracted.mesh.points, triangles, network.tree(), options, progress_);
-  const auto set_distance = [&] {
-    distance_ = InterfaceDistance{std::max(from.upper, to.upper), std::max(from.lower, to.lower),
-                                  from.lower >= to.lower ? from.worst : to.worst, triangles.size()};
+  std::vector<TetrahedronId> result = leaves_far_from_shown();
+  const auto add = [&](const Vec3& p, double finest) {
+    const TetrahedronId leaf = leaf_at(p);
+    if (frame(leaf).diameter() > finest * target) result.push_back(leaf);
   };
-  set_distance();
-  if (distance_->upper <= target) {
-    options.accept = 0.01 * target;
-    options.relative = kTight;
-    options.each = false;
-    // One direction need not be known better than the other.
-    from.lower = to.lower = distance_->lower;
-    from.worst = to.worst = distance_->worst;
-    tighten_distance_bound(network.points(), network.triangles(), approximation, options, from, progress_);
-    to.lower = std::max(to.lower, from.lower);
-    tighten_distance_bound(extracted.mesh.points, triangles, network.tree(), options, to, progress_);
-    set_distance();
-    // What was seen at any point may differ by round-off from what is seen at the same point otherwise.
-    distance_->upper = std::min(distance_->upper + kRoundOff * source_.box.diagonal(), target);
-    return {};
+  for (const std::uint32_t t : comparison_->far_shown()) {
+    const auto& p = shown.triangles[t].points;
+    add((1.0 / 3) * (shown.points[p[0]] + shown.points[p[1]] + shown.points[p[2]]), kFinestForApproximation);
   }
-  std::vector<TetrahedronId> result = leaves_far_from(approximation, from);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (!(to.triangle_upper[t] > target)) continue;
-    const auto& p = extracted.mesh.points;
-    const TetrahedronId leaf =
-        leaf_at((1.0 / 3) * (p[triangles[t][0]] + p[triangles[t][1]] + p[triangles[t][2]]));
-    if (frame(leaf).diameter() > kFinestForApproximation * target) result.push_back(leaf);
+  for (const auto& points : comparison_->far_junctions()) {
+    for (const Vec3& p : points) add(p, kFinestForJunctions);
   }
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 
-/// Leaves with points of the input's interfaces that are farther from the approximation than wanted.
-std::vector<TetrahedronId> Resampler::leaves_far_from(const ClosestPointTree& approximation,
-                                                      const DistanceBound& from) const {
+/// Leaves with points of a material's boundary in the input that are farther from the one shown than wanted.
+std::vector<TetrahedronId> Resampler::leaves_far_from_shown() const {
   const InterfaceNetwork& network = *source_.network;
   const double target = options_.interface_error;
   const std::vector<TetrahedronId> all = leaves();
   std::vector<char> bad(all.size(), 0);
   std::vector<std::atomic<bool>> explained(network.triangles().size());
-  const auto too_far = [&](std::uint32_t t) { return from.triangle_upper[t] > target; };
   parallel_for(all.size(), 256, [&](std::size_t i) {
     for (const std::uint32_t t : hierarchy_.payload(all[i]).triangles) {
-      if (!too_far(t)) continue;
       const auto& corners = network.triangle_corners(t);
-      const Tetrahedron cell = frame(all[i]);
-      Weights middle{};
-      double count = 0;
-      const auto check = [&](const Weights& w) {
-        if (approximation.closest(cell.point(w), target)) return;
-        bad[i] = 1;
-        explained[t] = true;
-      };
-      for (const Weights& w : ClippedTriangle(cell, corners[0], corners[1], corners[2])) {
-        check(w);
-        for (std::size_t c = 0; c < 4; ++c) middle[c] += w[c];
-        ++count;
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (!comparison_->too_far(t, side)) continue;
+        const ClosestPointTree& boundary = comparison_->shown_boundary(t, side);
+        const Tetrahedron cell = frame(all[i]);
+        Weights middle{};
+        double count = 0;
+        const auto check = [&](const Weights& w) {
+          if (boundary.closest(cell.point(w), target)) return;
+          bad[i] = 1;
+          explained[t] = true;
+        };
+        for (const Weights& w : ClippedTriangle(cell, corners[0], corners[1], corners[2])) {
+          check(w);
+          for (std::size_t c = 0; c < 4; ++c) middle[c] += w[c];
+          ++count;
+        }
+        for (double& w : middle) w /= count;
+        if (count > 0) check(middle);
       }
-      for (double& w : middle) w /= count;
-      if (count > 0) check(middle);
     }
   });
   // Too far somewhere between the points looked at: all cells of the triangle.
   parallel_for(all.size(), 256, [&](std::size_t i) {
     for (const std::uint32_t t : hierarchy_.payload(all[i]).triangles) {
-      if (too_far(t) && !explained[t]) bad[i] = 1;
+      if ((comparison_->too_far(t, 0) || comparison_->too_far(t, 1)) && !explained[t]) bad[i] = 1;
     }
   });
   std::vector<TetrahedronId> result;
@@ -124,36 +93,138 @@ std::vector<TetrahedronId> Resampler::leaves_far_from(const ClosestPointTree& ap
   return result;
 }
 
-RefinementEnd Resampler::refine_what_fails() {
-  for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<TetrahedronId> failing = measure_distance();
-    if (distance_->upper <= options_.interface_error) return RefinementEnd::kReached;
-    if (budget_spent_) return RefinementEnd::kBudget;
-    if (failing.empty()) return RefinementEnd::kSmallestCells;
-    std::vector<Split> splits;
-    std::vector<TetrahedronId> created;
-    for (const TetrahedronId t : failing) {
-      if (!hierarchy_.is_leaf(t) || !hierarchy_.can_split(t)) continue;
-      hierarchy_.payload(t).trusted = 0.25 * frame(t).diameter();
-      const std::size_t before = splits.size();
-      hierarchy_.split(t, splits);
-      if (options_.max_tetrahedra && hierarchy_.leaf_count() > *options_.max_tetrahedra) {
-        undo({splits.begin() + static_cast<std::ptrdiff_t>(before), splits.end()});
-        splits.resize(before);
-        budget_spent_ = true;
-        break;
-      }
+/// Splits leaves whatever their estimates say, as far as the number of tetrahedra allows; returns those that
+/// this made.
+std::vector<TetrahedronId> Resampler::split_all(const std::vector<TetrahedronId>& failing) {
+  std::vector<Split> splits;
+  for (const TetrahedronId t : failing) {
+    if (!hierarchy_.is_leaf(t) || !hierarchy_.can_split(t)) continue;
+    if (recorded_ != nullptr) recorded_->trusted.emplace_back(t, hierarchy_.payload(t).trusted);
+    hierarchy_.payload(t).trusted = 0.25 * frame(t).diameter();
+    const std::size_t before = splits.size();
+    hierarchy_.split(t, splits);
+    if (options_.max_tetrahedra && hierarchy_.leaf_count() > *options_.max_tetrahedra) {
+      undo({splits.begin() + static_cast<std::ptrdiff_t>(before), splits.end()});
+      splits.resize(before);
+      budget_spent_ = true;
+      break;
     }
-    if (splits.empty()) return budget_spent_ ? RefinementEnd::kBudget : RefinementEnd::kDepth;
-    created = process(splits);
-    refine_to_targets(std::move(created));
   }
-  measure_distance();
-  return distance_->upper <= options_.interface_error ? RefinementEnd::kReached : RefinementEnd::kRounds;
+  return process(splits);
 }
 
-void Resampler::certify() {
-  if (!source_.network->triangles().empty()) interface_end_ = refine_what_fails();
+/// Leaves where the mesh tears bodies that are larger than the target, or joins bodies that do not touch in
+/// the input.
+std::vector<TetrahedronId> Resampler::leaves_with_wrong_bodies(const InterfaceMesh& shown) const {
+  const double target = options_.interface_error;
+  std::vector<TetrahedronId> result;
+  for (const std::uint32_t t : bodies_->contact_triangles()) {
+    const auto& p = shown.triangles[t].points;
+    const TetrahedronId leaf =
+        leaf_at((1.0 / 3) * (shown.points[p[0]] + shown.points[p[1]] + shown.points[p[2]]));
+    if (frame(leaf).diameter() > kFinestForContacts * target) result.push_back(leaf);
+  }
+  const InterfaceTable& table = source_.network->table();
+  IdVector<BodyId, char> wrong(table.body_count(), 0);
+  for (BodyId b(0); b.value < wrong.size(); ++b.value)
+    wrong[b] = !bodies_->report().kept(b) && bodies_->size(b) > target ? 1 : 0;
+  const auto& triangles = source_.network->triangles();
+  std::vector<std::vector<TetrahedronId>> torn(triangles.size());
+  parallel_for(triangles.size(), 256, [&](std::size_t t) {
+    for (const BodyId body : table.sides(source_.network->interface_of(static_cast<std::uint32_t>(t)))) {
+      if (wrong[body] != 0) find_torn_leaves(static_cast<std::uint32_t>(t), body, torn[t]);
+    }
+  });
+  for (const auto& part : torn) result.insert(result.end(), part.begin(), part.end());
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+/// Adds the leaves that hold the middle between a triangle and what is opposite to it within its body, and
+/// where the mesh gives the place to another body.
+void Resampler::find_torn_leaves(std::uint32_t triangle, BodyId body,
+                                 std::vector<TetrahedronId>& torn) const {
+  const InterfaceNetwork& network = *source_.network;
+  const InterfaceTable& table = network.table();
+  const auto& [a, b, c] = network.triangle_corners(triangle);
+  const double sign = table.sides(network.interface_of(triangle))[0] == body ? 1 : -1;
+  const Vec3 inwards = sign * network.normal(triangle);
+  const double longest = std::sqrt(std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)}));
+  constexpr double kMostSteps = 16;
+  const double target = options_.interface_error;
+  const double steps = std::clamp(std::ceil(longest / (kTornSpacing * target)), 1.0, kMostSteps);
+  // The middles of the small triangles.
+  for (double i = 1.0 / 3; i < steps; ++i) {
+    for (double j = 1.0 / 3; i + j < steps; ++j) {
+      const Vec3 p = a + (i / steps) * (b - a) + (j / steps) * (c - a);
+      const auto hit = network.tree().first_hit(p, inwards, kMostTornThickness * target, triangle);
+      if (!hit) continue;
+      const auto& sides = table.sides(network.interface_of(hit->triangle));
+      if (sides[0] != body && sides[1] != body) continue;
+      const Vec3 middle = p + 0.5 * hit->t * inwards;
+      if (!source_.box.contains(middle) || owner_at(middle) == body) continue;
+      const TetrahedronId leaf = leaf_at(middle);
+      if (frame(leaf).diameter() > kFinestForThickness * hit->t) torn.push_back(leaf);
+    }
+  }
+}
+
+/// Measures interfaces and bodies as the leaves show them now, once volumes agree.
+InterfaceMesh Resampler::measure_shown() {
+  if (options_.conserve) conserve_volumes();
+  ExtractedInterfaces extracted =
+      extract_interfaces(source_.network->table(), cells(), source_.box, progress_);
+  report("measuring interfaces");
+  comparison_->measure(extracted.mesh, progress_);
+  bodies_->measure(extracted);
+  return std::move(extracted.mesh);
+}
+
+RefinementEnd Resampler::refine_what_fails() {
+  // What has been split for the sake of bodies since the distances were within the target.
+  Record for_bodies;
+  std::size_t differences = std::numeric_limits<std::size_t>::max();
+  for (int round = 0;; ++round) {
+    InterfaceMesh shown = measure_shown();
+    const bool within = comparison_->within();
+    const auto end = [&](RefinementEnd reason) {
+      certificate_ = comparison_->finish(shown, progress_);
+      return comparison_->within() ? RefinementEnd::kReached : reason;
+    };
+    if (within) {
+      const std::size_t before = std::exchange(differences, bodies_->differences(options_.interface_error));
+      if (differences >= before && !for_bodies.splits.empty()) {
+        for (const auto& [t, trusted] : for_bodies.trusted) hierarchy_.payload(t).trusted = trusted;
+        undo(for_bodies.splits);
+        shown = measure_shown();
+        return end(RefinementEnd::kReached);
+      }
+      for_bodies = {};
+    }
+    if (budget_spent_) return end(RefinementEnd::kBudget);
+    if (round >= kMostRounds) return end(RefinementEnd::kRounds);
+    const std::vector<TetrahedronId> failing =
+        within ? leaves_with_wrong_bodies(shown) : failing_leaves(shown);
+    if (failing.empty()) return end(RefinementEnd::kSmallestCells);
+    if (within) recorded_ = &for_bodies;
+    std::vector<TetrahedronId> created = split_all(failing);
+    if (created.empty()) return end(budget_spent_ ? RefinementEnd::kBudget : RefinementEnd::kDepth);
+    refine_to_targets(std::move(created));
+  }
+}
+
+/// Makes volumes agree and certifies distances, as far as either is wanted.
+void Resampler::finish_interfaces() {
+  if (source_.network->triangles().empty()) return;
+  if (!options_.certify) {
+    if (options_.conserve) conserve_volumes();
+    return;
+  }
+  if (!comparison_) comparison_ = std::make_unique<InterfaceComparison>(source_, options_.interface_error);
+  if (!bodies_) bodies_ = std::make_unique<BodyComparison>(source_);
+  interface_end_ = refine_what_fails();
+  recorded_ = nullptr;
 }
 
 }  // namespace adamas

@@ -60,8 +60,8 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
     for (const TetrahedronId t : cells) limits[f] = std::max(limits[f], hierarchy_.payload(t).fields[f].max);
     if (options_.field_errors[f]) limits[f] = *options_.field_errors[f];
   }
-  const double half_width =
-      distance_ ? std::max(options_.interface_error, distance_->upper) : options_.interface_error;
+  const double half_width = certificate_ ? std::max(options_.interface_error, certificate_->materials.upper)
+                                         : options_.interface_error;
   ViewCache cache(hierarchy_.tetrahedron_slots());
   const CellsInBox nearby = [&](const Box3& box, MaterialId material, const auto& visit) {
     cells_in_box(box, material,

@@ -30,6 +30,8 @@ Resampler::Resampler(const ResamplingSource& source, ResamplingOptions options, 
     fail("{}: expected room for at least {} tetrahedra, found a limit of {}", source.name,
          hierarchy_.leaf_count(), *options_.max_tetrahedra);
   }
+  if (source.body_volumes.empty()) options_.conserve = false;
+  shifts_.assign(source.network->table().interface_count(), 0.0);
   options_.field_errors.resize(source.fields ? source.fields->fields().size() : 0);
 }
 
@@ -115,14 +117,6 @@ std::vector<TetrahedronId> Resampler::refine_in_rounds(std::vector<TetrahedronId
   }
 }
 
-void Resampler::undo(const std::vector<Split>& splits) {
-  std::vector<TetrahedronId> restored;
-  for (auto split = splits.rbegin(); split != splits.rend(); ++split) {
-    const DiamondId diamond = hierarchy_.diamond(split->parent);
-    if (hierarchy_.is_split(diamond)) hierarchy_.merge(diamond, restored);
-  }
-}
-
 void Resampler::refine_greedily(const std::vector<TetrahedronId>& cells) {
   using Entry = std::pair<Priority, std::uint32_t>;
   // Of equal priorities the smaller id first.
@@ -161,15 +155,19 @@ void Resampler::refine_to_targets(std::vector<TetrahedronId> cells) {
 void Resampler::refine() {
   place_roots();
   refine_to_targets(leaves());
-  if (options_.certify) certify();
-  if (!source_.fields) return;
+  finish_interfaces();
+  if (source_.fields) refine_fields();
+  comparison_.reset();
+}
+
+void Resampler::refine_fields() {
   fields_active_ = true;
   report("measuring fields");
   measure_fields(leaves());
   const std::size_t before = hierarchy_.leaf_count();
   refine_to_targets(leaves());
   if (hierarchy_.leaf_count() == before) return;
-  if (options_.certify) certify();
+  finish_interfaces();
   // Errors of elements near an interface depend on the cells round theirs.
   measure_fields(leaves());
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,7 +11,8 @@
 #include "interfaces/errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "interfaces/mesh/extraction.h"
-#include "interfaces/network/hausdorff.h"
+#include "interfaces/resampling/body_comparison.h"
+#include "interfaces/resampling/interface_comparison.h"
 #include "interfaces/source.h"
 
 namespace adamas {
@@ -21,6 +23,9 @@ struct ResamplingOptions {
   std::optional<std::size_t> max_tetrahedra;
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;
+  /// Move the interfaces, by no more than half the interface error and by one offset per body, until each
+  /// body has the volume that it has in the input. Needs a source that knows these.
+  bool conserve = false;
   bool certify = true;  ///< measure the interfaces' distance in the end, and refine where it is too great
 };
 
@@ -34,15 +39,6 @@ struct CellRecord {
   /// Cells larger than this must show the interfaces in them; falls where measuring has found one missing.
   double trusted = std::numeric_limits<double>::infinity();
   bool evaluated = false;  ///< the triangles and the interface error are up to date
-};
-
-/// Two-sided distance between the input's interfaces and the approximated ones; infinite where there are none
-/// of the latter.
-struct InterfaceDistance {
-  double upper = 0;           ///< certified: no point of either is further from the other
-  double lower = 0;           ///< attained at `worst`
-  Vec3 worst;                 ///< a point of either
-  std::size_t triangles = 0;  ///< of the approximation
 };
 
 /// Why measuring and refining came to its end.
@@ -73,8 +69,10 @@ class Resampler {
   [[nodiscard]] const MeshHierarchy& hierarchy() const { return hierarchy_; }
   [[nodiscard]] const ResamplingSource& source() const { return source_; }
   [[nodiscard]] const ResamplingOptions& options() const { return options_; }
-  /// Measured two-sided distance; none where `certify` is off or there are no interfaces.
-  [[nodiscard]] const std::optional<InterfaceDistance>& interface_distance() const { return distance_; }
+  /// Measured distances; none where `certify` is off or there are no interfaces.
+  [[nodiscard]] const std::optional<InterfaceCertificate>& certificate() const { return certificate_; }
+  /// What became of the input's bodies; null where `certify` is off or there are no interfaces.
+  [[nodiscard]] const BodyReport* body_report() const { return bodies_ ? &bodies_->report() : nullptr; }
   /// Why the interface error is not less; kReached where none was measured.
   [[nodiscard]] RefinementEnd interface_end() const { return interface_end_; }
   /// Whether the greatest number of tetrahedra has stopped refinement.
@@ -113,13 +111,22 @@ class Resampler {
   std::vector<TetrahedronId> refine_in_rounds(std::vector<TetrahedronId> cells);
   void refine_greedily(const std::vector<TetrahedronId>& cells);
   void refine_to_targets(std::vector<TetrahedronId> cells);
+  void collect(TetrahedronId parent);
   void undo(const std::vector<Split>& splits);
+  void refine_fields();
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;
-  void certify();
+  void finish_interfaces();
+  [[nodiscard]] IdVector<BodyId, double> missing_volumes() const;
+  [[nodiscard]] std::vector<std::pair<std::array<BodyId, 2>, double>> exchanges() const;
+  void shift_interfaces(const IdVector<BodyId, double>& raised);
+  void conserve_volumes();
   [[nodiscard]] RefinementEnd refine_what_fails();
-  std::vector<TetrahedronId> measure_distance();
-  [[nodiscard]] std::vector<TetrahedronId> leaves_far_from(const ClosestPointTree& approximation,
-                                                           const DistanceBound& from) const;
+  [[nodiscard]] InterfaceMesh measure_shown();
+  [[nodiscard]] std::vector<TetrahedronId> failing_leaves(const InterfaceMesh& shown) const;
+  [[nodiscard]] std::vector<TetrahedronId> leaves_far_from_shown() const;
+  [[nodiscard]] std::vector<TetrahedronId> leaves_with_wrong_bodies(const InterfaceMesh& shown) const;
+  void find_torn_leaves(std::uint32_t triangle, BodyId body, std::vector<TetrahedronId>& torn) const;
+  [[nodiscard]] std::vector<TetrahedronId> split_all(const std::vector<TetrahedronId>& failing);
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
   void ownership(TetrahedronId t, CellOwnership& result) const;
   [[nodiscard]] double estimate_target() const;
@@ -133,7 +140,16 @@ class Resampler {
   bool fields_active_ = false;
   bool budget_spent_ = false;
   RefinementEnd interface_end_ = RefinementEnd::kReached;
-  std::optional<InterfaceDistance> distance_;
+  IdVector<InterfaceId, double> shifts_;  ///< added to signed distances, so that volumes agree
+  std::unique_ptr<InterfaceComparison> comparison_;
+  std::optional<InterfaceCertificate> certificate_;
+  std::unique_ptr<BodyComparison> bodies_;
+  /// What has to be undone: splits, and the cell records that were changed before, as they were.
+  struct Record {
+    std::vector<Split> splits;
+    std::vector<std::pair<TetrahedronId, double>> trusted;
+  };
+  Record* recorded_ = nullptr;  ///< receives what is split, unless null
 };
 
 }  // namespace adamas

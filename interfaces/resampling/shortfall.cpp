@@ -15,13 +15,12 @@ constexpr const char* kDeep = "the hierarchy is as deep there as it can be";
 
 }  // namespace
 
-std::optional<Shortfall> interface_shortfall(const Resampler& resampler) {
-  const auto& distance = resampler.interface_distance();
-  if (!distance || distance->upper <= resampler.options().interface_error) return {};
+std::optional<Shortfall> interface_shortfall(const Resampler& resampler, const InterfaceDistance& distance) {
+  if (distance.upper <= resampler.options().interface_error) return {};
   const InterfaceNetwork& network = *resampler.source().network;
   // Without approximated interfaces every point of the input's is as far.
   const Vec3 place =
-      std::isfinite(distance->lower) ? distance->worst : network.points()[network.triangles()[0][0]];
+      std::isfinite(distance.lower) ? distance.worst : network.points()[network.triangles()[0][0]];
   switch (resampler.interface_end()) {
     case RefinementEnd::kBudget:
       return Shortfall{budget_reason(resampler), place};

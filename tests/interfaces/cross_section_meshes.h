@@ -107,7 +107,7 @@ inline SceneMesh make_scene_mesh(std::string_view name, const SceneMeshOptions& 
   resampling.field_errors.resize(result.source.fields->fields().size());
   Resampler resampler(result.source, resampling);
   resampler.refine();
-  if (resampler.interface_distance()) result.distance = resampler.interface_distance()->upper;
+  if (resampler.certificate()) result.distance = resampler.certificate()->networks.upper;
   result.mesh = take_mesh(resampler);
   return result;
 }

@@ -107,7 +107,7 @@ TEST(Reconstruction, SliversRoundATripleLineAreNoBodies) {
     c.options.interface_error = 0.05;
     const test::ResampledScene resampled(c);
     EXPECT_EQ(resampled.table().body_count(), 3u);
-    EXPECT_LE(resampled.resampler->interface_distance()->upper, 0.05);
+    EXPECT_LE(resampled.resampler->certificate()->networks.upper, 0.05);
     EXPECT_LT(resampled.resampler->hierarchy().leaf_count(), 2000u);
     test::expect_laws(resampled);
   }

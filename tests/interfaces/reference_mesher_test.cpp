@@ -193,7 +193,7 @@ TEST(ElementErrors, AreThoseOfTheResampler) {
     for (std::size_t f = 0; f < known.size(); ++f) known[f].add(hierarchy.payload(t).fields[f]);
   });
   const double half_width =
-      std::max(c.options.interface_error, resampled.resampler->interface_distance()->upper);
+      std::max(c.options.interface_error, resampled.resampler->certificate()->networks.upper);
   const ResampledMesh mesh = take_mesh(*resampled.resampler);
   const ElementErrors errors = measure_element_errors(resampled.source, measured_cells(mesh), half_width);
   const auto found = errors.figures(std::vector<char>(errors.cells.size(), 0));

@@ -20,7 +20,7 @@ std::optional<double> certified_ratio(const SceneCase& c, std::size_t samples) {
   const ResampledScene resampled(c);
   // The thinnest layers leave no interface in the fractions of a coarse grid.
   if (resampled.source.network->triangles().empty()) return std::nullopt;
-  const auto& reported = resampled.resampler->interface_distance();
+  const auto& reported = resampled.resampler->certificate();
   EXPECT_TRUE(reported.has_value());
   if (!reported) return std::nullopt;
   const ExtractedInterfaces found = resampled.extracted();
@@ -29,10 +29,10 @@ std::optional<double> certified_ratio(const SceneCase& c, std::size_t samples) {
   const std::vector<test::TriangleIndices> triangles(network.triangles().begin(), network.triangles().end());
   const double measured = test::sampled_distance(points, triangles, found.mesh.points, indices(found.mesh),
                                                  resampled.source.box, samples, 1);
-  EXPECT_GE(reported->upper, measured * (1 - 1e-9));
-  EXPECT_LE(reported->upper, c.options.interface_error * (1 + 1e-12));
+  EXPECT_GE(reported->networks.upper, measured * (1 - 1e-9));
+  EXPECT_LE(reported->networks.upper, c.options.interface_error * (1 + 1e-12));
   if (measured < 1e-9) return std::nullopt;
-  return reported->upper / measured;
+  return reported->networks.upper / measured;
 }
 
 void expect_certified(bool meshes, const std::vector<double>& errors, std::size_t samples) {

@@ -31,10 +31,10 @@ TEST(Shortfall, OfABudgetNamesItAndThePlace) {
   c.options.interface_error = 0.01;
   c.options.max_tetrahedra = 1200;
   const ResampledScene scene(c);
-  const auto shortfall = interface_shortfall(*scene.resampler);
+  const auto shortfall = interface_shortfall(*scene.resampler, scene.resampler->certificate()->networks);
   ASSERT_TRUE(shortfall);
   EXPECT_NE(shortfall->reason.find("1200"), std::string::npos);
-  EXPECT_NEAR(distance_to_the_other(scene, shortfall->place), scene.resampler->interface_distance()->lower,
+  EXPECT_NEAR(distance_to_the_other(scene, shortfall->place), scene.resampler->certificate()->networks.lower,
               1e-9);
 }
 
@@ -43,10 +43,10 @@ TEST(Shortfall, IsNoneWhereTheErrorWasReached) {
   c.name = "sphere";
   c.options.interface_error = 0.05;
   const ResampledScene scene(c);
-  EXPECT_FALSE(interface_shortfall(*scene.resampler));
+  EXPECT_FALSE(interface_shortfall(*scene.resampler, scene.resampler->certificate()->networks));
   EXPECT_EQ(scene.resampler->interface_end(), RefinementEnd::kReached);
-  EXPECT_NEAR(distance_to_the_other(scene, scene.resampler->interface_distance()->worst),
-              scene.resampler->interface_distance()->lower, 1e-9);
+  EXPECT_NEAR(distance_to_the_other(scene, scene.resampler->certificate()->networks.worst),
+              scene.resampler->certificate()->networks.lower, 1e-9);
 }
 
 TEST(Shortfall, OfAFieldLiesAtTheElementWithTheGreatestError) {

@@ -1,0 +1,117 @@
+#include "interfaces/resampling/body_comparison.h"
+
+#include <algorithm>
+
+namespace adamas {
+
+namespace {
+
+/// Of points on a face of the domain, in relation to its diagonal.
+constexpr double kOnFace = 1e-9;
+
+using Pair = std::array<BodyId, 2>;
+
+void sort_unique(std::vector<Pair>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+MaterialId as_material(BodyId body) { return MaterialId(body.value); }
+
+/// The interfaces with bodies in place of materials.
+InterfaceMesh mesh_of_bodies(const InterfaceNetwork& network) {
+  InterfaceMesh mesh;
+  mesh.points.assign(network.points().begin(), network.points().end());
+  mesh.triangles.reserve(network.triangles().size());
+  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+    const auto& [front, back] = network.table().sides(network.interface_of(t));
+    mesh.triangles.push_back({network.triangles()[t], as_material(front), as_material(back)});
+  }
+  return mesh;
+}
+
+InterfaceMesh mesh_of_bodies(const ExtractedInterfaces& shown) {
+  InterfaceMesh mesh;
+  mesh.points = shown.mesh.points;
+  mesh.triangles = shown.mesh.triangles;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    mesh.triangles[t].front = as_material(shown.bodies[t][0]);
+    mesh.triangles[t].back = as_material(shown.bodies[t][1]);
+  }
+  return mesh;
+}
+
+bool contains(Box3 box, std::span<const Vec3> points) {
+  const double margin = kOnFace * box.diagonal();
+  box.min -= {margin, margin, margin};
+  box.max += {margin, margin, margin};
+  return std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return box.contains(p); });
+}
+
+}  // namespace
+
+BodyComparison::BodyComparison(const ResamplingSource& source)
+    : source_(source), sizes_(source.network->table().body_count(), 0.0) {
+  const InterfaceNetwork& network = *source.network;
+  report_.input = body_topology(mesh_of_bodies(network), sizes_.size(), source.box);
+  report_.comparable =
+      !network.has_open_border() && network.inconsistencies() == 0 && contains(source.box, network.points());
+  IdVector<BodyId, Box3> boxes(sizes_.size());
+  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+    for (const BodyId body : network.table().sides(network.interface_of(t))) {
+      for (const Vec3& p : network.triangle_corners(t)) boxes[body].extend(p);
+    }
+  }
+  for (BodyId b(0); b.value < sizes_.size(); ++b.value) sizes_[b] = boxes[b].diagonal();
+  find_touching();
+}
+
+void BodyComparison::find_touching() {
+  const InterfaceNetwork& network = *source_.network;
+  std::vector<std::pair<std::uint32_t, BodyId>> at_points;
+  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+    for (const BodyId body : network.table().sides(network.interface_of(t))) {
+      for (const std::uint32_t p : network.triangles()[t]) at_points.emplace_back(p, body);
+    }
+  }
+  std::sort(at_points.begin(), at_points.end());
+  at_points.erase(std::unique(at_points.begin(), at_points.end()), at_points.end());
+  for (std::size_t first = 0, last = 0; first < at_points.size(); first = last) {
+    while (last < at_points.size() && at_points[last].first == at_points[first].first) ++last;
+    // Points of one interface alone are the most, and are known by the table.
+    if (last - first <= 2) continue;
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t j = i + 1; j < last; ++j)
+        touching_.push_back({at_points[i].second, at_points[j].second});
+    }
+  }
+  sort_unique(touching_);
+}
+
+void BodyComparison::measure(const ExtractedInterfaces& shown) {
+  report_.mesh = body_topology(mesh_of_bodies(shown), sizes_.size(), source_.box);
+  report_.contacts.clear();
+  contact_triangles_.clear();
+  for (std::uint32_t t = 0; t < shown.bodies.size(); ++t) {
+    const auto& [front, back] = shown.bodies[t];
+    const Pair pair{std::min(front, back), std::max(front, back)};
+    if (source_.network->table().find(front, back)) continue;
+    if (std::binary_search(touching_.begin(), touching_.end(), pair)) continue;
+    report_.contacts.push_back(pair);
+    contact_triangles_.push_back(t);
+  }
+  sort_unique(report_.contacts);
+}
+
+std::size_t BodyComparison::differences(double size) const {
+  const auto between = [](auto a, auto b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
+  std::size_t sum = report_.contacts.size();
+  for (BodyId b(0); b.value < sizes_.size(); ++b.value) {
+    if (report_.kept(b) || sizes_[b] <= size) continue;
+    sum += between(report_.input[b].pieces, report_.mesh[b].pieces);
+    if (report_.comparable) sum += between(report_.input[b].euler, report_.mesh[b].euler);
+  }
+  return sum;
+}
+
+}  // namespace adamas

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "interfaces/mesh/extraction.h"
+#include "interfaces/network/body_topology.h"
+#include "interfaces/source.h"
+
+namespace adamas {
+
+/// What became of the bodies of the input in a mesh.
+struct BodyReport {
+  IdVector<BodyId, BodyTopology> input, mesh;
+  /// Whether the characteristics of the two can be compared: the input's interfaces are closed within the
+  /// domain.
+  bool comparable = true;
+  std::vector<std::array<BodyId, 2>>
+      contacts;  ///< that touch in the mesh, and nowhere in the input; ascending
+
+  /// Whether the mesh shows a body in as many pieces as the input, with the same holes and handles.
+  [[nodiscard]] bool kept(BodyId body) const {
+    return mesh[body].pieces == input[body].pieces && (!comparable || mesh[body].euler == input[body].euler);
+  }
+};
+
+/// Compares the bodies of the input with those that a mesh shows.
+class BodyComparison {
+ public:
+  /// The source must outlive this object.
+  explicit BodyComparison(const ResamplingSource& source);
+
+  void measure(const ExtractedInterfaces& shown);
+  [[nodiscard]] const BodyReport& report() const { return report_; }
+  /// Triangles of what was measured between bodies that do not touch in the input.
+  [[nodiscard]] const std::vector<std::uint32_t>& contact_triangles() const { return contact_triangles_; }
+  /// Diagonal of a body's bounding box.
+  [[nodiscard]] double size(BodyId body) const { return sizes_[body]; }
+  /// How much is different, in bodies larger than so: pieces, holes, handles, contacts.
+  [[nodiscard]] std::size_t differences(double size) const;
+
+ private:
+  void find_touching();
+
+  const ResamplingSource& source_;
+  std::vector<std::array<BodyId, 2>> touching_;  ///< in the input, at a point at least; ascending
+  IdVector<BodyId, double> sizes_;
+  BodyReport report_;
+  std::vector<std::uint32_t> contact_triangles_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,177 @@
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "interfaces/resampling/resampler.h"
+
+namespace adamas {
+
+namespace {
+
+/// Volumes agree that differ by less than this, in relation to the domain's.
+constexpr double kAgree = 1e-10;
+/// Newton's method needs four or five steps; more where bodies are about to vanish.
+constexpr int kMostSteps = 20;
+/// No interface moves by more than this part of the interface error.
+constexpr double kMostShift = 0.5;
+/// Keeps the equations solvable: what all bodies share is not determined.
+constexpr double kDamping = 1e-12;
+
+using Exchange = std::pair<std::array<BodyId, 2>, double>;
+
+/// A candidate's function that is the least at a point.
+const LinearFunction& binding(const OwnershipProblem& problem, std::uint32_t owner, const Weights& at) {
+  const auto candidate =
+      std::find_if(problem.candidates.begin(), problem.candidates.end(),
+                   [owner](const OwnershipProblem::Candidate& c) { return c.owner == owner; });
+  const auto value = [&](const LinearFunction& f) {
+    return f.values[0] * at[0] + f.values[1] * at[1] + f.values[2] * at[2] + f.values[3] * at[3];
+  };
+  const auto first = problem.functions.begin() + candidate->first;
+  return *std::min_element(first, first + candidate->count,
+                           [&](const auto& f, const auto& g) { return value(f) < value(g); });
+}
+
+/// How much volume a contact hands over for each unit by which the difference of the two bodies' functions
+/// grows: its area over the slope of that difference.
+double exchanged(const Tetrahedron& cell, const OwnershipProblem& problem, const ContactPolygon& contact) {
+  Vec3 area;
+  Weights middle{};
+  const auto& corners = contact.corners;
+  const Vec3 origin = cell.point(corners[0].weights);
+  for (std::size_t i = 2; i < corners.size(); ++i)
+    area += 0.5 * cross(cell.point(corners[i - 1].weights) - origin, cell.point(corners[i].weights) - origin);
+  for (const auto& corner : corners) {
+    for (std::size_t v = 0; v < 4; ++v) middle[v] += corner.weights[v] / static_cast<double>(corners.size());
+  }
+  std::array<double, 4> difference{};
+  const auto &front = binding(problem, contact.front, middle), &back = binding(problem, contact.back, middle);
+  for (std::size_t v = 0; v < 4; ++v) difference[v] = front.values[v] - back.values[v];
+  const double slope = norm(cell.gradient(difference));
+  return slope > 0 ? norm(area) / slope : 0;
+}
+
+/// How far each body's functions are to be raised so that it gains what it misses.
+IdVector<BodyId, double> solve(std::size_t bodies, const std::vector<Exchange>& exchanges,
+                               const IdVector<BodyId, double>& missing) {
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> diagonal(bodies, 0.0);
+  const auto index = [](BodyId b) { return static_cast<int>(b.value); };
+  for (const auto& [pair, by] : exchanges) {
+    const auto& [a, b] = pair;
+    entries.emplace_back(index(a), index(b), -by);
+    entries.emplace_back(index(b), index(a), -by);
+    diagonal[a.value] += by;
+    diagonal[b.value] += by;
+  }
+  const double greatest = *std::max_element(diagonal.begin(), diagonal.end());
+  const auto n = static_cast<Eigen::Index>(bodies);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+  for (BodyId b(0); b.value < bodies; ++b.value) {
+    // Nothing can be given to a body that touches none.
+    if (diagonal[b.value] > 0) right[index(b)] = missing[b];
+    entries.emplace_back(index(b), index(b), diagonal[b.value] + kDamping * greatest);
+  }
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd raised = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
+  IdVector<BodyId, double> result(bodies, 0.0);
+  for (BodyId b(0); b.value < bodies; ++b.value)
+    result[b] = std::isfinite(raised[index(b)]) ? raised[index(b)] : 0;
+  return result;
+}
+
+double greatest(const IdVector<BodyId, double>& values) {
+  double result = 0;
+  for (const double v : values) result = std::max(result, std::abs(v));
+  return result;
+}
+
+}  // namespace
+
+/// What each body of the mesh misses of its volume.
+IdVector<BodyId, double> Resampler::missing_volumes() const {
+  IdVector<BodyId, double> missing = source_.body_volumes;
+  const auto found = body_volumes(source_.network->table(), cells());
+  for (BodyId b(0); b.value < missing.size(); ++b.value) missing[b] -= found[b];
+  return missing;
+}
+
+/// Of all contacts of the leaves, summed for each pair of bodies.
+std::vector<Exchange> Resampler::exchanges() const {
+  const std::vector<TetrahedronId> all = leaves();
+  constexpr std::size_t kChunk = 2048;
+  std::vector<std::vector<Exchange>> parts((all.size() + kChunk - 1) / kChunk);
+  parallel_chunks(all.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    CellOwnership owners;
+    std::vector<ContactPolygon> contacts;
+    for (std::size_t i = first; i < last; ++i) {
+      ownership(all[i], owners);
+      if (owners.pure()) continue;
+      keep_owners(owners.problem);
+      contacts.clear();
+      contact_polygons(owners.problem, contacts);
+      const Tetrahedron cell = frame(all[i]);
+      for (const ContactPolygon& contact : contacts) {
+        const auto [a, b] = std::minmax(contact.front, contact.back);
+        parts[first / kChunk].push_back({{BodyId(a), BodyId(b)}, exchanged(cell, owners.problem, contact)});
+      }
+    }
+  });
+  std::vector<Exchange> result;
+  for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
+  std::stable_sort(result.begin(), result.end(),
+                   [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::size_t count = 0;
+  for (const Exchange& exchange : result) {
+    if (count > 0 && result[count - 1].first == exchange.first) {
+      result[count - 1].second += exchange.second;
+    } else {
+      result[count++] = exchange;
+    }
+  }
+  result.resize(count);
+  return result;
+}
+
+/// Moves each interface by half of what its two bodies are raised by against each other, as far as is
+/// allowed.
+void Resampler::shift_interfaces(const IdVector<BodyId, double>& raised) {
+  const InterfaceTable& table = source_.network->table();
+  const double most = kMostShift * options_.interface_error;
+  IdVector<InterfaceId, double> by(table.interface_count(), 0.0);
+  for (InterfaceId i(0); i.value < by.size(); ++i.value) {
+    const auto& [a, b] = table.sides(i);
+    const double moved = std::clamp(shifts_[i] + 0.5 * (raised[a] - raised[b]), -most, most);
+    by[i] = moved - shifts_[i];
+    shifts_[i] = moved;
+  }
+  hierarchy_.for_each_vertex([&](VertexId v) {
+    for (NearDistance& near : hierarchy_.payload(v).distances.near) near.distance += by[near.interface];
+  });
+}
+
+/// Moves the interfaces, one offset per body, until each body has the volume that it has in the input.
+void Resampler::conserve_volumes() {
+  report("conserving volumes");
+  IdVector<BodyId, double> missing = missing_volumes();
+  const double enough = kAgree * source_.box.volume();
+  for (int step = 0; step < kMostSteps && greatest(missing) > enough; ++step) {
+    const auto raised = solve(missing.size(), exchanges(), missing);
+    const double before = greatest(missing);
+    double part = 1;
+    shift_interfaces(raised);
+    missing = missing_volumes();
+    // Half of the last part is taken back where it was too far.
+    for (; greatest(missing) >= before && part > 1.0 / 64; part *= 0.5) {
+      IdVector<BodyId, double> back = raised;
+      for (double& w : back) w *= -0.5 * part;
+      shift_interfaces(back);
+      missing = missing_volumes();
+    }
+    if (greatest(missing) >= before) break;
+  }
+}
+
+}  // namespace adamas

@@ -1,0 +1,247 @@
+#include "interfaces/resampling/interface_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "interfaces/network/junction_lines.h"
+#include "interfaces/network/network_mesh.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Relative slack of the measured bounds: to tell what is within the target, and for the figures that are
+/// reported.
+constexpr double kSharp = 0.005;
+constexpr double kTight = 0.03;
+/// Distances below this part of the target need not be told apart.
+constexpr double kSmall = 0.01;
+/// Of a distance, in relation to the domain's diagonal.
+constexpr double kRoundOff = 1e-15;
+/// Of materials without interfaces.
+constexpr std::uint32_t kNoPart = 0xffffffffu;
+/// Points of a line that are looked at, at most.
+constexpr double kMostPoints = 64;
+
+std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
+  std::vector<ClosestPointTree::Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const InterfaceTriangle& t : mesh.triangles) triangles.push_back(t.points);
+  return triangles;
+}
+
+InterfaceDistance greater(const InterfaceDistance& a, const InterfaceDistance& b) {
+  const InterfaceDistance& lower = b.lower > a.lower ? b : a;
+  return {std::max(a.upper, b.upper), lower.lower, lower.worst};
+}
+
+}  // namespace
+
+InterfaceComparison::InterfaceComparison(const ResamplingSource& source, double target)
+    : source_(source),
+      target_(target),
+      mesh_(network_mesh(*source.network, source.materials, source.name)),
+      part_of_(source.materials.size(), kNoPart),
+      junctions_known_(!source.network->has_open_border() && source.network->inconsistencies() == 0) {
+  IdVector<MaterialId, char> used(source.materials.size(), 0);
+  for (const InterfaceTriangle& t : mesh_.triangles) used[t.front] = used[t.back] = 1;
+  std::uint32_t parts = 0;
+  for (MaterialId m(0); m.value < used.size(); ++m.value) {
+    if (used[m] != 0) part_of_[m] = parts++;
+  }
+  // All triangles are of both materials' boundaries.
+  if (parts <= 2) std::fill(part_of_.begin(), part_of_.end(), 0u);
+  input_.resize(parts <= 2 ? 2 : parts + 1);
+  input_ = take_apart(mesh_);
+}
+
+InterfaceComparison::Parts InterfaceComparison::take_apart(const InterfaceMesh& mesh) const {
+  Parts parts(input_.size());
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::uint32_t front = part_of_[mesh.triangles[t].front], back = part_of_[mesh.triangles[t].back];
+    parts[front].numbers.push_back(t);
+    if (back != front) parts[back].numbers.push_back(t);
+  }
+  for (Part& part : parts) {
+    for (const std::uint32_t t : part.numbers) part.triangles.push_back(mesh.triangles[t].points);
+  }
+  if (junctions_known_) {
+    for (const auto& [a, b] : junction_lines(mesh)) parts.back().triangles.push_back({a, b, b});
+  }
+  std::vector<std::uint32_t> number(mesh.points.size(), kUnused), touched;
+  for (Part& part : parts) {
+    touched.clear();
+    for (auto& triangle : part.triangles) {
+      for (std::uint32_t& p : triangle) {
+        if (number[p] == kUnused) {
+          number[p] = static_cast<std::uint32_t>(part.points.size());
+          part.points.push_back(mesh.points[p]);
+          touched.push_back(p);
+        }
+        p = number[p];
+      }
+    }
+    for (const std::uint32_t p : touched) number[p] = kUnused;
+    part.tree = ClosestPointTree(part.points, part.triangles);
+  }
+  return parts;
+}
+
+InterfaceDistance InterfaceComparison::Bounds::distance() const {
+  return greater({of_input.upper, of_input.lower, of_input.worst},
+                 {of_shown.upper, of_shown.lower, of_shown.worst});
+}
+
+void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress) {
+  shown_ = take_apart(shown);
+  HausdorffOptions options;
+  options.domain = source_.box;
+  options.accept = target_;
+  options.relative = kSharp;
+  options.each = true;
+  bounds_.clear();
+  for (std::size_t p = 0; p < input_.size(); ++p) {
+    const Part &input = input_[p], &found = shown_[p];
+    bounds_.push_back(
+        {directed_distance_bound(input.points, input.triangles, found.tree, options, progress),
+         directed_distance_bound(found.points, found.triangles, input.tree, options, progress)});
+  }
+  find_far();
+}
+
+bool InterfaceComparison::within() const {
+  return std::all_of(bounds_.begin(), bounds_.end(),
+                     [this](const Bounds& b) { return b.distance().upper <= target_; });
+}
+
+void InterfaceComparison::find_far() {
+  for (auto& side : far_) side.assign(mesh_.triangles.size(), 0.0);
+  far_shown_.clear();
+  for (std::size_t p = 0; p < material_parts(); ++p) {
+    for (std::size_t i = 0; i < input_[p].numbers.size(); ++i) {
+      const std::uint32_t t = input_[p].numbers[i];
+      const std::size_t side = part_of_[mesh_.triangles[t].front] == p ? 0 : 1;
+      far_[side][t] = bounds_[p].of_input.triangle_upper[i];
+    }
+    for (std::size_t i = 0; i < shown_[p].numbers.size(); ++i) {
+      if (bounds_[p].of_shown.triangle_upper[i] > target_) far_shown_.push_back(shown_[p].numbers[i]);
+    }
+  }
+  std::sort(far_shown_.begin(), far_shown_.end());
+  far_shown_.erase(std::unique(far_shown_.begin(), far_shown_.end()), far_shown_.end());
+  far_junctions_[0] = far_points(input_.back(), bounds_.back().of_input, shown_.back().tree);
+  far_junctions_[1] = far_points(shown_.back(), bounds_.back().of_shown, input_.back().tree);
+}
+
+/// Points on the lines that are too far; where none is seen to be, all that were looked at.
+std::vector<Vec3> InterfaceComparison::far_points(const Part& lines, const DistanceBound& bound,
+                                                  const ClosestPointTree& others) const {
+  std::vector<Vec3> result, seen;
+  for (std::size_t i = 0; i < lines.triangles.size(); ++i) {
+    if (!(bound.triangle_upper[i] > target_)) continue;
+    const Vec3 &a = lines.points[lines.triangles[i][0]], &b = lines.points[lines.triangles[i][1]];
+    const double steps = std::clamp(std::ceil(2 * distance(a, b) / target_), 1.0, kMostPoints);
+    const std::size_t before = result.size();
+    seen.clear();
+    for (double s = 0; s <= steps; ++s) {
+      const Vec3 p = a + (s / steps) * (b - a);
+      if (!source_.box.contains(p)) continue;
+      seen.push_back(p);
+      if (!others.closest(p, target_)) result.push_back(p);
+    }
+    if (result.size() == before) result.insert(result.end(), seen.begin(), seen.end());
+  }
+  return result;
+}
+
+const ClosestPointTree& InterfaceComparison::shown_boundary(std::uint32_t triangle, std::size_t side) const {
+  const InterfaceTriangle& t = mesh_.triangles[triangle];
+  return shown_[part_of_[side == 0 ? t.front : t.back]].tree;
+}
+
+/// Distances below what was seen elsewhere need not be known.
+void InterfaceComparison::tighten(std::size_t part, double seen, const Progress& progress) {
+  HausdorffOptions options;
+  options.domain = source_.box;
+  options.accept = kSmall * target_;
+  options.relative = kTight;
+  const auto tightened = [&](const Part& from, const Part& to, DistanceBound& bound) {
+    const DistanceBound before = bound;
+    bound.lower = std::max(bound.lower, seen);
+    tighten_distance_bound(from.points, from.triangles, to.tree, options, bound, progress);
+    if (bound.lower <= seen) bound.lower = before.lower, bound.worst = before.worst;
+    return std::max(seen, bound.lower);
+  };
+  seen = std::max({seen, bounds_[part].of_input.lower, bounds_[part].of_shown.lower});
+  seen = tightened(input_[part], shown_[part], bounds_[part].of_input);
+  tightened(shown_[part], input_[part], bounds_[part].of_shown);
+}
+
+InterfaceDistance InterfaceComparison::measure_networks(const InterfaceMesh& shown,
+                                                        const Progress& progress) const {
+  const std::vector<ClosestPointTree::Triangle> triangles = indices(shown);
+  const InterfaceNetwork& network = *source_.network;
+  HausdorffOptions options;
+  options.domain = source_.box;
+  options.accept = kSmall * target_;
+  options.relative = kTight;
+  const DistanceBound of_input = directed_distance_bound(
+      network.points(), network.triangles(), ClosestPointTree(shown.points, triangles), options, progress);
+  // The other direction need not be known better than this one.
+  DistanceBound of_shown;
+  of_shown.lower = of_input.lower;
+  of_shown.worst = of_input.worst;
+  of_shown.triangle_upper.assign(triangles.size(), kInfinity);
+  tighten_distance_bound(shown.points, triangles, network.tree(), options, of_shown, progress);
+  return Bounds{of_input, of_shown}.distance();
+}
+
+InterfaceDistance InterfaceComparison::certified(InterfaceDistance distance) const {
+  if (distance.upper <= target_)
+    distance.upper = std::min(distance.upper + kRoundOff * source_.box.diagonal(), target_);
+  return distance;
+}
+
+InterfaceCertificate InterfaceComparison::summary() const {
+  InterfaceCertificate result;
+  std::size_t worst = 0;
+  for (std::size_t p = 0; p < material_parts(); ++p) {
+    const InterfaceDistance d = bounds_[p].distance();
+    if (d.lower > result.materials.lower) worst = p;
+    result.materials = greater(result.materials, d);
+  }
+  result.materials = certified(result.materials);
+  const auto found = std::find(part_of_.begin(), part_of_.end(), static_cast<std::uint32_t>(worst));
+  result.worst_material = MaterialId(static_cast<std::size_t>(found - part_of_.begin()));
+  if (!input_.back().triangles.empty() || !shown_.back().triangles.empty())
+    result.junctions = certified(bounds_.back().distance());
+  return result;
+}
+
+InterfaceCertificate InterfaceComparison::finish(const InterfaceMesh& shown, const Progress& progress) {
+  const auto tighten_parts = [&](std::size_t first, std::size_t last) {
+    double seen = 0;
+    bool reached = true;
+    for (std::size_t p = first; p < last; ++p) {
+      const InterfaceDistance d = bounds_[p].distance();
+      seen = std::max(seen, d.lower);
+      reached = reached && d.upper <= target_;
+    }
+    for (std::size_t p = first; reached && p < last; ++p) tighten(p, seen, progress);
+  };
+  tighten_parts(0, material_parts());
+  tighten_parts(material_parts(), input_.size());
+  InterfaceCertificate result = summary();
+  result.networks = result.materials;
+  if (material_parts() > 1) {
+    // Every interface is a part of two materials' boundaries.
+    result.networks = certified(measure_networks(shown, progress));
+    result.networks.upper = std::min(result.networks.upper, result.materials.upper);
+  }
+  result.triangles = shown.triangles.size();
+  return result;
+}
+
+}  // namespace adamas
