@@ -158,8 +158,8 @@ void print_conservation(const ResampleFigures& m, const Resampler& resampler, Co
   const double whole = resampler.source().box.volume();
   if (worst == nullptr || worst->missing() <= kConserved * whole) return;
   console.note(
-      "volumes were not conserved: a body of '{}' at {} has {} instead of {}; an interface may move by no "
-      "more than half the interface error",
+      "volumes were not conserved: a body of '{}' at {} has {} instead of {}; interfaces may "
+      "not move by more than the interface error",
       resampler.source().materials[worst->material], place_text(worst->place), volume_text(worst->volume),
       volume_text(*worst->volume_input));
 }

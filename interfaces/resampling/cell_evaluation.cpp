@@ -193,4 +193,10 @@ void Resampler::undo(const std::vector<Split>& splits) {
   parallel_for(restored.size(), 16, [&](std::size_t i) { evaluate_interface(restored[i]); });
 }
 
+/// Undoes what was recorded, with what splitting has changed in the cells.
+void Resampler::take_back(const Record& record) {
+  for (const auto& [t, trusted] : record.trusted) hierarchy_.payload(t).trusted = trusted;
+  undo(record.splits);
+}
+
 }  // namespace adamas

@@ -22,9 +22,10 @@ constexpr double kFinestForJunctions = 0.0625;
 constexpr double kFinestForContacts = 0.0625;
 /// Cells much smaller than the thickness of a body show it, if any do.
 constexpr double kFinestForThickness = 0.25;
-/// How far apart the places are that are looked at for a body that is torn, in relation to the target, and
-/// how thick it may be there.
-constexpr double kTornSpacing = 0.5;
+/// Splitting for the sake of bodies is taken back where it has brought nothing by the time that the mesh has
+/// grown so much, unless it is still small.
+constexpr std::size_t kMostGrowth = 2, kHopeForBodies = 50'000;
+/// How thick a body may be where it is looked at whether it is torn, in relation to the target.
 constexpr double kMostTornThickness = 4;
 
 }  // namespace
@@ -128,86 +129,93 @@ std::vector<TetrahedronId> Resampler::leaves_with_wrong_bodies(const InterfaceMe
   IdVector<BodyId, char> wrong(table.body_count(), 0);
   for (BodyId b(0); b.value < wrong.size(); ++b.value)
     wrong[b] = !bodies_->report().kept(b) && bodies_->size(b) > target ? 1 : 0;
-  const auto& triangles = source_.network->triangles();
-  std::vector<std::vector<TetrahedronId>> torn(triangles.size());
-  parallel_for(triangles.size(), 256, [&](std::size_t t) {
-    for (const BodyId body : table.sides(source_.network->interface_of(static_cast<std::uint32_t>(t)))) {
-      if (wrong[body] != 0) find_torn_leaves(static_cast<std::uint32_t>(t), body, torn[t]);
-    }
-  });
+  const std::vector<TetrahedronId> all = leaves();
+  std::vector<std::vector<TetrahedronId>> torn(all.size());
+  parallel_for(all.size(), 256, [&](std::size_t i) { find_torn_leaves(all[i], wrong, torn[i]); });
   for (const auto& part : torn) result.insert(result.end(), part.begin(), part.end());
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 
-/// Adds the leaves that hold the middle between a triangle and what is opposite to it within its body, and
-/// where the mesh gives the place to another body.
-void Resampler::find_torn_leaves(std::uint32_t triangle, BodyId body,
+/// Adds the leaves that hold the middle between a triangle of a leaf and what is opposite to it within one of
+/// the bodies, where the mesh gives that place to another body.
+void Resampler::find_torn_leaves(TetrahedronId leaf, const IdVector<BodyId, char>& bodies,
                                  std::vector<TetrahedronId>& torn) const {
   const InterfaceNetwork& network = *source_.network;
   const InterfaceTable& table = network.table();
-  const auto& [a, b, c] = network.triangle_corners(triangle);
-  const double sign = table.sides(network.interface_of(triangle))[0] == body ? 1 : -1;
-  const Vec3 inwards = sign * network.normal(triangle);
-  const double longest = std::sqrt(std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)}));
-  constexpr double kMostSteps = 16;
-  const double target = options_.interface_error;
-  const double steps = std::clamp(std::ceil(longest / (kTornSpacing * target)), 1.0, kMostSteps);
-  // The middles of the small triangles.
-  for (double i = 1.0 / 3; i < steps; ++i) {
-    for (double j = 1.0 / 3; i + j < steps; ++j) {
-      const Vec3 p = a + (i / steps) * (b - a) + (j / steps) * (c - a);
-      const auto hit = network.tree().first_hit(p, inwards, kMostTornThickness * target, triangle);
+  const Tetrahedron cell = frame(leaf);
+  for (const std::uint32_t triangle : hierarchy_.payload(leaf).triangles) {
+    const auto& sides = table.sides(network.interface_of(triangle));
+    if (bodies[sides[0]] == 0 && bodies[sides[1]] == 0) continue;
+    const auto& corners = network.triangle_corners(triangle);
+    Vec3 p;
+    double count = 0;
+    for (const Weights& w : ClippedTriangle(cell, corners[0], corners[1], corners[2]))
+      p += cell.point(w), ++count;
+    if (count == 0) continue;
+    p = (1 / count) * p;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const BodyId body = sides[side];
+      if (bodies[body] == 0) continue;
+      const Vec3 inwards = (side == 0 ? 1.0 : -1.0) * network.normal(triangle);
+      const auto hit =
+          network.tree().first_hit(p, inwards, kMostTornThickness * options_.interface_error, triangle);
       if (!hit) continue;
-      const auto& sides = table.sides(network.interface_of(hit->triangle));
-      if (sides[0] != body && sides[1] != body) continue;
+      const auto& opposite = table.sides(network.interface_of(hit->triangle));
+      if (opposite[0] != body && opposite[1] != body) continue;
       const Vec3 middle = p + 0.5 * hit->t * inwards;
       if (!source_.box.contains(middle) || owner_at(middle) == body) continue;
-      const TetrahedronId leaf = leaf_at(middle);
-      if (frame(leaf).diameter() > kFinestForThickness * hit->t) torn.push_back(leaf);
+      const TetrahedronId there = leaf_at(middle);
+      if (frame(there).diameter() > kFinestForThickness * hit->t) torn.push_back(there);
     }
   }
 }
 
 /// Measures interfaces and bodies as the leaves show them now, once volumes agree.
-InterfaceMesh Resampler::measure_shown() {
+ExtractedInterfaces Resampler::measure_shown() {
   if (options_.conserve) conserve_volumes();
   ExtractedInterfaces extracted =
       extract_interfaces(source_.network->table(), cells(), source_.box, progress_);
   report("measuring interfaces");
   comparison_->measure(extracted.mesh, progress_);
   bodies_->measure(extracted);
-  return std::move(extracted.mesh);
+  return extracted;
 }
 
 RefinementEnd Resampler::refine_what_fails() {
-  // What has been split for the sake of bodies since the distances were within the target.
+  // What has been split for the sake of bodies since they were most like the input's.
   Record for_bodies;
+  std::size_t leaves_then = 0;
   std::size_t differences = std::numeric_limits<std::size_t>::max();
   for (int round = 0;; ++round) {
-    InterfaceMesh shown = measure_shown();
+    ExtractedInterfaces shown = measure_shown();
     const bool within = comparison_->within();
     const auto end = [&](RefinementEnd reason) {
-      certificate_ = comparison_->finish(shown, progress_);
+      certificate_ = comparison_->finish(shown.mesh, progress_);
       return comparison_->within() ? RefinementEnd::kReached : reason;
     };
     if (within) {
-      const std::size_t before = std::exchange(differences, bodies_->differences(options_.interface_error));
-      if (differences >= before && !for_bodies.splits.empty()) {
-        for (const auto& [t, trusted] : for_bodies.trusted) hierarchy_.payload(t).trusted = trusted;
-        undo(for_bodies.splits);
+      const std::size_t before = differences;
+      differences = std::min(before, bodies_->differences(options_.interface_error));
+      if (differences < before) {
+        for_bodies = {};
+        leaves_then = hierarchy_.leaf_count();
+      } else if (hierarchy_.leaf_count() > std::max(kHopeForBodies, kMostGrowth * leaves_then)) {
+        take_back(for_bodies);
         shown = measure_shown();
         return end(RefinementEnd::kReached);
       }
-      for_bodies = {};
     }
     if (budget_spent_) return end(RefinementEnd::kBudget);
     if (round >= kMostRounds) return end(RefinementEnd::kRounds);
-    const std::vector<TetrahedronId> failing =
-        within ? leaves_with_wrong_bodies(shown) : failing_leaves(shown);
+    std::vector<TetrahedronId> failing = within ? leaves_of_wanting_bodies() : failing_leaves(shown.mesh);
+    if (failing.empty() && within) {
+      failing = leaves_with_wrong_bodies(shown.mesh);
+      recorded_ = &for_bodies;
+    }
+    if (failing.empty() && !within && allow_smaller_shifts(shown)) continue;
     if (failing.empty()) return end(RefinementEnd::kSmallestCells);
-    if (within) recorded_ = &for_bodies;
     std::vector<TetrahedronId> created = split_all(failing);
     if (created.empty()) return end(budget_spent_ ? RefinementEnd::kBudget : RefinementEnd::kDepth);
     refine_to_targets(std::move(created));

@@ -1,6 +1,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/parallel.h"
 #include "interfaces/resampling/resampler.h"
@@ -13,8 +14,12 @@ namespace {
 constexpr double kAgree = 1e-10;
 /// Newton's method needs four or five steps; more where bodies are about to vanish.
 constexpr int kMostSteps = 20;
-/// No interface moves by more than this part of the interface error.
-constexpr double kMostShift = 0.5;
+/// Cells are not split for the sake of volumes whose estimates are below half this part of the interface
+/// error.
+constexpr double kFinestForVolumes = 0.1;
+/// What is left of a shift that brings an interface too far away, and what is too little to be kept, in
+/// relation to the interface error.
+constexpr double kLessShift = 0.25, kLeastShift = 0.01;
 /// Keeps the equations solvable: what all bodies share is not determined.
 constexpr double kDamping = 1e-12;
 
@@ -68,9 +73,15 @@ IdVector<BodyId, double> solve(std::size_t bodies, const std::vector<Exchange>& 
   const double greatest = *std::max_element(diagonal.begin(), diagonal.end());
   const auto n = static_cast<Eigen::Index>(bodies);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+  double sum = 0, count = 0;
+  // Nothing can be given to a body that touches none.
+  const auto touches = [&](BodyId b) { return diagonal[b.value] > 0; };
   for (BodyId b(0); b.value < bodies; ++b.value) {
-    // Nothing can be given to a body that touches none.
-    if (diagonal[b.value] > 0) right[index(b)] = missing[b];
+    if (touches(b)) sum += missing[b], ++count;
+  }
+  for (BodyId b(0); b.value < bodies; ++b.value) {
+    // What all miss together can be given to none.
+    if (touches(b)) right[index(b)] = missing[b] - sum / count;
     entries.emplace_back(index(b), index(b), diagonal[b.value] + kDamping * greatest);
   }
   Eigen::SparseMatrix<double> matrix(n, n);
@@ -90,11 +101,12 @@ double greatest(const IdVector<BodyId, double>& values) {
 
 }  // namespace
 
-/// What each body of the mesh misses of its volume.
+/// What each body of the mesh misses of its volume, where all volumes fill the domain.
 IdVector<BodyId, double> Resampler::missing_volumes() const {
-  IdVector<BodyId, double> missing = source_.body_volumes;
-  const auto found = body_volumes(source_.network->table(), cells());
-  for (BodyId b(0); b.value < missing.size(); ++b.value) missing[b] -= found[b];
+  const IdVector<BodyId, double>& wanted = source_.body_volumes;
+  IdVector<BodyId, double> missing = body_volumes(source_.network->table(), cells());
+  const double scale = source_.box.volume() / std::accumulate(wanted.begin(), wanted.end(), 0.0);
+  for (BodyId b(0); b.value < missing.size(); ++b.value) missing[b] = scale * wanted[b] - missing[b];
   return missing;
 }
 
@@ -139,11 +151,11 @@ std::vector<Exchange> Resampler::exchanges() const {
 /// allowed.
 void Resampler::shift_interfaces(const IdVector<BodyId, double>& raised) {
   const InterfaceTable& table = source_.network->table();
-  const double most = kMostShift * options_.interface_error;
   IdVector<InterfaceId, double> by(table.interface_count(), 0.0);
   for (InterfaceId i(0); i.value < by.size(); ++i.value) {
     const auto& [a, b] = table.sides(i);
-    const double moved = std::clamp(shifts_[i] + 0.5 * (raised[a] - raised[b]), -most, most);
+    const double moved =
+        std::clamp(shifts_[i] + 0.5 * (raised[a] - raised[b]), -most_shifts_[i], most_shifts_[i]);
     by[i] = moved - shifts_[i];
     shifts_[i] = moved;
   }
@@ -172,6 +184,53 @@ void Resampler::conserve_volumes() {
     }
     if (greatest(missing) >= before) break;
   }
+  wanting_.assign(missing.size(), 0);
+  for (BodyId b(0); b.value < missing.size(); ++b.value) wanting_[b] = std::abs(missing[b]) > enough ? 1 : 0;
+}
+
+/// Leaves whose finer parts may bring the bodies closer to their volumes: with the greatest estimates among
+/// those at bodies that could not be given theirs.
+std::vector<TetrahedronId> Resampler::leaves_of_wanting_bodies() const {
+  if (std::count(wanting_.begin(), wanting_.end(), 1) == 0) return {};
+  const InterfaceNetwork& network = *source_.network;
+  std::vector<TetrahedronId> result = leaves();
+  std::erase_if(result, [&](TetrahedronId t) {
+    const CellRecord& cell = hierarchy_.payload(t);
+    return std::none_of(cell.triangles.begin(), cell.triangles.end(), [&](std::uint32_t triangle) {
+      const auto& [a, b] = network.table().sides(network.interface_of(triangle));
+      return wanting_[a] != 0 || wanting_[b] != 0;
+    });
+  });
+  double worst = kFinestForVolumes * options_.interface_error;
+  for (const TetrahedronId t : result) worst = std::max(worst, hierarchy_.payload(t).interface.distance);
+  std::erase_if(result,
+                [&](TetrahedronId t) { return hierarchy_.payload(t).interface.distance < 0.5 * worst; });
+  return result;
+}
+
+/// Where interfaces are too far from the input's though cells are as fine as they may be, volumes have to
+/// give way: allows less for all interfaces of the bodies there. Returns whether any was shifted by more.
+bool Resampler::allow_smaller_shifts(const ExtractedInterfaces& shown) {
+  if (!options_.conserve) return false;
+  const InterfaceNetwork& network = *source_.network;
+  IdVector<BodyId, char> too_far(network.table().body_count(), 0);
+  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+    if (!comparison_->too_far(t, 0) && !comparison_->too_far(t, 1)) continue;
+    for (const BodyId b : network.table().sides(network.interface_of(t))) too_far[b] = 1;
+  }
+  for (const std::uint32_t t : comparison_->far_shown()) {
+    for (const BodyId b : shown.bodies[t]) too_far[b] = 1;
+  }
+  bool any = false;
+  for (InterfaceId i(0); i.value < shifts_.size(); ++i.value) {
+    const auto& [a, b] = network.table().sides(i);
+    if ((too_far[a] == 0 && too_far[b] == 0) || shifts_[i] == 0) continue;
+    const double less = kLessShift * std::abs(shifts_[i]);
+    most_shifts_[i] = less < kLeastShift * options_.interface_error ? 0 : less;
+    any = true;
+  }
+  shift_interfaces(IdVector<BodyId, double>(too_far.size(), 0.0));
+  return any;
 }
 
 }  // namespace adamas

@@ -32,6 +32,7 @@ Resampler::Resampler(const ResamplingSource& source, ResamplingOptions options, 
   }
   if (source.body_volumes.empty()) options_.conserve = false;
   shifts_.assign(source.network->table().interface_count(), 0.0);
+  most_shifts_.assign(shifts_.size(), options_.interface_error);
   options_.field_errors.resize(source.fields ? source.fields->fields().size() : 0);
 }
 

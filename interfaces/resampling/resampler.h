@@ -23,7 +23,7 @@ struct ResamplingOptions {
   std::optional<std::size_t> max_tetrahedra;
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;
-  /// Move the interfaces, by no more than half the interface error and by one offset per body, until each
+  /// Move the interfaces, within the interface error and by one offset per body, until each
   /// body has the volume that it has in the input. Needs a source that knows these.
   bool conserve = false;
   bool certify = true;  ///< measure the interfaces' distance in the end, and refine where it is too great
@@ -93,6 +93,12 @@ class Resampler {
     auto operator<=>(const Priority&) const = default;
   };
 
+  /// What has to be undone: splits, and the cell records that were changed before, as they were.
+  struct Record {
+    std::vector<Split> splits;
+    std::vector<std::pair<TetrahedronId, double>> trusted;
+  };
+
   void place_roots();
   void place_elements();
   void evaluate_vertices(const std::vector<VertexId>& vertices);
@@ -113,6 +119,7 @@ class Resampler {
   void refine_to_targets(std::vector<TetrahedronId> cells);
   void collect(TetrahedronId parent);
   void undo(const std::vector<Split>& splits);
+  void take_back(const Record& record);
   void refine_fields();
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;
   void finish_interfaces();
@@ -120,12 +127,15 @@ class Resampler {
   [[nodiscard]] std::vector<std::pair<std::array<BodyId, 2>, double>> exchanges() const;
   void shift_interfaces(const IdVector<BodyId, double>& raised);
   void conserve_volumes();
+  [[nodiscard]] std::vector<TetrahedronId> leaves_of_wanting_bodies() const;
+  bool allow_smaller_shifts(const ExtractedInterfaces& shown);
   [[nodiscard]] RefinementEnd refine_what_fails();
-  [[nodiscard]] InterfaceMesh measure_shown();
+  [[nodiscard]] ExtractedInterfaces measure_shown();
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves(const InterfaceMesh& shown) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_far_from_shown() const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_with_wrong_bodies(const InterfaceMesh& shown) const;
-  void find_torn_leaves(std::uint32_t triangle, BodyId body, std::vector<TetrahedronId>& torn) const;
+  void find_torn_leaves(TetrahedronId leaf, const IdVector<BodyId, char>& bodies,
+                        std::vector<TetrahedronId>& torn) const;
   [[nodiscard]] std::vector<TetrahedronId> split_all(const std::vector<TetrahedronId>& failing);
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
   void ownership(TetrahedronId t, CellOwnership& result) const;
@@ -140,15 +150,12 @@ class Resampler {
   bool fields_active_ = false;
   bool budget_spent_ = false;
   RefinementEnd interface_end_ = RefinementEnd::kReached;
-  IdVector<InterfaceId, double> shifts_;  ///< added to signed distances, so that volumes agree
+  IdVector<InterfaceId, double> shifts_;       ///< added to signed distances, so that volumes agree
+  IdVector<InterfaceId, double> most_shifts_;  ///< bounds of these
+  IdVector<BodyId, char> wanting_;             ///< bodies that could not be given their volumes
   std::unique_ptr<InterfaceComparison> comparison_;
   std::optional<InterfaceCertificate> certificate_;
   std::unique_ptr<BodyComparison> bodies_;
-  /// What has to be undone: splits, and the cell records that were changed before, as they were.
-  struct Record {
-    std::vector<Split> splits;
-    std::vector<std::pair<TetrahedronId, double>> trusted;
-  };
   Record* recorded_ = nullptr;  ///< receives what is split, unless null
 };
 

@@ -1,0 +1,47 @@
+#include "interfaces/network/junction_lines.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/interfaces/network_meshes.h"
+
+namespace adamas {
+namespace {
+
+/// Half planes round the line x = y = 1/2, each in n steps along the line, with materials 0, 1, ... between
+/// them; points on the line are shared.
+InterfaceMesh fan(const std::vector<double>& degrees, std::uint32_t n, std::size_t materials) {
+  InterfaceMesh mesh = test::mesh_with_materials(materials);
+  for (std::uint32_t k = 0; k <= n; ++k) mesh.points.push_back({0.5, 0.5, 1.0 * k / n});
+  for (std::uint32_t i = 0; i < degrees.size(); ++i) {
+    const double angle = degrees[i] * M_PI / 180;
+    const auto base = static_cast<std::uint32_t>(mesh.points.size());
+    for (std::uint32_t k = 0; k <= n; ++k)
+      mesh.points.push_back({0.5 + 0.5 * std::cos(angle), 0.5 + 0.5 * std::sin(angle), 1.0 * k / n});
+    const MaterialId before((i + materials - 1) % materials), after(i % materials);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      mesh.triangles.push_back({{k, base + k, base + k + 1}, before, after});
+      mesh.triangles.push_back({{k, base + k + 1, k + 1}, before, after});
+    }
+  }
+  return mesh;
+}
+
+TEST(JunctionLines, AreWhereThreeMaterialsMeet) {
+  for (const std::uint32_t n : {1u, 5u}) {
+    const auto lines = junction_lines(fan({0, 120, 240}, n, 3));
+    ASSERT_EQ(lines.size(), n);
+    for (std::uint32_t k = 0; k < n; ++k) EXPECT_EQ(lines[k], (std::array<std::uint32_t, 2>{k, k + 1}));
+  }
+  EXPECT_EQ(junction_lines(fan({0, 90, 180, 270}, 3, 4)).size(), 3u);
+}
+
+TEST(JunctionLines, AreNotWhereTwoMaterialsMeetTwice) {
+  EXPECT_TRUE(junction_lines(fan({0, 90, 180, 270}, 3, 2)).empty());
+  InterfaceMesh sphere = test::mesh_with_materials(2);
+  test::add_sphere(sphere, {0.5, 0.5, 0.5}, 0.3, MaterialId(0), MaterialId(1));
+  EXPECT_TRUE(junction_lines(sphere).empty());
+  EXPECT_TRUE(junction_lines({}).empty());
+}
+
+}  // namespace
+}  // namespace adamas

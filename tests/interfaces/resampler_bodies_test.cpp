@@ -1,0 +1,167 @@
+#include <gtest/gtest.h>
+
+#include "core/geometry/tetrahedron.h"
+#include "tests/interfaces/network_meshes.h"
+#include "tests/interfaces/resampler_scenes.h"
+
+namespace adamas {
+namespace {
+
+using test::ResampledScene;
+using test::SceneCase;
+
+/// A box of the material 1 within the material 0.
+InterfaceMesh box_mesh(const Box3& box) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  const Vec3 size = box.size();
+  const Vec3 e[3] = {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3 &u = e[(a + 1) % 3], &v = e[(a + 2) % 3];
+    test::add_patch(mesh, box.min, v, u, MaterialId(0), MaterialId(1), 2);
+    test::add_patch(mesh, box.min + e[a], u, v, MaterialId(0), MaterialId(1), 2);
+  }
+  return mesh;
+}
+
+void expect_bodies_kept(const Resampler& resampler) {
+  const BodyReport* report = resampler.body_report();
+  ASSERT_NE(report, nullptr);
+  EXPECT_TRUE(report->comparable);
+  EXPECT_TRUE(report->contacts.empty());
+  for (BodyId b(0); b.value < report->input.size(); ++b.value) {
+    EXPECT_EQ(report->mesh[b].pieces, report->input[b].pieces) << b.value;
+    EXPECT_EQ(report->mesh[b].euler, report->input[b].euler) << b.value;
+  }
+}
+
+/// Layers thinner than the error are neither torn nor lost, and what is on either side does not touch.
+TEST(ResampledBodies, ThinLayersBetweenOthersDoNotTear) {
+  for (const std::string name : {"shell3", "shell2"}) {
+    SCOPED_TRACE(name);
+    SceneCase c;
+    c.name = name;
+    c.meshes = true;
+    c.options.interface_error = 0.1;
+    const ResampledScene scene(c);
+    expect_bodies_kept(*scene.resampler);
+    test::expect_laws(scene);
+  }
+}
+
+/// A plate of half the error's thickness that ends inside the domain, with one body all round it: cells must
+/// become smaller than it is thick. Distances alone leave it in pieces.
+TEST(ResampledBodies, ThinPlatesDoNotTear) {
+  const InterfaceMesh mesh = box_mesh({{0.21, 0.32, 0.47}, {0.73, 0.81, 0.52}});
+  const ResamplingSource source = make_mesh_source(mesh, test::unit_box(), nullptr);
+  ResamplingOptions options;
+  options.interface_error = 0.1;
+  Resampler resampler(source, options);
+  resampler.refine();
+  expect_bodies_kept(resampler);
+  // Independent of surfaces: every line across the plate, away from its rim, meets it.
+  for (int i = 0; i <= 30; ++i) {
+    for (int j = 0; j <= 30; ++j) {
+      bool met = false;
+      for (int k = 0; k <= 100; ++k) {
+        const Vec3 p{0.41 + 0.12 * i / 30, 0.52 + 0.09 * j / 30, 0.39 + 0.21 * k / 100};
+        met = met || source.network->table().material(resampler.owner_at(p)) == MaterialId(1);
+      }
+      EXPECT_TRUE(met) << i << " " << j;
+    }
+  }
+}
+
+/// What is known of the shells: two spheres, and what is between them.
+TEST(ResampledBodies, HaveTheTopologyOfTheScene) {
+  SceneCase c;
+  c.name = "shell3";
+  c.meshes = true;
+  c.options.interface_error = 0.05;
+  const ResampledScene scene(c);
+  const BodyReport* report = scene.resampler->body_report();
+  ASSERT_NE(report, nullptr);
+  for (BodyId b(0); b.value < 3; ++b.value) {
+    const bool between = scene.source.materials[scene.table().material(b)] == "shell";
+    EXPECT_EQ(report->input[b], (BodyTopology{1, between ? 4 : 2}));
+    EXPECT_EQ(report->mesh[b], report->input[b]);
+  }
+}
+
+/// Each leaf lists the triangles that meet it, though refinement for bodies that did not help was taken back.
+TEST(ResampledBodies, LeavesAreSoundAfterRefinementWasTakenBack) {
+  SceneCase c;
+  c.name = "shell3";
+  c.cells = 8;
+  c.options.interface_error = 0.08;
+  const ResampledScene scene(c);
+  const Resampler& resampler = *scene.resampler;
+  const InterfaceNetwork& network = *scene.source.network;
+  const auto& hierarchy = resampler.hierarchy();
+  hierarchy.validate();
+  hierarchy.for_each_leaf([&](TetrahedronId t) {
+    const auto v = hierarchy.vertices(t);
+    const Tetrahedron cell({hierarchy.position(v[0]), hierarchy.position(v[1]), hierarchy.position(v[2]),
+                            hierarchy.position(v[3])});
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < network.triangles().size(); ++i) {
+      const auto& x = network.triangle_corners(i);
+      if (meets(cell, x[0], x[1], x[2])) expected.push_back(i);
+    }
+    const CellRecord& record = hierarchy.payload(t);
+    std::vector<std::uint32_t> listed = record.triangles;
+    std::sort(listed.begin(), listed.end());
+    EXPECT_EQ(listed, expected);
+    EXPECT_TRUE(record.evaluated);
+  });
+}
+
+/// With --conserve: volumes by adding up cells, and by the surfaces that enclose them; distances measured
+/// anew.
+TEST(ConservedVolumes, AgreeWithTheInput) {
+  for (const std::string name : {"sphere", "tjunction", "voronoi10", "reflex"}) {
+    for (const bool meshes : {false, true}) {
+      SCOPED_TRACE(name + (meshes ? " from meshes" : " from fractions"));
+      SceneCase c;
+      c.name = name;
+      c.seed = 2;
+      c.meshes = meshes;
+      c.options.interface_error = 0.06;
+      c.options.conserve = true;
+      const ResampledScene scene(c);
+      const double whole = scene.source.box.volume();
+      for (MaterialId m(0); m.value < scene.source.materials.size(); ++m.value)
+        EXPECT_NEAR(scene.material_volume(scene.source.materials[m]), scene.source.volumes[m], 1e-9 * whole);
+      test::expect_laws(scene);
+      EXPECT_LE(scene.resampler->certificate()->materials.upper, c.options.interface_error * (1 + 1e-12));
+    }
+  }
+}
+
+/// Without it they do not: the test above can fail.
+TEST(ConservedVolumes, DifferWithoutConservation) {
+  SceneCase c;
+  c.name = "sphere";
+  c.options.interface_error = 0.06;
+  const ResampledScene scene(c);
+  const double whole = scene.source.box.volume();
+  EXPECT_GT(std::abs(scene.material_volume(scene.source.materials[MaterialId(1)]) -
+                     scene.source.volumes[MaterialId(1)]),
+            1e-5 * whole);
+}
+
+TEST(ConservedVolumes, OnOneThreadAndOnTwo) {
+  std::vector<std::vector<Vec3>> points;
+  for (const unsigned threads : {1u, 2u}) {
+    set_thread_limit(threads);
+    SceneCase c;
+    c.name = "voronoi10";
+    c.options.interface_error = 0.05;
+    c.options.conserve = true;
+    points.push_back(ResampledScene(c).extracted().mesh.points);
+  }
+  set_thread_limit(0);
+  EXPECT_EQ(points[0], points[1]);
+}
+
+}  // namespace
+}  // namespace adamas
