@@ -14,7 +14,7 @@ struct ResampleFigures {
   std::size_t tetrahedra = 0, vertices = 0;
   std::size_t interface_tetrahedra = 0;  ///< that an approximated interface runs through
   std::size_t lost_interfaces = 0;       ///< cells whose interface the approximation does not show
-  std::size_t flagged_vertices = 0;      ///< whose material rests on an open border of the input
+  std::size_t flagged_vertices = 0;      ///< whose material or signs are doubtful: they rest on an open border
   std::size_t bodies = 0;
   std::vector<FieldFigures> fields;      ///< by the source's fields
   IdVector<MaterialId, double> volumes;  ///< of the mesh

@@ -97,6 +97,7 @@ void Resampler::evaluate_vertices(const std::vector<VertexId>& vertices) {
     for (const NearInterface& n : near) {
       record.distances.near.push_back({n.interface, rounded(n.signed_distance, record.distances.radius)});
       record.closest.push_back(n.closest);
+      record.distances.flagged = record.distances.flagged || n.flagged;
     }
     list_known_bodies(source_.network->table(), record.distances);
   });
