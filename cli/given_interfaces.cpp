@@ -19,6 +19,7 @@
 #include "interfaces/grid_source.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/closest_point_tree.h"
+#include "interfaces/network/mending.h"
 
 namespace adamas {
 
@@ -26,6 +27,8 @@ namespace {
 
 /// How much larger than the interfaces their domain is on each side, where it is not given.
 constexpr double kMargin = 0.05;
+/// Gaps wider than this part of the domain's diagonal are no cracks.
+constexpr double kWidestGap = 0.05;
 
 InterfaceMesh read_surface_option(const std::string& text) {
   const auto [file, pair] = parse_assignment("--interface", text, true);
@@ -121,10 +124,41 @@ void print_report(const InterfaceMeshReport& report, const std::string& name, Co
   }
 }
 
-/// Throws Error where the interfaces cannot be used, and tells of the option that takes what can.
-void check_interfaces(const InterfaceMesh& mesh, const Box3* box, bool tolerant, Console& console) {
+/// Tells what was changed, and where first.
+void print_mending(const InterfaceMending& mending, const std::string& name, Console& console) {
+  const auto tell = [&](const Mended& mended, const char* what) {
+    if (mended.count == 0) return;
+    console.note("{}: {}: {}, the first at {}", name, what, mended.count, place_text(mended.place));
+  };
+  tell(mending.gaps.points_on_faces, "points at the ends of sheets moved onto the domain's boundary");
+  tell(mending.gaps.welded_points, "points welded to others close by");
+  tell(mending.gaps.split_edges, "edges split at points that lie on them");
+  tell(mending.coincident.duplicates, "triangles that are there twice, which count once");
+  tell(mending.coincident.thin_layers, "triangles left out as the sides of layers without thickness");
+  tell(mending.coincident.cancelled, "triangles left out as opposite faces, which cancel each other");
+  tell(mending.coincident.contradictions, "triangles left out that contradict others on the same points");
+  tell(mending.turned, "triangles turned that faced the other way than their neighbours");
+}
+
+/// The greatest width of gaps to close.
+ErrorTarget parse_weld(const InputOptions& options) {
+  if (options.weld.empty()) return {InterfaceMendingOptions().gaps, ErrorTarget::Unit::kPart};
+  if (options.weld == "0") return {};
+  return parse_error_target("--weld", options.weld);
+}
+
+/// Mends what can be. Throws Error where the interfaces cannot be used, and tells of the option that takes
+/// what can.
+void check_interfaces(InterfaceMesh& mesh, const Box3& box, const ErrorTarget& weld, bool tolerant,
+                      Console& console) {
+  const double gaps = weld.of(box.diagonal()) / box.diagonal();
+  if (gaps > kWidestGap) {
+    wrong_usage("--weld: expected at most {:g}% of the domain's diagonal {:.6g}, found {}", 100 * kWidestGap,
+                box.diagonal(), weld.text());
+  }
   try {
-    print_report(check_interface_mesh(mesh, box, {tolerant, tolerant}), mesh.source, console);
+    print_mending(mend_interface_mesh(mesh, &box, {gaps, tolerant}), mesh.source, console);
+    print_report(check_interface_mesh(mesh, &box, {tolerant, tolerant}), mesh.source, console);
   } catch (const TolerableFault& fault) {
     fail("{} (--tolerant takes such interfaces)", fault.what());
   }
@@ -165,6 +199,7 @@ ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_
   if (!gridded && !options.grid_option().empty()) {
     wrong_usage("{}: expected data on a grid as INPUT", options.grid_option());
   }
+  const ErrorTarget weld = parse_weld(options);
   std::optional<Box3> box;
   if (!options.box.empty()) box = to_box(parse_bounds("--box", options.box));
   console.step("reading interfaces", -1);
@@ -187,7 +222,8 @@ ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_
            data ? data->grid.least_spacing() : 0});
   }
   console.step("checking interfaces", -1);
-  check_interfaces(mesh, box ? &*box : nullptr, options.tolerant, console);
+  if (!box) check_interface_arrays(mesh);
+  check_interfaces(mesh, *box, weld, options.tolerant, console);
   return make_mesh_source(mesh, *box, data.get(), console);
 }
 

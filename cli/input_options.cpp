@@ -81,6 +81,7 @@ std::optional<Centering> InputOptions::centering() const {
 std::string InputOptions::interface_option() const {
   if (!region_names.empty()) return "--region-names";
   if (!box.empty()) return "--box";
+  if (!weld.empty()) return "--weld";
   return tolerant ? "--tolerant" : "";
 }
 
@@ -141,8 +142,16 @@ void add_interface_options(CLI::App& command, InputOptions& options, bool resamp
       ->type_name("x0,x1,y0,y1,z0,z1")
       ->group("Input");
   command
+      .add_option(
+          "--weld", options.weld,
+          "Close gaps of given interfaces that are at most so wide: a length, or a part of the domain's "
+          "diagonal; 0 for none (default: 0.0001%)")
+      ->type_name("W|W%")
+      ->group("Input");
+  command
       .add_flag("--tolerant", options.tolerant,
-                "Take given interfaces that intersect or do not match, instead of refusing them")
+                "Take given interfaces that intersect, contradict each other or do not match, instead of "
+                "refusing them")
       ->group("Input");
 }
 
@@ -239,7 +248,8 @@ Input load_input(const InputOptions& given, Console& console, const InputCheck& 
     wrong_usage("expected an INPUT, --interface, or files in --fraction or --labels, found none");
   if (!options.box.empty()) wrong_usage("--box: expected given interfaces (for a grid, --region crops)");
   if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
-  if (options.tolerant) wrong_usage("--tolerant: expected given interfaces");
+  if (!options.weld.empty() || options.tolerant)
+    wrong_usage("{}: expected given interfaces", options.tolerant ? "--tolerant" : "--weld");
   input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
   if (check)
     check({options.path, input.data->grid.domain(), field_infos(*input.data),

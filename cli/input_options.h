@@ -20,7 +20,7 @@ namespace adamas {
 struct InputOptions {
   std::string path;
   std::vector<std::string> fractions, fields, extensive, interfaces;
-  std::string fraction_scale, rest, labels, region, box, region_names;
+  std::string fraction_scale, rest, labels, region, box, region_names, weld;
   bool tolerant = false, cells = false, points = false;
   bool plain = false;  ///< data without materials will do (MaterialDataOptions::plain); no option
 

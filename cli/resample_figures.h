@@ -32,7 +32,7 @@ struct ResampleFigures {
   std::size_t tetrahedra = 0, vertices = 0;
   std::size_t interface_tetrahedra = 0;         ///< that an approximated interface runs through
   std::size_t lost_interfaces = 0;              ///< cells whose interface the approximation does not show
-  std::size_t flagged_vertices = 0;             ///< whose material rests on an open border of the input
+  std::size_t flagged_vertices = 0;             ///< whose material or signs rest on an open border
   std::vector<BodyFigures> bodies;              ///< of the input
   std::vector<FieldFigures> fields;             ///< by the source's fields
   std::vector<std::array<BodyId, 2>> contacts;  ///< of bodies that touch in the mesh alone

@@ -102,8 +102,9 @@ SliceInput load_slice_input(const InputOptions& given, const std::string& origin
     check(input);
     return input;
   }
-  if (!options.box.empty() || options.tolerant) {
-    wrong_usage("{}: expected interfaces as INPUT, found {}", options.box.empty() ? "--tolerant" : "--box",
+  if (!options.box.empty() || !options.weld.empty() || options.tolerant) {
+    wrong_usage("{}: expected interfaces as INPUT, found {}",
+                !options.box.empty() ? "--box" : (!options.weld.empty() ? "--weld" : "--tolerant"),
                 options.path);
   }
   if (meshed) {

@@ -16,7 +16,8 @@ struct ResamplingSource {
   Box3 box;
   IdVector<MaterialId, std::string> materials;
   std::shared_ptr<const InterfaceNetwork> network;
-  /// The body that owns a point; the flag tells that it rests on an open border of the input.
+  /// The body that owns a point; the flag tells that it is doubtful, for it rests on an open border of the
+  /// input.
   std::function<BodyId(const Vec3&, bool* flagged)> body_at;
   std::shared_ptr<const FieldSource> fields;  ///< null where the input has none
   IdVector<MaterialId, double>

@@ -6,39 +6,11 @@
 
 #include "core/base/error.h"
 #include "interfaces/network/edge_fans.h"
+#include "interfaces/network/mended.h"
 
 namespace adamas {
 
 namespace {
-
-std::string describe(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z); }
-
-void check_arrays(const InterfaceMesh& mesh) {
-  if (mesh.triangles.empty()) fail("{}: expected an interface mesh with triangles, found none", mesh.source);
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    const Vec3& p = mesh.points[i];
-    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
-    fail("{}: expected finite coordinates, found {} at point {}", mesh.source, describe(p), i);
-  }
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const InterfaceTriangle& triangle = mesh.triangles[t];
-    for (const std::uint32_t p : triangle.points) {
-      if (p >= mesh.points.size()) {
-        fail("{}: triangle {}: expected points below {}, found {}", mesh.source, t, mesh.points.size(), p);
-      }
-    }
-    for (const MaterialId m : {triangle.front, triangle.back}) {
-      if (m.value >= mesh.materials.size()) {
-        fail("{}: triangle {}: expected materials below {}, found {}", mesh.source, t, mesh.materials.size(),
-             m.value);
-      }
-    }
-    if (triangle.front == triangle.back) {
-      fail("{}: triangle {}: expected two materials, found {} on both sides", mesh.source, t,
-           mesh.materials[triangle.front]);
-    }
-  }
-}
 
 void count_triangles(const InterfaceMesh& mesh, const EdgeFans& fans, InterfaceMeshReport& report) {
   std::vector<char> used(mesh.points.size(), 0);
@@ -79,15 +51,42 @@ void check_edges(const InterfaceMesh& mesh, const EdgeFans& fans, const Interfac
     throw TolerableFault(fmt::format(
         "{}: expected the same material on facing sides round the edge {} to {}, found triangles {} (one is "
         "turned the wrong way or missing)",
-        mesh.source, describe(mesh.points[low]), describe(mesh.points[high]), around));
+        mesh.source, place_text(mesh.points[low]), place_text(mesh.points[high]), around));
   }
 }
 
 }  // namespace
 
+void check_interface_arrays(const InterfaceMesh& mesh) {
+  if (mesh.triangles.empty()) fail("{}: expected an interface mesh with triangles, found none", mesh.source);
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const Vec3& p = mesh.points[i];
+    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+    fail("{}: expected finite coordinates, found {} at point {}", mesh.source, place_text(p), i);
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const InterfaceTriangle& triangle = mesh.triangles[t];
+    for (const std::uint32_t p : triangle.points) {
+      if (p >= mesh.points.size()) {
+        fail("{}: triangle {}: expected points below {}, found {}", mesh.source, t, mesh.points.size(), p);
+      }
+    }
+    for (const MaterialId m : {triangle.front, triangle.back}) {
+      if (m.value >= mesh.materials.size()) {
+        fail("{}: triangle {}: expected materials below {}, found {}", mesh.source, t, mesh.materials.size(),
+             m.value);
+      }
+    }
+    if (triangle.front == triangle.back) {
+      fail("{}: triangle {}: expected two materials, found {} on both sides", mesh.source, t,
+           mesh.materials[triangle.front]);
+    }
+  }
+}
+
 InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* domain,
                                          const InterfaceCheckOptions& options) {
-  check_arrays(mesh);
+  check_interface_arrays(mesh);
   InterfaceMeshReport report;
   const EdgeFans fans(mesh, domain);
   count_triangles(mesh, fans, report);
@@ -99,7 +98,7 @@ InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* 
     throw TolerableFault(fmt::format(
         "{}: expected triangles that meet at common points only, found {} pairs that intersect, the first {} "
         "and {} near {}",
-        mesh.source, found.count, a, b, describe(mesh.points[mesh.triangles[a].points[0]])));
+        mesh.source, found.count, a, b, place_text(mesh.points[mesh.triangles[a].points[0]])));
   }
   return report;
 }

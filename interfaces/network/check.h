@@ -35,6 +35,10 @@ class TolerableFault : public Error {
   using Error::Error;
 };
 
+/// Throws Error naming the mesh and the first of these faults: no triangles, points that are not finite,
+/// indices and materials out of range, the same material on both sides of a triangle.
+void check_interface_arrays(const InterfaceMesh& mesh);
+
 /// Throws Error naming the mesh and the first fault: no triangles, points that are not finite, indices and
 /// materials out of range, the same material on both sides of a triangle, no triangle with an area, edges
 /// round which the materials do not match (triangles turned the wrong way, or missing), triangles that

@@ -56,19 +56,8 @@ std::array<std::uint32_t, 2> EdgeFans::ends(std::size_t edge) const {
 }
 
 Vec3 EdgeFans::outward(std::size_t edge) const {
-  Vec3 normal;
-  if (domain_ == nullptr) return normal;
   const auto [low, high] = ends(edge);
-  const Vec3 &a = mesh_.points[low], &b = mesh_.points[high];
-  const double tolerance = boundary_ * domain_->diagonal();
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto on = [&](double x) {
-      return std::abs(a[axis] - x) <= tolerance && std::abs(b[axis] - x) <= tolerance;
-    };
-    if (on(domain_->min[axis])) normal[axis] = -1;
-    if (on(domain_->max[axis])) normal[axis] = 1;
-  }
-  return normal;
+  return outward_of_edge(domain_, mesh_.points[low], mesh_.points[high], boundary_);
 }
 
 bool EdgeFans::on_domain_boundary(std::size_t edge) const { return outward(edge) != Vec3{}; }

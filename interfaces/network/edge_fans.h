@@ -7,6 +7,7 @@
 
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
+#include "interfaces/network/domain_faces.h"
 
 namespace adamas {
 
@@ -25,7 +26,7 @@ class EdgeFans {
  public:
   /// `mesh` and `domain` (may be null) must outlive this object. Indices must be within range. Edges lie in a
   /// face of the domain that are as near to it as `boundary`, in relation to the domain's diagonal.
-  EdgeFans(const InterfaceMesh& mesh, const Box3* domain, double boundary = 1e-9);
+  EdgeFans(const InterfaceMesh& mesh, const Box3* domain, double boundary = kOnDomainFace);
 
   [[nodiscard]] std::size_t size() const { return starts_.size() - 1; }
   /// Ends of an edge: the lower and the higher of two welded points.

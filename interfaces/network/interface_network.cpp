@@ -7,6 +7,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "interfaces/network/lazy_winding.h"
 #include "interfaces/network/vertex_trees.h"
 #include "interfaces/network/weld.h"
 
@@ -19,7 +20,8 @@ InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3
     : domain_(domain),
       points_(mesh.points),
       inconsistencies_(bodies.inconsistent_edges + bodies.inconsistent_rays),
-      vertex_trees_(std::make_shared<VertexTrees>()) {
+      vertex_trees_(std::make_shared<VertexTrees>()),
+      winding_(std::make_shared<LazyWinding>()) {
   if (bodies.sides.size() != mesh.triangles.size()) {
     fail("{}: expected the bodies of {} triangles, found {}", mesh.source, mesh.triangles.size(),
          bodies.sides.size());
@@ -27,6 +29,7 @@ InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3
   group(mesh, bodies);
   find_adjacency();
   find_borders();
+  open_ = find_open_border();
   find_flat();
   build_trees();
 }
@@ -125,7 +128,7 @@ void InterfaceNetwork::find_borders() {
   }
 }
 
-bool InterfaceNetwork::has_open_border() const {
+bool InterfaceNetwork::find_open_border() const {
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     for (unsigned i = 0; i < 3; ++i) {
       if ((borders_[t] >> (kEdgeOfNetwork + i) & 1u) == 0) continue;

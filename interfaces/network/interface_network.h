@@ -24,6 +24,9 @@ struct NearInterface {
   InterfaceId interface;
   double signed_distance;
   Vec3 closest;
+  /// The sign is that of a sheet continued beyond an open border, for the point lies in neither of the
+  /// bodies.
+  bool flagged = false;
 };
 
 enum class DistanceMode {
@@ -64,7 +67,7 @@ class InterfaceNetwork {
   [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
   [[nodiscard]] InterfaceId interface_of(std::uint32_t triangle) const { return interface_of_[triangle]; }
   /// Whether an edge of a single triangle lies inside the domain.
-  [[nodiscard]] bool has_open_border() const;
+  [[nodiscard]] bool has_open_border() const { return open_; }
   /// Edges and rays that did not match, as `Bodies` reports them.
   [[nodiscard]] std::size_t inconsistencies() const { return inconsistencies_; }
 
@@ -78,9 +81,10 @@ class InterfaceNetwork {
       BodyId body, const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// The body that p lies in, by the angle-weighted pseudonormals of each body's boundary at the closest
-  /// point (docs/method.md, Signed distances at vertices; Baerentzen and Aanaes for one body). `flagged` (may
-  /// be null) is set where the answer rests on an open border inside the domain. Body 0 where there are no
-  /// triangles.
+  /// point (docs/method.md, Signed distances at vertices; Baerentzen and Aanaes for one body). Where the
+  /// closest point is on an open border inside the domain, by winding numbers, or by the sheets there,
+  /// thought to go on as planes, where these are far from 1; `flagged` (may be null) is set where they are,
+  /// or where the two do not agree (docs/method.md, Gaps). Body 0 where there are no triangles.
   [[nodiscard]] BodyId body_at(const Vec3& p, bool* flagged = nullptr) const;
 
   /// The interfaces with a distance of at most `radius` from p, in ascending order, given the body of p.
@@ -99,6 +103,7 @@ class InterfaceNetwork {
   void group(const InterfaceMesh& mesh, const Bodies& bodies);
   void find_adjacency();
   void find_borders();
+  [[nodiscard]] bool find_open_border() const;
   void find_flat();
   void mark_border_corner(std::uint32_t triangle, std::uint32_t point, bool of_interface);
   void build_trees();
@@ -121,7 +126,12 @@ class InterfaceNetwork {
   [[nodiscard]] bool on_border(std::uint32_t triangle, TriangleFeature feature, unsigned edge_bit,
                                unsigned corner_bit) const;
   [[nodiscard]] bool on_domain_boundary(const Vec3& p) const;
-  [[nodiscard]] BodyId body_by_touch(const Vec3& offset, const ClosestPoint& closest, bool* flagged) const;
+  /// Whether the closest point of an interface, a place on one of its triangles, is on an open border of the
+  /// network inside the domain.
+  [[nodiscard]] bool on_open_border(InterfaceId i, std::uint32_t triangle, TriangleFeature feature,
+                                    const Vec3& closest) const;
+  [[nodiscard]] BodyId body_beyond_border(const Vec3& p, BodyId continued, bool* flagged) const;
+  [[nodiscard]] BodyId body_by_touch(const Vec3& p, const ClosestPoint& closest, bool* flagged) const;
   [[nodiscard]] BodyId body_by_arc(const Vec3& offset, std::uint32_t triangle, TriangleFeature feature) const;
   [[nodiscard]] Vec3 interface_normal(std::uint32_t triangle, TriangleFeature feature) const;
   [[nodiscard]] std::optional<NearInterface> near_interface(InterfaceId i, const Vec3& p, double radius,
@@ -138,12 +148,15 @@ class InterfaceNetwork {
   std::vector<std::uint32_t> point_starts_;  ///< triangles at point i: point_triangles_[point_starts_[i] ...]
   std::vector<std::uint32_t> point_triangles_;
   std::size_t inconsistencies_ = 0;
+  bool open_ = false;  ///< an edge of a single triangle lies inside the domain
   ClosestPointTree tree_;
   IdVector<InterfaceId, ClosestPointTree> trees_;  ///< empty where there is one interface
   BoxTree box_tree_;
 
   struct VertexTrees;
   std::shared_ptr<VertexTrees> vertex_trees_;  ///< built on first need
+  struct LazyWinding;
+  std::shared_ptr<LazyWinding> winding_;  ///< built on first need
 };
 
 }  // namespace adamas

@@ -5,6 +5,7 @@
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "interfaces/network/interface_network.h"
+#include "interfaces/network/lazy_winding.h"
 #include "interfaces/network/pseudonormals.h"
 #include "interfaces/network/vertex_trees.h"
 
@@ -15,6 +16,9 @@ namespace {
 /// Points closer to each other than this part of the size of the network are one where flat triangles are
 /// about.
 constexpr double kTouch = 1e-10;
+
+/// Winding numbers from here on leave no doubt.
+constexpr double kSure = 0.75;
 
 double corner_angle(const Vec3& at, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - at, v = c - at;
@@ -82,13 +86,13 @@ BodyId InterfaceNetwork::body_at(const Vec3& p, bool* flagged) const {
   if (!closest) return BodyId(0);
   const Vec3 offset = p - closest->point;
   const Interface& interface = interfaces_[interface_of_[closest->triangle]];
-  if (near_flat(closest->triangle, closest->feature)) return body_by_touch(offset, *closest, flagged);
+  if (near_flat(closest->triangle, closest->feature)) return body_by_touch(p, *closest, flagged);
   if (closest->feature == TriangleFeature::kFace) {
     return dot(offset, normals_[closest->triangle]) >= 0 ? interface.a : interface.b;
   }
   if (on_border(closest->triangle, closest->feature, kEdgeOfNetwork, kCornerOfNetwork)) {
-    if (flagged != nullptr) *flagged = !on_domain_boundary(closest->point);
-    return body_by_arc(offset, closest->triangle, closest->feature);
+    const BodyId continued = body_by_arc(offset, closest->triangle, closest->feature);
+    return on_domain_boundary(closest->point) ? continued : body_beyond_border(p, continued, flagged);
   }
 
   Pseudonormals normals;
@@ -130,10 +134,18 @@ bool InterfaceNetwork::find_touching(const ClosestPointTree& tree, std::uint32_t
   return border;
 }
 
-BodyId InterfaceNetwork::body_by_touch(const Vec3& offset, const ClosestPoint& closest, bool* flagged) const {
+/// Winding numbers where they leave no doubt, else `continued`, the body that the sheet at the border tells.
+BodyId InterfaceNetwork::body_beyond_border(const Vec3& p, BodyId continued, bool* flagged) const {
+  std::call_once(winding_->built, [this] { winding_->winding.emplace(*this, domain_); });
+  const BodyWinding::Answer answer = winding_->winding->at(p);
+  const bool sure = answer.number >= kSure;
+  if (flagged != nullptr) *flagged = !sure || table_.material(answer.body) != table_.material(continued);
+  return sure ? answer.body : continued;
+}
+
+BodyId InterfaceNetwork::body_by_touch(const Vec3& p, const ClosestPoint& closest, bool* flagged) const {
   thread_local std::vector<Touch> touching;
   const bool border = find_touching(tree_, 0, closest.point, kEdgeOfNetwork, touching);
-  if (border && flagged != nullptr) *flagged = !on_domain_boundary(closest.point);
   Pseudonormals normals;
   for (const auto& [t, weight] : touching) {
     if (weight == 0) continue;
@@ -141,8 +153,9 @@ BodyId InterfaceNetwork::body_by_touch(const Vec3& offset, const ClosestPoint& c
     normals.add(at.a, weight * normals_[t]);
     normals.add(at.b, -weight * normals_[t]);
   }
-  const auto best = normals.greatest(offset);
-  return best.body.valid() ? best.body : interfaces_[interface_of_[closest.triangle]].a;
+  const auto best = normals.greatest(p - closest.point);
+  const BodyId body = best.body.valid() ? best.body : interfaces_[interface_of_[closest.triangle]].a;
+  return border && !on_domain_boundary(closest.point) ? body_beyond_border(p, body, flagged) : body;
 }
 
 /// Follows the arc of directions from `offset` to the middle of the given triangle: the first triangle in the
@@ -251,7 +264,17 @@ std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, con
   const double round_off = continued ? 1e-10 * radius : 0;
   if (body == interface.a && value < -round_off) value = distance;
   if (body == interface.b && value > round_off) value = -distance;
-  return NearInterface{i, value, closest->point};
+  const bool outside_of_both = body != interface.a && body != interface.b;
+  const bool flagged = open_ && outside_of_both && on_open_border(i, triangle, feature, closest->point);
+  return NearInterface{i, value, closest->point, flagged};
+}
+
+bool InterfaceNetwork::on_open_border(InterfaceId i, std::uint32_t triangle, TriangleFeature feature,
+                                      const Vec3& closest) const {
+  if (on_domain_boundary(closest)) return false;
+  if (!near_flat(triangle, feature)) return on_border(triangle, feature, kEdgeOfNetwork, kCornerOfNetwork);
+  thread_local std::vector<Touch> touching;
+  return find_touching(tree(i), interfaces_[i].first, closest, kEdgeOfNetwork, touching);
 }
 
 void InterfaceNetwork::build_vertex_trees() const {

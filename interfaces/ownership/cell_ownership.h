@@ -17,9 +17,9 @@ struct NearDistance {
 
 /// What a vertex knows of the interfaces (docs/method.md, Signed distances at vertices).
 struct VertexDistances {
-  BodyId body;                     ///< that the vertex lies in
-  bool flagged = false;            ///< the body rests on an open border of the input
-  double radius = 0;               ///< R: no cell round the vertex has a greater diameter
+  BodyId body;           ///< that the vertex lies in
+  bool flagged = false;  ///< the body or a sign is doubtful: it rests on an open border of the input
+  double radius = 0;     ///< R: no cell round the vertex has a greater diameter
   std::vector<NearDistance> near;  ///< by interface: those within R
   std::vector<BodyId> bodies;      ///< ascending: its own, and those of the near interfaces
 };

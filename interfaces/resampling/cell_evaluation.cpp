@@ -98,6 +98,7 @@ void Resampler::evaluate_vertices(const std::vector<VertexId>& vertices) {
       const double d = rounded(n.signed_distance, record.distances.radius);
       record.distances.near.push_back({n.interface, d + shifts_[n.interface]});
       record.closest.push_back(n.closest);
+      record.distances.flagged = record.distances.flagged || n.flagged;
     }
     list_known_bodies(source_.network->table(), record.distances);
   });

@@ -69,10 +69,70 @@ TEST_F(BadInterfaces, SelfIntersecting) {
 }
 
 TEST_F(BadInterfaces, BadlyOriented) {
+  // With half of the faces each way nothing tells which are right.
   std::string text = tetrahedron(0);
   text.replace(text.find("f 2 3 4"), 7, "f 2 4 3");
+  std::string half = text;
+  half.replace(half.find("f 1 2 4"), 7, "f 1 4 2");
+  write("half.obj", half);
+  expect_refused("half.obj", {"half.obj", "turned the wrong way", "found", "--tolerant"});
+  // One of four is turned back, so that the volume is the tetrahedron's.
   write("turned.obj", text);
-  expect_refused("turned.obj", {"turned.obj", "turned the wrong way", "found"});
+  const RunResult result = run({"probe", "--interface", "turned.obj=air,metal", "--json", "j.json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(
+      result.err,
+      "adamas: note: turned.obj: triangles turned that faced the other way than their neighbours: 1, the "
+      "first at (0.333333, 0.333333, 0.333333)\n");
+  EXPECT_NEAR(read_json("j.json").at("materials")[1].at("volume").get<double>(), 1.0 / 6, 1e-12);
+}
+
+TEST_F(BadInterfaces, TrianglesOnTheSamePoints) {
+  const std::string once = tetrahedron(0);
+  write("twice.obj", once + "f 2 3 4\n");
+  const RunResult twice = run({"probe", "--interface", "twice.obj=air,metal", "--json", "j.json"});
+  EXPECT_EQ(twice.status, 0) << twice.err;
+  EXPECT_EQ(twice.err,
+            "adamas: note: twice.obj: triangles that are there twice, which count once: 1, the first at "
+            "(0.333333, 0.333333, 0.333333)\n");
+  EXPECT_NEAR(read_json("j.json").at("materials")[1].at("volume").get<double>(), 1.0 / 6, 1e-12);
+  write("opposite.obj", once + "f 2 4 3\n");
+  expect_refused("opposite.obj", {"opposite.obj", "expected one triangle on the three points round (0.333333",
+                                  "found opposite faces, 3: ", "4: ", "--tolerant"});
+  const RunResult taken = run({"probe", "--interface", "opposite.obj=air,metal", "--tolerant"});
+  EXPECT_EQ(taken.status, 0) << taken.err;
+  EXPECT_NE(taken.err.find("opposite faces, which cancel each other: 2, the first at"), std::string::npos)
+      << taken.err;
+}
+
+TEST_F(BadInterfaces, SmallGapsAreClosed) {
+  // The last face has corners of its own, 1e-7 off.
+  std::string text = tetrahedron(0);
+  text.replace(text.find("f 2 3 4"), 7, "v 1.0000001 0 0\nv 0 1 0.0000001\nv 0 0 1\nf 5 6 7");
+  write("crack.obj", text);
+  const std::vector<std::string> probe{"probe", "--interface", "crack.obj=air,metal", "--json", "j.json"};
+  const RunResult closed = run(probe);
+  EXPECT_EQ(closed.status, 0) << closed.err;
+  EXPECT_EQ(closed.err.find("adamas: note: crack.obj: points welded to others close by: 2, the first at "),
+            0u)
+      << closed.err;
+  EXPECT_NEAR(read_json("j.json").at("materials")[1].at("volume").get<double>(), 1.0 / 6, 1e-6);
+  const auto with_weld = [&](const std::string& width) {
+    std::vector<std::string> arguments = probe;
+    arguments.insert(arguments.end(), {"--weld", width});
+    return arguments;
+  };
+  for (const std::string width : {"0", "1e-8", "1e-7%"}) {
+    const RunResult open = run(with_weld(width));
+    EXPECT_EQ(open.status, 0) << open.err;
+    EXPECT_NE(open.err.find("edges are open borders"), std::string::npos) << open.err;
+  }
+  EXPECT_EQ(run(with_weld("0.001%")).err, closed.err);
+  for (const std::string width : {"-1", "nan", "a", "50%", "1"})
+    expect_wrong_usage(with_weld(width), {"--weld", "expected", width});
+  make_scene("sphere");
+  expect_wrong_usage({"resample", "scene.vtr", "--weld", "1%", "-o", "m.vtu"},
+                     {"--weld", "given interfaces"});
 }
 
 TEST_F(BadInterfaces, OpenOnesAreNoted) {

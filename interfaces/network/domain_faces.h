@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// How near to a face of the domain points count as on it, in relation to the domain's diagonal.
+constexpr double kOnDomainFace = 1e-9;
+
+/// The outward normals, added up, of the faces of a domain that hold both points; zero where there are none
+/// or `domain` is null.
+inline Vec3 outward_of_edge(const Box3* domain, const Vec3& a, const Vec3& b,
+                            double tolerance = kOnDomainFace) {
+  Vec3 normal;
+  if (domain == nullptr) return normal;
+  const double length = tolerance * domain->diagonal();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto on = [&](double x) {
+      return std::abs(a[axis] - x) <= length && std::abs(b[axis] - x) <= length;
+    };
+    if (on(domain->min[axis])) normal[axis] = -1;
+    if (on(domain->max[axis])) normal[axis] = 1;
+  }
+  return normal;
+}
+
+}  // namespace adamas

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// The solid angle of a spherical triangle whose corners lie in the given directions, in (-2 pi, 2 pi]:
+/// positive where they turn clockwise as seen from the centre, so that a surface's triangles are positive as
+/// seen from behind (van Oosterom and Strackee 1983). Lengths do not matter.
+double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The solid angle of a set of triangles (generalized winding numbers, Jacobson, Kavan and Sorkine-Hornung
+/// 2013): far parts count as the first three terms of their expansion (Barill et al. 2018), near ones
+/// triangle by triangle.
+class WindingTree {
+ public:
+  using Triangle = std::array<std::uint32_t, 3>;
+
+  WindingTree() = default;
+  /// Points must be finite, indices within range.
+  WindingTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
+
+  /// As a part of the whole sphere, within about 0.01 of the exact sum: of a closed surface with normals
+  /// outwards 1 inside and 0 outside.
+  [[nodiscard]] double at(const Vec3& p) const;
+
+ private:
+  struct Node {
+    Vec3 center;        ///< weighted by area
+    double radius = 0;  ///< of a ball round the centre that holds the triangles
+    Vec3 normal;        ///< the sum of normals as long as the triangles' areas
+    /// Row i: the i-th component of those normals times the offsets from the centre.
+    std::array<Vec3, 3> moments;
+    /// Of normals n and offsets d, averaged over each triangle: 2 d (d . n) + n (d . d), and the coefficients
+    /// of (n . r) (d . r)^2 for xxx, yyy, zzz, xxy, xxz, xyy, yyz, xzz, yzz and xyz.
+    Vec3 second;
+    std::array<double, 10> cubic{};
+    std::uint32_t first, count;  ///< leaf: triangles; else children first and first + 1, and count 0
+  };
+  void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
+  void summarize(Node& node, std::uint32_t begin, std::uint32_t end) const;
+  static void add_second(Node& node, double weight, const Vec3& normal, const Vec3& offset);
+  [[nodiscard]] static double far_angle(const Node& node, const Vec3& r);
+
+  std::vector<Node> nodes_;
+  std::vector<std::array<Vec3, 3>> corners_;  ///< in the order of the leaves
+};
+
+}  // namespace adamas
