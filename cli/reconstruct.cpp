@@ -60,7 +60,7 @@ struct Interfaces {
 Interfaces reconstruct(const Options& options, Figures& figures, Console& console) {
   const MultiMaterialData data = load_data(options.input, console);
   options.picture.check_materials(data.materials, data.source);
-  Reconstruction result(data, console);
+  Reconstruction result(data, reconstruction_options(options.input, data), console);
   figures["materials"] = print_volumes(data, result, console);
   figures["mixed_cells"] = print_agreement(result.agreement(), console);
   figures["interfaces"] = print_interfaces(result.mesh(), console);
@@ -122,6 +122,7 @@ void add_reconstruct(CLI::App& app, Session& session) {
       ->type_name("FILE");
   add_surface_picture_options(*command, options->picture);
   add_material_options(*command, options->input);
+  add_smoothing_option(*command, options->input);
   add_interface_options(*command, options->input);
 }
 

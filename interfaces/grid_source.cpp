@@ -19,8 +19,9 @@ std::vector<MaterialId> materials_of(const std::vector<BodyId>& bodies, const In
 
 }  // namespace
 
-ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progress) {
-  auto reconstruction = std::make_shared<Reconstruction>(data, progress);
+ResamplingSource make_grid_source(const MultiMaterialData& data, const ReconstructionOptions& options,
+                                  Progress& progress) {
+  auto reconstruction = std::make_shared<Reconstruction>(data, options, progress);
   ResamplingSource source;
   source.name = data.source;
   source.box = data.grid.domain();

@@ -25,8 +25,9 @@ struct Reconstruction::Layer {
   std::vector<std::pair<Part, MaterialId>> pointless;
 };
 
-Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress)
-    : Reconstruction(data, SiteValues(data), progress) {}
+Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
+                               Progress& progress)
+    : Reconstruction(data, SiteValues(data, options.smooth_labels), progress) {}
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress)
     : agreement_(correct_volumes(data, values, progress)), lattice_(data, values) {

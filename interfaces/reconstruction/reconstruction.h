@@ -14,6 +14,13 @@
 
 namespace adamas {
 
+struct ReconstructionOptions {
+  /// Of labels: lets interfaces run through the staircase of voxel faces, within half a voxel of it along
+  /// each axis, and gives each material the volume of its voxels (smooth_label_values()). Refused for
+  /// fractions.
+  bool smooth_labels = false;
+};
+
 /// Material interfaces reconstructed from volume fractions: where the greatest of linearly interpolated
 /// values changes from one material to another (as in Bonnell et al., Material interface reconstruction,
 /// 2003; D 3.4.1), with values for which each mixed cell holds its fractions. No gap, no overlap, triple
@@ -21,7 +28,9 @@ namespace adamas {
 /// lattice, exactly.
 class Reconstruction {
  public:
-  explicit Reconstruction(const MultiMaterialData& data, Progress& progress = SilentProgress::instance());
+  /// Throws Error where the options do not suit the data.
+  explicit Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options = {},
+                          Progress& progress = SilentProgress::instance());
 
   [[nodiscard]] const InterfaceMesh& mesh() const { return mesh_; }
   /// Bodies in front and behind each triangle of the mesh.
