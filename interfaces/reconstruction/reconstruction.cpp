@@ -30,7 +30,9 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, const Reconstructi
     : Reconstruction(data, SiteValues(data, options.smooth_labels), progress) {}
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress)
-    : agreement_(correct_volumes(data, values, progress)), lattice_(data, values) {
+    : agreement_(correct_volumes(data, values, progress)),
+      lost_bodies_(find_lost_bodies(data, values)),
+      lattice_(data, values) {
   const std::uint32_t layers = lattice_.points(2) - 1;
   mesh_.source = data.source;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());

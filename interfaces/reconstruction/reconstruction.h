@@ -9,6 +9,7 @@
 #include "core/base/progress.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/lost_bodies.h"
 #include "interfaces/reconstruction/material_lattice.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
@@ -48,6 +49,8 @@ class Reconstruction {
   }
   /// How well volumes agree cell by cell.
   [[nodiscard]] const VolumeAgreement& agreement() const { return agreement_; }
+  /// What the fractions hold and the interfaces do not show.
+  [[nodiscard]] const std::vector<LostBody>& lost_bodies() const { return lost_bodies_; }
 
  private:
   /// A part of a material's region: the lattice point it holds, or a number above all points for a part that
@@ -76,6 +79,7 @@ class Reconstruction {
   Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress);
 
   VolumeAgreement agreement_;
+  std::vector<LostBody> lost_bodies_;
   MaterialLattice lattice_;
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> bodies_;
