@@ -84,6 +84,7 @@ void add_experiment_options(CLI::App& command, ExperimentOptions& options) {
   add_surface_picture_options(command, options.pictures, false);
   add_resampling_options(command, options.resampling);
   add_material_options(command, options.input);
+  add_smoothing_option(command, options.input);
 }
 
 ExperimentWishes::ExperimentWishes(const ExperimentOptions& options)

@@ -62,6 +62,7 @@ std::string InputOptions::material_option() const {
   if (!fraction_scale.empty()) return "--fraction-scale";
   if (!rest.empty()) return "--rest";
   if (!labels.empty()) return "--labels";
+  if (smooth_labels) return "--smooth-labels";
   if (!fields.empty()) return "--field";
   if (!extensive.empty()) return "--extensive";
   return region.empty() ? "" : "--region";
@@ -123,6 +124,19 @@ void add_material_options(CLI::App& command, InputOptions& options, const char* 
   command.add_option("--region", options.region, "Keep what lies in this box")
       ->type_name("x0,x1,y0,y1,z0,z1")
       ->group("Input");
+}
+
+void add_smoothing_option(CLI::App& command, InputOptions& options) {
+  command
+      .add_flag("--smooth-labels", options.smooth_labels,
+                "Smooth the staircase of labels, within half a voxel along each axis; volumes stay")
+      ->group("Input");
+}
+
+ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data) {
+  if (options.smooth_labels && data.labels.empty())
+    wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
+  return {.smooth_labels = options.smooth_labels};
 }
 
 void add_interface_options(CLI::App& command, InputOptions& options, bool resampled) {
@@ -241,6 +255,8 @@ Input load_input(const InputOptions& given, Console& console, const InputCheck& 
   const InputOptions options = with_main_file(given);
   Input input;
   if (has_given_interfaces(options)) {
+    if (options.smooth_labels)
+      wrong_usage("--smooth-labels: expected labels as INPUT, found given interfaces");
     input.source = load_given_interfaces(options, input.data, console, check);
     return input;
   }
@@ -254,7 +270,7 @@ Input load_input(const InputOptions& given, Console& console, const InputCheck& 
   if (check)
     check({options.path, input.data->grid.domain(), field_infos(*input.data),
            input.data->grid.least_spacing()});
-  input.source = make_grid_source(*input.data, console);
+  input.source = make_grid_source(*input.data, reconstruction_options(options, *input.data), console);
   return input;
 }
 

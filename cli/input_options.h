@@ -12,6 +12,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "core/io/multi_material_reader.h"
+#include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/source.h"
 
 namespace adamas {
@@ -21,7 +22,7 @@ struct InputOptions {
   std::string path;
   std::vector<std::string> fractions, fields, extensive, interfaces;
   std::string fraction_scale, rest, labels, region, box, region_names, weld;
-  bool tolerant = false, cells = false, points = false;
+  bool tolerant = false, cells = false, points = false, smooth_labels = false;
   bool plain = false;  ///< data without materials will do (MaterialDataOptions::plain); no option
 
   /// The first option given that only gridded data with materials can mean, for messages; empty where there
@@ -50,6 +51,10 @@ InputKind input_kind(const std::string& path);
 void add_material_options(CLI::App& command, InputOptions& options,
                           const char* field = "One more field, and where its values are; repeatable",
                           const char* field_type = "NAME=FILE-or-ARRAY");
+/// The option that smooths labels, for commands that reconstruct interfaces.
+void add_smoothing_option(CLI::App& command, InputOptions& options);
+/// What the options ask of the reconstruction. Throws UsageError where the data have no labels to smooth.
+ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data);
 /// Options for given interface meshes; `resampled`: those too that say what to make of them.
 void add_interface_options(CLI::App& command, InputOptions& options, bool resampled = true);
 

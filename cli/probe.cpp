@@ -192,6 +192,7 @@ void add_probe(CLI::App& app, Session& session) {
                    "The samples: .csv (default: stdout, which then has no integrals)")
       ->type_name("FILE");
   add_material_options(*command, options->input);
+  add_smoothing_option(*command, options->input);
   add_interface_options(*command, options->input);
 }
 

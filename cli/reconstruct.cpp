@@ -51,6 +51,34 @@ Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
           {"mean_difference", agreement.mean}};
 }
 
+/// Says what the fractions hold and the interfaces do not show.
+void note_losses(const MultiMaterialData& data, const Reconstruction& result, Figures& figures,
+                 Console& console) {
+  constexpr std::size_t kMostNotes = 10;
+  Figures materials = Figures::array(), bodies = Figures::array();
+  for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
+    const double volume = result.volume_input()[m];
+    if (volume <= 0 || result.volume_reconstructed()[m] > 0) continue;
+    materials.push_back({{"name", data.materials[m]}, {"volume", volume}});
+    console.note("{}: the interfaces show nothing of '{}', whose volume is {}", data.source,
+                 data.materials[m], volume_text(volume));
+  }
+  for (const LostBody& body : result.lost_bodies()) {
+    const auto& [x, y, z] = body.place;
+    bodies.push_back({{"material", data.materials[body.material]},
+                      {"volume", body.volume},
+                      {"cells", body.cells},
+                      {"place", {x, y, z}}});
+    if (bodies.size() > kMostNotes) continue;
+    console.note("{}: the interfaces show nothing of '{}' round {:.6g},{:.6g},{:.6g}, where {} cells hold {}",
+                 data.source, data.materials[body.material], x, y, z, body.cells, volume_text(body.volume));
+  }
+  if (bodies.size() > kMostNotes)
+    console.note("{}: the same in {} more places", data.source, bodies.size() - kMostNotes);
+  figures["lost_materials"] = materials;
+  figures["lost_bodies"] = bodies;
+}
+
 /// The interfaces of an input, with what is printed of them.
 struct Interfaces {
   InterfaceMesh mesh;
@@ -60,9 +88,10 @@ struct Interfaces {
 Interfaces reconstruct(const Options& options, Figures& figures, Console& console) {
   const MultiMaterialData data = load_data(options.input, console);
   options.picture.check_materials(data.materials, data.source);
-  Reconstruction result(data, console);
+  Reconstruction result(data, reconstruction_options(options.input, data), console);
   figures["materials"] = print_volumes(data, result, console);
   figures["mixed_cells"] = print_agreement(result.agreement(), console);
+  note_losses(data, result, figures, console);
   figures["interfaces"] = print_interfaces(result.mesh(), console);
   figures["bodies"] = result.body_materials().size();
   return {result.take_mesh(), data.grid.domain()};
@@ -122,6 +151,7 @@ void add_reconstruct(CLI::App& app, Session& session) {
       ->type_name("FILE");
   add_surface_picture_options(*command, options->picture);
   add_material_options(*command, options->input);
+  add_smoothing_option(*command, options->input);
   add_interface_options(*command, options->input);
 }
 

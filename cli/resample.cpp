@@ -295,6 +295,7 @@ void add_resample(CLI::App& app, Session& session) {
   options->picture.triangle_edges = true;
   add_surface_picture_options(*command, options->picture);
   add_material_options(*command, options->input);
+  add_smoothing_option(*command, options->input);
   add_interface_options(*command, options->input);
 }
 

@@ -265,6 +265,7 @@ void add_slice(CLI::App& app, Session& session) {
                        "The field to show, or NAME:x for a component of a vector; without, the materials. "
                        "NAME=FILE adds it first",
                        "NAME[=FILE-or-ARRAY]");
+  add_smoothing_option(*command, options->input);
   add_interface_options(*command, options->input);
   add_volume_options(*command, options->volume, "--first-sample");
 }

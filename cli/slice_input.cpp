@@ -50,6 +50,8 @@ void check_box(const ResampledMesh& mesh, const std::string& mesh_name, const Mu
 void load_original(const InputOptions& options, Console& console, SliceInput& input) {
   const bool gridded = !options.path.empty() && input_kind(options.path) == InputKind::kGrid;
   const bool given = has_given_interfaces(options);
+  if (given && options.smooth_labels)
+    wrong_usage("--smooth-labels: expected labels as INPUT, found given interfaces");
   if (given) input.interfaces = read_given_interfaces(options);
   if (!given && !options.region_names.empty()) {
     wrong_usage("--region-names: expected a labelled network (.arec, .txt)");
@@ -120,7 +122,8 @@ SliceInput load_slice_input(const InputOptions& given, const std::string& origin
   if (!from.path.empty() || !from.interfaces.empty()) load_original(from, console, input);
   check(input);
   if (!input.data || input.interfaces || !with_interfaces || input.plain()) return input;
-  input.interfaces = Reconstruction(*input.data, console).mesh();
+  input.interfaces =
+      Reconstruction(*input.data, reconstruction_options(options, *input.data), console).mesh();
   return input;
 }
 

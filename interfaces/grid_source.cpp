@@ -30,8 +30,9 @@ IdVector<BodyId, double> body_volumes(const InterfaceNetwork& network, const Box
 
 }  // namespace
 
-ResamplingSource make_grid_source(const MultiMaterialData& data, Progress& progress) {
-  auto reconstruction = std::make_shared<Reconstruction>(data, progress);
+ResamplingSource make_grid_source(const MultiMaterialData& data, const ReconstructionOptions& options,
+                                  Progress& progress) {
+  auto reconstruction = std::make_shared<Reconstruction>(data, options, progress);
   ResamplingSource source;
   source.name = data.source;
   source.box = data.grid.domain();

@@ -10,7 +10,7 @@ namespace adamas {
 
 /// Interfaces reconstructed from the data's volume fractions, fields from its sites. `data` must outlive the
 /// source.
-ResamplingSource make_grid_source(const MultiMaterialData& data,
+ResamplingSource make_grid_source(const MultiMaterialData& data, const ReconstructionOptions& options = {},
                                   Progress& progress = SilentProgress::instance());
 
 /// Given interfaces in a box. `data`, which may be null and must outlive the source, gives the fields; its

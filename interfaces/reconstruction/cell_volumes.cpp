@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "interfaces/reconstruction/positive_part.h"
+#include "core/geometry/divider.h"
 
 namespace adamas {
 
@@ -22,10 +22,12 @@ void CellVolumes::go_to(std::size_t site) {
   count_ = own.size();
   round_.resize(count_);
   settled_.resize(count_);
+  entry_.resize(count_);
   at_nodes_.resize(count_);
   volumes_.resize(count_);
   for (auto& row : round_) row.fill(values_.far());
   for (auto& row : settled_) row.fill(true);
+  for (auto& row : entry_) row.fill(kNone);
   at_border_ = false;
   for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
     const auto other = neighbour(n);
@@ -38,7 +40,8 @@ void CellVolumes::go_to(std::size_t site) {
     for (std::size_t m = 0; m < count_; ++m) {
       while (entry != there.end() && entry->material < own[m].material) ++entry;
       if (entry != there.end() && entry->material == own[m].material)
-        round_[m][n] = entry->value, settled_[m][n] = entry->settled();
+        round_[m][n] = entry->value, settled_[m][n] = entry->settled(),
+        entry_[m][n] = static_cast<std::uint32_t>(&*entry - values_.entries().data());
     }
   }
 }
@@ -54,21 +57,46 @@ const std::vector<double>& CellVolumes::measure(bool growth) {
   with_growth_ = growth;
   pairs_.clear();
   if (at_border_) extend();
-  for (std::size_t m = 0; m < count_; ++m) {
-    at_nodes_[m].resize(cell_->nodes.size());
-    for (std::size_t n = 0; n < cell_->nodes.size(); ++n) {
-      const SiteCell::Node& node = cell_->nodes[n];
-      double sum = 0;
-      for (std::size_t c = 0; c < 4; ++c) sum += node.weights[c] * round_[m][node.points[c]];
-      at_nodes_[m][n] = sum;
-    }
-  }
   std::fill(volumes_.begin(), volumes_.end(), 0.0);
+  for (std::size_t m = 0; m < count_; ++m) {
+    if (!is_sole(m)) continue;
+    volumes_[m] = 1;
+    return volumes_;
+  }
+  find_nodes();
   for (const SiteCell::Part& part : cell_->parts) measure_part(part);
   if (at_border_) {
     for (Pair& pair : pairs_) fold(pair.growth);
   }
   return volumes_;
+}
+
+/// Whether no value in the cell is above those of a material.
+bool CellVolumes::is_sole(std::size_t m) const {
+  for (std::size_t l = 0; l < count_; ++l) {
+    if (l == m) continue;
+    for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+      if (round_[l][n] > round_[m][n]) return false;
+    }
+  }
+  return true;
+}
+
+/// Values at the corners of parts, and whose is the greatest.
+void CellVolumes::find_nodes() {
+  const std::size_t nodes = cell_->nodes.size();
+  owner_of_node_.assign(nodes, 0);
+  for (std::size_t m = 0; m < count_; ++m) {
+    auto& row = at_nodes_[m];
+    row.resize(nodes);
+    for (std::size_t n = 0; n < nodes; ++n) {
+      const SiteCell::Node& node = cell_->nodes[n];
+      double sum = 0;
+      for (std::size_t c = 0; c < 4; ++c) sum += node.weights[c] * round_[m][node.points[c]];
+      row[n] = sum;
+      if (sum > at_nodes_[owner_of_node_[n]][n]) owner_of_node_[n] = m;
+    }
+  }
 }
 
 double CellVolumes::border_step(int axis, bool high) const {
@@ -131,7 +159,20 @@ void CellVolumes::fold(std::array<double, SiteCell::kNeighbours>& round) const {
 }
 
 void CellVolumes::measure_part(const SiteCell::Part& part) {
-  if (count_ == 2) return share_between_two(part, 0, 1);
+  const std::size_t owner = owner_of_node_[part.nodes[0]];
+  const bool whole = std::all_of(part.nodes.begin() + 1, part.nodes.end(),
+                                 [&](std::uint16_t n) { return owner_of_node_[n] == owner; });
+  if (whole) {
+    volumes_[owner] += part.volume;
+  } else if (count_ == 2) {
+    share_between_two(part, 0, 1);
+  } else {
+    share(part);
+  }
+}
+
+/// A part that is not one material's alone, of many.
+void CellVolumes::share(const SiteCell::Part& part) {
   // Those that may own something: their greatest value is not below what another has everywhere.
   double sure = -std::numeric_limits<double>::infinity();
   for (std::size_t m = 0; m < count_; ++m) {
@@ -143,20 +184,31 @@ void CellVolumes::measure_part(const SiteCell::Part& part) {
     const Values v = at_corners(part, m);
     if (*std::max_element(v.begin(), v.end()) >= sure) contenders_.push_back(m);
   }
-  if (contenders_.size() == 1) {
-    volumes_[contenders_[0]] += part.volume;
-  } else if (contenders_.size() == 2) {
+  if (contenders_.size() > 2) drop_those_without_part(part);
+  if (contenders_.size() == 2) {
     share_between_two(part, contenders_[0], contenders_[1]);
   } else {
     share_between_all(part);
   }
 }
 
+/// Leaves those contenders that own a corner or, where all others are cut off, something.
+void CellVolumes::drop_those_without_part(const SiteCell::Part& part) {
+  for (std::size_t i = contenders_.size(); i-- > 0;) {
+    const std::size_t m = contenders_[i];
+    if (std::any_of(part.nodes.begin(), part.nodes.end(),
+                    [&](std::uint16_t n) { return owner_of_node_[n] == m; }))
+      continue;
+    pieces_.assign(1, kWholeTetrahedron);
+    for (const std::size_t l : contenders_) {
+      if (l != m) keep_positive(difference(part, m, l), pieces_, scratch_pieces_);
+    }
+    if (pieces_.empty()) contenders_.erase(contenders_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 void CellVolumes::share_between_two(const SiteCell::Part& part, std::size_t m, std::size_t n) {
-  Values difference = at_corners(part, m);
-  const Values other = at_corners(part, n);
-  for (std::size_t c = 0; c < 4; ++c) difference[c] -= other[c];
-  const PositivePart found = positive_part(difference);
+  const PositivePart found = positive_part(difference(part, m, n));
   volumes_[m] += part.volume * found.volume;
   volumes_[n] += part.volume * (1 - found.volume);
   if (with_growth_ && found.volume > 0 && found.volume < 1) add_growth(part, m, n, found.growth);
@@ -166,37 +218,14 @@ void CellVolumes::share_between_two(const SiteCell::Part& part, std::size_t m, s
 /// and how it grows at the other's cost.
 void CellVolumes::share_between_all(const SiteCell::Part& part) {
   const std::size_t count = contenders_.size();
-  const auto difference = [&](std::size_t m, std::size_t n) {
-    Values d = at_corners(part, contenders_[m]);
-    const Values other = at_corners(part, contenders_[n]);
-    for (std::size_t c = 0; c < 4; ++c) d[c] -= other[c];
-    return d;
-  };
-  const auto at = [](const Values& v, const Weights& w) {
-    return v[0] * w[0] + v[1] * w[1] + v[2] * w[2] + v[3] * w[3];
-  };
   double rest = 1;
   for (std::size_t m = 0; m + 1 < count; ++m) {
     double own = 0;
     // Without growth one other is enough.
     for (std::size_t n = with_growth_ ? m + 1 : count - 1; n < count; ++n) {
-      pieces_.assign(1, {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, 1});
-      for (std::size_t l = 0; l < count; ++l) {
-        if (l != m && l != n) keep_positive(difference(m, l));
-      }
-      const Values d = difference(m, n);
-      Values growth{};
-      own = 0;
-      for (const Piece& piece : pieces_) {
-        const auto& [p, q, r, s] = piece.corners;
-        const PositivePart found = positive_part({at(d, p), at(d, q), at(d, r), at(d, s)});
-        own += piece.volume * found.volume;
-        for (std::size_t c = 0; c < 4; ++c) {
-          for (std::size_t i = 0; i < 4; ++i)
-            growth[i] += piece.volume * found.growth[c] * piece.corners[c][i];
-        }
-      }
-      if (with_growth_) add_growth(part, contenders_[m], contenders_[n], growth);
+      const PositivePart found = first_of_two(part, contenders_[m], contenders_[n]);
+      own = found.volume;
+      if (with_growth_) add_growth(part, contenders_[m], contenders_[n], found.growth);
     }
     volumes_[contenders_[m]] += part.volume * own;
     rest -= own;
@@ -204,45 +233,25 @@ void CellVolumes::share_between_all(const SiteCell::Part& part) {
   volumes_[contenders_.back()] += part.volume * rest;
 }
 
-/// Leaves of the pieces what lies where a linear function is positive.
-void CellVolumes::keep_positive(const Values& function) {
-  kept_.clear();
-  for (const Piece& piece : pieces_) {
-    Values d{};
-    std::array<std::size_t, 4> o{0, 1, 2, 3};
+/// What the first of two contenders owns of a part.
+PositivePart CellVolumes::first_of_two(const SiteCell::Part& part, std::size_t m, std::size_t n) {
+  pieces_.assign(1, kWholeTetrahedron);
+  for (const std::size_t l : contenders_) {
+    if (l != m && l != n) keep_positive(difference(part, m, l), pieces_, scratch_pieces_);
+  }
+  const Values d = difference(part, m, n);
+  PositivePart result{0, {}};
+  for (const TetrahedronPiece& piece : pieces_) {
+    const auto& [p, q, r, s] = piece.corners;
+    const PositivePart found =
+        positive_part({evaluate(d, p), evaluate(d, q), evaluate(d, r), evaluate(d, s)});
+    result.volume += piece.volume * found.volume;
     for (std::size_t c = 0; c < 4; ++c) {
-      for (std::size_t i = 0; i < 4; ++i) d[c] += function[i] * piece.corners[c][i];
-    }
-    std::sort(o.begin(), o.end(), [&](auto i, auto j) { return d[i] != d[j] ? d[i] > d[j] : i < j; });
-    if (d[o[0]] <= 0) continue;
-    if (d[o[3]] >= 0) {
-      kept_.push_back(piece);
-      continue;
-    }
-    const auto corner = [&](std::size_t i) { return piece.corners[o[i]]; };
-    const auto cut = [&](std::size_t i, std::size_t j) {
-      const double t = d[o[i]] / (d[o[i]] - d[o[j]]);
-      Weights w{};
-      for (std::size_t c = 0; c < 4; ++c) w[c] = (1 - t) * corner(i)[c] + t * corner(j)[c];
-      return w;
-    };
-    const auto keep = [&](const std::array<Weights, 4>& corners) {
-      const double volume = std::abs(volume_fraction(corners));
-      if (volume > 0) kept_.push_back({corners, volume});
-    };
-    if (d[o[1]] <= 0) {
-      keep({corner(0), cut(0, 1), cut(0, 2), cut(0, 3)});
-    } else if (d[o[2]] <= 0) {
-      keep({corner(0), corner(1), cut(1, 2), cut(1, 3)});
-      keep({corner(0), cut(0, 2), cut(0, 3), cut(1, 3)});
-      keep({corner(0), cut(0, 2), cut(1, 2), cut(1, 3)});
-    } else {
-      keep({corner(0), corner(1), corner(2), cut(2, 3)});
-      keep({corner(0), corner(1), cut(1, 3), cut(2, 3)});
-      keep({corner(0), cut(0, 3), cut(1, 3), cut(2, 3)});
+      for (std::size_t i = 0; i < 4; ++i)
+        result.growth[i] += piece.volume * found.growth[c] * piece.corners[c][i];
     }
   }
-  pieces_.swap(kept_);
+  return result;
 }
 
 void CellVolumes::add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth) {

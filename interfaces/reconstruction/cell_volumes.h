@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "core/data/rectilinear_grid.h"
-#include "core/geometry/partition.h"
+#include "interfaces/reconstruction/positive_part.h"
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
+#include "interfaces/reconstruction/tetrahedron_pieces.h"
 
 namespace adamas {
 
@@ -33,30 +34,38 @@ class CellVolumes {
   /// The volumes as parts of the cell's; with `growth` pairs() are found too.
   const std::vector<double>& measure(bool growth = false);
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
-  /// The site that is the n-th neighbour, if it is one.
-  [[nodiscard]] std::optional<std::size_t> neighbour(std::size_t n) const;
+  /// The number of the m-th material's value at the n-th neighbour among SiteValues::entries(); kNone where
+  /// it has none there.
+  [[nodiscard]] std::uint32_t entry(std::size_t m, std::size_t n) const { return entry_[m][n]; }
+  static constexpr std::uint32_t kNone = 0xffffffffu;
 
  private:
   using Values = std::array<double, 4>;
-  /// A tetrahedron in a part, and its volume in relation to it.
-  struct Piece {
-    std::array<Weights, 4> corners;
-    double volume;
-  };
 
+  [[nodiscard]] std::optional<std::size_t> neighbour(std::size_t n) const;
   template <class Visit>
   void for_each_border(Visit&& visit) const;
   void extend();
   void fold(std::array<double, SiteCell::kNeighbours>& round) const;
   [[nodiscard]] double border_step(int axis, bool high) const;
+  [[nodiscard]] bool is_sole(std::size_t m) const;
+  void find_nodes();
   void measure_part(const SiteCell::Part& part);
+  void share(const SiteCell::Part& part);
   void share_between_two(const SiteCell::Part& part, std::size_t m, std::size_t n);
   void share_between_all(const SiteCell::Part& part);
-  void keep_positive(const Values& function);
+  void drop_those_without_part(const SiteCell::Part& part);
+  PositivePart first_of_two(const SiteCell::Part& part, std::size_t m, std::size_t n);
   void add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth);
   [[nodiscard]] Values at_corners(const SiteCell::Part& part, std::size_t m) const {
     const auto& row = at_nodes_[m];
     return {row[part.nodes[0]], row[part.nodes[1]], row[part.nodes[2]], row[part.nodes[3]]};
+  }
+  [[nodiscard]] Values difference(const SiteCell::Part& part, std::size_t m, std::size_t n) const {
+    Values d = at_corners(part, m);
+    const Values other = at_corners(part, n);
+    for (std::size_t c = 0; c < 4; ++c) d[c] -= other[c];
+    return d;
   }
 
   const RectilinearGrid& grid_;
@@ -69,11 +78,13 @@ class CellVolumes {
   bool at_border_ = false, with_growth_ = false;
   std::vector<std::array<double, SiteCell::kNeighbours>> round_;  // by material
   std::vector<std::array<bool, SiteCell::kNeighbours>> settled_;  // the same, of the nearest site
-  std::vector<std::vector<double>> at_nodes_;
+  std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entry_;
+  std::vector<std::vector<double>> at_nodes_;  // by material
+  std::vector<std::size_t> owner_of_node_;
   std::vector<double> volumes_;
   std::vector<Pair> pairs_;
   std::vector<std::size_t> contenders_;
-  std::vector<Piece> pieces_, kept_;
+  std::vector<TetrahedronPiece> pieces_, scratch_pieces_;
 };
 
 }  // namespace adamas

@@ -16,7 +16,7 @@ namespace {
 
 /// Gradients below this, in fractions per cell, say nothing of where the material lies.
 constexpr double kLeastGradient = 0.05;
-constexpr int kMostRounds = 24;
+constexpr int kMostRounds = 12;
 /// A normal rests when neither it nor one beside it has turned by more.
 constexpr double kSettled = 1e-6;
 /// A piece belongs to another surface where its normal differs by more than the angle of this cosine.
@@ -148,8 +148,9 @@ class PlaneFit {
       const Vec3 g = gradient(sites_, site, data_.fractions[values_.material(entry.material)]);
       if (norm(g) * std::min({size.x, size.y, size.z}) >= kLeastGradient) place(site, entry, normalized(g));
     });
-    last_.assign(planes_.size(), 1);
-    std::vector<double> turned(planes_.size());
+    std::vector<double> turned(planes_.size(), 0);
+    last_ = turned;
+    for_each_entry([&](std::size_t, const Entry& entry) { last_[index(entry)] = 1; });
     for (int round = 0; round < kMostRounds; ++round) {
       planes_ = next_;
       for_each_entry([&](std::size_t site, const Entry& entry) {
@@ -213,15 +214,29 @@ class PlaneFit {
                                dot(towards, sites_.position(site) - cell.center())};
   }
 
+  /// Whether a plane, or one beside it, has just turned.
+  [[nodiscard]] bool has_moved(std::size_t site, const Entry& entry) const {
+    bool moved = last_[index(entry)] > kSettled;
+    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      if (moved) return;
+      const Entry* twin = nullptr;
+      const Entry* first = lesser_of_two(other, &twin);
+      for (const Entry& there : values_.at(other)) {
+        if (there.material == entry.material)
+          moved = last_[index(first != nullptr && &there == twin ? *first : there)] > kSettled;
+      }
+    });
+    return moved;
+  }
+
   /// Turns a plane as those round it lie; returns how far.
   double turn(std::size_t site, const Entry& entry) {
     const InterfacePlane plane = planes_[index(entry)];
-    if (!plane.known()) return 0;
+    if (!plane.known() || !has_moved(site, entry)) return 0;
     thread_local std::vector<std::pair<Vec3, double>> points;
     const Piece own = pieces_[index(entry)];
     points.assign(1, {own.middle, own.area});
     Vec3 mean;
-    double moved = last_[index(entry)];
     sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(other, &twin);
@@ -232,11 +247,9 @@ class PlaneFit {
         const Vec3 normal = turned ? -planes_[o].towards : planes_[o].towards;
         if (!planes_[o].known() || dot(normal, plane.towards) <= kAlike) continue;
         points.emplace_back(pieces_[o].middle, pieces_[o].area);
-        moved = std::max(moved, last_[o]);
         mean += pieces_[o].area * normal;
       }
     });
-    if (moved <= kSettled) return 0;
     Vec3 normal = fitted_normal(points, own.middle);
     if (squared_norm(normal) == 0) normal = normalized(mean);
     if (dot(normal, plane.towards) < 0) normal = -normal;

@@ -12,33 +12,33 @@ constexpr double kSolved = 1e-4;
 
 }  // namespace
 
-void LinearSystem::append(const LinearSystem& other) {
-  const auto offset = static_cast<std::uint32_t>(coefficients.size());
-  for (Exchange exchange : other.exchanges) {
-    exchange.first += offset;
-    exchanges.push_back(exchange);
-  }
-  coefficients.insert(coefficients.end(), other.coefficients.begin(), other.coefficients.end());
-  cells_off += other.cells_off;
+std::size_t LinearSystem::cells_off() const {
+  std::size_t sum = 0;
+  for (const Block& block : blocks) sum += block.cells_off;
+  return sum;
 }
 
 void LinearSystem::multiply(const std::vector<double>& x, std::vector<double>& rows) const {
   std::fill(rows.begin(), rows.end(), 0.0);
-  for (const Exchange& exchange : exchanges) {
-    double sum = 0;
-    for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
-      sum += static_cast<double>(coefficients[c].by) * x[coefficients[c].unknown];
-    rows[exchange.gains] += sum;
-    rows[exchange.loses] -= sum;
+  for (const auto& [exchanges, coefficients, off] : blocks) {
+    for (const Exchange& exchange : exchanges) {
+      double sum = 0;
+      for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
+        sum += static_cast<double>(coefficients[c].by) * x[coefficients[c].unknown];
+      rows[exchange.gains] += sum;
+      rows[exchange.loses] -= sum;
+    }
   }
 }
 
 void LinearSystem::multiply_transposed(const std::vector<double>& rows, std::vector<double>& x) const {
   std::fill(x.begin(), x.end(), 0.0);
-  for (const Exchange& exchange : exchanges) {
-    const double gain = rows[exchange.gains] - rows[exchange.loses];
-    for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
-      x[coefficients[c].unknown] += static_cast<double>(coefficients[c].by) * gain;
+  for (const auto& [exchanges, coefficients, off] : blocks) {
+    for (const Exchange& exchange : exchanges) {
+      const double gain = rows[exchange.gains] - rows[exchange.loses];
+      for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
+        x[coefficients[c].unknown] += static_cast<double>(coefficients[c].by) * gain;
+    }
   }
 }
 

@@ -17,13 +17,16 @@ struct LinearSystem {
     std::uint32_t unknown;
     float by;
   };
-  std::vector<Exchange> exchanges;
-  std::vector<Coefficient> coefficients;
+  /// What a number of cells say.
+  struct Block {
+    std::vector<Exchange> exchanges;
+    std::vector<Coefficient> coefficients;
+    std::size_t cells_off = 0;
+  };
+  std::vector<Block> blocks;
   std::vector<double> missing;  ///< by row
-  std::size_t cells_off = 0;
 
-  /// Takes over the exchanges of another one.
-  void append(const LinearSystem& other);
+  [[nodiscard]] std::size_t cells_off() const;
   /// The shortest move of the unknowns that gives what is missing, nearly: conjugate gradients for the normal
   /// equations, damped and stopped early, so that unknowns do not swing on which volumes hardly depend.
   [[nodiscard]] std::vector<double> solve(std::size_t unknowns, double damping) const;

@@ -1,36 +1,56 @@
 #include "interfaces/reconstruction/positive_part.h"
 
 #include <cstddef>
-#include <utility>
+#include <cstdint>
 
 namespace adamas {
 
+namespace {
+
+/// The corners, those with a positive value first, by the bits of these.
+constexpr std::array<std::array<std::uint8_t, 4>, 16> kOrder{{{0, 1, 2, 3},
+                                                              {0, 1, 2, 3},
+                                                              {1, 0, 2, 3},
+                                                              {0, 1, 2, 3},
+                                                              {2, 0, 1, 3},
+                                                              {0, 2, 1, 3},
+                                                              {1, 2, 0, 3},
+                                                              {0, 1, 2, 3},
+                                                              {3, 0, 1, 2},
+                                                              {0, 3, 1, 2},
+                                                              {1, 3, 0, 2},
+                                                              {0, 1, 3, 2},
+                                                              {2, 3, 0, 1},
+                                                              {0, 2, 3, 1},
+                                                              {1, 2, 3, 0},
+                                                              {0, 1, 2, 3}}};
+
+}  // namespace
+
 PositivePart positive_part(const std::array<double, 4>& v) {
-  // Most are not cut.
-  if (v[0] <= 0 && v[1] <= 0 && v[2] <= 0 && v[3] <= 0) return {0, {}};
-  if (v[0] > 0 && v[1] > 0 && v[2] > 0 && v[3] > 0) return {1, {}};
-  std::array<std::size_t, 4> o{0, 1, 2, 3};  // from the greatest value on
-  const auto order = [&](std::size_t i, std::size_t j) {
-    if (v[o[i]] < v[o[j]]) std::swap(o[i], o[j]);
-  };
-  order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+  const unsigned positive =
+      (v[0] > 0 ? 1u : 0u) | (v[1] > 0 ? 2u : 0u) | (v[2] > 0 ? 4u : 0u) | (v[3] > 0 ? 8u : 0u);
+  if (positive == 0) return {0, {}};
+  if (positive == 15) return {1, {}};
+  const auto& o = kOrder[positive];
   const double a = v[o[0]], b = v[o[1]], c = v[o[2]], d = v[o[3]];
-  PositivePart result{a > 0 ? 1.0 : 0.0, {}};
-  if (a <= 0 || d >= 0) return result;
+  PositivePart result{0, {}};
   auto& g = result.growth;
   // A corner that is cut off keeps a / (a - b) and so on of its edges.
   if (b <= 0) {
-    const double ab = 1 / (a - b), ac = 1 / (a - c), ad = 1 / (a - d), part = a * a * a * ab * ac * ad;
+    const double ab = 1 / (a - b), ac = 1 / (a - c), ad = 1 / (a - d), product = a * a * ab * ac * ad,
+                 part = a * product;
     result.volume = part;
-    g[o[0]] = part * (3 / a - ab - ac - ad);
+    g[o[0]] = 3 * product - part * (ab + ac + ad);
     g[o[1]] = part * ab, g[o[2]] = part * ac, g[o[3]] = part * ad;
     return result;
   }
-  if (c >= 0) {
-    const double ad = 1 / (a - d), bd = 1 / (b - d), cd = 1 / (c - d), part = -d * d * d * ad * bd * cd;
+  if (c > 0) {
+    const double ad = 1 / (a - d), bd = 1 / (b - d), cd = 1 / (c - d), product = d * d * ad * bd * cd,
+                 part = -d * product;
     result.volume = 1 - part;
     g[o[0]] = part * ad, g[o[1]] = part * bd, g[o[2]] = part * cd;
-    g[o[3]] = -part * (3 / d + ad + bd + cd);
+    g[o[3]] = 3 * product - part * (ad + bd + cd);
     return result;
   }
   // What lies between the edge of two positive corners and the four points on the edges that are cut.

@@ -25,11 +25,14 @@ struct Reconstruction::Layer {
   std::vector<std::pair<Part, MaterialId>> pointless;
 };
 
-Reconstruction::Reconstruction(const MultiMaterialData& data, Progress& progress)
-    : Reconstruction(data, SiteValues(data), progress) {}
+Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
+                               Progress& progress)
+    : Reconstruction(data, SiteValues(data, options.smooth_labels), progress) {}
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress)
-    : agreement_(correct_volumes(data, values, progress)), lattice_(data, values) {
+    : agreement_(correct_volumes(data, values, progress)),
+      lost_bodies_(find_lost_bodies(data, values)),
+      lattice_(data, values) {
   const std::uint32_t layers = lattice_.points(2) - 1;
   mesh_.source = data.source;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());

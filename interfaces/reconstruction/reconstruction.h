@@ -9,10 +9,18 @@
 #include "core/base/progress.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/lost_bodies.h"
 #include "interfaces/reconstruction/material_lattice.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
 namespace adamas {
+
+struct ReconstructionOptions {
+  /// Of labels: lets interfaces run through the staircase of voxel faces, within half a voxel of it along
+  /// each axis, and gives each material the volume of its voxels (smooth_label_values()). Refused for
+  /// fractions.
+  bool smooth_labels = false;
+};
 
 /// Material interfaces reconstructed from volume fractions: where the greatest of linearly interpolated
 /// values changes from one material to another (as in Bonnell et al., Material interface reconstruction,
@@ -21,7 +29,9 @@ namespace adamas {
 /// lattice, exactly.
 class Reconstruction {
  public:
-  explicit Reconstruction(const MultiMaterialData& data, Progress& progress = SilentProgress::instance());
+  /// Throws Error where the options do not suit the data.
+  explicit Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options = {},
+                          Progress& progress = SilentProgress::instance());
 
   [[nodiscard]] const InterfaceMesh& mesh() const { return mesh_; }
   /// Bodies in front and behind each triangle of the mesh.
@@ -39,6 +49,8 @@ class Reconstruction {
   }
   /// How well volumes agree cell by cell.
   [[nodiscard]] const VolumeAgreement& agreement() const { return agreement_; }
+  /// What the fractions hold and the interfaces do not show.
+  [[nodiscard]] const std::vector<LostBody>& lost_bodies() const { return lost_bodies_; }
 
  private:
   /// A part of a material's region: the lattice point it holds, or a number above all points for a part that
@@ -67,6 +79,7 @@ class Reconstruction {
   Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress);
 
   VolumeAgreement agreement_;
+  std::vector<LostBody> lost_bodies_;
   MaterialLattice lattice_;
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> bodies_;

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/vec3.h"
+#include "core/geometry/convex_polyhedron.h"
+#include "core/geometry/divider.h"
 #include "interfaces/reconstruction/material_lattice.h"
 
 namespace adamas {
 
 namespace {
-
-using Tetrahedron4 = std::array<Vec3, 4>;
 
 /// Beyond so many different cells none is kept.
 constexpr std::size_t kMostCells = 4096;
@@ -21,41 +20,27 @@ double rounded(double x) {
   return std::round(x * kSteps) / kSteps;
 }
 
-/// Replaces tetrahedra by those that fill their parts where sign * x[axis] <= sign * wall.
-void clip(std::vector<Tetrahedron4>& all, int axis, double wall, double sign,
-          std::vector<Tetrahedron4>& scratch) {
-  scratch.clear();
-  for (const Tetrahedron4& t : all) {
-    std::array<double, 4> d{};
-    std::array<std::size_t, 4> order{0, 1, 2, 3};
-    for (std::size_t i = 0; i < 4; ++i) d[i] = sign * (wall - t[i][axis]);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return d[a] > d[b]; });
-    const auto inside =
-        static_cast<std::size_t>(std::count_if(d.begin(), d.end(), [](double x) { return x > 0; }));
-    const bool whole = d[order[3]] >= 0;
-    if (whole && inside > 0) scratch.push_back(t);
-    if (whole || inside == 0) continue;
-    const auto corner = [&](std::size_t i) { return t[order[i]]; };
-    const auto cut = [&](std::size_t i, std::size_t j) {
-      const double a = d[order[i]], b = d[order[j]];
-      if (b == 0) return corner(j);
-      Vec3 p = corner(i) + (a / (a - b)) * (corner(j) - corner(i));
-      p[axis] = wall;
-      return p;
-    };
-    if (inside == 1) {
-      scratch.push_back({corner(0), cut(0, 1), cut(0, 2), cut(0, 3)});
-    } else if (inside == 2) {
-      scratch.push_back({corner(0), corner(1), cut(1, 2), cut(1, 3)});
-      scratch.push_back({corner(0), cut(0, 2), cut(0, 3), cut(1, 3)});
-      scratch.push_back({corner(0), cut(0, 2), cut(1, 2), cut(1, 3)});
-    } else {
-      scratch.push_back({corner(0), corner(1), corner(2), cut(2, 3)});
-      scratch.push_back({corner(0), corner(1), cut(1, 3), cut(2, 3)});
-      scratch.push_back({corner(0), cut(0, 3), cut(1, 3), cut(2, 3)});
-    }
+/// What is smaller, as a part of its cell, is round-off.
+constexpr double kLeastVolume = 1e-13;
+
+/// Leaves what lies where a linear function with these values at the tetrahedron's corners is positive;
+/// false where that is nothing.
+bool keep_positive(const std::array<double, 4>& values, ConvexPolyhedron& polyhedron) {
+  const std::vector<Weights>& corners = polyhedron.corners();
+  std::vector<double> d(corners.size());
+  std::vector<char> positive(corners.size());
+  std::size_t above = 0, below = 0;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    d[c] = rounded(evaluate(values, corners[c]));
+    positive[c] = d[c] > 0 ? 1 : 0;
+    above += d[c] > 0 ? 1 : 0;
+    below += d[c] < 0 ? 1 : 0;
   }
-  all.swap(scratch);
+  if (above == 0 || below == 0) return above > 0;
+  ConvexPolyhedron kept, rest;
+  polyhedron.cut(d, positive, kept, rest);
+  polyhedron = kept;
+  return true;
 }
 
 }  // namespace
@@ -111,7 +96,6 @@ void SiteCells::make(const std::array<Shape, 3>& shapes, SiteCell& cell) {
   cell.nodes.clear();
   cell.parts.clear();
   std::map<std::array<double, 3>, std::uint16_t> numbers;
-  std::vector<Tetrahedron4> pieces, scratch;
   for (unsigned octant = 0; octant < 8; ++octant) {
     // Coordinates run from 0 to 1 in the lattice cell, whose lowest corner is the neighbour `first`.
     std::array<Side, 3> sides;
@@ -125,48 +109,41 @@ void SiteCells::make(const std::array<Shape, 3>& shapes, SiteCell& cell) {
     }
     if (measure == 0) continue;
     for (const auto& path : MaterialLattice::kPaths) {
-      Tetrahedron4 whole{};
-      for (std::size_t step = 0; step < 3; ++step) {
-        for (std::size_t c = step + 1; c < 4; ++c) whole[c][path[step]] = 1;
-      }
-      pieces.assign(1, whole);
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
+      ConvexPolyhedron inside = ConvexPolyhedron::unit();
+      bool empty = false;
+      for (std::size_t step = 0; step < 3 && !empty; ++step) {
+        const auto a = static_cast<std::size_t>(path[step]);
         const double reach = sides[a].reach;
-        if (reach >= 1) continue;
-        if (first[a] == 0) {
-          clip(pieces, axis, reach, 1, scratch);
-        } else {
-          clip(pieces, axis, 1 - reach, -1, scratch);
-        }
-      }
-      for (const Tetrahedron4& piece : pieces) {
-        SiteCell::Part part{};
-        part.volume = measure * std::abs(signed_volume(piece[0], piece[1], piece[2], piece[3]));
-        if (part.volume == 0) continue;
+        // Along this axis the corners up to that of the step are at 0, the others at 1.
+        Weights distances{};
         for (std::size_t c = 0; c < 4; ++c) {
-          const Vec3& p = piece[c];
-          const std::array<double, 3> place{p.x + first[0], p.y + first[1], p.z + first[2]};
-          const auto [at, fresh] = numbers.try_emplace(place, static_cast<std::uint16_t>(cell.nodes.size()));
-          if (fresh) {
-            // Down the path the weights are the steps between coordinates.
-            SiteCell::Node node{};
-            std::array<int, 3> corner = first;
-            double before = 1;
-            for (std::size_t step = 0; step < 4; ++step) {
-              const double x = step < 3 ? p[path[step]] : 0;
-              node.points[step] =
-                  static_cast<std::uint8_t>(corner[0] + 1 + 3 * (corner[1] + 1) + 9 * (corner[2] + 1));
-              node.weights[step] = before - x;
-              before = x;
-              if (step < 3) ++corner[static_cast<std::size_t>(path[step])];
-            }
-            cell.nodes.push_back(node);
+          const double x = c > step ? 1 : 0;
+          distances[c] = first[a] == 0 ? reach - x : x - (1 - reach);
+        }
+        if (reach < 1) empty = !keep_positive(distances, inside);
+      }
+      if (empty) continue;
+      inside.for_each_tetrahedron([&](const std::array<Weights, 4>& corners) {
+        SiteCell::Part part{{}, measure / 6 * std::abs(volume_fraction(corners))};
+        if (part.volume < kLeastVolume) return;
+        for (std::size_t c = 0; c < 4; ++c) {
+          SiteCell::Node node{};
+          std::array<int, 3> corner = first;
+          std::array<double, 3> place{};
+          for (std::size_t step = 0; step < 4; ++step) {
+            node.points[step] =
+                static_cast<std::uint8_t>(corner[0] + 1 + 3 * (corner[1] + 1) + 9 * (corner[2] + 1));
+            node.weights[step] = corners[c][step];
+            for (std::size_t a = 0; a < 3; ++a) place[a] += node.weights[step] * corner[a];
+            if (step < 3) ++corner[static_cast<std::size_t>(path[step])];
           }
+          for (double& x : place) x = rounded(x);
+          const auto [at, fresh] = numbers.try_emplace(place, static_cast<std::uint16_t>(cell.nodes.size()));
+          if (fresh) cell.nodes.push_back(node);
           part.nodes[c] = at->second;
         }
         cell.parts.push_back(part);
-      }
+      });
     }
   }
 }

@@ -8,18 +8,18 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
+#include "interfaces/reconstruction/label_smoothing.h"
 
 namespace adamas {
 
 namespace {
 
-using Entry = SiteValues::Entry;
+/// The least values of smoothed labels, in voxels: too small for the eye, and far above round-off.
+constexpr double kLeastOfLabels = 0.02;
 
 }  // namespace
 
-SiteValues::SiteValues(const MultiMaterialData& data) {
-  const GridSites sites(data.grid);
-  const std::size_t count = data.grid.site_count();
+SiteValues::SiteValues(const MultiMaterialData& data, bool smooth) {
   double widest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const auto& x = data.grid.nodes[static_cast<std::size_t>(axis)];
@@ -27,6 +27,18 @@ SiteValues::SiteValues(const MultiMaterialData& data) {
   }
   far_ = -32 * widest;
   find_entries(data);
+  if (!smooth) {
+    set_distances(data);
+    return;
+  }
+  if (data.labels.empty()) fail("{}: expected labels to smooth, found volume fractions", data.source);
+  least_ = kLeastOfLabels * data.grid.least_spacing();
+  smooth_label_values(data, *this);
+}
+
+/// Distances from the planes that cut off each mixed cell's fractions.
+void SiteValues::set_distances(const MultiMaterialData& data) {
+  const GridSites sites(data.grid);
   const std::vector<InterfacePlane> planes = interface_planes(data, *this);
   parallel_for(mixed_.size(), 1024, [&](std::size_t n) {
     const Vec3 size = sites.cell(mixed_[n]).size();
@@ -38,7 +50,7 @@ SiteValues::SiteValues(const MultiMaterialData& data) {
     }
   });
   // Beside them: the mean of what their planes say, on the right side.
-  parallel_for(count, 4096, [&](std::size_t site) {
+  parallel_for(data.grid.site_count(), 4096, [&](std::size_t site) {
     if (first_[site] == first_[site + 1]) return;
     const Vec3 centre = sites.position(site), size = sites.cell(site).size();
     const double half = 0.5 * std::min({size.x, size.y, size.z});

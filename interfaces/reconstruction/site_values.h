@@ -23,8 +23,9 @@ class SiteValues {
     [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
   };
 
-  /// Values from the planes that cut off each mixed cell's fractions.
-  explicit SiteValues(const MultiMaterialData& data);
+  /// Values from the planes that cut off each mixed cell's fractions; of labels, with `smooth`, those of
+  /// smooth_label_values().
+  explicit SiteValues(const MultiMaterialData& data, bool smooth = false);
 
   [[nodiscard]] std::span<const Entry> at(std::size_t site) const {
     return {entries_.data() + first_[site], entries_.data() + first_[site + 1]};
@@ -42,10 +43,14 @@ class SiteValues {
   [[nodiscard]] double far() const { return far_; }
   /// What no value is greater than.
   [[nodiscard]] double greatest() const { return -far_ / 8; }
+  /// What no value of labels that are smoothed may be nearer to zero than, so that sites keep their labels; 0
+  /// of other data.
+  [[nodiscard]] double least() const { return least_; }
   /// Sites where two materials or more have a fraction, in order.
   [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
 
  private:
+  void set_distances(const MultiMaterialData& data);
   void find_entries(const MultiMaterialData& data);
 
   std::vector<MaterialId> by_name_;
@@ -53,7 +58,7 @@ class SiteValues {
   std::vector<std::uint32_t> first_;
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> mixed_;
-  double far_ = 0;
+  double far_ = 0, least_ = 0;
 };
 
 /// The value at a lattice point on the border, beyond the sites, `step` times as far from the nearest as that

@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
+#include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/linear_system.h"
 
 namespace adamas {
@@ -17,23 +18,30 @@ using Entry = SiteValues::Entry;
 
 /// Sweeps over cells that are far off, rounds of the method for all, steps of each, and rounds that close
 /// totals.
-constexpr int kMostSweeps = 6, kMostRounds = 16, kMostClosings = 6;
+constexpr int kMostSweeps = 6, kMostRounds = 16, kMostClosings = 12;
 /// A cell is far off where a volume differs by more than this part of the cell's.
 constexpr double kFarOff = 0.03;
 /// Cells that differ by more are counted.
 constexpr double kCellOff = 1e-3;
-/// Rounds end when no more mixed cells, as a part of all, are off, or when the sum of squares gains less.
-constexpr double kMostOff = 8e-3, kLeastGain = 0.01;
+/// Rounds end when no more mixed cells, as a part of all, are off, or when both their number and the sum of
+/// squares gain less.
+constexpr double kMostOff = 8e-3, kLeastGain = 0.02;
 /// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
 /// would make the surface rough.
 constexpr double kDamping = 1e-4;
+/// Steps are not halved below this, and moves that are smaller, in cells, leave what was measured as it is.
+constexpr double kLeastShare = 0.1, kStill = 1e-6;
 /// Of the domain.
 constexpr double kTotalTolerance = 2e-11;
 
 class Correction {
  public:
   Correction(const MultiMaterialData& data, SiteValues& values)
-      : data_(data), values_(values), cells_(data.grid), step_(data.grid.least_spacing()) {
+      : data_(data),
+        values_(values),
+        grid_sites_(data.grid),
+        cells_(data.grid),
+        step_(data.grid.least_spacing()) {
     const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
     row_of_.push_back(0);
     for (const std::uint32_t site : values.mixed()) {
@@ -43,12 +51,14 @@ class Correction {
   }
 
   void run(Progress& progress) {
+    changed_.assign(data_.grid.site_count(), 0);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       progress.step("correcting volumes", -1);
       std::size_t off = 0;
-      for (const auto& sites : colours_) off += correct(sites);
+      for (int colour = 0; colour < 8; ++colour) off += correct(colour, 1 + 8 * sweep + colour);
       if (off == 0) break;
     }
+    std::fill(changed_.begin(), changed_.end(), 0);
     find_unknowns();
     correct_all(progress);
     close_totals(progress);
@@ -75,7 +85,7 @@ class Correction {
   }
 
  private:
-  static constexpr std::size_t kChunk = 64;
+  static constexpr std::size_t kChunk = 64, kBlock = 8;
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   [[nodiscard]] std::span<const Entry> entries(std::size_t site) const {
@@ -89,13 +99,28 @@ class Correction {
     return greatest;
   }
 
-  /// Corrects those that are far off of sites that do not touch each other, one by one; returns how many
-  /// were. What has no surface yet in a cell that should hold one gets it here.
-  std::size_t correct(const std::vector<std::uint32_t>& sites) {
+  /// Whether a value at a site or a neighbour has changed since some time.
+  [[nodiscard]] bool has_changed(std::size_t site, int since) const {
+    bool changed = changed_[site] >= since;
+    grid_sites_.for_each_neighbour(
+        site, [&](std::size_t other, int, int, int) { changed = changed || changed_[other] >= since; });
+    return changed;
+  }
+
+  /// Corrects those that are far off of sites of a colour, which do not touch each other, one by one; returns
+  /// how many were. What has no surface yet in a cell that should hold one gets it here. `now` counts up;
+  /// only what has changed since the colour's last turn is looked at.
+  std::size_t correct(int colour, int now) {
+    const auto& sites = colours_[static_cast<std::size_t>(colour)];
     std::vector<std::size_t> off((sites.size() + kChunk - 1) / kChunk);
     parallel_chunks(sites.size(), kChunk, [&](std::size_t begin, std::size_t end) {
       CellVolumes cell(data_.grid, values_, cells_);
-      for (std::size_t n = begin; n < end; ++n) off[begin / kChunk] += correct(sites[n], cell) ? 1 : 0;
+      for (std::size_t n = begin; n < end; ++n) {
+        if (now > 8 && !has_changed(sites[n], now - 8)) continue;
+        if (!correct(sites[n], cell)) continue;
+        changed_[sites[n]] = now;
+        ++off[begin / kChunk];
+      }
     });
     std::size_t sum = 0;
     for (const std::size_t n : off) sum += n;
@@ -144,93 +169,104 @@ class Correction {
         if (entry.fraction <= 0) continue;
         unknown_of_[index_of(entry)] = static_cast<std::uint32_t>(unknowns_.size());
         unknowns_.push_back(static_cast<std::uint32_t>(index_of(entry)));
+        site_of_.push_back(site);
       }
     }
   }
   [[nodiscard]] std::size_t index_of(const Entry& entry) const {
     return static_cast<std::size_t>(&entry - values_.entries().data());
   }
-  [[nodiscard]] std::uint32_t unknown(std::size_t site, std::uint16_t material) const {
-    for (const Entry& entry : entries(site)) {
-      if (entry.material == material) return unknown_of_[index_of(entry)];
-    }
-    return kNone;
+  [[nodiscard]] std::uint32_t unknown(std::uint32_t entry) const {
+    return entry == CellVolumes::kNone ? kNone : unknown_of_[entry];
   }
 
   /// Moves all values together, until most volumes are right: Gauss and Newton's method with steps that are
   /// halved where they lead too far.
   void correct_all(Progress& progress) {
-    std::vector<double> move;
-    double best = 0, share = 1;
-    for (int round = 0; round < kMostRounds && !unknowns_.empty(); ++round) {
+    if (unknowns_.empty()) return;
+    LinearSystem system;
+    system.missing.resize(row_of_.back());
+    linearise(system);
+    double best = sum_of_squares(system.missing);
+    std::size_t off = system.cells_off();
+    for (int round = 0; round < kMostRounds; ++round) {
       progress.step("correcting volumes", static_cast<double>(round) / kMostRounds);
-      const LinearSystem system = linearise();
-      const double sum = sum_of_squares(system.missing);
-      if (round > 0 && sum > best) {
+      if (static_cast<double>(off) <= kMostOff * static_cast<double>(values_.mixed().size())) return;
+      std::vector<double> move = system.solve(unknowns_.size(), kDamping / (step_ * step_));
+      for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
+      double share = 1;
+      apply(move, share);
+      linearise(system);
+      double sum = sum_of_squares(system.missing);
+      while (sum > best && share > kLeastShare) {
         share *= 0.5;
         apply(move, -share);
-        if (share < 0.1) {
-          apply(move, -share);
-          return;
-        }
-        continue;
+        linearise(system);
+        sum = sum_of_squares(system.missing);
       }
-      const bool settled = round > 0 && sum > (1 - kLeastGain) * best;
-      best = sum;
-      if (settled ||
-          static_cast<double>(system.cells_off) <= kMostOff * static_cast<double>(values_.mixed().size()))
+      if (sum > best) {
+        apply(move, -share);
         return;
-      move = system.solve(unknowns_.size(), kDamping / (step_ * step_));
-      for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
-      share = 1;
-      apply(move, share);
+      }
+      const std::size_t off_before = off;
+      off = system.cells_off();
+      const bool settled = sum > (1 - kLeastGain) * best &&
+                           static_cast<double>(off) > (1 - kLeastGain) * static_cast<double>(off_before);
+      best = sum;
+      if (settled) return;
     }
   }
 
   void apply(const std::vector<double>& move, double share) {
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-      double& value = values_.entries()[unknowns_[i]].value;
-      value += share * move[i];
+      const double by = share * move[i];
+      values_.entries()[unknowns_[i]].value += by;
+      if (std::abs(by) > kStill * step_) changed_[site_of_[i]] = 1;
     }
   }
 
-  [[nodiscard]] LinearSystem linearise() const {
+  /// Brings a system up to date where values have changed.
+  void linearise(LinearSystem& system) {
     const auto& mixed = values_.mixed();
-    std::vector<LinearSystem> chunks((mixed.size() + kChunk - 1) / kChunk);
-    LinearSystem system;
-    system.missing.resize(row_of_.back());
-    parallel_chunks(mixed.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-      LinearSystem& part = chunks[begin / kChunk];
+    const bool fresh = system.blocks.empty();
+    system.blocks.resize((mixed.size() + kBlock - 1) / kBlock);
+    parallel_chunks(mixed.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      if (!fresh && std::none_of(mixed.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 mixed.begin() + static_cast<std::ptrdiff_t>(end),
+                                 [&](std::uint32_t site) { return has_changed(site, 1); }))
+        return;
+      LinearSystem::Block& block = system.blocks[begin / kBlock];
+      block.exchanges.clear();
+      block.coefficients.clear();
+      block.cells_off = 0;
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
         const std::span<const Entry> own = entries(mixed[n]);
         cell.go_to(mixed[n]);
         const std::vector<double>& volumes = cell.measure(true);
-        part.cells_off += greatest_difference(own, volumes) > kCellOff ? 1 : 0;
+        block.cells_off += greatest_difference(own, volumes) > kCellOff ? 1 : 0;
         for (std::size_t m = 0; m < own.size(); ++m)
           system.missing[row_of_[n] + m] = static_cast<double>(own[m].fraction) - volumes[m];
-        for (const CellVolumes::Pair& pair : cell.pairs()) add_exchange(own, cell, pair, row_of_[n], part);
+        for (const CellVolumes::Pair& pair : cell.pairs()) add_exchange(cell, pair, row_of_[n], block);
       }
     });
-    for (const LinearSystem& part : chunks) system.append(part);
-    return system;
+    std::fill(changed_.begin(), changed_.end(), 0);
   }
 
-  void add_exchange(std::span<const Entry> own, const CellVolumes& cell, const CellVolumes::Pair& pair,
-                    std::uint32_t row, LinearSystem& system) const {
-    const auto first = static_cast<std::uint32_t>(system.coefficients.size());
+  void add_exchange(const CellVolumes& cell, const CellVolumes::Pair& pair, std::uint32_t row,
+                    LinearSystem::Block& block) const {
+    const auto first = static_cast<std::uint32_t>(block.coefficients.size());
     for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
-      const auto site = cell.neighbour(n);
-      if (!site || pair.growth[n] == 0) continue;
+      if (pair.growth[n] == 0) continue;
       const auto by = static_cast<float>(pair.growth[n]);
-      const std::uint32_t gains = unknown(*site, own[pair.first].material),
-                          loses = unknown(*site, own[pair.second].material);
-      if (gains != kNone) system.coefficients.push_back({gains, by});
-      if (loses != kNone) system.coefficients.push_back({loses, -by});
+      const std::uint32_t gains = unknown(cell.entry(pair.first, n)),
+                          loses = unknown(cell.entry(pair.second, n));
+      if (gains != kNone) block.coefficients.push_back({gains, by});
+      if (loses != kNone) block.coefficients.push_back({loses, -by});
     }
-    system.exchanges.push_back({row + static_cast<std::uint32_t>(pair.first),
-                                row + static_cast<std::uint32_t>(pair.second), first,
-                                static_cast<std::uint32_t>(system.coefficients.size()) - first});
+    block.exchanges.push_back({row + static_cast<std::uint32_t>(pair.first),
+                               row + static_cast<std::uint32_t>(pair.second), first,
+                               static_cast<std::uint32_t>(block.coefficients.size()) - first});
   }
 
   /// One offset per material, the same everywhere: Newton's method for the volumes in the whole domain.
@@ -251,16 +287,28 @@ class Correction {
       missing.array() -= missing.mean();
       const double scale = Eigen::VectorXd(growth.diagonal()).maxCoeff();
       if (!(scale > 0) || missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(growth + shift(count, 1e-9 * scale));
+      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(growth + diagonal(count, 1e-9 * scale));
       Eigen::VectorXd offsets = solver.solve(missing);
       offsets.array() -= offsets.mean();
       for (Entry& entry : values_.entries())
-        entry.value +=
-            std::clamp(offsets[static_cast<Eigen::Index>(entry.material)], -0.1 * step_, 0.1 * step_);
+        shift(entry,
+              std::clamp(offsets[static_cast<Eigen::Index>(entry.material)], -0.1 * step_, 0.1 * step_));
     }
   }
 
-  static Eigen::SparseMatrix<double> shift(Eigen::Index count, double by) {
+  /// Moves a value, which stays on its side where labels are smoothed.
+  void shift(Entry& entry, double by) const {
+    entry.value += by;
+    if (values_.least() == 0) return;
+    entry.value =
+        entry.fraction > 0 ? std::max(entry.value, values_.least()) : std::min(entry.value, -values_.least());
+  }
+  /// Whether an offset moves a value.
+  [[nodiscard]] bool moves(std::uint32_t entry) const {
+    return entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least();
+  }
+
+  static Eigen::SparseMatrix<double> diagonal(Eigen::Index count, double by) {
     Eigen::SparseMatrix<double> identity(count, count);
     identity.setIdentity();
     return by * identity;
@@ -294,7 +342,11 @@ class Correction {
           for (const CellVolumes::Pair& pair : cell.pairs()) {
             sum.pairs.push_back({own[pair.first].material, own[pair.second].material});
             double by = 0;
-            for (const double g : pair.growth) by += g;
+            for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+              const int movable = static_cast<int>(moves(cell.entry(pair.first, n))) +
+                                  static_cast<int>(moves(cell.entry(pair.second, n)));
+              by += 0.5 * movable * pair.growth[n];
+            }
             sum.growth.push_back(by * volume);
           }
         }
@@ -317,11 +369,14 @@ class Correction {
 
   const MultiMaterialData& data_;
   SiteValues& values_;
+  GridSites grid_sites_;
   SiteCells cells_;
   double step_;
+  std::vector<int> changed_;                           // by site: when last a sweep did
   std::array<std::vector<std::uint32_t>, 8> colours_;  // mixed sites that do not touch each other
   std::vector<std::uint32_t> row_of_;                  // of a mixed cell's volumes
   std::vector<std::uint32_t> unknowns_;                // entries that are moved
+  std::vector<std::uint32_t> site_of_;                 // of an unknown
   std::vector<std::uint32_t> unknown_of_;              // by entry
 };
 

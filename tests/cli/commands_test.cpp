@@ -305,6 +305,35 @@ TEST_F(Commands, QuietAndVerbose) {
   expect_wrong_usage({"resample", "scene.vtr", "--quiet", "--verbose"}, {"--quiet and --verbose"});
 }
 
+/// Every command that reconstructs takes the option: a slope of labels needs fewer tetrahedra and has less
+/// area.
+TEST_F(Commands, SmoothedLabels) {
+  std::string labels;
+  for (int i = 0; i < 1000; ++i)
+    labels += 2 * (i % 10) + 3 * (i / 10 % 10) + 4 * (i / 100) < 41 ? '\1' : '\2';
+  write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 10 10 10\nencoding: raw\n\n" + labels);
+  const auto figures = [this](std::vector<std::string> words, bool smooth) {
+    words.insert(words.end(), {"--labels", "a.nrrd", "--cells", "--json", "j.json"});
+    if (smooth) words.push_back("--smooth-labels");
+    const RunResult result = run(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_json("j.json");
+  };
+  const std::vector<std::string> resample{"resample", "a.nrrd", "--interface-error", "3%", "-o", "m.vtu"};
+  EXPECT_LT(2 * figures(resample, true).at("tetrahedra").get<int>(),
+            figures(resample, false).at("tetrahedra").get<int>());
+  const std::vector<std::string> reconstruct{"reconstruct", "a.nrrd", "-o", "o.vtp"};
+  EXPECT_NEAR(volume(figures(reconstruct, true), "1", "volume_reconstructed"),
+              volume(figures(reconstruct, false), "1", "volume_reconstructed"), 1e-6);
+  write("e.toml", "smooth-labels = true\ncells = true\nlabels = a.nrrd\ninterface-error = 3%\nplane = z=5\n");
+  run_well({"experiment", "-c", "e.toml", "-o", "e"});
+  EXPECT_EQ(read_json("e/metrics.json").at("curve").back().at("tetrahedra"),
+            figures(resample, true).at("tetrahedra"));
+  run_well({"slice", "a.nrrd", "--labels", "a.nrrd", "--cells", "--smooth-labels", "--plane", "z=5", "-o",
+            "s.png"});
+  run_well({"probe", "a.nrrd", "--labels", "a.nrrd", "--cells", "--smooth-labels", "--point", "5,5,5"});
+}
+
 TEST_F(Commands, ValuesOfCellsOrPoints) {
   // The lower half is one material: of 4 x 4 x 4 cells half, of points half of 3 x 3 x 3.
   std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nspacings: 1 1 1\nencoding: raw\n";

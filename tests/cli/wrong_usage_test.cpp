@@ -52,6 +52,9 @@ TEST_F(WrongUsage, OptionsThatWouldSayNothing) {
   expect_wrong_usage({"resample", "scene.vtr", "--tolerant", "-o", "n.vtu"}, {"--tolerant: expected given"});
   expect_wrong_usage({"resample", "scene.vtr", "--box", "0,1,0,1,0,1", "-o", "n.vtu"}, {"--box: expected"});
   expect_wrong_usage({"probe", "scene.vtr", "--tolerant"}, {"--tolerant: expected given interfaces"});
+  expect_wrong_usage({"reconstruct", "scene.vtr", "--smooth-labels", "-o", "n.vtp"},
+                     {"--smooth-labels: expected labels, found volume fractions in scene.vtr"});
+  expect_wrong_usage({"probe", "m.vtu", "--smooth-labels"}, {"--smooth-labels: expected"});
   expect_wrong_usage({"probe", "m.vtu", "--tolerant"}, {"--tolerant: expected given interfaces"});
   expect_wrong_usage({"info", "m.vtu", "--labels", "foo"}, {"--labels: expected data on a grid"});
   expect_wrong_usage({"info", "scene.vtr", "--region-names", "foo"}, {"--region-names: expected"});

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/data/multi_material_data.h"
+#include "core/geometry/vec3.h"
+#include "interfaces/reconstruction/site_values.h"
+
+namespace adamas {
+
+/// Cells that hold a material, by their fractions, of which their interfaces show nothing.
+struct LostBody {
+  MaterialId material;
+  double volume = 0;  ///< as the fractions say
+  std::size_t cells = 0;
+  Vec3 place;  ///< the middle of that volume
+};
+
+/// The connected groups of cells (by faces, edges and corners) with a fraction of a material above
+/// kFractionTrace that together have more than a thousandth of a cell of it, and in which the material owns
+/// nothing. In the order of their first cells. `values` must be of the same data.
+std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const SiteValues& values);
+
+}  // namespace adamas
