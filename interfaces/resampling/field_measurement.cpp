@@ -26,7 +26,7 @@ void Resampler::compute_rows(std::vector<std::pair<VertexId, BodyId>> needs) {
   }
 }
 
-void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
+void Resampler::measure_fields(const std::vector<TetrahedronId>& cells, DisplacedErrors wanted) {
   constexpr std::size_t kChunk = 512;
   std::vector<std::vector<std::pair<VertexId, BodyId>>> needs((cells.size() + kChunk - 1) / kChunk);
   parallel_chunks(cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
@@ -54,9 +54,9 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
     displaced[i] = measure_field_errors(source_, view(cells[i]), elements, cell.fields);
   });
   if (std::all_of(displaced.begin(), displaced.end(), [](const auto& d) { return d.empty(); })) return;
-  // Of displaced elements no more is asked than the target, or what the others have anyway.
   std::vector<double> limits(fields, 0.0);
-  for (std::size_t f = 0; f < fields; ++f) {
+  for (std::size_t f = 0; f < fields && wanted == DisplacedErrors::kWithinTargets; ++f) {
+    // No more is asked than the target, or what the others have anyway.
     for (const TetrahedronId t : cells) limits[f] = std::max(limits[f], hierarchy_.payload(t).fields[f].max);
     if (options_.field_errors[f]) limits[f] = *options_.field_errors[f];
   }
@@ -123,7 +123,7 @@ void Resampler::complete_fields() {
   if (!source_.fields) return;
   if (!fields_active_) {
     fields_active_ = true;
-    measure_fields(leaves());
+    measure_fields(leaves(), DisplacedErrors::kLeast);
   }
 }
 

@@ -106,7 +106,9 @@ class Resampler {
   void cells_in_box(const Box3& box, MaterialId material,
                     const std::function<void(TetrahedronId)>& visit) const;
   [[nodiscard]] bool may_hold(TetrahedronId t, MaterialId material) const;
-  void measure_fields(const std::vector<TetrahedronId>& cells);
+  /// How far the least error of a displaced element is looked for.
+  enum class DisplacedErrors { kWithinTargets, kLeast };
+  void measure_fields(const std::vector<TetrahedronId>& cells, DisplacedErrors displaced);
   void compute_rows(std::vector<std::pair<VertexId, BodyId>> needs);
   [[nodiscard]] Priority priority(TetrahedronId t) const;
   [[nodiscard]] bool wants_split(TetrahedronId t) const;
