@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -79,6 +81,13 @@ class Resampler {
   [[nodiscard]] RefinementEnd interface_end() const { return interface_end_; }
   /// Whether the greatest number of tetrahedra has stopped refinement.
   [[nodiscard]] bool budget_spent() const { return budget_spent_; }
+  /// The native elements in a tetrahedron of the tree, leaf or not.
+  [[nodiscard]] std::span<const std::uint32_t> elements(TetrahedronId t) const;
+  /// How far the mesh may have moved the place of an element: the greater of the interface errors wanted and
+  /// certified.
+  [[nodiscard]] double displacement() const {
+    return distance_ ? std::max(options_.interface_error, distance_->upper) : options_.interface_error;
+  }
   /// The leaf that holds a point.
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
   /// The body that owns a point in the mesh.
