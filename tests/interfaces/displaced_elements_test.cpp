@@ -11,7 +11,7 @@ namespace adamas {
 namespace {
 
 /// Samples of a box per axis.
-constexpr int kSamples = 10;
+constexpr int kSamples = 5;
 /// All corners of a cell's regions are looked at where it has no more planes than this.
 constexpr std::size_t kMostPlanes = 40;
 
