@@ -23,10 +23,10 @@ RelativeErrors relative_errors(const ComparedMesh& row, const ResamplingSource& 
     const FieldInfo& info = source.fields->fields()[f];
     const double range = info.max - info.min;
     const auto& [all, near] = row.figures.fields[f];
-    if (!(range > 0) || all.count == 0) continue;
+    if (!(range > 0) || all.count() == 0) continue;
     raise(result.max, all.max / range);
     raise(result.mean, all.mean() / range);
-    if (near.count == 0) continue;
+    if (near.count() == 0) continue;
     raise(result.interface_max, near.max / range);
     raise(result.interface_mean, near.mean() / range);
   }

@@ -121,10 +121,26 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   note_bodies(m, resampler.source(), console);
 }
 
+/// How many elements of each kind the errors are of; once where they are the same for all fields.
+void print_elements(const ResampleFigures& m, const FieldSource& source, Console& console) {
+  std::vector<std::string> texts;
+  for (const FieldFigures& field : m.fields) {
+    const FieldError& e = field.all;
+    texts.push_back(fmt::format("{} pure, {} mixed, {} minority; {} of them displaced; {} without a value",
+                                e.counts[0], e.counts[1], e.counts[2], e.displaced, e.without_value));
+  }
+  if (std::all_of(texts.begin(), texts.end(), [&](const std::string& text) { return text == texts[0]; })) {
+    console.print("  elements: {}\n", texts[0]);
+    return;
+  }
+  for (std::size_t f = 0; f < texts.size(); ++f)
+    console.print("  elements of {}: {}\n", source.fields()[f].name, texts[f]);
+}
+
 void print_fields(const ResampleFigures& m, const Resampler& resampler, Console& console) {
   if (m.fields.empty()) return;
   const auto text = [](const FieldError& e, double value) {
-    return e.count > 0 ? fmt::format("{:.4g}", value) : std::string("-");
+    return e.count() > 0 ? fmt::format("{:.4g}", value) : std::string("-");
   };
   std::vector<std::vector<std::string>> rows{
       {"field error", "wanted", "greatest", "mean", "at interfaces", "mean there"}};
@@ -138,6 +154,7 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
   }
   console.print("\n");
   console.table(rows);
+  print_elements(m, *resampler.source().fields, console);
   for (std::size_t f = 0; f < m.fields.size(); ++f) {
     const FieldError& all = m.fields[f].all;
     const auto shortfall = field_shortfall(resampler, f, all);

@@ -89,7 +89,7 @@ Figures field_figures(const ResampleFigures& measured, const Resampler& resample
     const auto& target = resampler.options().field_errors[f];
     Figures figure = field_error_figures(measured.fields[f]);
     figure["target"] = known(target.has_value(), target.value_or(0));
-    figure["reached"] = target && all.count > 0 ? Figures(all.max <= *target) : Figures(nullptr);
+    figure["reached"] = target && all.count() > 0 ? Figures(all.max <= *target) : Figures(nullptr);
     figure["shortfall"] = shortfall_figures(field_shortfall(resampler, f, all));
     figures[resampler.source().fields->fields()[f].name] = std::move(figure);
   }
@@ -171,10 +171,18 @@ std::vector<MaterialId> lost_materials(const ResampleFigures& measured, const Re
 
 Figures field_error_figures(const FieldFigures& errors) {
   const auto& [all, near] = errors;
-  return {{"max_error", known(all.count > 0, all.max)},
-          {"mean_error", known(all.count > 0, all.mean())},
-          {"interface_max_error", known(near.count > 0, near.max)},
-          {"interface_mean_error", known(near.count > 0, near.mean())}};
+  const auto of_kind = [&all = all](ElementKind kind) { return all.counts[static_cast<std::size_t>(kind)]; };
+  return {{"max_error", known(all.count() > 0, all.max)},
+          {"mean_error", known(all.count() > 0, all.mean())},
+          {"reducible_max_error", known(all.count() > 0, all.reducible)},
+          {"interface_max_error", known(near.count() > 0, near.max)},
+          {"interface_mean_error", known(near.count() > 0, near.mean())},
+          {"elements",
+           {{"pure", of_kind(ElementKind::kPure)},
+            {"mixed", of_kind(ElementKind::kMixed)},
+            {"minority", of_kind(ElementKind::kMinority)},
+            {"displaced", all.displaced},
+            {"without_value", all.without_value}}}};
 }
 
 Figures volume_figures(const ResamplingSource& source, const IdVector<MaterialId, double>& volumes) {

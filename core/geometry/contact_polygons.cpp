@@ -302,8 +302,8 @@ class ContactFinder {
     const std::size_t count = equal.size();
     std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count),
               [&](auto x, auto y) { return comes_first(x, y); });
-    Weights w{};
-    double sum = 0;
+    std::array<long double, 4> parts{};
+    long double sum = 0;
     bool negative = false;
     for (std::size_t vertex = 0; vertex < 4; ++vertex) {
       if ((zeros >> vertex & 1u) != 0) continue;
@@ -315,12 +315,13 @@ class ContactFinder {
         }
         rows[r][column] = 1;
       }
-      w[vertex] = determinant_value(rows, count);
-      if (negative) w[vertex] = -w[vertex];
+      parts[vertex] = determinant_value(rows, count);
+      if (negative) parts[vertex] = -parts[vertex];
       negative = !negative;
-      sum += w[vertex];
+      sum += parts[vertex];
     }
-    for (double& x : w) x = std::max(0.0, x / sum);
+    Weights w{};
+    for (std::size_t v = 0; v < 4; ++v) w[v] = std::max(0.0, static_cast<double>(parts[v] / sum));
     return w;
   }
 

@@ -8,45 +8,67 @@ namespace adamas {
 
 namespace {
 
-/// A number as a sum of doubles, by ascending size, without zeros and without overlaps.
-using Expansion = std::vector<double>;
+/// A number as a sum of floating-point numbers, by ascending size, without zeros and without overlaps.
+template <class Real>
+using Expansion = std::vector<Real>;
+
+/// Products of four doubles, and the rounding errors of these, are within the range of these numbers.
+using Wide = long double;
+static_assert(std::numeric_limits<Wide>::min_exponent < -8000 &&
+              std::numeric_limits<Wide>::max_exponent > 8000);
+
+/// Whether products of the entries, and their rounding errors, are within the range of doubles.
+bool is_ordinary(const SmallMatrix& matrix, std::size_t n) {
+  constexpr double kLeast = 0x1p-200, kGreatest = 0x1p200;
+  for (std::size_t row = 0; row < n; ++row) {
+    for (std::size_t column = 0; column < n; ++column) {
+      const double size = std::abs(matrix[row][column]);
+      if (size != 0 && !(size > kLeast && size < kGreatest)) return false;
+    }
+  }
+  return true;
+}
 
 /// a + b less its rounded sum, exactly.
-double rounding_error(double a, double b, double sum) {
-  const double from_b = sum - a, from_a = sum - from_b;
+template <class Real>
+Real rounding_error(Real a, Real b, Real sum) {
+  const Real from_b = sum - a, from_a = sum - from_b;
   return (a - from_a) + (b - from_b);
 }
 
 /// Appends the rounding error of a + b, if any, and returns the rounded sum.
-double add(double a, double b, Expansion& errors) {
-  const double sum = a + b, error = rounding_error(a, b, sum);
+template <class Real>
+Real add(Real a, Real b, Expansion<Real>& errors) {
+  const Real sum = a + b, error = rounding_error(a, b, sum);
   if (error != 0) errors.push_back(error);
   return sum;
 }
 
-Expansion sum_of(const Expansion& e, const Expansion& f) {
+template <class Real>
+Expansion<Real> sum_of(const Expansion<Real>& e, const Expansion<Real>& f) {
   if (e.empty()) return f;
   if (f.empty()) return e;
-  Expansion result;
+  Expansion<Real> result;
   result.reserve(e.size() + f.size());
   std::size_t i = 0, j = 0;
   const auto next = [&] {
     return j == f.size() || (i < e.size() && std::abs(e[i]) < std::abs(f[j])) ? e[i++] : f[j++];
   };
-  double carried = next();
+  Real carried = next();
   while (i < e.size() || j < f.size()) carried = add(carried, next(), result);
   if (carried != 0) result.push_back(carried);
   return result;
 }
 
-Expansion product_of(const Expansion& e, double factor) {
-  Expansion result;
+template <class Real>
+Expansion<Real> product_of(const Expansion<Real>& e, Real factor) {
+  Expansion<Real> result;
   if (factor == 0) return result;
   result.reserve(2 * e.size());
-  double carried = 0;
-  for (const double part : e) {
-    const double high = part * factor, low = std::fma(part, factor, -high);
-    const double middle = add(carried, low, result);
+  Real carried = 0;
+  for (const Real part : e) {
+    const Real high = part * factor, low = std::fma(part, factor, -high);
+    const Real middle = add(carried, low, result);
     carried = add(high, middle, result);
   }
   if (carried != 0) result.push_back(carried);
@@ -73,13 +95,27 @@ Number determinant(std::size_t n, const Number& zero, const Number& one, Accumul
   return minors[(1u << n) - 1];
 }
 
-Expansion exact_determinant(const SmallMatrix& matrix, std::size_t n) {
-  return determinant<Expansion>(
-      n, Expansion{}, Expansion{1},
-      [&](Expansion& sum, const Expansion& minor, std::size_t row, std::size_t column, bool negative) {
-        const double entry = matrix[row][column];
+template <class Real>
+Expansion<Real> exact_determinant(const SmallMatrix& matrix, std::size_t n) {
+  using Number = Expansion<Real>;
+  return determinant<Number>(
+      n, Number{}, Number{1},
+      [&](Number& sum, const Number& minor, std::size_t row, std::size_t column, bool negative) {
+        const Real entry = matrix[row][column];
         sum = sum_of(sum, product_of(minor, negative ? -entry : entry));
       });
+}
+
+template <class Real>
+int sign_of(const Expansion<Real>& number) {
+  return number.empty() ? 0 : number.back() > 0 ? 1 : -1;
+}
+
+template <class Real>
+Real value_of(const Expansion<Real>& number) {
+  Real sum = 0;
+  for (const Real part : number) sum += part;
+  return sum;
 }
 
 /// A sum and the sum of the sizes of its terms.
@@ -164,21 +200,20 @@ void reduce(SmallMatrix& matrix, std::size_t& n) {
 
 int determinant_sign(SmallMatrix matrix, std::size_t n) {
   reduce(matrix, n);
+  if (!is_ordinary(matrix, n)) return sign_of(exact_determinant<Wide>(matrix, n));
   const auto [value, error] = rounded_determinant(matrix, n);
   if (value > error) return 1;
   if (value < -error) return -1;
   if (error == 0) return 0;
-  const Expansion exact = exact_determinant(matrix, n);
-  return exact.empty() ? 0 : exact.back() > 0 ? 1 : -1;
+  return sign_of(exact_determinant<double>(matrix, n));
 }
 
-double determinant_value(SmallMatrix matrix, std::size_t n) {
+long double determinant_value(SmallMatrix matrix, std::size_t n) {
   reduce(matrix, n);
+  if (!is_ordinary(matrix, n)) return value_of(exact_determinant<Wide>(matrix, n));
   const auto [value, error] = rounded_determinant(matrix, n);
   if (error <= 5e-13 * std::abs(value)) return value;
-  double sum = 0;
-  for (const double part : exact_determinant(matrix, n)) sum += part;
-  return sum;
+  return value_of(exact_determinant<double>(matrix, n));
 }
 
 }  // namespace adamas

@@ -17,6 +17,24 @@ inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
   return values[0] * w[0] + values[1] * w[1] + values[2] * w[2] + values[3] * w[3];
 }
 
+/// A power of two that brings the values of a problem away from those so small that sums of their parts are
+/// rounded to nothing; 1 where they are not.
+inline double growth_of(const OwnershipProblem& problem) {
+  constexpr double kSmall = 0x1p-600, kGrowth = 0x1p600;
+  for (const LinearFunction& f : problem.functions) {
+    for (const double value : f.values) {
+      if (std::abs(value) > kSmall) return 1;
+    }
+  }
+  return kGrowth;
+}
+
+inline void scale(OwnershipProblem& problem, double factor) {
+  for (LinearFunction& f : problem.functions) {
+    for (double& value : f.values) value *= factor;
+  }
+}
+
 /// Divides a convex piece of a tetrahedron by owner: cuts it where two functions are equal, until one
 /// contender is left. Each cut takes a function or a contender away on either side. `Piece` has corners() and
 /// cut(d, positive, above, below). Memory is kept from one piece to the next.
@@ -34,6 +52,11 @@ class Divider {
   template <class Emit>
   void divide(const OwnershipProblem& problem, const Piece& piece, Emit&& emit) {
     problem_ = &problem;
+    if (const double growth = growth_of(problem); growth != 1) {
+      scaled_ = problem;
+      scale(scaled_, growth);
+      problem_ = &scaled_;
+    }
     State& state = at(0);
     state.contenders.clear();
     state.functions.clear();
@@ -169,16 +192,18 @@ class Divider {
   std::size_t find_sides(const Piece& piece, State& s, const Function& f, const Function& g) const {
     constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
     std::array<double, 4> difference;
-    double greatest = 0;
-    for (std::size_t v = 0; v < 4; ++v) {
+    for (std::size_t v = 0; v < 4; ++v)
       difference[v] = problem_->functions[f.id].values[v] - problem_->functions[g.id].values[v];
-      greatest = std::max(greatest, std::abs(difference[v]));
-    }
     s.d.resize(s.corners);
     s.positive.resize(s.corners);
     std::size_t positives = 0;
     for (std::size_t c = 0; c < s.corners; ++c) {
-      s.d[c] = evaluate(difference, piece.corners()[c]);
+      const Weights& w = piece.corners()[c];
+      // Of the vertices of the face it lies on: elsewhere functions may differ by far more.
+      double greatest = 0;
+      for (std::size_t v = 0; v < 4; ++v)
+        greatest = std::max(greatest, w[v] != 0 ? std::abs(difference[v]) : 0);
+      s.d[c] = evaluate(difference, w);
       if (std::abs(s.d[c]) <= kRoundOff * greatest) s.d[c] = 0;
       s.positive[c] = s.d[c] > 0 || (s.d[c] == 0 && key(f) < key(g)) ? 1 : 0;
       positives += s.positive[c] != 0 ? 1 : 0;
@@ -340,6 +365,7 @@ class Divider {
   }
 
   const OwnershipProblem* problem_ = nullptr;
+  OwnershipProblem scaled_;
   std::vector<std::unique_ptr<State>> states_;
 };
 

@@ -5,11 +5,14 @@
 #include <limits>
 
 #include "core/geometry/box_clip.h"
+#include "interfaces/errors/hull_distance.h"
 
 namespace adamas {
 
 namespace {
 
+/// The least error where there is no value to compare with.
+constexpr double kNone = std::numeric_limits<double>::infinity();
 /// The box round a displaced element grows by this factor, three times.
 constexpr double kGrowth = 3;
 
@@ -33,7 +36,7 @@ class Measurer {
     source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
     for (std::size_t f = 0; f < fields.size(); ++f)
-      add(error_at(cell_, fields[f], owner, weights), number, errors[f]);
+      add(error_at(cell_, fields[f], owner, weights), f, number, false, errors[f]);
     return true;
   }
 
@@ -44,11 +47,8 @@ class Measurer {
     source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
     std::vector<double> least;
-    for (const FieldInfo& field : fields) {
-      // Where none of the material is left nothing approximates the value; without a value nothing is wrong.
-      const bool known = !std::isnan(native_[field.offset]);
-      least.push_back(known ? std::max(native_size(field), field.max - field.min) : native_[field.offset]);
-    }
+    for (const FieldInfo& field : fields)
+      least.push_back(std::isnan(native_[field.offset]) ? native_[field.offset] : kNone);
     for (double reach = half_width_ / kGrowth / kGrowth / kGrowth;;
          reach = std::min(kGrowth * reach, half_width_)) {
       lower_errors(element, reach, least);
@@ -56,7 +56,12 @@ class Measurer {
       for (std::size_t f = 0; f < fields.size(); ++f) good = good && !(least[f] > limits[f]);
       if (good || reach >= half_width_) break;
     }
-    for (std::size_t f = 0; f < fields.size(); ++f) add(least[f], number, errors[f]);
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      // Where none of a place's own material is left nothing approximates the value.
+      if (least[f] == kNone && element.kind != ElementKind::kMinority)
+        least[f] = std::max(native_size(fields[f]), fields[f].max - fields[f].min);
+      add(least[f], f, number, true, errors[f]);
+    }
   }
 
  private:
@@ -69,9 +74,17 @@ class Measurer {
 
   [[nodiscard]] MaterialId material(BodyId body) const { return source_.network->table().material(body); }
 
-  /// Fields without a value at the element, or without any in the material, have no error there.
-  static void add(double error, std::uint32_t element, FieldError& sum) {
-    if (!std::isnan(error)) sum.add(error, element);
+  /// No cells bring a displaced minority nearer: the input itself gives its place to another material. Fields
+  /// without a value at the element, or without any in the material, have no error there.
+  void add(double error, std::size_t field, std::uint32_t number, bool displaced, FieldError& sum) const {
+    const NativeElement& element = source_.fields->native_elements()[number];
+    if (error < kNone) {
+      const bool elsewhere = displaced && element.kind == ElementKind::kMinority;
+      const bool reducible = !elsewhere && source_.fields->interpolates(element, field);
+      sum.add({error, number, element.kind, displaced, reducible});
+    } else if (element.kind != ElementKind::kMinority || error == kNone) {
+      ++sum.without_value;
+    }
   }
 
   [[nodiscard]] double error_at(const CellView& cell, const FieldInfo& field, BodyId body,
@@ -132,21 +145,24 @@ class Measurer {
     return std::sqrt(squared);
   }
 
-  /// Least error over a convex part. Scalars: none if the value lies between the corners' values.
-  [[nodiscard]] double least_error(const FieldInfo& field, const Part& part) const {
-    double least = std::numeric_limits<double>::infinity();
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+  /// Least error over a convex part: the values in it are the convex hull of those at its corners.
+  [[nodiscard]] double least_error(const FieldInfo& field, const Part& part) {
+    const auto components = static_cast<std::size_t>(field.components);
+    differences_.clear();
+    double low = kNone, high = -kNone;
     for (const Vec3& corner : part.corners) {
       const Weights w = part.cell->frame.weights(corner);
-      least = std::min(least, error_at(*part.cell, field, part.body, w));
-      if (field.components > 1) continue;
-      double value = 0;
-      for (std::size_t v = 0; v < 4; ++v)
-        value += w[v] * part.cell->vertices[v]->row(part.body)[field.offset];
-      low = std::min(low, value), high = std::max(high, value);
+      for (std::size_t c = field.offset; c < field.offset + components; ++c) {
+        double value = 0;
+        for (std::size_t v = 0; v < 4; ++v) value += w[v] * part.cell->vertices[v]->row(part.body)[c];
+        differences_.push_back(value - native_[c]);
+        low = std::min(low, differences_.back()), high = std::max(high, differences_.back());
+      }
     }
-    const double native = native_[field.offset];
-    return field.components == 1 && low <= native && native <= high ? 0 : least;
+    if (components == 1) return std::max({0.0, low, -high});
+    const bool known =
+        std::all_of(differences_.begin(), differences_.end(), [](double d) { return std::isfinite(d); });
+    return known ? distance_from_hull(differences_, components) : kNone;
   }
 
   const ResamplingSource& source_;
@@ -154,6 +170,7 @@ class Measurer {
   double half_width_;
   const CellsInBox& cells_in_box_;
   std::vector<double> native_;
+  std::vector<double> differences_;  ///< of a part's corner values from the native ones
 };
 
 }  // namespace

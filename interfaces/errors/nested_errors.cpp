@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "interfaces/errors/tree_errors.h"
+
 namespace adamas {
 
 namespace {
@@ -49,15 +51,13 @@ NestedErrors nest_errors(const HierarchyTopology& hierarchy,
 }
 
 NestedErrors nest_interface_errors(const Resampler& resampler) {
-  return nest_errors(resampler.hierarchy(),
-                     [&](TetrahedronId t) { return resampler.hierarchy().payload(t).interface.distance; });
+  const std::vector<double> direct = interface_errors_of_tree(resampler);
+  return nest_errors(resampler.hierarchy(), [&](TetrahedronId t) { return direct[t.value]; });
 }
 
 NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field) {
-  return nest_errors(resampler.hierarchy(), [&](TetrahedronId t) {
-    const auto& fields = resampler.hierarchy().payload(t).fields;
-    return field < fields.size() ? fields[field].max : 0.0;
-  });
+  const std::vector<double> direct = field_errors_of_tree(resampler, field);
+  return nest_errors(resampler.hierarchy(), [&](TetrahedronId t) { return direct[t.value]; });
 }
 
 namespace {

@@ -23,11 +23,10 @@ struct NestedErrors {
 NestedErrors nest_errors(const HierarchyTopology& hierarchy,
                          const std::function<double(TetrahedronId)>& direct);
 
-/// Of the estimated distances of the interfaces. A tetrahedron that was never a leaf when it was looked at
-/// has no direct error: its children's stand for it.
+/// Of the estimated distances of the interfaces (interface_errors_of_tree).
 NestedErrors nest_interface_errors(const Resampler& resampler);
 
-/// Of the greatest errors of one field of the source, where they were measured.
+/// Of the errors of one field of the source (field_errors_of_tree).
 NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field);
 
 /// Nested errors of one field by vertex corrections (D 3.1), for comparison: the greater of the children's,

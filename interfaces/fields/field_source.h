@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,13 +17,23 @@ struct FieldInfo {
   std::string unit;
   int components = 1;
   std::size_t offset = 0;
-  double min = 0, max = 0;  ///< of the native values (of their lengths, for vectors)
+  /// Of the native values (of their lengths, for vectors) but for those of minorities.
+  double min = 0, max = 0;
 };
 
-/// A place where the input states values: the unit in which field errors are measured (D 3.6).
+/// What a material has of the place where a value of it is stated.
+enum class ElementKind : std::uint8_t {
+  kPure,      ///< (nearly) all of it
+  kMixed,     ///< its centre, but not all of it
+  kMinority,  ///< a part, while the centre is another material's
+};
+inline constexpr std::size_t kElementKinds = 3;
+
+/// A place where the input states values of a material: the unit in which field errors are measured (D 3.6).
 struct NativeElement {
   Vec3 position;
   MaterialId material;
+  ElementKind kind;
   std::size_t site;  ///< for the source's own use
 };
 
@@ -45,6 +56,9 @@ class FieldSource {
   [[nodiscard]] virtual const std::vector<NativeElement>& native_elements() const = 0;
   /// The values the input states at a native element; NaN where it states none for the element's material.
   virtual void native_values(const NativeElement& element, std::span<double> row) const = 0;
+  /// Whether the material's field passes through the value stated at the element. It does not where the value
+  /// is one for several materials.
+  [[nodiscard]] virtual bool interpolates(const NativeElement& element, std::size_t field) const = 0;
 };
 
 }  // namespace adamas

@@ -6,7 +6,6 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "interfaces/fields/linear_fit.h"
 
@@ -64,23 +63,15 @@ GridFieldSource::GridFieldSource(const MultiMaterialData& data, const std::vecto
     fields_.push_back({field.name, field.unit, field.components, row_size_, 0, 0});
     row_size_ += static_cast<std::size_t>(field.components);
   }
-  const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1), nz = data.grid.sites(2);
-  elements_.resize(nx * ny * nz);
-  ADAMAS_ASSERT(owners.size() == elements_.size());
-  owner_.resize(elements_.size());
-  parallel_for(nz, 1, [&](std::size_t k) {
-    for (std::size_t j = 0; j < ny; ++j) {
-      for (std::size_t i = 0; i < nx; ++i) {
-        const std::size_t site = data.grid.site_index(i, j, k);
-        const Vec3 position = data.grid.site(i, j, k);
-        elements_[site] = {position, owners[site], site};
-        owner_[site] = static_cast<std::uint16_t>(owners[site].value);
-      }
-    }
-  });
+  place_owners(owners);
   find_mixed_sites();
   find_stated_fields();
   find_ranges();
+  place_minorities();
+}
+
+bool GridFieldSource::pure(std::size_t site) const {
+  return data_.fractions.empty() || data_.fractions[MaterialId(owner_[site])][site] >= kPure;
 }
 
 bool GridFieldSource::inside(const Site& s) const {
@@ -115,9 +106,6 @@ bool GridFieldSource::states(std::size_t field, MaterialId material, std::size_t
 void GridFieldSource::find_mixed_sites() {
   mixed_stated_.assign(owner_.size(), 1);
   if (data_.fractions.empty()) return;
-  const auto pure = [&](std::size_t site) {
-    return data_.fractions[MaterialId(owner_[site])][site] >= kPure;
-  };
   parallel_for(data_.grid.sites(2), 1, [&](std::size_t k) {
     const auto z = static_cast<std::int32_t>(k);
     for (std::int32_t y = 0; y < sites(1); ++y) {
@@ -145,43 +133,6 @@ void GridFieldSource::find_stated_fields() {
   });
 }
 
-void GridFieldSource::find_ranges() {
-  struct Range {
-    double min = std::numeric_limits<double>::infinity();
-    double max = -std::numeric_limits<double>::infinity();
-  };
-  const auto layers = static_cast<std::size_t>(sites(2));
-  const std::size_t layer_size = elements_.size() / layers;
-  std::vector<Range> ranges(layers * fields_.size());
-  parallel_for(layers, 1, [&](std::size_t layer) {
-    std::vector<double> row(row_size_);
-    for (std::size_t site = layer * layer_size; site < (layer + 1) * layer_size; ++site) {
-      native_values(elements_[site], row);
-      for (std::size_t f = 0; f < fields_.size(); ++f) {
-        const FieldInfo& info = fields_[f];
-        double value = row[info.offset];
-        if (info.components > 1) {
-          value = 0;
-          for (std::size_t c = 0; c < static_cast<std::size_t>(info.components); ++c)
-            value = std::hypot(value, row[info.offset + c]);
-        }
-        if (std::isnan(value)) continue;
-        Range& range = ranges[layer * fields_.size() + f];
-        range.min = std::min(range.min, value);
-        range.max = std::max(range.max, value);
-      }
-    }
-  });
-  for (std::size_t f = 0; f < fields_.size(); ++f) {
-    Range all;
-    for (std::size_t layer = 0; layer < layers; ++layer) {
-      all.min = std::min(all.min, ranges[layer * fields_.size() + f].min);
-      all.max = std::max(all.max, ranges[layer * fields_.size() + f].max);
-    }
-    if (all.min <= all.max) fields_[f].min = all.min, fields_[f].max = all.max;
-  }
-}
-
 double GridFieldSource::stated(std::size_t field, MaterialId material, std::size_t site,
                                int component) const {
   const Field& f = data_.fields[field];
@@ -192,7 +143,8 @@ double GridFieldSource::stated(std::size_t field, MaterialId material, std::size
 
 void GridFieldSource::native_values(const NativeElement& element, std::span<double> row) const {
   for (std::size_t f = 0; f < fields_.size(); ++f) {
-    const bool known = states(f, element.material, element.site);
+    const bool known = data_.fields[f].per_material() ? states(f, element.material, element.site)
+                                                      : element.kind != ElementKind::kMinority;
     for (int c = 0; c < fields_[f].components; ++c) {
       row[fields_[f].offset + static_cast<std::size_t>(c)] =
           known ? stated(f, element.material, element.site, c) : kNothing;

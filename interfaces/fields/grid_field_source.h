@@ -18,7 +18,9 @@ namespace adamas {
 /// sites that hold some of the material, else from the nearest that states one.
 class GridFieldSource final : public FieldSource {
  public:
-  /// `owners`: of each site's centre; native elements are of that material. `data` must outlive this.
+  /// `owners`: of each site's centre. Each site is a native element of that material, which a mixed field's
+  /// value counts for, and one more of each other material that states a value of its own there. `data` must
+  /// outlive this.
   GridFieldSource(const MultiMaterialData& data, const std::vector<MaterialId>& owners);
   ~GridFieldSource() override;
 
@@ -33,6 +35,9 @@ class GridFieldSource final : public FieldSource {
                      std::span<double> row) const override;
   [[nodiscard]] const std::vector<NativeElement>& native_elements() const override { return elements_; }
   void native_values(const NativeElement& element, std::span<double> row) const override;
+  [[nodiscard]] bool interpolates(const NativeElement& element, std::size_t field) const override {
+    return states(field, element.material, element.site);
+  }
 
  private:
   struct Cache;
@@ -52,10 +57,14 @@ class GridFieldSource final : public FieldSource {
   [[nodiscard]] Vec3 spacing(const Site& s) const;
   [[nodiscard]] bool inside(const Site& s) const;
   [[nodiscard]] std::size_t index(const Site& s) const;
+  void place_owners(const std::vector<MaterialId>& owners);
+  void place_minorities();
+  /// Whether the site is of its owner alone, but for a trace.
+  [[nodiscard]] bool pure(std::size_t site) const;
   void find_mixed_sites();
   void find_stated_fields();
   void find_ranges();
-  /// Whether the site states a value of the field for the material.
+  /// Whether the material's field passes through a value that the site states.
   [[nodiscard]] bool states(std::size_t field, MaterialId material, std::size_t site) const;
   [[nodiscard]] double stated(std::size_t field, MaterialId material, std::size_t site, int component) const;
   /// Value at a site, stated or fitted; sites one step outside the grid are fitted.

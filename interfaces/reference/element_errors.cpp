@@ -31,7 +31,7 @@ class ElementMeasurer {
     tree_ = BoxTree(boxes);
     result_.fields = source.fields->fields().size();
     const std::size_t elements = source.fields->native_elements().size();
-    result_.errors.assign(elements * result_.fields, std::numeric_limits<double>::quiet_NaN());
+    result_.errors.assign(elements * result_.fields, {});
     result_.cells.assign(elements, 0);
   }
 
@@ -43,11 +43,6 @@ class ElementMeasurer {
   [[nodiscard]] std::uint32_t cell_at(const Vec3& p) const;
   const CellView& view(std::size_t cell) {
     return views_.get(cell, [&] { return cells_.view(cell); });
-  }
-  void store(std::size_t element, const std::vector<FieldError>& errors) {
-    for (std::size_t f = 0; f < result_.fields; ++f) {
-      if (errors[f].count > 0) result_.errors[element * result_.fields + f] = errors[f].max;
-    }
   }
 
   const ResamplingSource& source_;
@@ -101,11 +96,10 @@ void ElementMeasurer::measure(double half_width) {
     for (std::size_t e = first; e < last; ++e) {
       const std::array<std::uint32_t, 1> element{static_cast<std::uint32_t>(e)};
       const CellView& cell = view(result_.cells[e]);
-      std::vector<FieldError> errors(result_.fields);
+      const auto errors = std::span(result_.errors).subspan(e * result_.fields, result_.fields);
       const auto displaced = measure_field_errors(source_, cell, element, errors);
       if (!displaced.empty())
         measure_displaced_errors(source_, cell, displaced, half_width, nearby, limits, errors);
-      store(e, errors);
     }
   });
 }
@@ -163,10 +157,8 @@ std::vector<FieldFigures> ElementErrors::figures(const std::vector<char>& at_int
   std::vector<FieldFigures> result(fields);
   for (std::size_t e = 0; e < cells.size(); ++e) {
     for (std::size_t f = 0; f < fields; ++f) {
-      const double error = errors[e * fields + f];
-      if (std::isnan(error)) continue;
-      result[f].all.add(error, static_cast<std::uint32_t>(e));
-      if (at_interface[e] != 0) result[f].at_interfaces.add(error, static_cast<std::uint32_t>(e));
+      result[f].all.add(errors[e * fields + f]);
+      if (at_interface[e] != 0) result[f].at_interfaces.add(errors[e * fields + f]);
     }
   }
   return result;

@@ -31,7 +31,7 @@ std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& mesh, const R
 /// (docs/method.md, Errors); of displaced elements the least in the whole box of that half-width.
 struct ElementErrors {
   std::size_t fields = 0;
-  std::vector<double> errors;        ///< errors[element * fields + field]; NaN where there is none
+  std::vector<FieldError> errors;    ///< errors[element * fields + field]
   std::vector<std::uint32_t> cells;  ///< the cell that holds each element
 
   /// Over all elements, and over those that `at_interface` marks.

@@ -26,7 +26,7 @@ void Resampler::compute_rows(std::vector<std::pair<VertexId, BodyId>> needs) {
   }
 }
 
-void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
+void Resampler::measure_fields(const std::vector<TetrahedronId>& cells, DisplacedErrors wanted) {
   constexpr std::size_t kChunk = 512;
   std::vector<std::vector<std::pair<VertexId, BodyId>>> needs((cells.size() + kChunk - 1) / kChunk);
   parallel_chunks(cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
@@ -48,20 +48,17 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
   parallel_for(cells.size(), 64, [&](std::size_t i) {
     CellRecord& cell = hierarchy_.payload(cells[i]);
     cell.fields.assign(fields, {});
-    const std::uint32_t count = cell.last_element - cell.first_element;
-    if (count == 0) return;
-    const auto elements = std::span(element_order_).subspan(cell.first_element, count);
-    displaced[i] = measure_field_errors(source_, view(cells[i]), elements, cell.fields);
+    const auto contained = elements(cells[i]);
+    if (contained.empty()) return;
+    displaced[i] = measure_field_errors(source_, view(cells[i]), contained, cell.fields);
   });
   if (std::all_of(displaced.begin(), displaced.end(), [](const auto& d) { return d.empty(); })) return;
-  // Of displaced elements no more is asked than the target, or what the others have anyway.
   std::vector<double> limits(fields, 0.0);
-  for (std::size_t f = 0; f < fields; ++f) {
+  for (std::size_t f = 0; f < fields && wanted == DisplacedErrors::kWithinTargets; ++f) {
+    // No more is asked than the target, or what the others have anyway.
     for (const TetrahedronId t : cells) limits[f] = std::max(limits[f], hierarchy_.payload(t).fields[f].max);
     if (options_.field_errors[f]) limits[f] = *options_.field_errors[f];
   }
-  const double half_width = certificate_ ? std::max(options_.interface_error, certificate_->materials.upper)
-                                         : options_.interface_error;
   ViewCache cache(hierarchy_.tetrahedron_slots());
   const CellsInBox nearby = [&](const Box3& box, MaterialId material, const auto& visit) {
     cells_in_box(box, material,
@@ -69,9 +66,14 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells) {
   };
   parallel_for(cells.size(), 16, [&](std::size_t i) {
     if (displaced[i].empty()) return;
-    measure_displaced_errors(source_, view(cells[i]), displaced[i], half_width, nearby, limits,
+    measure_displaced_errors(source_, view(cells[i]), displaced[i], displacement(), nearby, limits,
                              hierarchy_.payload(cells[i]).fields);
   });
+}
+
+std::span<const std::uint32_t> Resampler::elements(TetrahedronId t) const {
+  const CellRecord& cell = hierarchy_.payload(t);
+  return std::span(element_order_).subspan(cell.first_element, cell.last_element - cell.first_element);
 }
 
 CellView Resampler::view(TetrahedronId t) const {
@@ -123,7 +125,7 @@ void Resampler::complete_fields() {
   if (!source_.fields) return;
   if (!fields_active_) {
     fields_active_ = true;
-    measure_fields(leaves());
+    measure_fields(leaves(), DisplacedErrors::kLeast);
   }
 }
 

@@ -85,8 +85,8 @@ Resampler::Priority Resampler::priority(TetrahedronId t) const {
   }
   Priority result;
   for (std::size_t f = 0; f < cell.fields.size(); ++f) {
-    if (!options_.field_errors[f] || !(cell.fields[f].max > *options_.field_errors[f])) continue;
-    result = std::max(result, Priority{0, cell.fields[f].max / *options_.field_errors[f]});
+    if (!options_.field_errors[f] || !(cell.fields[f].reducible > *options_.field_errors[f])) continue;
+    result = std::max(result, Priority{0, cell.fields[f].reducible / *options_.field_errors[f]});
   }
   return result;
 }
@@ -164,13 +164,15 @@ void Resampler::refine() {
 void Resampler::refine_fields() {
   fields_active_ = true;
   report("measuring fields");
-  measure_fields(leaves());
-  const std::size_t before = hierarchy_.leaf_count();
-  refine_to_targets(leaves());
-  if (hierarchy_.leaf_count() == before) return;
-  finish_interfaces();
+  const auto wanted = [](const std::optional<double>& target) { return target.has_value(); };
+  if (std::any_of(options_.field_errors.begin(), options_.field_errors.end(), wanted)) {
+    measure_fields(leaves(), DisplacedErrors::kWithinTargets);
+    const std::size_t before = hierarchy_.leaf_count();
+    refine_to_targets(leaves());
+    if (hierarchy_.leaf_count() != before) finish_interfaces();
+  }
   // Errors of elements near an interface depend on the cells round theirs.
-  measure_fields(leaves());
+  measure_fields(leaves(), DisplacedErrors::kLeast);
 }
 
 TetrahedronId Resampler::leaf_at(const Vec3& p) const {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -77,6 +79,14 @@ class Resampler {
   [[nodiscard]] RefinementEnd interface_end() const { return interface_end_; }
   /// Whether the greatest number of tetrahedra has stopped refinement.
   [[nodiscard]] bool budget_spent() const { return budget_spent_; }
+  /// The native elements in a tetrahedron of the tree, leaf or not.
+  [[nodiscard]] std::span<const std::uint32_t> elements(TetrahedronId t) const;
+  /// How far the mesh may have moved the place of an element: the greater of the interface errors wanted and
+  /// certified per material.
+  [[nodiscard]] double displacement() const {
+    return certificate_ ? std::max(options_.interface_error, certificate_->materials.upper)
+                        : options_.interface_error;
+  }
   /// The leaf that holds a point.
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
   /// The body that owns a point in the mesh.
@@ -110,7 +120,9 @@ class Resampler {
   void cells_in_box(const Box3& box, MaterialId material,
                     const std::function<void(TetrahedronId)>& visit) const;
   [[nodiscard]] bool may_hold(TetrahedronId t, MaterialId material) const;
-  void measure_fields(const std::vector<TetrahedronId>& cells);
+  /// How far the least error of a displaced element is looked for.
+  enum class DisplacedErrors { kWithinTargets, kLeast };
+  void measure_fields(const std::vector<TetrahedronId>& cells, DisplacedErrors displaced);
   void compute_rows(std::vector<std::pair<VertexId, BodyId>> needs);
   [[nodiscard]] Priority priority(TetrahedronId t) const;
   [[nodiscard]] bool wants_split(TetrahedronId t) const;

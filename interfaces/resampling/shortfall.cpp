@@ -43,11 +43,23 @@ std::optional<Shortfall> interface_shortfall(const Resampler& resampler, const I
 std::optional<Shortfall> field_shortfall(const Resampler& resampler, std::size_t field,
                                          const FieldError& errors) {
   const auto& target = resampler.options().field_errors[field];
-  if (!target || errors.count == 0 || errors.max <= *target) return {};
+  if (!target || errors.count() == 0 || errors.max <= *target) return {};
   const ResamplingSource& source = resampler.source();
   const NativeElement& element = source.fields->native_elements()[errors.worst];
   const MaterialId owner = source.network->table().material(resampler.owner_at(element.position));
   const auto because = [&](std::string reason) { return Shortfall{std::move(reason), element.position}; };
+  if (owner != element.material && element.kind == ElementKind::kMinority) {
+    return because(
+        fmt::format("the input's value there is of '{}', which has a part of the cell while the input's "
+                    "interfaces give the place to another material, so that smaller cells do not help",
+                    source.materials[element.material]));
+  }
+  if (!source.fields->interpolates(element, field)) {
+    return because(
+        fmt::format("the input's one value there is for all materials of the cell, and the field of "
+                    "'{}' does not follow it, so that smaller cells do not help",
+                    source.materials[element.material]));
+  }
   if (owner != element.material) {
     return because(
         fmt::format("the input's value there is of '{}', but the mesh's interface, which may be off by its "

@@ -84,7 +84,7 @@ void Experiment::expect_figures_of_the_meshes() const {
   }
   EXPECT_EQ(figures.at("curve")[2].at("tetrahedra"), figures.at("interface_mesh").at("tetrahedra"));
   EXPECT_GT(figures.at("mesh").at("tetrahedra"), figures.at("interface_mesh").at("tetrahedra"));
-  EXPECT_LE(figures.at("mesh").at("fields").at("smooth").at("max_error"),
+  EXPECT_LE(figures.at("mesh").at("fields").at("smooth").at("reducible_max_error"),
             figures.at("mesh").at("fields").at("smooth").at("target"));
   EXPECT_EQ(figures.at("published")[0].at("here"), figures.at("interface_mesh").at("tetrahedra"));
   // The same as by hand.

@@ -32,7 +32,8 @@ class SceneFields final : public FieldSource {
     for (std::size_t k = 0; k < grid.sites(2); ++k) {
       for (std::size_t j = 0; j < grid.sites(1); ++j) {
         for (std::size_t i = 0; i < grid.sites(0); ++i)
-          elements_.push_back({grid.site(i, j, k), scene.owner(grid.site(i, j, k)), elements_.size()});
+          elements_.push_back(
+              {grid.site(i, j, k), scene.owner(grid.site(i, j, k)), ElementKind::kPure, elements_.size()});
       }
     }
   }
@@ -59,6 +60,7 @@ class SceneFields final : public FieldSource {
   void native_values(const NativeElement& element, std::span<double> row) const override {
     values(element.material, element.position, row);
   }
+  [[nodiscard]] bool interpolates(const NativeElement&, std::size_t) const override { return true; }
   /// Of component c of "flow", as a multiple of "linear"; their squares add up to 9.
   static double factor(std::size_t c) { return std::array<double, 3>{2, -2, 1}[c]; }
 

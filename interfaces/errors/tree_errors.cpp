@@ -1,0 +1,112 @@
+#include "interfaces/errors/tree_errors.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/parallel.h"
+
+namespace adamas {
+
+namespace {
+
+Tetrahedron frame_of(const Resampler& resampler, TetrahedronId t) {
+  const auto v = resampler.hierarchy().vertices(t);
+  const auto place = [&](std::size_t i) { return resampler.hierarchy().position(v[i]); };
+  return Tetrahedron({place(0), place(1), place(2), place(3)});
+}
+
+void find_ownership(const Resampler& resampler, TetrahedronId t, CellOwnership& owners) {
+  const auto v = resampler.hierarchy().vertices(t);
+  const auto distances = [&](std::size_t i) { return &resampler.hierarchy().payload(v[i]).distances; };
+  find_cell_ownership(resampler.source().network->table(),
+                      {distances(0), distances(1), distances(2), distances(3)}, owners);
+}
+
+/// All tetrahedra of the tree.
+std::vector<TetrahedronId> all_tetrahedra(const HierarchyTopology& hierarchy) {
+  std::vector<TetrahedronId> result = hierarchy.roots();
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (hierarchy.is_leaf(result[i])) continue;
+    for (const TetrahedronId child : hierarchy.children(result[i])) result.push_back(child);
+  }
+  return result;
+}
+
+std::vector<double> row_of(const Resampler& resampler, VertexId v, BodyId body) {
+  const VertexRecord& vertex = resampler.hierarchy().payload(v);
+  const auto known = std::find_if(vertex.rows.begin(), vertex.rows.end(),
+                                  [body](const auto& row) { return row.body == body; });
+  if (known != vertex.rows.end()) return known->row;
+  return fields_at_vertex(resampler.source(), resampler.options().ghost, resampler.hierarchy().position(v),
+                          vertex, body);
+}
+
+/// Errors of one tetrahedron by itself.
+FieldError field_error(const Resampler& resampler, TetrahedronId t, std::size_t field) {
+  const auto elements = resampler.elements(t);
+  if (elements.empty()) return {};
+  const ResamplingSource& source = resampler.source();
+  const auto cell = make_tree_cell(resampler, t);
+  std::vector<FieldError> errors(source.fields->fields().size());
+  const auto displaced = measure_field_errors(source, cell->view, elements, errors);
+  const std::vector<double> limits(errors.size(), 0.0);
+  measure_displaced_errors(
+      source, cell->view, displaced, resampler.displacement(),
+      [&](const Box3&, MaterialId, const auto& visit) { visit(cell->view); }, limits, errors);
+  return errors[field];
+}
+
+}  // namespace
+
+std::unique_ptr<TreeCell> make_tree_cell(const Resampler& resampler, TetrahedronId t) {
+  CellOwnership owners;
+  find_ownership(resampler, t, owners);
+  if (!owners.pure()) keep_owners(owners.problem);
+  auto cell = std::make_unique<TreeCell>(TreeCell{{}, {frame_of(resampler, t), owners, {}, {}}});
+  const auto v = resampler.hierarchy().vertices(t);
+  for (std::size_t i = 0; i < 4; ++i) {
+    cell->view.vertices[i] = &cell->vertices[i];
+    for (const auto& candidate : owners.problem.candidates) {
+      const BodyId body(candidate.owner);
+      cell->vertices[i].rows.push_back({body, row_of(resampler, v[i], body)});
+    }
+  }
+  partition_cell(cell->view.owners, cell->view.parts);
+  return cell;
+}
+
+std::vector<double> interface_errors_of_tree(const Resampler& resampler) {
+  const auto& hierarchy = resampler.hierarchy();
+  const InterfaceNetwork& network = *resampler.source().network;
+  const std::vector<TetrahedronId> all = all_tetrahedra(hierarchy);
+  std::vector<double> errors(hierarchy.tetrahedron_slots(), 0.0);
+  parallel_for(all.size(), 16, [&](std::size_t i) {
+    const Tetrahedron cell = frame_of(resampler, all[i]);
+    Box3 box;
+    for (const Vec3& corner : cell.corners) box.extend(corner);
+    std::vector<std::uint32_t> triangles;
+    network.tree().overlapping(box, triangles);
+    std::erase_if(triangles, [&](std::uint32_t t) {
+      const auto& corners = network.triangle_corners(t);
+      return !meets(cell, corners[0], corners[1], corners[2]);
+    });
+    CellOwnership owners;
+    find_ownership(resampler, all[i], owners);
+    const double all_of_them = std::numeric_limits<double>::max();
+    errors[all[i].value] = estimate_interface_error(network, cell, owners, triangles, all_of_them,
+                                                    hierarchy.payload(all[i]).trusted)
+                               .distance;
+  });
+  return errors;
+}
+
+std::vector<double> field_errors_of_tree(const Resampler& resampler, std::size_t field) {
+  const std::vector<TetrahedronId> all = all_tetrahedra(resampler.hierarchy());
+  std::vector<double> errors(resampler.hierarchy().tetrahedron_slots(), 0.0);
+  parallel_for(all.size(), 16, [&](std::size_t i) {
+    errors[all[i].value] = field_error(resampler, all[i], field).reducible;
+  });
+  return errors;
+}
+
+}  // namespace adamas

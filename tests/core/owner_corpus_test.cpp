@@ -1,0 +1,10 @@
+#include "tests/fuzz/owner_targets.h"
+#include "tests/fuzz/replay.h"
+
+namespace adamas {
+namespace {
+
+TEST(FuzzCorpus, OwnerKernel) { EXPECT_EQ(fuzz::replay("owner_kernel", fuzz::owner_kernel), 25u); }
+
+}  // namespace
+}  // namespace adamas
