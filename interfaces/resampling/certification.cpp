@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -24,7 +25,9 @@ constexpr double kFinestForContacts = 0.0625;
 constexpr double kFinestForThickness = 0.25;
 /// Splitting for the sake of bodies is taken back where it has brought nothing by the time that the mesh has
 /// grown so much, unless it is still small.
-constexpr std::size_t kMostGrowth = 2, kHopeForBodies = 50'000;
+constexpr std::size_t kMostGrowth = 2, kHopeForBodies = 20'000;
+/// Of the cells that tear bodies those are split that are at least so large, in relation to the largest.
+constexpr double kLargeCells = 0.7;
 /// How thick a body may be where it is looked at whether it is torn, in relation to the target.
 constexpr double kMostTornThickness = 4;
 
@@ -132,7 +135,15 @@ std::vector<TetrahedronId> Resampler::leaves_with_wrong_bodies(const InterfaceMe
   const std::vector<TetrahedronId> all = leaves();
   std::vector<std::vector<TetrahedronId>> torn(all.size());
   parallel_for(all.size(), 256, [&](std::size_t i) { find_torn_leaves(all[i], wrong, torn[i]); });
-  for (const auto& part : torn) result.insert(result.end(), part.begin(), part.end());
+  // Larger cells first: what they tear is often all there is.
+  double largest = 0;
+  for (const auto& part : torn) {
+    for (const TetrahedronId t : part) largest = std::max(largest, frame(t).diameter());
+  }
+  for (const auto& part : torn) {
+    std::copy_if(part.begin(), part.end(), std::back_inserter(result),
+                 [&](TetrahedronId t) { return frame(t).diameter() >= kLargeCells * largest; });
+  }
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
@@ -192,6 +203,11 @@ RefinementEnd Resampler::refine_what_fails() {
     ExtractedInterfaces shown = measure_shown();
     const bool within = comparison_->within();
     const auto end = [&](RefinementEnd reason) {
+      if (!for_bodies.splits.empty()) {
+        take_back(for_bodies);
+        budget_spent_ = false;
+        shown = measure_shown();
+      }
       certificate_ = comparison_->finish(shown.mesh, progress_);
       return comparison_->within() ? RefinementEnd::kReached : reason;
     };
@@ -202,8 +218,6 @@ RefinementEnd Resampler::refine_what_fails() {
         for_bodies = {};
         leaves_then = hierarchy_.leaf_count();
       } else if (hierarchy_.leaf_count() > std::max(kHopeForBodies, kMostGrowth * leaves_then)) {
-        take_back(for_bodies);
-        shown = measure_shown();
         return end(RefinementEnd::kReached);
       }
     }
