@@ -98,7 +98,7 @@ void Integrals::expect_agreement(const std::string& input, const std::string& fi
   SCOPED_TRACE(input + " " + field);
   const auto from_file = cut_mesh_ledger(folder() / "cut.vtu", field);
   const double field_error = figures.at("fields").at(field).at("max_error");
-  const double interface_error = figures.at("interface_error");
+  const double interface_error = figures.at("interface_error_per_material");
   const Json in = read_json("input.json"), out = read_json("mesh.json");
   double bound_of_all = 0, given_of_all = 0;
   for (std::size_t m = 0; m < in.at("materials").size(); ++m) {
@@ -148,7 +148,7 @@ TEST_F(Integrals, AgreeBetweenInputMeshAndCutMesh) {
       expect_agreement("scene.vtr", field, figures, 10.0 * materials + kSlope);
       // A point is no farther than half a cell's diagonal, and the interfaces' error, from a place where
       // values are compared; on the way either field changes by no more than its slope says.
-      const double way = std::sqrt(3.0) * (0.5 / kCells + figures.at("interface_error").get<double>());
+      const double way = std::sqrt(3.0) * (0.5 / kCells + figures.at("interface_error_per_material").get<double>());
       const double bound = figures.at("fields").at(field).at("max_error").get<double>() + 2 * kSlope * way;
       EXPECT_LT(bound, 5) << "materials' values differ by 10";
       std::size_t agreed = 0;
