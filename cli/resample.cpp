@@ -72,8 +72,9 @@ void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Conso
       console.note("the mesh shows nothing of {}", what);
     } else {
       console.note(
-          "the mesh shows {} in {} pieces, and its boundary has the Euler characteristic {} instead of {}",
-          what, body.topology_mesh.pieces, body.topology_mesh.euler, body.topology_input.euler);
+          "the mesh shows {} in {} piece{}, and its boundary has the Euler characteristic {} instead of {}",
+          what, body.topology_mesh.pieces, body.topology_mesh.pieces == 1 ? "" : "s",
+          body.topology_mesh.euler, body.topology_input.euler);
     }
   }
   if (noted > kMost) console.note("... and {} more bodies that are lost or torn", noted - kMost);

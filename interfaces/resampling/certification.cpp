@@ -183,14 +183,14 @@ void Resampler::find_torn_leaves(TetrahedronId leaf, const IdVector<BodyId, char
   }
 }
 
-/// Measures interfaces and bodies as the leaves show them now, once volumes agree.
+/// Measures interfaces as the leaves show them now, once volumes agree; bodies too, where distances are good.
 ExtractedInterfaces Resampler::measure_shown() {
   if (options_.conserve) conserve_volumes();
   ExtractedInterfaces extracted =
       extract_interfaces(source_.network->table(), cells(), source_.box, progress_);
   report("measuring interfaces");
   comparison_->measure(extracted.mesh, progress_);
-  bodies_->measure(extracted);
+  if (comparison_->within()) bodies_->measure(extracted);
   return extracted;
 }
 
@@ -208,6 +208,7 @@ RefinementEnd Resampler::refine_what_fails() {
         budget_spent_ = false;
         shown = measure_shown();
       }
+      if (!comparison_->within()) bodies_->measure(shown);
       certificate_ = comparison_->finish(shown.mesh, progress_);
       return comparison_->within() ? RefinementEnd::kReached : reason;
     };
