@@ -103,15 +103,19 @@ void BodyComparison::measure(const ExtractedInterfaces& shown) {
   sort_unique(report_.contacts);
 }
 
-std::size_t BodyComparison::differences(double size) const {
+BodyFaults BodyComparison::faults(double size) const {
   const auto between = [](auto a, auto b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
-  std::size_t sum = report_.contacts.size();
+  BodyFaults faults{report_.contacts.size(), 0};
   for (BodyId b(0); b.value < sizes_.size(); ++b.value) {
     if (report_.kept(b) || sizes_[b] <= size) continue;
-    sum += between(report_.input[b].pieces, report_.mesh[b].pieces);
-    if (report_.comparable) sum += between(report_.input[b].euler, report_.mesh[b].euler);
+    if (report_.mesh[b].pieces == 0) {
+      ++faults.lost_or_joined;
+      continue;
+    }
+    faults.torn += between(report_.input[b].pieces, report_.mesh[b].pieces);
+    if (report_.comparable) faults.torn += between(report_.input[b].euler, report_.mesh[b].euler);
   }
-  return sum;
+  return faults;
 }
 
 }  // namespace adamas

@@ -24,6 +24,12 @@ struct BodyReport {
   }
 };
 
+/// How much is wrong with the bodies of a mesh.
+struct BodyFaults {
+  std::size_t lost_or_joined = 0;  ///< bodies that are not there, and contacts that the input has not
+  std::size_t torn = 0;            ///< pieces, holes and handles too many or too few
+};
+
 /// Compares the bodies of the input with those that a mesh shows.
 class BodyComparison {
  public:
@@ -36,8 +42,8 @@ class BodyComparison {
   [[nodiscard]] const std::vector<std::uint32_t>& contact_triangles() const { return contact_triangles_; }
   /// Diagonal of a body's bounding box.
   [[nodiscard]] double size(BodyId body) const { return sizes_[body]; }
-  /// How much is different, in bodies larger than so: pieces, holes, handles, contacts.
-  [[nodiscard]] std::size_t differences(double size) const;
+  /// What is wrong with bodies larger than so.
+  [[nodiscard]] BodyFaults faults(double size) const;
 
  private:
   void find_touching();

@@ -2,7 +2,7 @@
 #include <atomic>
 #include <cmath>
 #include <iterator>
-#include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -26,10 +26,19 @@ constexpr double kFinestForThickness = 0.25;
 /// Splitting for the sake of bodies is taken back where it has brought nothing by the time that the mesh has
 /// grown so much, unless it is still small.
 constexpr std::size_t kMostGrowth = 2, kHopeForBodies = 20'000;
+/// What has to be left of all tears at most, for it to be worth more cells.
+constexpr double kTornPart = 0.7;
 /// Of the cells that tear bodies those are split that are at least so large, in relation to the largest.
 constexpr double kLargeCells = 0.7;
 /// How thick a body may be where it is looked at whether it is torn, in relation to the target.
 constexpr double kMostTornThickness = 4;
+
+/// Whether fewer bodies are lost or joined, or so many fewer torn that the cells which that takes are worth
+/// it.
+bool is_better(const BodyFaults& now, const BodyFaults& before) {
+  if (now.lost_or_joined != before.lost_or_joined) return now.lost_or_joined < before.lost_or_joined;
+  return static_cast<double>(now.torn) <= kTornPart * static_cast<double>(before.torn);
+}
 
 }  // namespace
 
@@ -198,7 +207,7 @@ RefinementEnd Resampler::refine_what_fails() {
   // What has been split for the sake of bodies since they were most like the input's.
   Record for_bodies;
   std::size_t leaves_then = 0;
-  std::size_t differences = std::numeric_limits<std::size_t>::max();
+  std::optional<BodyFaults> fewest;
   for (int round = 0;; ++round) {
     ExtractedInterfaces shown = measure_shown();
     const bool within = comparison_->within();
@@ -212,15 +221,12 @@ RefinementEnd Resampler::refine_what_fails() {
       certificate_ = comparison_->finish(shown.mesh, progress_);
       return comparison_->within() ? RefinementEnd::kReached : reason;
     };
-    if (within) {
-      const std::size_t before = differences;
-      differences = std::min(before, bodies_->differences(options_.interface_error));
-      if (differences < before) {
-        for_bodies = {};
-        leaves_then = hierarchy_.leaf_count();
-      } else if (hierarchy_.leaf_count() > std::max(kHopeForBodies, kMostGrowth * leaves_then)) {
-        return end(RefinementEnd::kReached);
-      }
+    if (within && (!fewest || is_better(bodies_->faults(options_.interface_error), *fewest))) {
+      fewest = bodies_->faults(options_.interface_error);
+      for_bodies = {};
+      leaves_then = hierarchy_.leaf_count();
+    } else if (within && hierarchy_.leaf_count() > std::max(kHopeForBodies, kMostGrowth * leaves_then)) {
+      return end(RefinementEnd::kReached);
     }
     if (budget_spent_) return end(RefinementEnd::kBudget);
     if (round >= kMostRounds) return end(RefinementEnd::kRounds);
