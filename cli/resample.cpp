@@ -217,7 +217,8 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
     });
   }
   std::vector<Ledger> ledgers;
-  if (input.data) {
+  // Beside given interfaces a grid need not know materials.
+  if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
     ledgers.push_back({"input", material_integrals(*input.data)});
   } else if (!input.source.volumes.empty()) {
     ledgers.push_back(volume_ledger("input", input.source.volumes));
