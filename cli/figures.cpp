@@ -41,11 +41,6 @@ std::string bytes_text(double bytes) {
   return fmt::format("{:.{}f} {}", bytes, unit == 0 ? 0 : 1, kUnits[unit]);
 }
 
-std::string place_text(const Vec3& p) {
-  // No zero has a sign.
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x + 0.0, p.y + 0.0, p.z + 0.0);
-}
-
 std::string box_text(const Box3& box) {
   return fmt::format("[{:.6g}, {:.6g}] x [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]", box.min.x, box.max.x,
                      box.min.y, box.max.y, box.min.z, box.max.z);

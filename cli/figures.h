@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/typed_id.h"
+#include "core/geometry/place_text.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {
@@ -32,8 +33,6 @@ std::string bytes_text(double bytes);
 
 /// "[0, 1] x [0, 1] x [0, 1]".
 std::string box_text(const Box3& box);
-/// "(x, y, z)", for a place or a direction.
-std::string place_text(const Vec3& p);
 
 /// A cell of a table of comma-separated values: in quotes where it would be taken for several.
 std::string csv_text(const std::string& text);

@@ -9,19 +9,6 @@ namespace adamas {
 
 namespace {
 
-Tetrahedron frame_of(const Resampler& resampler, TetrahedronId t) {
-  const auto v = resampler.hierarchy().vertices(t);
-  const auto place = [&](std::size_t i) { return resampler.hierarchy().position(v[i]); };
-  return Tetrahedron({place(0), place(1), place(2), place(3)});
-}
-
-void find_ownership(const Resampler& resampler, TetrahedronId t, CellOwnership& owners) {
-  const auto v = resampler.hierarchy().vertices(t);
-  const auto distances = [&](std::size_t i) { return &resampler.hierarchy().payload(v[i]).distances; };
-  find_cell_ownership(resampler.source().network->table(),
-                      {distances(0), distances(1), distances(2), distances(3)}, owners);
-}
-
 /// All tetrahedra of the tree.
 std::vector<TetrahedronId> all_tetrahedra(const HierarchyTopology& hierarchy) {
   std::vector<TetrahedronId> result = hierarchy.roots();
@@ -60,9 +47,9 @@ FieldError field_error(const Resampler& resampler, TetrahedronId t, std::size_t 
 
 std::unique_ptr<TreeCell> make_tree_cell(const Resampler& resampler, TetrahedronId t) {
   CellOwnership owners;
-  find_ownership(resampler, t, owners);
+  resampler.ownership(t, owners);
   if (!owners.pure()) keep_owners(owners.problem);
-  auto cell = std::make_unique<TreeCell>(TreeCell{{}, {frame_of(resampler, t), owners, {}, {}}});
+  auto cell = std::make_unique<TreeCell>(TreeCell{{}, {resampler.frame(t), owners, {}, {}}});
   const auto v = resampler.hierarchy().vertices(t);
   for (std::size_t i = 0; i < 4; ++i) {
     cell->view.vertices[i] = &cell->vertices[i];
@@ -81,7 +68,7 @@ std::vector<double> interface_errors_of_tree(const Resampler& resampler) {
   const std::vector<TetrahedronId> all = all_tetrahedra(hierarchy);
   std::vector<double> errors(hierarchy.tetrahedron_slots(), 0.0);
   parallel_for(all.size(), 16, [&](std::size_t i) {
-    const Tetrahedron cell = frame_of(resampler, all[i]);
+    const Tetrahedron cell = resampler.frame(all[i]);
     Box3 box;
     for (const Vec3& corner : cell.corners) box.extend(corner);
     std::vector<std::uint32_t> triangles;
@@ -91,7 +78,7 @@ std::vector<double> interface_errors_of_tree(const Resampler& resampler) {
       return !meets(cell, corners[0], corners[1], corners[2]);
     });
     CellOwnership owners;
-    find_ownership(resampler, all[i], owners);
+    resampler.ownership(all[i], owners);
     const double all_of_them = std::numeric_limits<double>::max();
     errors[all[i].value] = estimate_interface_error(network, cell, owners, triangles, all_of_them,
                                                     hierarchy.payload(all[i]).trusted)

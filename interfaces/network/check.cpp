@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/geometry/place_text.h"
 #include "interfaces/network/edge_fans.h"
-#include "interfaces/network/mended.h"
 
 namespace adamas {
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/place_text.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/domain_faces.h"
 

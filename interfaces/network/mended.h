@@ -1,9 +1,6 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstddef>
-#include <string>
 
 #include "core/geometry/vec3.h"
 
@@ -17,10 +14,5 @@ struct Mended {
     if (count++ == 0) place = at;
   }
 };
-
-/// A place for messages.
-inline std::string place_text(const Vec3& p) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
-}
 
 }  // namespace adamas

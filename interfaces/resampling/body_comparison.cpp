@@ -2,12 +2,11 @@
 
 #include <algorithm>
 
+#include "interfaces/network/domain_faces.h"
+
 namespace adamas {
 
 namespace {
-
-/// Of points on a face of the domain, in relation to its diagonal.
-constexpr double kOnFace = 1e-9;
 
 using Pair = std::array<BodyId, 2>;
 
@@ -42,7 +41,7 @@ InterfaceMesh mesh_of_bodies(const ExtractedInterfaces& shown) {
 }
 
 bool contains(Box3 box, std::span<const Vec3> points) {
-  const double margin = kOnFace * box.diagonal();
+  const double margin = kOnDomainFace * box.diagonal();
   box.min -= {margin, margin, margin};
   box.max += {margin, margin, margin};
   return std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return box.contains(p); });

@@ -40,22 +40,27 @@ bool is_better(const BodyFaults& now, const BodyFaults& before) {
   return static_cast<double>(now.torn) <= kTornPart * static_cast<double>(before.torn);
 }
 
+Vec3 middle_of(const InterfaceMesh& mesh, std::uint32_t triangle) {
+  const auto& p = mesh.triangles[triangle].points;
+  return (1.0 / 3) * (mesh.points[p[0]] + mesh.points[p[1]] + mesh.points[p[2]]);
+}
+
 }  // namespace
+
+/// Adds the leaf that holds a point, unless its diameter is no more than `finest`.
+void Resampler::add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& leaves) const {
+  const TetrahedronId leaf = leaf_at(p);
+  if (frame(leaf).diameter() > finest) leaves.push_back(leaf);
+}
 
 /// The leaves where what was measured is, or may be, farther away than wanted.
 std::vector<TetrahedronId> Resampler::failing_leaves(const InterfaceMesh& shown) const {
   const double target = options_.interface_error;
   std::vector<TetrahedronId> result = leaves_far_from_shown();
-  const auto add = [&](const Vec3& p, double finest) {
-    const TetrahedronId leaf = leaf_at(p);
-    if (frame(leaf).diameter() > finest * target) result.push_back(leaf);
-  };
-  for (const std::uint32_t t : comparison_->far_shown()) {
-    const auto& p = shown.triangles[t].points;
-    add((1.0 / 3) * (shown.points[p[0]] + shown.points[p[1]] + shown.points[p[2]]), kFinestForApproximation);
-  }
+  for (const std::uint32_t t : comparison_->far_shown())
+    add_leaf_at(middle_of(shown, t), kFinestForApproximation * target, result);
   for (const auto& points : comparison_->far_junctions()) {
-    for (const Vec3& p : points) add(p, kFinestForJunctions);
+    for (const Vec3& p : points) add_leaf_at(p, kFinestForJunctions * target, result);
   }
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
@@ -131,12 +136,8 @@ std::vector<TetrahedronId> Resampler::split_all(const std::vector<TetrahedronId>
 std::vector<TetrahedronId> Resampler::leaves_with_wrong_bodies(const InterfaceMesh& shown) const {
   const double target = options_.interface_error;
   std::vector<TetrahedronId> result;
-  for (const std::uint32_t t : bodies_->contact_triangles()) {
-    const auto& p = shown.triangles[t].points;
-    const TetrahedronId leaf =
-        leaf_at((1.0 / 3) * (shown.points[p[0]] + shown.points[p[1]] + shown.points[p[2]]));
-    if (frame(leaf).diameter() > kFinestForContacts * target) result.push_back(leaf);
-  }
+  for (const std::uint32_t t : bodies_->contact_triangles())
+    add_leaf_at(middle_of(shown, t), kFinestForContacts * target, result);
   const InterfaceTable& table = source_.network->table();
   IdVector<BodyId, char> wrong(table.body_count(), 0);
   for (BodyId b(0); b.value < wrong.size(); ++b.value)
@@ -186,8 +187,7 @@ void Resampler::find_torn_leaves(TetrahedronId leaf, const IdVector<BodyId, char
       if (opposite[0] != body && opposite[1] != body) continue;
       const Vec3 middle = p + 0.5 * hit->t * inwards;
       if (!source_.box.contains(middle) || owner_at(middle) == body) continue;
-      const TetrahedronId there = leaf_at(middle);
-      if (frame(there).diameter() > kFinestForThickness * hit->t) torn.push_back(there);
+      add_leaf_at(middle, kFinestForThickness * hit->t, torn);
     }
   }
 }

@@ -52,12 +52,12 @@ InterfaceComparison::InterfaceComparison(const ResamplingSource& source, double 
   }
   // All triangles are of both materials' boundaries.
   if (parts <= 2) std::fill(part_of_.begin(), part_of_.end(), 0u);
-  input_.resize(parts <= 2 ? 2 : parts + 1);
+  material_parts_ = parts <= 2 ? 1 : parts;
   input_ = take_apart(mesh_);
 }
 
 InterfaceComparison::Parts InterfaceComparison::take_apart(const InterfaceMesh& mesh) const {
-  Parts parts(input_.size());
+  Parts parts(material_parts_ + 1);
   constexpr std::uint32_t kUnused = 0xffffffffu;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t front = part_of_[mesh.triangles[t].front], back = part_of_[mesh.triangles[t].back];
@@ -119,7 +119,7 @@ bool InterfaceComparison::within() const {
 void InterfaceComparison::find_far() {
   for (auto& side : far_) side.assign(mesh_.triangles.size(), 0.0);
   far_shown_.clear();
-  for (std::size_t p = 0; p < material_parts(); ++p) {
+  for (std::size_t p = 0; p < material_parts_; ++p) {
     for (std::size_t i = 0; i < input_[p].numbers.size(); ++i) {
       const std::uint32_t t = input_[p].numbers[i];
       const std::size_t side = part_of_[mesh_.triangles[t].front] == p ? 0 : 1;
@@ -207,7 +207,7 @@ InterfaceDistance InterfaceComparison::certified(InterfaceDistance distance) con
 InterfaceCertificate InterfaceComparison::summary() const {
   InterfaceCertificate result;
   std::size_t worst = 0;
-  for (std::size_t p = 0; p < material_parts(); ++p) {
+  for (std::size_t p = 0; p < material_parts_; ++p) {
     const InterfaceDistance d = bounds_[p].distance();
     if (d.lower > result.materials.lower) worst = p;
     result.materials = greater(result.materials, d);
@@ -231,11 +231,11 @@ InterfaceCertificate InterfaceComparison::finish(const InterfaceMesh& shown, con
     }
     for (std::size_t p = first; reached && p < last; ++p) tighten(p, seen, progress);
   };
-  tighten_parts(0, material_parts());
-  tighten_parts(material_parts(), input_.size());
+  tighten_parts(0, material_parts_);
+  tighten_parts(material_parts_, input_.size());
   InterfaceCertificate result = summary();
   result.networks = result.materials;
-  if (material_parts() > 1) {
+  if (material_parts_ > 1) {
     // Every interface is a part of two materials' boundaries.
     result.networks = certified(measure_networks(shown, progress));
     result.networks.upper = std::min(result.networks.upper, result.materials.upper);

@@ -85,13 +85,13 @@ class InterfaceComparison {
   /// The certified distance: what was seen at any point may differ by round-off from what is seen at the same
   /// point otherwise.
   [[nodiscard]] InterfaceDistance certified(InterfaceDistance distance) const;
-  [[nodiscard]] std::size_t material_parts() const { return input_.size() - 1; }
 
   const ResamplingSource& source_;
   double target_;
   InterfaceMesh mesh_;                           ///< of the input
   IdVector<MaterialId, std::uint32_t> part_of_;  ///< where two materials share all their triangles, one part
-  bool junctions_known_;                         ///< the input's interfaces are closed
+  std::size_t material_parts_ = 0;
+  bool junctions_known_;  ///< the input's interfaces are closed
   Parts input_, shown_;
   std::vector<Bounds> bounds_;
   std::array<std::vector<double>, 2> far_;

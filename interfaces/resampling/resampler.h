@@ -79,6 +79,9 @@ class Resampler {
   [[nodiscard]] RefinementEnd interface_end() const { return interface_end_; }
   /// Whether the greatest number of tetrahedra has stopped refinement.
   [[nodiscard]] bool budget_spent() const { return budget_spent_; }
+  /// A tetrahedron of the tree, leaf or not, in space, and who owns what of it.
+  [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
+  void ownership(TetrahedronId t, CellOwnership& result) const;
   /// The native elements in a tetrahedron of the tree, leaf or not.
   [[nodiscard]] std::span<const std::uint32_t> elements(TetrahedronId t) const;
   /// How far the mesh may have moved the place of an element: the greater of the interface errors wanted and
@@ -143,14 +146,13 @@ class Resampler {
   bool allow_smaller_shifts(const ExtractedInterfaces& shown);
   [[nodiscard]] RefinementEnd refine_what_fails();
   [[nodiscard]] ExtractedInterfaces measure_shown();
+  void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& leaves) const;
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves(const InterfaceMesh& shown) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_far_from_shown() const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_with_wrong_bodies(const InterfaceMesh& shown) const;
   void find_torn_leaves(TetrahedronId leaf, const IdVector<BodyId, char>& bodies,
                         std::vector<TetrahedronId>& torn) const;
   [[nodiscard]] std::vector<TetrahedronId> split_all(const std::vector<TetrahedronId>& failing);
-  [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
-  void ownership(TetrahedronId t, CellOwnership& result) const;
   [[nodiscard]] double estimate_target() const;
   void report(std::string_view stage);
 

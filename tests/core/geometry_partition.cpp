@@ -6,6 +6,7 @@
 #include "core/geometry/partition.h"
 #include "core/geometry/tetrahedron.h"
 #include "tests/support/ownership_problems.h"
+#include "tests/support/tetrahedron_faces.h"
 
 namespace adamas {
 namespace {
@@ -213,15 +214,8 @@ TEST(ContactPolygons, FacesAndContactsEncloseTheParts) {
       enclosed[owner] += 2 * dot(polygon.front(), area);  // 6 volumes a third
     };
     for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-      std::vector<Weights> face;
-      for (std::size_t v = 0; v < 4; ++v) {
-        if (v == opposite) continue;
-        face.push_back({});
-        face.back()[v] = 1;
-      }
-      if (opposite % 2 == 1) std::swap(face[0], face[1]);  // seen from outside
       std::vector<OwnedPolygon> parts;
-      partition_polygon(problem, face, parts);
+      partition_polygon(problem, test::outward_face(opposite), parts);
       for (const OwnedPolygon& part : parts) add(part.owner, places(part.corners), 1);
     }
     std::vector<ContactPolygon> contacts;

@@ -16,6 +16,7 @@
 #include "core/geometry/partition.h"
 #include "core/geometry/vec3.h"
 #include "tests/fuzz/require.h"
+#include "tests/support/tetrahedron_faces.h"
 
 /// Who owns what of two tetrahedra that share a face, for values made of any bytes.
 namespace adamas::fuzz {
@@ -159,15 +160,8 @@ inline OwnerSums owner_sums(const OwnershipProblem& problem) {
     sums.volumes[part.owner] += volume;
   }
   for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-    std::vector<Weights> face;
-    for (std::size_t v = 0; v < 4; ++v) {
-      if (v == opposite) continue;
-      face.push_back({});
-      face.back()[v] = 1;
-    }
-    if (opposite % 2 == 1) std::swap(face[0], face[1]);  // seen from outside
     std::vector<OwnedPolygon> pieces;
-    partition_polygon(problem, face, pieces);
+    partition_polygon(problem, test::outward_face(opposite), pieces);
     for (const OwnedPolygon& piece : pieces) sums.add_surface(piece.owner, owner_places(piece.corners), 1);
   }
   std::vector<ContactPolygon> contacts;

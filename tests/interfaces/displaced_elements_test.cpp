@@ -4,8 +4,8 @@
 
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reference/element_errors.h"
+#include "tests/interfaces/mesh_cells.h"
 #include "tests/interfaces/resampler_scenes.h"
-#include "tests/support/ownership_problems.h"
 
 namespace adamas {
 namespace {
@@ -32,37 +32,22 @@ struct Least {
 /// or zero between two of them.
 class BruteForce {
  public:
-  BruteForce(const ResampledMesh& mesh, std::size_t component) : mesh_(mesh), component_(component) {
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-      frames_.emplace_back(mesh.corners(c));
-      owners_.emplace_back();
-      mesh.ownership(c, owners_.back());
-    }
-  }
+  BruteForce(const ResampledMesh& mesh, std::size_t component)
+      : mesh_(mesh), component_(component), cells_(mesh) {}
 
   /// Whether the mesh gives a point to the material.
   [[nodiscard]] bool owns(MaterialId material, const Vec3& p) const {
-    std::size_t best = 0;
-    double inside = -1e300;
-    for (std::size_t c = 0; c < frames_.size(); ++c) {
-      const Weights w = frames_[c].weights(p);
-      const double least = std::min({w[0], w[1], w[2], w[3]});
-      if (least > inside) inside = least, best = c;
-    }
-    const auto& problem = owners_[best].problem;
-    const std::uint32_t owner = owners_[best].pure()
-                                    ? problem.candidates[0].owner
-                                    : test::brute_owner(problem, frames_[best].weights(p), 0).owner;
-    return mesh_.table.material(BodyId(owner)) == material;
+    const std::size_t cell = cells_.find(p);
+    return mesh_.table.material(cells_.owner(cell, cells_.frames[cell].weights(p))) == material;
   }
 
   [[nodiscard]] Least least(MaterialId material, const Box3& box, double native) const {
     Least result;
-    for (std::size_t c = 0; c < frames_.size(); ++c) {
+    for (std::size_t c = 0; c < cells_.frames.size(); ++c) {
       Box3 bounds;
-      for (const Vec3& corner : frames_[c].corners) bounds.extend(corner);
+      for (const Vec3& corner : cells_.frames[c].corners) bounds.extend(corner);
       if (!bounds.touches(box)) continue;
-      for (const auto& candidate : owners_[c].problem.candidates) {
+      for (const auto& candidate : cells_.owners[c].problem.candidates) {
         if (mesh_.table.material(BodyId(candidate.owner)) != material) continue;
         look_at(c, candidate, box, native, result);
       }
@@ -75,8 +60,8 @@ class BruteForce {
 
   /// Whether a body of the cell owns a point, or as much as any other.
   [[nodiscard]] bool owns(std::size_t cell, const Candidate& candidate, const Weights& w) const {
-    const auto& problem = owners_[cell].problem;
-    if (owners_[cell].pure()) return true;
+    const auto& problem = cells_.owners[cell].problem;
+    if (cells_.owners[cell].pure()) return true;
     const double own = problem.value(candidate, w);
     return std::all_of(problem.candidates.begin(), problem.candidates.end(),
                        [&](const Candidate& other) { return problem.value(other, w) <= own + 1e-12; });
@@ -86,7 +71,7 @@ class BruteForce {
                Least& least) const {
     std::vector<std::pair<Vec3, double>> below, above;
     const auto try_point = [&](const Vec3& p) {
-      const Weights w = frames_[cell].weights(p);
+      const Weights w = cells_.frames[cell].weights(p);
       if (std::min({w[0], w[1], w[2], w[3]}) < -1e-12 || !owns(cell, candidate, w)) return;
       const double difference = mesh_.value(cell, BodyId(candidate.owner), component_, w) - native;
       least.error = std::min(least.error, std::abs(difference));
@@ -112,7 +97,7 @@ class BruteForce {
   /// Faces of the cell and the box, and where two functions are equal.
   [[nodiscard]] std::vector<Cut> planes(std::size_t cell, const Box3& box) const {
     std::vector<Cut> cuts;
-    const Tetrahedron& frame = frames_[cell];
+    const Tetrahedron& frame = cells_.frames[cell];
     const auto add = [&](const std::array<double, 4>& values) {
       const Vec3 gradient = frame.gradient(values);
       if (!(norm(gradient) > 0)) return;
@@ -130,7 +115,7 @@ class BruteForce {
       values[v] = 1;
       add(values);
     }
-    const auto& functions = owners_[cell].problem.functions;
+    const auto& functions = cells_.owners[cell].problem.functions;
     for (std::size_t f = 0; f < functions.size(); ++f) {
       for (std::size_t g = 0; g < f; ++g) {
         std::array<double, 4> values{};
@@ -172,8 +157,7 @@ class BruteForce {
 
   const ResampledMesh& mesh_;
   std::size_t component_;
-  std::vector<Tetrahedron> frames_;
-  std::vector<CellOwnership> owners_;
+  const test::MeshCells cells_;
 };
 
 struct Seen {

@@ -2,8 +2,8 @@
 
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reference/element_errors.h"
+#include "tests/interfaces/mesh_cells.h"
 #include "tests/interfaces/resampler_scenes.h"
-#include "tests/support/ownership_problems.h"
 
 namespace adamas {
 namespace {
@@ -12,13 +12,7 @@ namespace {
 class Remeasured {
  public:
   Remeasured(const test::ResampledScene& resampled, const ResampledMesh& mesh)
-      : source_(resampled.source), mesh_(mesh) {
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-      frames_.emplace_back(mesh.corners(c));
-      owners_.emplace_back();
-      mesh.ownership(c, owners_.back());
-    }
-  }
+      : source_(resampled.source), mesh_(mesh), cells_(mesh) {}
 
   /// Greatest error over elements whose place belongs to their own material, and the others.
   void measure(std::vector<double>& greatest, std::vector<std::size_t>& others) const {
@@ -28,11 +22,9 @@ class Remeasured {
     for (std::size_t e = 0; e < source_.fields->native_elements().size(); ++e) {
       const NativeElement& element = source_.fields->native_elements()[e];
       source_.fields->native_values(element, native);
-      const std::size_t cell = find(element.position);
-      const Weights w = frames_[cell].weights(element.position);
-      const auto& problem = owners_[cell].problem;
-      const BodyId body(owners_[cell].pure() ? problem.candidates[0].owner
-                                             : test::brute_owner(problem, w, 0).owner);
+      const std::size_t cell = cells_.find(element.position);
+      const Weights w = cells_.frames[cell].weights(element.position);
+      const BodyId body = cells_.owner(cell, w);
       if (mesh_.table.material(body) != element.material) {
         others.push_back(e);
         continue;
@@ -46,21 +38,9 @@ class Remeasured {
   }
 
  private:
-  [[nodiscard]] std::size_t find(const Vec3& p) const {
-    std::size_t best = 0;
-    double inside = -1e300;
-    for (std::size_t c = 0; c < frames_.size(); ++c) {
-      const Weights w = frames_[c].weights(p);
-      const double least = std::min({w[0], w[1], w[2], w[3]});
-      if (least > inside) inside = least, best = c;
-    }
-    return best;
-  }
-
   const ResamplingSource& source_;
   const ResampledMesh& mesh_;
-  std::vector<Tetrahedron> frames_;
-  std::vector<CellOwnership> owners_;
+  const test::MeshCells cells_;
 };
 
 void expect_honest(const std::string& name, bool meshes, double interface_error, double field_error) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/geometry/place_text.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// "(x, y, z)", for a place or a direction in messages. No zero has a sign.
+inline std::string place_text(const Vec3& p) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x + 0.0, p.y + 0.0, p.z + 0.0);
+}
+
+}  // namespace adamas
