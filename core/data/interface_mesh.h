@@ -23,6 +23,11 @@ struct InterfaceMesh {
   std::vector<Vec3> points;
   std::vector<InterfaceTriangle> triangles;
   IdVector<MaterialId, std::string> materials;
+
+  [[nodiscard]] Vec3 centroid(std::size_t triangle) const {
+    const auto& p = triangles[triangle].points;
+    return (1.0 / 3) * (points[p[0]] + points[p[1]] + points[p[2]]);
+  }
 };
 
 }  // namespace adamas

@@ -35,8 +35,9 @@ class Measurer {
     if (material(owner) != element.material) return false;
     source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
+    const Rows rows = rows_of(cell_, owner);
     for (std::size_t f = 0; f < fields.size(); ++f)
-      add(error_at(cell_, fields[f], owner, weights), f, number, false, errors[f]);
+      add(error_at(rows, fields[f], weights), f, number, false, errors[f]);
     return true;
   }
 
@@ -65,12 +66,8 @@ class Measurer {
   }
 
  private:
-  /// A part of the element's own material within the box, by its corners.
-  struct Part {
-    const CellView* cell;
-    BodyId body;
-    std::vector<Vec3> corners;
-  };
+  /// The values of a body's fields at a cell's vertices.
+  using Rows = std::array<std::span<const double>, 4>;
 
   [[nodiscard]] MaterialId material(BodyId body) const { return source_.network->table().material(body); }
 
@@ -87,12 +84,22 @@ class Measurer {
     }
   }
 
-  [[nodiscard]] double error_at(const CellView& cell, const FieldInfo& field, BodyId body,
-                                const Weights& weights) const {
+  [[nodiscard]] static Rows rows_of(const CellView& cell, BodyId body) {
+    Rows rows;
+    for (std::size_t v = 0; v < 4; ++v) rows[v] = cell.vertices[v]->row(body);
+    return rows;
+  }
+
+  [[nodiscard]] static double value_at(const Rows& rows, std::size_t component, const Weights& weights) {
+    double value = 0;
+    for (std::size_t v = 0; v < 4; ++v) value += weights[v] * rows[v][component];
+    return value;
+  }
+
+  [[nodiscard]] double error_at(const Rows& rows, const FieldInfo& field, const Weights& weights) const {
     double squared = 0;
     for (std::size_t c = field.offset; c < field.offset + static_cast<std::size_t>(field.components); ++c) {
-      double value = 0;
-      for (std::size_t v = 0; v < 4; ++v) value += weights[v] * cell.vertices[v]->row(body)[c];
+      const double value = value_at(rows, c, weights);
       squared += (value - native_[c]) * (value - native_[c]);
     }
     return std::sqrt(squared);
@@ -104,25 +111,33 @@ class Measurer {
     const Vec3 reach{half_width, half_width, half_width};
     const Box3 box{element.position - reach, element.position + reach};
     cells_in_box_(box, element.material, [&](const CellView& cell) {
+      // Of the owner of the last piece looked at; pieces of an owner follow each other.
+      BodyId body;
+      Rows rows;
+      bool useful = false;
       for (const OwnedTetrahedron& piece : cell.parts) {
-        const BodyId body(piece.owner);
-        if (material(body) != element.material || !may_lower(cell, body, least)) continue;
+        if (const BodyId owner(piece.owner); owner != body) {
+          body = owner;
+          useful = material(body) == element.material;
+          if (useful) rows = rows_of(cell, body);
+        }
+        useful = useful && may_lower(rows, least);
+        if (!useful) continue;
         std::array<Vec3, 4> corners;
         Box3 bounds;
         for (std::size_t c = 0; c < 4; ++c) bounds.extend(corners[c] = cell.frame.point(piece.corners[c]));
         if (!bounds.touches(box)) continue;
-        const Part part{&cell, body, clip_to_box(corners, box)};
-        if (part.corners.empty()) continue;
+        part_.clear();
+        for (const Vec3& corner : clip_to_box(corners, box)) part_.push_back(cell.frame.weights(corner));
+        if (part_.empty()) continue;
         for (std::size_t f = 0; f < fields.size(); ++f)
-          least[f] = std::min(least[f], least_error(fields[f], part));
+          least[f] = std::min(least[f], least_error(fields[f], rows));
       }
     });
   }
 
   /// Whether the values at a cell's vertices, between which all others lie, leave room for lower errors.
-  [[nodiscard]] bool may_lower(const CellView& cell, BodyId body, const std::vector<double>& least) const {
-    std::array<std::span<const double>, 4> rows;
-    for (std::size_t v = 0; v < 4; ++v) rows[v] = cell.vertices[v]->row(body);
+  [[nodiscard]] bool may_lower(const Rows& rows, const std::vector<double>& least) const {
     const auto& fields = source_.fields->fields();
     for (std::size_t f = 0; f < fields.size(); ++f) {
       double squared = 0;
@@ -145,17 +160,14 @@ class Measurer {
     return std::sqrt(squared);
   }
 
-  /// Least error over a convex part: the values in it are the convex hull of those at its corners.
-  [[nodiscard]] double least_error(const FieldInfo& field, const Part& part) {
+  /// Least error over the part: the values in it are the convex hull of those at its corners.
+  [[nodiscard]] double least_error(const FieldInfo& field, const Rows& rows) {
     const auto components = static_cast<std::size_t>(field.components);
     differences_.clear();
     double low = kNone, high = -kNone;
-    for (const Vec3& corner : part.corners) {
-      const Weights w = part.cell->frame.weights(corner);
+    for (const Weights& w : part_) {
       for (std::size_t c = field.offset; c < field.offset + components; ++c) {
-        double value = 0;
-        for (std::size_t v = 0; v < 4; ++v) value += w[v] * part.cell->vertices[v]->row(part.body)[c];
-        differences_.push_back(value - native_[c]);
+        differences_.push_back(value_at(rows, c, w) - native_[c]);
         low = std::min(low, differences_.back()), high = std::max(high, differences_.back());
       }
     }
@@ -170,7 +182,8 @@ class Measurer {
   double half_width_;
   const CellsInBox& cells_in_box_;
   std::vector<double> native_;
-  std::vector<double> differences_;  ///< of a part's corner values from the native ones
+  std::vector<Weights> part_;        ///< corners of a convex part of the element's material within the box
+  std::vector<double> differences_;  ///< of the part's corner values from the native ones
 };
 
 }  // namespace

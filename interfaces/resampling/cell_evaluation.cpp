@@ -26,16 +26,17 @@ void Resampler::place_roots() {
   std::vector<VertexId> vertices;
   hierarchy_.for_each_vertex([&](VertexId v) { vertices.push_back(v); });
   evaluate_vertices(vertices);
-  if (source_.fields) place_elements();
   const auto& roots = hierarchy_.roots();
+  for (const TetrahedronId root : roots) root_frames_.push_back(frame(root));
+  if (source_.fields) place_elements();
   std::vector<std::vector<std::uint32_t>> near(roots.size() / kRootsOfCube);
   parallel_for(near.size(), 1, [&](std::size_t cube) {
     Box3 box;
-    for (const Vec3& corner : frame(roots[kRootsOfCube * cube]).corners) box.extend(corner);
+    for (const Vec3& corner : root_frames_[kRootsOfCube * cube].corners) box.extend(corner);
     source_.network->tree().overlapping(box, near[cube]);
   });
   parallel_for(roots.size(), 1, [&](std::size_t r) {
-    const Tetrahedron cell = frame(roots[r]);
+    const Tetrahedron& cell = root_frames_[r];
     for (const std::uint32_t t : near[r / kRootsOfCube]) {
       const auto& corners = source_.network->triangle_corners(t);
       if (meets(cell, corners[0], corners[1], corners[2]))
@@ -45,40 +46,44 @@ void Resampler::place_roots() {
   });
 }
 
+/// The root that holds a point, or is closest to it.
+TetrahedronId Resampler::root_at(const Vec3& p) const {
+  const Domain& domain = hierarchy_.domain();
+  const auto counts = domain.roots();
+  std::array<std::size_t, 3> cube{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double part = (p[axis] - domain.box().min[axis]) / domain.box().size()[axis];
+    cube[a] = static_cast<std::size_t>(std::clamp(part * counts[a], 0.0, counts[a] - 1.0));
+  }
+  const std::size_t first =
+      kRootsOfCube * (cube[0] + static_cast<std::size_t>(counts[0]) *
+                                    (cube[1] + static_cast<std::size_t>(counts[1]) * cube[2]));
+  std::size_t best = first;
+  double greatest = -1e300;
+  for (std::size_t r = first; r < first + kRootsOfCube; ++r) {
+    const Weights w = root_frames_[r].weights(p);
+    const double least = std::min({w[0], w[1], w[2], w[3]});
+    if (least > greatest) greatest = least, best = r;
+  }
+  return hierarchy_.roots()[best];
+}
+
 /// Sorts the native elements by the root they are in.
 void Resampler::place_elements() {
   const auto& roots = hierarchy_.roots();
   const auto& elements = source_.fields->native_elements();
-  std::vector<std::uint32_t> root_of(elements.size());
-  std::vector<Tetrahedron> frames;
-  for (const TetrahedronId t : roots) frames.push_back(frame(t));
-  const Domain& domain = hierarchy_.domain();
-  const auto counts = domain.roots();
-  parallel_for(elements.size(), 4096, [&](std::size_t e) {
-    std::array<std::size_t, 3> cube{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const double part = (elements[e].position[axis] - domain.box().min[axis]) / domain.box().size()[axis];
-      cube[a] = static_cast<std::size_t>(std::clamp(part * counts[a], 0.0, counts[a] - 1.0));
-    }
-    const std::size_t first =
-        kRootsOfCube * (cube[0] + static_cast<std::size_t>(counts[0]) *
-                                      (cube[1] + static_cast<std::size_t>(counts[1]) * cube[2]));
-    double best = -1e300;
-    for (std::size_t r = first; r < first + kRootsOfCube; ++r) {
-      const Weights w = frames[r].weights(elements[e].position);
-      const double least = std::min({w[0], w[1], w[2], w[3]});
-      if (least > best) best = least, root_of[e] = static_cast<std::uint32_t>(r);
-    }
-  });
+  std::vector<TetrahedronId> root_of(elements.size());
+  parallel_for(elements.size(), 4096, [&](std::size_t e) { root_of[e] = root_at(elements[e].position); });
   element_order_.resize(elements.size());
   std::iota(element_order_.begin(), element_order_.end(), 0u);
   std::stable_sort(element_order_.begin(), element_order_.end(),
                    [&](auto a, auto b) { return root_of[a] < root_of[b]; });
-  for (std::uint32_t r = 0, e = 0; r < roots.size(); ++r) {
-    CellRecord& cell = hierarchy_.payload(roots[r]);
+  std::uint32_t e = 0;
+  for (const TetrahedronId root : roots) {
+    CellRecord& cell = hierarchy_.payload(root);
     cell.first_element = e;
-    while (e < element_order_.size() && root_of[element_order_[e]] == r) ++e;
+    while (e < element_order_.size() && root_of[element_order_[e]] == root) ++e;
     cell.last_element = e;
   }
 }
@@ -115,17 +120,15 @@ void Resampler::evaluate_interface(TetrahedronId t) {
 
 void Resampler::distribute(TetrahedronId parent) {
   CellRecord& from = hierarchy_.payload(parent);
-  const Tetrahedron whole = frame(parent);
+  const SplitPlane plane = split_plane(parent);
   const auto children = hierarchy_.children(parent);
   const auto begin = element_order_.begin();
   std::uint32_t middle = from.first_element;
   if (source_.fields) {
     const auto& elements = source_.fields->native_elements();
     const auto at =
-        std::stable_partition(begin + from.first_element, begin + from.last_element, [&](std::uint32_t e) {
-          const Weights w = whole.weights(elements[e].position);
-          return w[0] >= w[1];
-        });
+        std::stable_partition(begin + from.first_element, begin + from.last_element,
+                              [&](std::uint32_t e) { return plane.side(elements[e].position) == 0; });
     middle = static_cast<std::uint32_t>(at - begin);
   }
   for (std::size_t side = 0; side < 2; ++side) {

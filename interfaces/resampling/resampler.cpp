@@ -159,6 +159,7 @@ void Resampler::refine() {
   finish_interfaces();
   if (source_.fields) refine_fields();
   comparison_.reset();
+  thin_places_.reset();
 }
 
 void Resampler::refine_fields() {
@@ -175,19 +176,19 @@ void Resampler::refine_fields() {
   measure_fields(leaves(), DisplacedErrors::kLeast);
 }
 
+Resampler::SplitPlane Resampler::split_plane(TetrahedronId t) const {
+  const auto v = hierarchy_.vertices(t);
+  const Vec3 first = hierarchy_.position(v[0]), origin = hierarchy_.position(v[2]);
+  const Vec3 middle = 0.5 * (first + hierarchy_.position(v[1]));
+  Vec3 normal = cross(hierarchy_.position(v[3]) - origin, middle - origin);
+  if (dot(normal, first - origin) < 0) normal = -1 * normal;
+  return {normal, origin};
+}
+
 TetrahedronId Resampler::leaf_at(const Vec3& p) const {
-  TetrahedronId best = hierarchy_.roots().front();
-  double greatest = -1e300;
-  for (const TetrahedronId root : hierarchy_.roots()) {
-    const Weights w = frame(root).weights(p);
-    const double least = std::min({w[0], w[1], w[2], w[3]});
-    if (least > greatest) greatest = least, best = root;
-  }
-  while (!hierarchy_.is_leaf(best)) {
-    const Weights w = frame(best).weights(p);
-    best = hierarchy_.children(best)[w[0] >= w[1] ? 0 : 1];
-  }
-  return best;
+  TetrahedronId t = root_at(p);
+  while (!hierarchy_.is_leaf(t)) t = hierarchy_.children(t)[split_plane(t).side(p)];
+  return t;
 }
 
 BodyId Resampler::owner_at(const Vec3& p) const {

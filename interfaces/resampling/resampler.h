@@ -15,6 +15,7 @@
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/resampling/body_comparison.h"
 #include "interfaces/resampling/interface_comparison.h"
+#include "interfaces/resampling/thin_places.h"
 #include "interfaces/source.h"
 
 namespace adamas {
@@ -112,7 +113,34 @@ class Resampler {
     std::vector<std::pair<TetrahedronId, double>> trusted;
   };
 
+  /// What is wrong with the bodies that the leaves show.
+  struct ShownBodies {
+    BodyFaults faults;
+    std::size_t leaves = 0;
+    std::optional<std::size_t> given_away;  ///< thin places of bodies that are given to others, once known
+    /// Whether fewer bodies are lost or joined, or so many fewer torn that it is worth the leaves.
+    [[nodiscard]] bool are_better_than(const ShownBodies& other) const;
+    /// How many there may be before something has become better.
+    [[nodiscard]] std::size_t most_leaves() const;
+  };
+
+  struct TornLeaves {
+    std::vector<TetrahedronId> leaves;
+    std::size_t places = 0;  ///< within bodies, given to others
+  };
+
+  /// What divides a tetrahedron's children: the plane through the middle of the split edge and the other two
+  /// vertices.
+  struct SplitPlane {
+    Vec3 normal;  ///< into the first child
+    Vec3 origin;
+    /// The child that a point of the tetrahedron is given to.
+    [[nodiscard]] std::size_t side(const Vec3& p) const { return dot(normal, p - origin) >= 0 ? 0 : 1; }
+  };
+
   void place_roots();
+  [[nodiscard]] SplitPlane split_plane(TetrahedronId t) const;
+  [[nodiscard]] TetrahedronId root_at(const Vec3& p) const;
   void place_elements();
   void evaluate_vertices(const std::vector<VertexId>& vertices);
   void evaluate_interface(TetrahedronId t);
@@ -149,10 +177,10 @@ class Resampler {
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& leaves) const;
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves(const InterfaceMesh& shown) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_far_from_shown() const;
-  [[nodiscard]] std::vector<TetrahedronId> leaves_with_wrong_bodies(const InterfaceMesh& shown) const;
-  void find_torn_leaves(TetrahedronId leaf, const IdVector<BodyId, char>& bodies,
-                        std::vector<TetrahedronId>& torn) const;
-  [[nodiscard]] std::vector<TetrahedronId> split_all(const std::vector<TetrahedronId>& failing);
+  [[nodiscard]] TornLeaves torn_leaves() const;
+  bool refine_for_lost_bodies(const InterfaceMesh& shown);
+  [[nodiscard]] std::optional<RefinementEnd> refine_for_bodies(const InterfaceMesh& shown, ShownBodies& best);
+  [[nodiscard]] std::vector<TetrahedronId> split_all(std::vector<TetrahedronId> failing);
   [[nodiscard]] double estimate_target() const;
   void report(std::string_view stage);
 
@@ -160,6 +188,7 @@ class Resampler {
   ResamplingOptions options_;
   Progress& progress_;
   MeshHierarchy hierarchy_;
+  std::vector<Tetrahedron> root_frames_;
   std::vector<std::uint32_t> element_order_;
   bool fields_active_ = false;
   bool budget_spent_ = false;
@@ -170,7 +199,8 @@ class Resampler {
   std::unique_ptr<InterfaceComparison> comparison_;
   std::optional<InterfaceCertificate> certificate_;
   std::unique_ptr<BodyComparison> bodies_;
-  Record* recorded_ = nullptr;  ///< receives what is split, unless null
+  std::optional<std::vector<ThinPlace>> thin_places_;  ///< known once they are needed
+  Record* recorded_ = nullptr;                         ///< receives what is split, unless null
 };
 
 }  // namespace adamas
