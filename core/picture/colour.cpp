@@ -85,9 +85,7 @@ Colour seen_by(Vision vision, const Colour& colour) {
 }
 
 std::array<std::uint8_t, 3> to_bytes(const Colour& colour) {
-  const auto byte = [](double v) {
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0)));
-  };
+  const auto byte = [](double v) { return static_cast<std::uint8_t>(255 * std::clamp(v, 0.0, 1.0) + 0.5); };
   return {byte(colour.r), byte(colour.g), byte(colour.b)};
 }
 

@@ -84,8 +84,10 @@ double LinearField::at(const Vec2& p) const {
 }
 
 void fill_polygon(Raster& raster, std::span<const Vec2> points, const Colour& colour) {
+  const auto bytes = to_bytes(colour);
+  const Raster::Pixel pixel{bytes[0], bytes[1], bytes[2], 255};
   scan_convex_polygon(points, raster.width(), raster.height(),
-                      [&](int x, int y) { raster.set(x, y, colour); });
+                      [&](int x, int y) { raster.at(x, y) = pixel; });
 }
 
 void fill_field_polygon(Raster& raster, std::span<const Vec2> points, std::span<const double> values,

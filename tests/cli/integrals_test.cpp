@@ -148,7 +148,8 @@ TEST_F(Integrals, AgreeBetweenInputMeshAndCutMesh) {
       expect_agreement("scene.vtr", field, figures, 10.0 * materials + kSlope);
       // A point is no farther than half a cell's diagonal, and the interfaces' error, from a place where
       // values are compared; on the way either field changes by no more than its slope says.
-      const double way = std::sqrt(3.0) * (0.5 / kCells + figures.at("interface_error_per_material").get<double>());
+      const double way =
+          std::sqrt(3.0) * (0.5 / kCells + figures.at("interface_error_per_material").get<double>());
       const double bound = figures.at("fields").at(field).at("max_error").get<double>() + 2 * kSlope * way;
       EXPECT_LT(bound, 5) << "materials' values differ by 10";
       std::size_t agreed = 0;
@@ -172,7 +173,7 @@ TEST_F(LongIntegrals, OfPublishedDataAgree) {
   const std::string region = "--region=-1.5,-0.5,-0.9,0,-0.3,0.3";
   // Values of a mass are of a cell: they are what the region's cells have at most.
   run_quietly({"info", data.string(), region, "--json", "info.json"});
-  resample({data.string(), region}, {"--interface-error", "0.5%"});
+  resample({data.string(), region}, {"--interface-error", "1.5%"});
   const Json figures = read_json("figures.json"), ranges = read_json("info.json");
   double greatest = 0;
   for (const Json& field : ranges.at("fields")) {

@@ -37,7 +37,7 @@ double hue(const Pixel& p) {
 
 class Pictures : public ProgramTest {
  protected:
-  Pictures() { make_scene("voronoi10", 12); }
+  Pictures() { make_scene("voronoi10", 8); }
 
   [[nodiscard]] Picture picture(const std::string& name) const {
     vtkNew<vtkPNGReader> reader;
@@ -86,6 +86,8 @@ TEST_F(Pictures, TheCameraAndTheChoiceOfInterfaces) {
   const auto draw = [this](const std::string& name, std::vector<std::string> more) {
     std::vector<std::string> arguments{"reconstruct", "scene.vtr", "-o", "r.vtp", "--picture", name};
     arguments.insert(arguments.end(), more.begin(), more.end());
+    if (std::find(more.begin(), more.end(), "--size") == more.end())
+      arguments.insert(arguments.end(), {"--size", "640,480"});
     run_well(arguments);
     return picture(name);
   };

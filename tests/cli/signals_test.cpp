@@ -157,6 +157,7 @@ TEST_F(Signals, RunsAtTheSameTimeLeaveEachOtherAlone) {
 
 /// What a mesher of others starts goes with it, also where the run ends at once.
 TEST_F(Signals, ComparisonsLeaveNoProcesses) {
+  make_scene("sphere", 6);
   write("mesher", "#!/bin/sh\nsleep 1000 &\necho $! > started\nmv started pid\nwait\n");
   chmod((folder() / "mesher").c_str(), 0755);
   setenv("ADAMAS_REFERENCE_PROGRAM", (folder() / "mesher").c_str(), 1);
@@ -172,7 +173,7 @@ TEST_F(Signals, ComparisonsLeaveNoProcesses) {
       kill(program, SIGCONT);
     };
     const RunResult result =
-        run({"compare", "scene.vtr", "--interface-error", "8%", "--json", "f.json"}, options);
+        run({"compare", "scene.vtr", "--interface-error", "15%", "--json", "f.json"}, options);
     EXPECT_EQ(result.status, 130) << result.err;
     const int started = std::stoi(read("pid"));
     wait_until_gone(started);
@@ -182,7 +183,7 @@ TEST_F(Signals, ComparisonsLeaveNoProcesses) {
   std::filesystem::remove(folder() / "pid");
   RunOptions full;
   full.stdout_file = "/dev/full";
-  const RunResult result = run({"compare", "scene.vtr", "--interface-error", "8%"}, full);
+  const RunResult result = run({"compare", "scene.vtr", "--interface-error", "15%"}, full);
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(folder() / "pid"));

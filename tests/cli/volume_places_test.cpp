@@ -194,7 +194,7 @@ TEST_F(VolumePlaces, SlicesOfVolumesAndStoresAreInSpace) {
         std::vector<std::string> all{"slice", stored == 1 ? "a.adm" : "a.nii"};
         all.insert(all.end(), plane.begin(), plane.end());
         const std::string picture = stored == 1 ? "s.png" : "v.png", json = stored == 1 ? "s.json" : "v.json";
-        all.insert(all.end(), {"-o", picture, "--json", json});
+        all.insert(all.end(), {"-o", picture, "--size", "200,200", "--json", json});
         run_well(all);
         areas[stored] = read_json(json).at("area").get<double>();
       }

@@ -81,8 +81,8 @@ TEST(LongCrossSection, AreasAddUpOnEveryScene) {
     for (const bool given : {true, false}) {
       SceneMeshOptions options;
       options.given = given;
-      options.most = 4000;
-      expect_areas_add_up(make_scene_mesh(name, options), 50);
+      options.most = 2000;
+      expect_areas_add_up(make_scene_mesh(name, options), 30);
     }
   }
 }

@@ -152,8 +152,8 @@ void expect_certified(bool meshes, const std::vector<double>& errors, std::size_
               ratios[ratios.size() / 2], ratios.back(), ratios.size());
 }
 
-TEST(LongCertifiedInterfaces, FromMeshes) { expect_certified(true, {0.1}, 100000); }
-TEST(LongCertifiedInterfaces, FromFractions) { expect_certified(false, {0.1, 0.03}, 100000); }
+TEST(LongCertifiedInterfaces, FromMeshes) { expect_certified(true, {0.1}, 40000); }
+TEST(LongCertifiedInterfaces, FromFractions) { expect_certified(false, {0.1, 0.03}, 40000); }
 TEST(CertifiedInterfaces, CoarseFromMeshes) { expect_certified(true, {0.2}, 5000); }
 
 }  // namespace

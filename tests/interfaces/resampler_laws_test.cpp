@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, LongResamplerLaws, testing::Combine(kAll, testi
 /// number of tetrahedra, so that it is coarse where layers are thin.
 class LongRandomScenes : public testing::TestWithParam<int> {
  protected:
-  static constexpr int kSeedsEach = 50;
+  static constexpr int kSeedsEach = 20;
   static SceneCase random_case(int seed, bool meshes) {
     SceneCase c = make_case("random", meshes, 0.1);
     c.seed = static_cast<std::uint64_t>(seed);
