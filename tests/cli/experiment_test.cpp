@@ -36,7 +36,7 @@ plane = [
   "x=0.25",
 ]
 detail = "0.2,0.6,0.2,0.7"
-curve = ["12%", "6%"]
+curve = ["30%", "10%"]
 density = "linear"
 published-by = "somebody, 2001"
 published = ["tetrahedra=100", "triangles left | upper=1"]

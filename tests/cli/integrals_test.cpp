@@ -173,7 +173,7 @@ TEST_F(LongIntegrals, OfPublishedDataAgree) {
   const std::string region = "--region=-1.5,-0.5,-0.9,0,-0.3,0.3";
   // Values of a mass are of a cell: they are what the region's cells have at most.
   run_quietly({"info", data.string(), region, "--json", "info.json"});
-  resample({data.string(), region}, {"--interface-error", "1.5%"});
+  resample({data.string(), region}, {"--interface-error", "0.5%"});
   const Json figures = read_json("figures.json"), ranges = read_json("info.json");
   double greatest = 0;
   for (const Json& field : ranges.at("fields")) {
