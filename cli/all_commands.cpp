@@ -21,6 +21,7 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_info(app, session);
   add_reconstruct(app, session);
   add_resample(app, session);
+  add_select(app, session);
   add_compare(app, session);
   add_slice(app, session);
   add_probe(app, session);

@@ -43,6 +43,7 @@ void add_generate(CLI::App& app, Session& session);
 void add_info(CLI::App& app, Session& session);
 void add_reconstruct(CLI::App& app, Session& session);
 void add_resample(CLI::App& app, Session& session);
+void add_select(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
 void add_slice(CLI::App& app, Session& session);
 void add_probe(CLI::App& app, Session& session);

@@ -11,6 +11,7 @@
 #include "cli/grid_summary.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
+#include "cli/saved_hierarchy_input.h"
 #include "cli/store_input.h"
 #include "cli/store_summary.h"
 #include "cli/usage_error.h"
@@ -22,6 +23,7 @@
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/check.h"
+#include "interfaces/selection/selection.h"
 
 namespace adamas {
 
@@ -135,6 +137,23 @@ void print_resampled(const ResampledMesh& mesh, Console& console, Figures& figur
   if (rows.size() > 1) console.table(rows);
 }
 
+/// The whole mesh of a saved hierarchy, and what coarser ones there are.
+Figures print_hierarchy(const std::string& path, Session& session) {
+  Console& console = session.console;
+  const SavedHierarchy hierarchy = load_saved_hierarchy(path, console);
+  Figures figures{{"file", path},
+                  {"kind", "saved hierarchy"},
+                  {"tetrahedra_of_the_tree", hierarchy.tree.cells.size()},
+                  {"diamonds", hierarchy.diamond_count()},
+                  {"interface_error_target", hierarchy.interface_target}};
+  console.print(
+      "{}: saved hierarchy of {} tetrahedra, {} of them leaves, built for an interface error of {:.4g}\n",
+      path, hierarchy.tree.cells.size(), hierarchy.root_count + hierarchy.split_cells.size(),
+      hierarchy.interface_target);
+  print_resampled(whole_mesh(hierarchy), console, figures);
+  return figures;
+}
+
 /// Interfaces, and whether the mesh is sound.
 void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures) {
   figures["materials"] = Figures::array();
@@ -223,6 +242,11 @@ void run(const Options& given, Session& session) {
     session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
     return session.outputs.commit();
   }
+  if (is_saved_hierarchy(options.path)) {
+    const Figures figures = print_hierarchy(options.path, session);
+    session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+    return session.outputs.commit();
+  }
   session.console.step("reading " + options.path, -1);
   if (auto volume = find_volume(options, all.volume, session)) {
     const Figures figures = print_volume(std::move(*volume), options.path, session);
@@ -250,7 +274,7 @@ void add_info(CLI::App& app, Session& session) {
   command
       ->add_option("input", options->input.path,
                    std::string("Any file that can be read: ") + kGridFiles +
-                       ", a mesh (.vtu), interfaces (.vtp, .arec, .txt), a surface "
+                       ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .arec, .txt), a surface "
                        "(.obj, .off, .ply, .stl) or a store (.adm)")
       ->type_name("FILE");
   add_material_options(*command, options->input);

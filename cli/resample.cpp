@@ -7,17 +7,13 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"
-#include "cli/ledger.h"
+#include "cli/mesh_outputs.h"
 #include "cli/resample_figures.h"
 #include "cli/resampling_setup.h"
-#include "cli/surface_picture.h"
 #include "cli/usage_error.h"
-#include "core/io/interface_mesh_io.h"
-#include "core/io/output_stream.h"
-#include "core/io/unstructured_mesh_io.h"
-#include "interfaces/mesh/cut_mesh.h"
-#include "interfaces/mesh/resampled_mesh_file.h"
+#include "core/io/array_file.h"
 #include "interfaces/resampling/shortfall.h"
+#include "interfaces/selection/saved_hierarchy_file.h"
 
 namespace adamas {
 
@@ -31,8 +27,8 @@ std::string shown_length(double length) {
 struct Options {
   InputOptions input;
   ResamplingText text;
-  SurfacePictureOptions picture;
-  std::string output, interfaces, cut, ledger;
+  MeshOutputs outputs;
+  std::string save;
 };
 
 /// Says which of the distances are greater than wanted, and why.
@@ -202,20 +198,19 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
   if (source.materials.size() > kMost) console.print("  ... and {} more\n", source.materials.size() - kMost);
 }
 
-/// Writes what is asked for; returns the ledger of the input and of all meshes that were written.
+/// Writes what is asked for; returns the ledgers of the input and of all meshes that were written.
 std::vector<Ledger> write_outputs(const Options& options, const Input& input, Resampler& resampler,
                                   Session& session) {
   Console& console = session.console;
-  const std::string& picture = options.picture.camera.file;
-  if (!options.interfaces.empty() || !picture.empty()) {
-    const InterfaceMesh interfaces = approximated_interfaces(resampler, console);
-    console.step("writing interfaces", -1);
-    session.outputs.write(options.interfaces,
-                          [&](const auto& path) { write_interface_mesh(path, interfaces); });
-    session.outputs.write(picture, [&](const auto& path) {
-      write_surface_picture(path, interfaces, resampler.source().box, options.picture);
-    });
-  }
+  if (options.outputs.need_interfaces())
+    write_interfaces(options.outputs, approximated_interfaces(resampler, console), resampler.source().box,
+                     session);
+  session.outputs.write(options.save, [&](const auto& path) {
+    console.step("measuring all cells of the hierarchy", -1);
+    const SavedHierarchy hierarchy = take_hierarchy(resampler);
+    console.step("writing " + options.save, -1);
+    write_array_file(path, {kHierarchyFormat, kHierarchyVersion, to_arrays(hierarchy)});
+  });
   std::vector<Ledger> ledgers;
   // Beside given interfaces a grid need not know materials.
   if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
@@ -223,48 +218,27 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
   } else if (!input.source.volumes.empty()) {
     ledgers.push_back(volume_ledger("input", input.source.volumes));
   }
-  if (options.output.empty() && options.cut.empty() && options.ledger.empty()) return ledgers;
+  if (!options.outputs.need_mesh()) return ledgers;
   console.step("completing fields", -1);
-  const ResampledMesh mesh = take_mesh(resampler);
-  ledgers.push_back({"mesh", material_integrals(mesh)});
-  session.outputs.write(options.output, [&](const auto& path) {
-    console.step("writing " + options.output, -1);
-    write_unstructured_mesh(path, to_unstructured_mesh(mesh));
-  });
-  session.outputs.write(options.cut, [&](const auto& path) {
-    console.step("writing " + options.cut, -1);
-    const UnstructuredMesh cut = cut_mesh(mesh);
-    ledgers.push_back({"cut mesh", material_integrals(cut, mesh.materials.size())});
-    write_unstructured_mesh(path, cut);
-  });
-  session.outputs.write(options.ledger, [&](const auto& path) {
-    OutputStream stream(path);
-    stream.write(ledger_csv(ledgers, mesh.materials, mesh.fields));
-    stream.finish();
-  });
+  write_mesh(options.outputs, take_mesh(resampler), ledgers, session);
   return ledgers;
 }
 
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   const ResamplingWishes wishes(options.text);
-  if (options.output.empty() && options.interfaces.empty() && options.cut.empty() && options.ledger.empty() &&
-      options.picture.camera.file.empty() && session.json.empty()) {
+  if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && options.save.empty() &&
+      session.json.empty()) {
     wrong_usage(
-        "nothing to write: expected -o, --interfaces-out, --cut-mesh, --ledger, --picture or --json, found "
-        "none");
+        "nothing to write: expected -o, --interfaces-out, --cut-mesh, --ledger, --picture, --save or --json, "
+        "found none");
   }
-  options.picture.check();
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
-  session.outputs.declare("-o", options.output, {".vtu"});
-  session.outputs.declare("--interfaces-out", options.interfaces,
-                          {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
-  session.outputs.declare("--cut-mesh", options.cut, {".vtu"});
-  session.outputs.declare("--ledger", options.ledger, {".csv"});
-  session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf"});
+  options.outputs.declare(session.outputs);
+  session.outputs.declare("--save", options.save, {".h5"});
   const Input input =
       load_input(options.input, console, [&](const InputFacts& found) { wishes.check(found); });
-  options.picture.check_materials(input.source.materials, input.source.name);
+  options.outputs.picture.check_materials(input.source.materials, input.source.name);
   Resampler resampler(input.source, wishes.options(input.source), console);
   resampler.refine();
   console.step("measuring", -1);
@@ -300,19 +274,11 @@ void add_resample(CLI::App& app, Session& session) {
           std::string("What to resample: ") + kGridFiles + ", or a labelled network (.vtp, .arec, .txt)")
       ->type_name("FILE");
   add_resampling_options(*command, options->text);
-  command->add_option("-o,--output", options->output, "The mesh: .vtu")->type_name("FILE");
+  add_mesh_output_options(*command, options->outputs);
   command
-      ->add_option("--interfaces-out", options->interfaces,
-                   "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
+      ->add_option("--save", options->save,
+                   "The hierarchy, from which adamas select takes meshes of other errors: .h5")
       ->type_name("FILE");
-  command->add_option("--cut-mesh", options->cut, "The mesh with cells cut along the interfaces: .vtu")
-      ->type_name("FILE");
-  command
-      ->add_option("--ledger", options->ledger,
-                   "Volumes and integrals of fields per material, of the input and of what is written: .csv")
-      ->type_name("FILE");
-  options->picture.triangle_edges = true;
-  add_surface_picture_options(*command, options->picture);
   add_material_options(*command, options->input);
   add_smoothing_option(*command, options->input);
   add_interface_options(*command, options->input);

@@ -8,15 +8,6 @@
 
 namespace adamas {
 
-namespace {
-
-std::vector<FieldInfo>::const_iterator find_by_name(const std::vector<FieldInfo>& fields,
-                                                    const std::string& name) {
-  return std::find_if(fields.begin(), fields.end(), [&name](const FieldInfo& f) { return f.name == name; });
-}
-
-}  // namespace
-
 void add_resampling_options(CLI::App& command, ResamplingText& text) {
   command
       .add_option("--interface-error", text.interface_error,
@@ -49,16 +40,32 @@ void add_other_resampling_options(CLI::App& command, ResamplingText& text) {
       ->capture_default_str();
 }
 
-ResamplingWishes::ResamplingWishes(const ResamplingText& text)
-    : interface_error(parse_error_target("--interface-error", text.interface_error, true)) {
-  for (const std::string& each : text.field_errors) {
+FieldErrorTargets parse_field_errors(const std::vector<std::string>& texts) {
+  FieldErrorTargets result;
+  for (const std::string& each : texts) {
     const auto [name, value] = parse_assignment("--field-error", each, true);
     const auto same = [&name = name](const auto& other) { return other.first == name; };
-    if (std::any_of(field_errors.begin(), field_errors.end(), same)) {
+    if (std::any_of(result.begin(), result.end(), same)) {
       wrong_usage("--field-error: expected one error per field, found '{}' twice", name);
     }
-    field_errors.emplace_back(name, parse_error_target("--field-error " + name, value));
+    result.emplace_back(name, parse_error_target("--field-error " + name, value));
   }
+  return result;
+}
+
+std::size_t field_number(const std::vector<FieldInfo>& fields, const std::string& name,
+                         const std::string& source) {
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
+  if (found == fields.end()) {
+    fail("{}: --field-error: expected one of its fields ({}), found '{}'", source, field_names(fields), name);
+  }
+  return static_cast<std::size_t>(found - fields.begin());
+}
+
+ResamplingWishes::ResamplingWishes(const ResamplingText& text)
+    : interface_error(parse_error_target("--interface-error", text.interface_error, true)),
+      field_errors(parse_field_errors(text.field_errors)) {
   if (!text.max_tetrahedra.empty()) max_tetrahedra = parse_count("--max-tetrahedra", text.max_tetrahedra);
   if (text.ghost == "linear") ghost = GhostMode::kLinear;
   if (text.ghost == "least-squares") ghost = GhostMode::kLeastSquares;
@@ -79,12 +86,8 @@ double interface_error_of(const std::string& option, const ErrorTarget& error, c
 
 void ResamplingWishes::check(const InputFacts& input) const {
   static_cast<void>(interface_error_of("--interface-error", interface_error, input));
-  for (const auto& [name, target] : field_errors) {
-    if (find_by_name(input.fields, name) == input.fields.end()) {
-      fail("{}: --field-error: expected one of its fields ({}), found '{}'", input.name,
-           field_names(input.fields), name);
-    }
-  }
+  for (const auto& [name, target] : field_errors)
+    static_cast<void>(field_number(input.fields, name, input.name));
 }
 
 ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) const {
@@ -101,10 +104,10 @@ ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) cons
   result.conserve = conserve;
   result.field_errors.resize(fields.size());
   for (const auto& [name, target] : field_errors) {
-    const auto found = find_by_name(fields, name);
-    const double wanted = target.of(found->max - found->min);
+    const std::size_t found = field_number(fields, name, input.name);
+    const double wanted = target.of(fields[found].max - fields[found].min);
     // A field of one value everywhere is met by any mesh.
-    if (wanted > 0) result.field_errors[static_cast<std::size_t>(found - fields.begin())] = wanted;
+    if (wanted > 0) result.field_errors[found] = wanted;
   }
   return result;
 }

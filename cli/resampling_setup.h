@@ -21,6 +21,13 @@ void add_resampling_options(CLI::App& command, ResamplingText& text);
 /// The same without the interface error.
 void add_other_resampling_options(CLI::App& command, ResamplingText& text);
 
+using FieldErrorTargets = std::vector<std::pair<std::string, ErrorTarget>>;
+/// "NAME=E" each. Throws UsageError, also for a name that is there twice.
+FieldErrorTargets parse_field_errors(const std::vector<std::string>& texts);
+/// The place of a field by its name. Throws Error that names the source where it has none of that name.
+std::size_t field_number(const std::vector<FieldInfo>& fields, const std::string& name,
+                         const std::string& source);
+
 /// The options with their values checked, before the input is known.
 struct ResamplingWishes {
   /// Throws UsageError.
@@ -32,7 +39,7 @@ struct ResamplingWishes {
   [[nodiscard]] ResamplingOptions options(const ResamplingSource& source) const;
 
   ErrorTarget interface_error;
-  std::vector<std::pair<std::string, ErrorTarget>> field_errors;
+  FieldErrorTargets field_errors;
   std::optional<std::size_t> max_tetrahedra;
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;

@@ -6,6 +6,7 @@
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/material_numbers.h"
+#include "cli/saved_hierarchy_input.h"
 #include "cli/usage_error.h"
 #include "core/data/volume_placement.h"
 #include "core/io/input_file.h"
@@ -13,6 +14,7 @@
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/reconstruction.h"
+#include "interfaces/selection/selection.h"
 
 namespace adamas {
 
@@ -77,6 +79,7 @@ std::vector<Vec3> SliceInput::outline(const Plane& plane) const {
 }
 
 ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
+  if (is_saved_hierarchy(path)) return whole_mesh(load_saved_hierarchy(path, console));
   check_input_file(path);
   console.step("reading " + path, -1);
   const UnstructuredMesh mesh = read_unstructured_mesh(path);

@@ -38,7 +38,7 @@ struct SliceInput {
   }
 };
 
-/// Reads a resampled mesh from .vtu. Throws Error for another mesh.
+/// Reads a resampled mesh from .vtu, or the whole one from a saved hierarchy. Throws Error for another mesh.
 ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
 
 /// Reads the positional input, a resampled mesh, gridded data or given interfaces, and for a mesh the

@@ -1,36 +1,16 @@
-#define H5_USE_110_API
-#include <hdf5.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/io/hdf5_handle.h"
 #include "core/io/input_file.h"
 #include "core/io/volume_import.h"
 
 namespace adamas {
 
 namespace {
-
-/// An identifier of HDF5 and what closes it.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-
-  [[nodiscard]] hid_t id() const { return id_; }
-  [[nodiscard]] bool good() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
 
 /// The type that samples are handed over as; nothing where they are no numbers.
 std::optional<StoredType> find_type(hid_t type) {
@@ -54,9 +34,9 @@ hid_t memory_type(StoredType type) {
 
 /// Whether it is a data set of numbers along three axes.
 bool is_volume(hid_t file, const char* name) {
-  const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-  const Handle space(set.good() ? H5Dget_space(set.id()) : -1, H5Sclose);
-  const Handle type(set.good() ? H5Dget_type(set.id()) : -1, H5Tclose);
+  const Hdf5Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle space(set.good() ? H5Dget_space(set.id()) : -1, H5Sclose);
+  const Hdf5Handle type(set.good() ? H5Dget_type(set.id()) : -1, H5Tclose);
   return space.good() && type.good() && H5Sget_simple_extent_ndims(space.id()) == 3 && find_type(type.id());
 }
 
@@ -79,7 +59,7 @@ class DataSet {
   DataSet(const std::string& name, hid_t file, const std::string& path)
       : name_(name + ": " + path), set_(H5Dopen2(file, path.c_str(), access().id()), H5Dclose) {
     if (!set_.good()) fail("{}: expected a data set, found none", name_);
-    const Handle type(H5Dget_type(set_.id()), H5Tclose);
+    const Hdf5Handle type(H5Dget_type(set_.id()), H5Tclose);
     const auto stored = type.good() ? find_type(type.id()) : std::nullopt;
     if (!stored) fail("{}: expected one number per sample, found another type", name_);
     volume_.stored = *stored;
@@ -90,14 +70,14 @@ class DataSet {
   void send(ImportSink& sink) {
     sink.begin(volume_);
     const std::array<hsize_t, 3> size{volume_.dimensions[2], volume_.dimensions[1], volume_.dimensions[0]};
-    const Handle space(H5Dget_space(set_.id()), H5Sclose);
+    const Hdf5Handle space(H5Dget_space(set_.id()), H5Sclose);
     std::vector<std::byte> planes;
     const std::uint64_t plane_bytes = size[1] * size[2] * stored_bytes(volume_.stored);
     const std::uint64_t step = planes_at_once(plane_bytes);
     for (hsize_t k = 0; k < size[0]; k += step) {
       const std::array<hsize_t, 3> start{k, 0, 0},
           count{std::min<hsize_t>(step, size[0] - k), size[1], size[2]};
-      const Handle memory(H5Screate_simple(3, count.data(), nullptr), H5Sclose);
+      const Hdf5Handle memory(H5Screate_simple(3, count.data(), nullptr), H5Sclose);
       planes.resize(count[0] * plane_bytes);
       const bool read = H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
                                             nullptr) >= 0 &&
@@ -112,14 +92,14 @@ class DataSet {
   static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
 
   /// With room for the chunks that a plane crosses.
-  static Handle access() {
+  static Hdf5Handle access() {
     const hid_t list = H5Pcreate(H5P_DATASET_ACCESS);
     H5Pset_chunk_cache(list, 100'003, kMostBytes, 1);
     return {list, H5Pclose};
   }
 
   void set_dimensions() {
-    const Handle space(H5Dget_space(set_.id()), H5Sclose);
+    const Hdf5Handle space(H5Dget_space(set_.id()), H5Sclose);
     const int axes = space.good() ? H5Sget_simple_extent_ndims(space.id()) : 0;
     if (axes != 3) fail("{}: expected samples along three axes, found {}", name_, axes);
     std::array<hsize_t, 3> size{};
@@ -136,8 +116,8 @@ class DataSet {
   void set_spacing() {
     const char* name = "element_size_um";
     if (H5Aexists(set_.id(), name) <= 0) return;
-    const Handle attribute(H5Aopen(set_.id(), name, H5P_DEFAULT), H5Aclose);
-    const Handle space(attribute.good() ? H5Aget_space(attribute.id()) : -1, H5Sclose);
+    const Hdf5Handle attribute(H5Aopen(set_.id(), name, H5P_DEFAULT), H5Aclose);
+    const Hdf5Handle space(attribute.good() ? H5Aget_space(attribute.id()) : -1, H5Sclose);
     std::array<double, 3> zyx{};
     if (!space.good() || H5Sget_simple_extent_npoints(space.id()) != 3 ||
         H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, zyx.data()) < 0) {
@@ -150,14 +130,14 @@ class DataSet {
 
   /// As many as a layer of chunks has, where they fit into memory.
   [[nodiscard]] std::uint64_t planes_at_once(std::uint64_t plane_bytes) const {
-    const Handle list(H5Dget_create_plist(set_.id()), H5Pclose);
+    const Hdf5Handle list(H5Dget_create_plist(set_.id()), H5Pclose);
     std::array<hsize_t, 3> chunk{1, 1, 1};
     if (H5Pget_layout(list.id()) == H5D_CHUNKED) H5Pget_chunk(list.id(), 3, chunk.data());
     return std::max<std::uint64_t>(1, std::min<std::uint64_t>(chunk[0], kMostBytes / plane_bytes));
   }
 
   std::string name_;
-  Handle set_;
+  Hdf5Handle set_;
   ImportedVolume volume_;
 };
 
@@ -183,7 +163,7 @@ VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions&
   const std::string name = path.string();
   return import_volume(name, check_input_file(path), options, progress, [&](ImportSink& sink) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", name);
     DataSet(name, file.id(), chosen_set(name, file.id(), options.array)).send(sink);
   });

@@ -43,7 +43,8 @@ class Measurer {
 
   /// The errors at a displaced element. The box grows to its full size only while an error is above its
   /// limit.
-  void measure_displaced(std::uint32_t number, std::span<const double> limits, std::span<FieldError> errors) {
+  void measure_displaced(std::uint32_t number, std::span<const double> limits, NoPartNear no_part,
+                         std::span<FieldError> errors) {
     const NativeElement& element = source_.fields->native_elements()[number];
     source_.fields->native_values(element, native_);
     const auto& fields = source_.fields->fields();
@@ -59,7 +60,8 @@ class Measurer {
     }
     for (std::size_t f = 0; f < fields.size(); ++f) {
       // Where none of a place's own material is left nothing approximates the value.
-      if (least[f] == kNone && element.kind != ElementKind::kMinority)
+      if (least[f] == kNone && element.kind != ElementKind::kMinority &&
+          no_part == NoPartNear::kCountsAsRange)
         least[f] = std::max(native_size(fields[f]), fields[f].max - fields[f].min);
       add(least[f], f, number, true, errors[f]);
     }
@@ -203,9 +205,9 @@ std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, 
 void measure_displaced_errors(const ResamplingSource& source, const CellView& cell,
                               std::span<const std::uint32_t> displaced, double half_width,
                               const CellsInBox& cells_in_box, std::span<const double> limits,
-                              std::span<FieldError> errors) {
+                              std::span<FieldError> errors, NoPartNear no_part) {
   Measurer measurer(source, cell, half_width, cells_in_box);
-  for (const std::uint32_t e : displaced) measurer.measure_displaced(e, limits, errors);
+  for (const std::uint32_t e : displaced) measurer.measure_displaced(e, limits, no_part, errors);
 }
 
 }  // namespace adamas

@@ -80,13 +80,18 @@ std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, 
                                                 std::span<const std::uint32_t> elements,
                                                 std::span<FieldError> errors);
 
+/// What counts where the mesh has no part of a displaced element's material that near.
+enum class NoPartNear {
+  kCountsAsRange,  ///< as much as the field's range or the value itself; minorities have no value then
+  kHasNoValue,     ///< nothing: the element is one of those without a value
+};
+
 /// The same for displaced elements (D 3.6): the least over the element's own material's part of the mesh in
-/// the box of that half-width round it; where the mesh has none there, as much as the field's range or the
-/// value itself, but for minorities, which then have no value. The box is searched from
-/// the inside outwards, until the errors of all fields are within `limits`.
+/// the box of that half-width round it. The box is searched from the inside outwards, until the errors of all
+/// fields are within `limits`.
 void measure_displaced_errors(const ResamplingSource& source, const CellView& cell,
                               std::span<const std::uint32_t> displaced, double half_width,
                               const CellsInBox& cells_in_box, std::span<const double> limits,
-                              std::span<FieldError> errors);
+                              std::span<FieldError> errors, NoPartNear no_part = NoPartNear::kCountsAsRange);
 
 }  // namespace adamas

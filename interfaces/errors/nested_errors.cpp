@@ -56,8 +56,9 @@ NestedErrors nest_interface_errors(const Resampler& resampler) {
 }
 
 NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field) {
-  const std::vector<double> direct = field_errors_of_tree(resampler, field);
-  return nest_errors(resampler.hierarchy(), [&](TetrahedronId t) { return direct[t.value]; });
+  const auto direct = field_errors_of_tree(resampler);
+  return nest_errors(resampler.hierarchy(),
+                     [&](TetrahedronId t) { return direct[t.value][field].reducible; });
 }
 
 namespace {

@@ -19,28 +19,20 @@ std::vector<TetrahedronId> all_tetrahedra(const HierarchyTopology& hierarchy) {
   return result;
 }
 
-std::vector<double> row_of(const Resampler& resampler, VertexId v, BodyId body) {
-  const VertexRecord& vertex = resampler.hierarchy().payload(v);
-  const auto known = std::find_if(vertex.rows.begin(), vertex.rows.end(),
-                                  [body](const auto& row) { return row.body == body; });
-  if (known != vertex.rows.end()) return known->row;
-  return fields_at_vertex(resampler.source(), resampler.options().ghost, resampler.hierarchy().position(v),
-                          vertex, body);
-}
-
-/// Errors of one tetrahedron by itself.
-FieldError field_error(const Resampler& resampler, TetrahedronId t, std::size_t field) {
-  const auto elements = resampler.elements(t);
-  if (elements.empty()) return {};
+/// Errors of all fields in one tetrahedron by itself.
+std::vector<FieldError> field_errors(const Resampler& resampler, TetrahedronId t) {
   const ResamplingSource& source = resampler.source();
-  const auto cell = make_tree_cell(resampler, t);
   std::vector<FieldError> errors(source.fields->fields().size());
+  const auto elements = resampler.elements(t);
+  if (elements.empty()) return errors;
+  const auto cell = make_tree_cell(resampler, t);
   const auto displaced = measure_field_errors(source, cell->view, elements, errors);
   const std::vector<double> limits(errors.size(), 0.0);
   measure_displaced_errors(
       source, cell->view, displaced, resampler.displacement(),
-      [&](const Box3&, MaterialId, const auto& visit) { visit(cell->view); }, limits, errors);
-  return errors[field];
+      [&](const Box3&, MaterialId, const auto& visit) { visit(cell->view); }, limits, errors,
+      NoPartNear::kHasNoValue);
+  return errors;
 }
 
 }  // namespace
@@ -55,7 +47,7 @@ std::unique_ptr<TreeCell> make_tree_cell(const Resampler& resampler, Tetrahedron
     cell->view.vertices[i] = &cell->vertices[i];
     for (const auto& candidate : owners.problem.candidates) {
       const BodyId body(candidate.owner);
-      cell->vertices[i].rows.push_back({body, row_of(resampler, v[i], body)});
+      cell->vertices[i].rows.push_back({body, resampler.row(v[i], body)});
     }
   }
   partition_cell(cell->view.owners, cell->view.parts);
@@ -80,19 +72,18 @@ std::vector<double> interface_errors_of_tree(const Resampler& resampler) {
     CellOwnership owners;
     resampler.ownership(all[i], owners);
     const double all_of_them = std::numeric_limits<double>::max();
-    errors[all[i].value] = estimate_interface_error(network, cell, owners, triangles, all_of_them,
-                                                    hierarchy.payload(all[i]).trusted)
-                               .distance;
+    const InterfaceError error = estimate_interface_error(network, cell, owners, triangles, all_of_them,
+                                                          hierarchy.payload(all[i]).trusted);
+    errors[all[i].value] = std::min(error.distance, cell.diameter());
   });
   return errors;
 }
 
-std::vector<double> field_errors_of_tree(const Resampler& resampler, std::size_t field) {
+std::vector<std::vector<FieldError>> field_errors_of_tree(const Resampler& resampler) {
   const std::vector<TetrahedronId> all = all_tetrahedra(resampler.hierarchy());
-  std::vector<double> errors(resampler.hierarchy().tetrahedron_slots(), 0.0);
-  parallel_for(all.size(), 16, [&](std::size_t i) {
-    errors[all[i].value] = field_error(resampler, all[i], field).reducible;
-  });
+  std::vector<std::vector<FieldError>> errors(resampler.hierarchy().tetrahedron_slots());
+  parallel_for(all.size(), 16,
+               [&](std::size_t i) { errors[all[i].value] = field_errors(resampler, all[i]); });
   return errors;
 }
 

@@ -18,11 +18,12 @@ std::unique_ptr<TreeCell> make_tree_cell(const Resampler& resampler, Tetrahedron
 /// Errors of every tetrahedron of the tree by itself, whatever mesh it may be a cell of, by TetrahedronId; 0
 /// for ids that are not in use. What was split before it was looked at is measured like the rest.
 ///
-/// Estimated distances of the interfaces in each (estimate_interface_error), all triangles looked at.
+/// Estimated distances of the interfaces in each (estimate_interface_error), all triangles looked at; of lost
+/// ones the cell's diameter.
 std::vector<double> interface_errors_of_tree(const Resampler& resampler);
-/// The greatest errors of one field that smaller cells lower (FieldError::reducible). Of displaced elements
-/// the least error in what the tetrahedron itself has of their material, so that no mesh with this cell has a
-/// greater one at its elements; as much as the field's range where it has none of it.
-std::vector<double> field_errors_of_tree(const Resampler& resampler, std::size_t field);
+/// Errors of all fields in each. Of displaced elements the least error in what the tetrahedron itself has of
+/// their material near by, so that no mesh with this cell has a greater one at them; where it has none, they
+/// are without a value: how far their material may be is what the interface error says.
+std::vector<std::vector<FieldError>> field_errors_of_tree(const Resampler& resampler);
 
 }  // namespace adamas

@@ -1,8 +1,10 @@
 #include "interfaces/mesh/resampled_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
@@ -26,25 +28,25 @@ bool is_sound(const VertexRecord& vertex, std::size_t row_size) {
 
 }  // namespace
 
-void ResampledMesh::validate() const {
+void ResampledMesh::validate(const std::string& name) const {
   std::size_t row_size = 0;
   for (const FieldInfo& field : fields) row_size += static_cast<std::size_t>(field.components);
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const Vec3& p = points[v];
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      fail("{}: vertex {}: expected finite coordinates, found ({}, {}, {})", source, v, p.x, p.y, p.z);
+      fail("{}: vertex {}: expected finite coordinates, found ({}, {}, {})", name, v, p.x, p.y, p.z);
     if (!is_sound(vertices[v], row_size))
       fail("{}: vertex {}: expected finite distances and rows in the order of their bodies, found others",
-           source, v);
+           name, v);
   }
   for (InterfaceId i(0); i.value < table.interface_count(); ++i.value) {
     if (table.sides(i)[0] == table.sides(i)[1])
-      fail("{}: interface {}: expected two bodies, found one", source, i.value);
+      fail("{}: interface {}: expected two bodies, found one", name, i.value);
   }
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const auto x = corners(c);
     if (!(signed_volume(x[0], x[1], x[2], x[3]) > 0))
-      fail("{}: cell {}: expected a positive volume, found {}", source, c,
+      fail("{}: cell {}: expected a positive volume, found {}", name, c,
            signed_volume(x[0], x[1], x[2], x[3]));
   }
 }
@@ -86,6 +88,34 @@ double ResampledMesh::plain_value(std::size_t cell, std::size_t component, const
     sum += weights[v] * vertex.row(vertex.distances.body)[component];
   }
   return sum;
+}
+
+std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh) {
+  using Need = std::pair<std::uint32_t, BodyId>;
+  constexpr std::size_t kChunk = 512;
+  const auto sort_unique = [](std::vector<Need>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  std::vector<std::vector<Need>> parts((mesh.cells.size() + kChunk - 1) / kChunk);
+  parallel_chunks(mesh.cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    CellOwnership owners;
+    std::vector<Need>& part = parts[first / kChunk];
+    for (std::size_t c = first; c < last; ++c) {
+      mesh.ownership(c, owners);
+      if (!owners.pure()) keep_owners(owners.problem);
+      for (const std::uint32_t v : mesh.cells[c].vertices) {
+        for (const auto& candidate : owners.problem.candidates) part.emplace_back(v, BodyId(candidate.owner));
+      }
+    }
+    sort_unique(part);
+  });
+  std::vector<Need> needs;
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
+    needs.emplace_back(v, mesh.vertices[v].distances.body);
+  for (const auto& part : parts) needs.insert(needs.end(), part.begin(), part.end());
+  sort_unique(needs);
+  return needs;
 }
 
 InterfaceMesh approximated_interfaces(const Resampler& resampler, Progress& progress) {

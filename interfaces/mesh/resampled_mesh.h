@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "interfaces/fields/field_source.h"
@@ -35,9 +36,9 @@ struct ResampledMesh {
   std::vector<std::vector<double>>
       field_errors;  ///< per field and cell: greatest at the cell's native elements
 
-  /// Throws Error that names the source and the first broken law: finite numbers, lists in the order of their
+  /// Throws Error that names `name` and the first broken law: finite numbers, lists in the order of their
   /// ids, rows where there are fields, positively oriented cells.
-  void validate() const;
+  void validate(const std::string& name) const;
   [[nodiscard]] CellSet cell_set() const;
   void ownership(std::size_t cell, CellOwnership& result) const;
   [[nodiscard]] std::array<Vec3, 4> corners(std::size_t cell) const;
@@ -48,6 +49,10 @@ struct ResampledMesh {
   /// Plain linear interpolation of the vertices' own values, as if there were no interfaces.
   [[nodiscard]] double plain_value(std::size_t cell, std::size_t component, const Weights& weights) const;
 };
+
+/// The rows that fields in the cells of a mesh are interpolated from, by vertex, then by body: those of the
+/// bodies that own a part of a cell round the vertex, and of the vertex's own.
+std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh);
 
 /// The leaves of a resampler that has refined; completes the fields that output needs.
 ResampledMesh take_mesh(Resampler& resampler);

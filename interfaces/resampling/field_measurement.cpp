@@ -26,6 +26,14 @@ void Resampler::compute_rows(std::vector<std::pair<VertexId, BodyId>> needs) {
   }
 }
 
+std::vector<double> Resampler::row(VertexId v, BodyId body) const {
+  const VertexRecord& vertex = hierarchy_.payload(v);
+  const auto known = std::find_if(vertex.rows.begin(), vertex.rows.end(),
+                                  [body](const auto& row) { return row.body == body; });
+  if (known != vertex.rows.end()) return known->row;
+  return fields_at_vertex(source_, options_.ghost, hierarchy_.position(v), vertex, body);
+}
+
 void Resampler::measure_fields(const std::vector<TetrahedronId>& cells, DisplacedErrors wanted) {
   constexpr std::size_t kChunk = 512;
   std::vector<std::vector<std::pair<VertexId, BodyId>>> needs((cells.size() + kChunk - 1) / kChunk);

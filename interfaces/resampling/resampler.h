@@ -83,6 +83,8 @@ class Resampler {
   /// A tetrahedron of the tree, leaf or not, in space, and who owns what of it.
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
   void ownership(TetrahedronId t, CellOwnership& result) const;
+  /// A body's fields at a vertex.
+  [[nodiscard]] std::vector<double> row(VertexId v, BodyId body) const;
   /// The native elements in a tetrahedron of the tree, leaf or not.
   [[nodiscard]] std::span<const std::uint32_t> elements(TetrahedronId t) const;
   /// How far the mesh may have moved the place of an element: the greater of the interface errors wanted and

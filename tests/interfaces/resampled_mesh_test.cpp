@@ -31,7 +31,7 @@ Values& array(UnstructuredMesh& mesh, const std::string& name) {
 
 TEST(ResampledMesh, ComesBackFromAFile) {
   const ResampledMesh mesh = resampled("tjunction");
-  ASSERT_NO_THROW(mesh.validate());
+  ASSERT_NO_THROW(mesh.validate("mesh"));
   const ResampledMesh back = from_unstructured_mesh(to_unstructured_mesh(mesh), "file");
   EXPECT_EQ(back.source, mesh.source);
   EXPECT_EQ(back.points.size(), mesh.points.size());

@@ -1,0 +1,184 @@
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/mesh_outputs.h"
+#include "cli/option_values.h"
+#include "cli/resampling_setup.h"
+#include "cli/saved_hierarchy_input.h"
+#include "cli/usage_error.h"
+#include "interfaces/selection/selection.h"
+
+namespace adamas {
+
+namespace {
+
+struct Options {
+  std::string path, interface_error, max_tetrahedra;
+  std::vector<std::string> field_errors;
+  MeshOutputs outputs;
+};
+
+/// What is wanted, with its values checked against the hierarchy.
+SelectionTargets targets_of(const Options& options, const SavedHierarchy& hierarchy) {
+  const ResampledMesh& tree = hierarchy.tree;
+  SelectionTargets targets;
+  if (!options.interface_error.empty()) {
+    const InputFacts facts{options.path, tree.box, tree.fields, hierarchy.voxel};
+    targets.interface_error = interface_error_of(
+        "--interface-error", parse_error_target("--interface-error", options.interface_error, true), facts);
+  }
+  targets.field_errors.resize(tree.fields.size());
+  for (const auto& [name, target] : parse_field_errors(options.field_errors)) {
+    const auto found = field_number(tree.fields, name, options.path);
+    targets.field_errors[found] = target.of(tree.fields[found].max - tree.fields[found].min);
+  }
+  if (!options.max_tetrahedra.empty())
+    targets.max_tetrahedra = parse_count("--max-tetrahedra", options.max_tetrahedra);
+  return targets;
+}
+
+/// Sums of the errors that were measured in the cells of a mesh.
+std::vector<FieldError> measured_errors(const Selection& selection) {
+  const SavedHierarchy& hierarchy = selection.hierarchy();
+  std::vector<FieldError> errors(hierarchy.tree.fields.size());
+  for (const std::uint32_t cell : selection.cells()) {
+    for (std::size_t f = 0; f < errors.size(); ++f) errors[f].add(hierarchy.measured[f][cell]);
+  }
+  return errors;
+}
+
+/// Says which errors the mesh does not reach.
+void note_shortfalls(const Selection& selection, const SelectionTargets& targets, Console& console) {
+  const SavedHierarchy& hierarchy = selection.hierarchy();
+  const std::string why =
+      selection.budget_spent()
+          ? fmt::format("the mesh may have no more than {} tetrahedra", *targets.max_tetrahedra)
+          : std::string("the hierarchy that was saved goes no further");
+  if (targets.interface_error && selection.interface_error() > *targets.interface_error)
+    console.note("the interface error wanted was not reached: {:.4g} instead of {:.4g}: {}",
+                 selection.interface_error(), *targets.interface_error, why);
+  for (std::size_t f = 0; f < targets.field_errors.size(); ++f) {
+    if (targets.field_errors[f] && selection.field_error(f) > *targets.field_errors[f])
+      console.note("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}: {}",
+                   hierarchy.tree.fields[f].name, selection.field_error(f), *targets.field_errors[f], why);
+  }
+}
+
+Figures report(const Selection& selection, const SelectionTargets& targets, const ResampledMesh& mesh,
+               Session& session) {
+  const SavedHierarchy& hierarchy = selection.hierarchy();
+  Console& console = session.console;
+  const double interface_error = selection.interface_error();
+  std::vector<std::vector<std::string>> rows{
+      {"tetrahedra", std::to_string(mesh.cells.size())},
+      {"vertices", std::to_string(mesh.points.size())},
+      {"interface error wanted",
+       targets.interface_error ? fmt::format("{:.4g}", *targets.interface_error) : std::string("-")},
+      {"interface error estimated", fmt::format("{:.4g}", interface_error)}};
+  console.table(rows);
+  Figures figures{{"input", hierarchy.tree.source},
+                  {"tetrahedra", mesh.cells.size()},
+                  {"vertices", mesh.points.size()},
+                  {"changed_tetrahedra", selection.changed()},
+                  {"whole_hierarchy", selection.is_whole()},
+                  {"interface_error_estimate", interface_error},
+                  {"fields", Figures::object()},
+                  {"materials", Figures::array()}};
+  if (targets.interface_error) figures["interface_error_target"] = *targets.interface_error;
+  const std::vector<FieldError> errors = measured_errors(selection);
+  if (!errors.empty()) {
+    rows = {{"field error", "wanted", "greatest", "mean", "that smaller cells lower"}};
+    for (std::size_t f = 0; f < errors.size(); ++f) {
+      const FieldInfo& info = mesh.fields[f];
+      const auto& target = targets.field_errors[f];
+      rows.push_back({info.unit.empty() ? info.name : info.name + " [" + info.unit + "]",
+                      target ? fmt::format("{:.4g}", *target) : "-", fmt::format("{:.4g}", errors[f].max),
+                      fmt::format("{:.4g}", errors[f].mean()), fmt::format("{:.4g}", errors[f].reducible)});
+      figures["fields"][info.name] = {{"max_error", errors[f].max},
+                                      {"mean_error", errors[f].mean()},
+                                      {"reducible_max_error", errors[f].reducible},
+                                      {"elements", errors[f].count()}};
+      if (target) figures["fields"][info.name]["target"] = *target;
+    }
+    console.print("\n");
+    console.table(rows);
+  }
+  const auto volumes = material_volumes(mesh.table, mesh.cell_set(), mesh.materials.size());
+  rows = {{"material", "volume in the input", "mesh"}};
+  for (MaterialId m(0); m.value < mesh.materials.size(); ++m.value) {
+    const bool known = !hierarchy.input_volumes.empty();
+    rows.push_back(
+        {mesh.materials[m], known ? volume_text(hierarchy.input_volumes[m]) : "-", volume_text(volumes[m])});
+    figures["materials"].push_back({{"name", mesh.materials[m]}, {"volume_mesh", volumes[m]}});
+    if (known) figures["materials"].back()["volume_input"] = hierarchy.input_volumes[m];
+  }
+  console.print("\n");
+  console.table(rows);
+  note_shortfalls(selection, targets, console);
+  return figures;
+}
+
+void run(const Options& options, Session& session) {
+  Console& console = session.console;
+  if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && session.json.empty()) {
+    wrong_usage(
+        "nothing to write: expected -o, --interfaces-out, --cut-mesh, --ledger, --picture or --json, found "
+        "none");
+  }
+  session.outputs.protect(options.path);
+  options.outputs.declare(session.outputs);
+  const SavedHierarchy hierarchy = load_saved_hierarchy(options.path, console);
+  const SelectionTargets targets = targets_of(options, hierarchy);
+  options.outputs.picture.check_materials(hierarchy.tree.materials, options.path);
+  console.step("selecting", -1);
+  Selection selection(hierarchy);
+  selection.select(targets);
+  const ResampledMesh mesh = selection.mesh();
+  Figures figures = report(selection, targets, mesh, session);
+  if (options.outputs.need_interfaces()) {
+    InterfaceMesh interfaces = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, console).mesh;
+    interfaces.materials = mesh.materials;
+    interfaces.source = options.path;
+    write_interfaces(options.outputs, interfaces, mesh.box, session);
+  }
+  std::vector<Ledger> ledgers;
+  if (!hierarchy.input_volumes.empty()) ledgers.push_back(volume_ledger("input", hierarchy.input_volumes));
+  if (options.outputs.need_mesh()) write_mesh(options.outputs, mesh, ledgers, session);
+  figures["ledger"] = ledger_figures(ledgers, mesh.materials, mesh.fields);
+  figures["seconds"] = console.seconds();
+  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  session.outputs.commit();
+}
+
+}  // namespace
+
+void add_select(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(app, session, "select",
+                                  "A mesh of another error or size, from a hierarchy that resample has saved",
+                                  "adamas select mesh.h5 --interface-error 2% -o coarse.vtu",
+                                  [options, &session] { run(*options, session); });
+  command->add_option("input", options->path, "What adamas resample --save has written: .h5")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option(
+          "--interface-error", options->interface_error,
+          "Greatest estimated distance of the interfaces: a length, in % of the domain's diagonal, or "
+          "in voxels of the input's grid (default: all that was saved)")
+      ->type_name("E|E%|Evoxels");
+  command
+      ->add_option("--field-error", options->field_errors,
+                   "Greatest error of a field, in its unit or in % of its range; repeatable")
+      ->type_name("NAME=E|E%")
+      ->allow_extra_args(false);
+  command->add_option("--max-tetrahedra", options->max_tetrahedra, "Stop at this size, whatever the errors")
+      ->type_name("N");
+  add_mesh_output_options(*command, options->outputs);
+}
+
+}  // namespace adamas

@@ -1,0 +1,217 @@
+#include "interfaces/selection/saved_hierarchy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "interfaces/errors/nested_errors.h"
+#include "interfaces/errors/tree_errors.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Split diamonds, ancestors first, in an order that does not depend on the history of ids.
+std::vector<DiamondId> split_diamonds(const HierarchyTopology& hierarchy) {
+  struct Ranked {
+    int rank;
+    LatticePoint point;
+    DiamondId diamond;
+  };
+  std::vector<Ranked> ranked;
+  hierarchy.for_each_diamond([&](DiamondId d) {
+    if (!hierarchy.is_split(d)) return;
+    const TetrahedronId t = *hierarchy.tetrahedra(d).begin();
+    ranked.push_back({3 * hierarchy.level(t) + hierarchy.phase(t), hierarchy.lattice(d), d});
+  });
+  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    return a.rank != b.rank ? a.rank < b.rank : a.point < b.point;
+  });
+  std::vector<DiamondId> result;
+  for (const Ranked& r : ranked) result.push_back(r.diamond);
+  return result;
+}
+
+/// Numbers the tree of a resampler and collects what is known of it.
+class Collector {
+ public:
+  explicit Collector(const Resampler& resampler)
+      : resampler_(resampler), hierarchy_(resampler.hierarchy()), source_(resampler.source()) {}
+
+  SavedHierarchy run() {
+    result_.tree.source = source_.name;
+    result_.tree.box = source_.box;
+    result_.tree.materials = source_.materials;
+    result_.tree.table = source_.network->table();
+    if (source_.fields) result_.tree.fields = source_.fields->fields();
+    result_.interface_target = resampler_.options().interface_error;
+    result_.field_targets = resampler_.options().field_errors;
+    result_.voxel = source_.voxel;
+    result_.input_volumes = source_.volumes;
+    number_cells();
+    collect_vertices();
+    collect_errors();
+    return std::move(result_);
+  }
+
+ private:
+  void number_cells() {
+    for (const TetrahedronId root : hierarchy_.roots()) add(root);
+    result_.root_count = static_cast<std::uint32_t>(cells_.size());
+    std::vector<std::uint32_t> number(hierarchy_.tetrahedron_slots(), kNone);
+    for (std::uint32_t c = 0; c < cells_.size(); ++c) number[cells_[c].value] = c;
+    diamonds_ = split_diamonds(hierarchy_);
+    for (const DiamondId d : diamonds_) {
+      std::vector<std::uint32_t> members;
+      for (const TetrahedronId t : hierarchy_.tetrahedra(d)) members.push_back(number[t.value]);
+      std::sort(members.begin(), members.end());
+      for (const std::uint32_t member : members) {
+        result_.split_cells.push_back(member);
+        for (const TetrahedronId child : hierarchy_.children(cells_[member])) {
+          number[child.value] = static_cast<std::uint32_t>(cells_.size());
+          add(child);
+        }
+      }
+      result_.first_cells.push_back(static_cast<std::uint32_t>(result_.split_cells.size()));
+      result_.new_vertices.push_back(vertex_number(hierarchy_.split_vertex(d)));
+    }
+  }
+
+  void add(TetrahedronId t) {
+    ResampledMesh::Cell cell{{},
+                             static_cast<std::uint8_t>(hierarchy_.level(t)),
+                             static_cast<std::uint8_t>(hierarchy_.phase(t)),
+                             0};
+    const auto v = hierarchy_.vertices(t);
+    for (std::size_t i = 0; i < 4; ++i) cell.vertices[i] = vertex_number(v[i]);
+    result_.tree.cells.push_back(cell);
+    cells_.push_back(t);
+  }
+
+  std::uint32_t vertex_number(VertexId v) {
+    if (numbers_.empty()) numbers_.assign(hierarchy_.vertex_slots(), kNone);
+    std::uint32_t& n = numbers_[v.value];
+    if (n == kNone) {
+      n = static_cast<std::uint32_t>(vertices_.size());
+      vertices_.push_back(v);
+    }
+    return n;
+  }
+
+  /// Distances of all vertices, and the rows of the bodies that own a part of any cell round them, and of
+  /// their own.
+  void collect_vertices() {
+    ResampledMesh& tree = result_.tree;
+    for (const VertexId v : vertices_) {
+      tree.points.push_back(hierarchy_.position(v));
+      tree.vertices.push_back(hierarchy_.payload(v));
+      tree.vertices.back().rows.clear();
+    }
+    if (source_.fields) {
+      std::vector<std::pair<std::uint32_t, BodyId>> needs = needed_rows(tree);
+      std::vector<std::vector<double>> rows(needs.size());
+      parallel_for(needs.size(), 32, [&](std::size_t i) {
+        rows[i] = resampler_.row(vertices_[needs[i].first], needs[i].second);
+      });
+      for (std::size_t i = 0; i < needs.size(); ++i)
+        tree.vertices[needs[i].first].rows.push_back({needs[i].second, std::move(rows[i])});
+    }
+    for (VertexRecord& vertex : tree.vertices) vertex.closest = {};
+  }
+
+  void collect_errors() {
+    const std::vector<double> direct = interface_errors_of_tree(resampler_);
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      result_.tree.cells[c].interface_error = direct[cells_[c].value];
+    result_.interface_errors =
+        of_diamonds(nest_errors(hierarchy_, [&](TetrahedronId t) { return direct[t.value]; }));
+    if (!source_.fields) return;
+    auto errors = field_errors_of_tree(resampler_);
+    for (std::size_t f = 0; f < result_.tree.fields.size(); ++f) {
+      result_.field_errors.push_back(of_diamonds(
+          nest_errors(hierarchy_, [&](TetrahedronId t) { return errors[t.value][f].reducible; })));
+      result_.measured.emplace_back();
+      result_.tree.field_errors.emplace_back();
+      for (const TetrahedronId t : cells_) {
+        result_.measured[f].push_back(errors[t.value][f]);
+        result_.measured[f].back().worst = FieldError::kNowhere;
+        result_.tree.field_errors[f].push_back(errors[t.value][f].max);
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<double> of_diamonds(const NestedErrors& nested) const {
+    std::vector<double> result;
+    for (const DiamondId d : diamonds_) result.push_back(nested[d]);
+    return result;
+  }
+
+  const Resampler& resampler_;
+  const Resampler::MeshHierarchy& hierarchy_;
+  const ResamplingSource& source_;
+  SavedHierarchy result_;
+  std::vector<TetrahedronId> cells_;
+  std::vector<VertexId> vertices_;
+  std::vector<std::uint32_t> numbers_;
+  std::vector<DiamondId> diamonds_;
+};
+
+}  // namespace
+
+SavedHierarchy take_hierarchy(const Resampler& resampler) { return Collector(resampler).run(); }
+
+void SavedHierarchy::validate(const std::string& name) const {
+  tree.validate(name);
+  const auto broken = [&](const std::string& law) { fail("{}: expected {}, found otherwise", name, law); };
+  const std::size_t diamonds = diamond_count(), cells = tree.cells.size();
+  if (first_cells.size() != diamonds + 1 || first_cells.front() != 0 ||
+      first_cells.back() != split_cells.size() || root_count + 2 * split_cells.size() != cells ||
+      interface_errors.size() != diamonds)
+    broken("two children for each split tetrahedron, and as many errors as diamonds");
+  std::vector<std::uint32_t> diamond_of(cells, kNone);
+  for (std::uint32_t d = 0; d < diamonds; ++d) {
+    if (first_cells[d] >= first_cells[d + 1]) broken("diamonds with tetrahedra, one after the other");
+    for (std::uint32_t i = first_cells[d]; i < first_cells[d + 1]; ++i) {
+      const std::uint32_t cell = split_cells[i];
+      if (cell >= first_child(first_cells[d]) || diamond_of[cell] != kNone)
+        broken("parents before their children, each split once");
+      diamond_of[cell] = d;
+    }
+  }
+  for (std::size_t i = 0, d = 0; i < split_cells.size(); ++i) {
+    while (first_cells[d + 1] <= i) ++d;
+    // Each half has the new vertex in place of an end of the split edge.
+    const auto& parent = tree.cells[split_cells[i]].vertices;
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      auto half = tree.cells[first_child(i) + side].vertices, whole = parent;
+      whole[1 - side] = new_vertices[d];
+      std::sort(half.begin(), half.end());
+      std::sort(whole.begin(), whole.end());
+      if (half != whole) broken("children that are halves of their parents");
+    }
+  }
+  const auto check_nested = [&](const std::vector<double>& errors) {
+    if (errors.size() != diamonds) broken("as many errors as diamonds");
+    for (std::size_t i = 0, d = 0; i < split_cells.size(); ++i) {
+      while (first_cells[d + 1] <= i) ++d;
+      for (std::uint32_t side = 0; side < 2; ++side) {
+        const std::uint32_t inner = diamond_of[first_child(i) + side];
+        if (!(errors[d] >= 0) || (inner != kNone && !(errors[inner] <= errors[d])))
+          broken("errors that do not grow from a diamond to its children");
+      }
+    }
+  };
+  check_nested(interface_errors);
+  if (field_errors.size() != tree.fields.size() || measured.size() != tree.fields.size() ||
+      field_targets.size() != tree.fields.size())
+    broken("errors of every field");
+  for (const auto& errors : field_errors) check_nested(errors);
+  for (const auto& errors : measured) {
+    if (errors.size() != cells) broken("errors of every tetrahedron");
+  }
+}
+
+}  // namespace adamas

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "interfaces/errors/field_error.h"
+#include "interfaces/mesh/resampled_mesh.h"
+
+namespace adamas {
+
+/// A hierarchy on its own, without its input: every tetrahedron of the tree, leaf or not, what its vertices
+/// know, and the errors that were measured. Any mesh that split and merge can reach from it is a choice of
+/// its cells (Selection).
+struct SavedHierarchy {
+  /// The cells are all tetrahedra of the tree: the roots, then two children for each entry of `split_cells`.
+  ResampledMesh tree;
+  std::uint32_t root_count = 0;
+  /// The cells that are split, diamond by diamond, ancestors first: the children of `split_cells[i]` are the
+  /// cells `root_count + 2 i` and the next.
+  std::vector<std::uint32_t> split_cells;
+  /// Diamond d splits `split_cells[first_cells[d] .. first_cells[d + 1])` at the vertex `new_vertices[d]`.
+  std::vector<std::uint32_t> first_cells{0}, new_vertices;
+
+  /// Nested errors of the diamonds (NestedErrors): of the interfaces, and of each field.
+  std::vector<double> interface_errors;
+  std::vector<std::vector<double>> field_errors;
+  /// Errors of each field in every cell by itself, whatever mesh it may be a cell of (field_errors_of_tree);
+  /// native elements are not known any more.
+  std::vector<std::vector<FieldError>> measured;
+
+  /// What the hierarchy was built for: an interface error and errors of fields.
+  double interface_target = 0;
+  std::vector<std::optional<double>> field_targets;
+  /// Least spacing of the input's grid; 0 where it has none.
+  double voxel = 0;
+  /// Volumes of the materials in the input; none where they are not known.
+  IdVector<MaterialId, double> input_volumes;
+
+  [[nodiscard]] std::size_t diamond_count() const { return new_vertices.size(); }
+  [[nodiscard]] std::uint32_t first_child(std::size_t split_cell) const {
+    return root_count + 2 * static_cast<std::uint32_t>(split_cell);
+  }
+  /// Throws Error that names `name` and the first broken law: those of the tree's cells and vertices,
+  /// parents before children, children that are their parents' halves, nested errors that do not grow.
+  void validate(const std::string& name) const;
+};
+
+/// The hierarchy of a resampler that has refined, and what any mesh of it needs.
+SavedHierarchy take_hierarchy(const Resampler& resampler);
+
+}  // namespace adamas

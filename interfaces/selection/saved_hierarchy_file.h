@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/data/unstructured_mesh.h"
+#include "interfaces/selection/saved_hierarchy.h"
+
+namespace adamas {
+
+/// What a file of a saved hierarchy is called, and its version (docs/file_formats.md).
+inline constexpr const char* kHierarchyFormat = "hierarchy";
+inline constexpr int kHierarchyVersion = 1;
+
+/// The hierarchy as named arrays.
+std::vector<NamedArray> to_arrays(const SavedHierarchy& hierarchy);
+
+/// The hierarchy back, valid. Throws Error, naming `source`, where arrays are missing, of the wrong length,
+/// or point outside, and where a law of the hierarchy is broken.
+SavedHierarchy from_arrays(const std::vector<NamedArray>& arrays, const std::string& source);
+
+}  // namespace adamas

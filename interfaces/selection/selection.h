@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "interfaces/selection/saved_hierarchy.h"
+
+namespace adamas {
+
+/// What a mesh is chosen for. Without errors all that was saved is wanted.
+struct SelectionTargets {
+  std::optional<double> interface_error;
+  std::vector<std::optional<double>> field_errors;  ///< by the hierarchy's fields; may be empty
+  std::optional<std::size_t> max_tetrahedra;
+};
+
+/// A mesh chosen from a saved hierarchy. It starts as the roots, and goes from each choice to the next by
+/// splitting and merging diamonds.
+class Selection {
+ public:
+  /// The hierarchy must outlive this object, and be valid.
+  explicit Selection(const SavedHierarchy& hierarchy);
+
+  /// The smallest mesh whose nested errors are within the targets, as far as the hierarchy goes. Where it
+  /// would have too many tetrahedra, diamonds are split in the order of their errors in relation to the
+  /// targets, or to those that the hierarchy was built for, while there is room. Throws Error where the limit
+  /// is below the number of roots.
+  void select(const SelectionTargets& targets);
+
+  [[nodiscard]] const SavedHierarchy& hierarchy() const { return hierarchy_; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Whether all that was saved is in the mesh.
+  [[nodiscard]] bool is_whole() const { return split_count_ == hierarchy_.diamond_count(); }
+  /// Whether the greatest number of tetrahedra has ended the last choice.
+  [[nodiscard]] bool budget_spent() const { return budget_spent_; }
+  /// Tetrahedra that the last choice has made and removed.
+  [[nodiscard]] std::size_t changed() const { return changed_; }
+  /// The greatest nested error of the mesh: of the interfaces, or of a field.
+  [[nodiscard]] double interface_error() const;
+  [[nodiscard]] double field_error(std::size_t field) const;
+  /// The cells of the hierarchy's tree that the mesh has, depth first from the roots.
+  [[nodiscard]] std::vector<std::uint32_t> cells() const;
+  /// The mesh on its own.
+  [[nodiscard]] ResampledMesh mesh() const;
+
+ private:
+  [[nodiscard]] std::vector<char> wanted(const SelectionTargets& targets);
+  [[nodiscard]] double greatest(const std::vector<double>& nested,
+                                const std::function<double(std::uint32_t)>& of_cell) const;
+
+  const SavedHierarchy& hierarchy_;
+  std::vector<std::uint32_t> split_number_;  ///< by cell: its place in `split_cells`, or none
+  std::vector<std::uint32_t> diamond_;       ///< by place in `split_cells`
+  std::vector<char> split_;                  ///< by diamond
+  std::size_t size_, split_count_ = 0, changed_ = 0;
+  bool budget_spent_ = false;
+};
+
+/// The mesh that a hierarchy was saved with.
+ResampledMesh whole_mesh(const SavedHierarchy& hierarchy);
+
+}  // namespace adamas
