@@ -39,7 +39,7 @@ InterfaceMesh read_surface_option(const std::string& text) {
     wrong_usage("--interface: expected FILE=FRONT,BACK with two materials, found '{}'", text);
   }
   check_input_file(file);
-  if (input_kind(file) != InputKind::kSurface) {
+  if (!is_surface_file(file)) {
     fail("{}: expected a surface (.obj, .off, .ply, .stl) for --interface, found something else", file);
   }
   return read_surface(file, front, back);
@@ -174,7 +174,8 @@ bool has_given_interfaces(const InputOptions& options) {
 InterfaceMesh read_given_interfaces(const InputOptions& options) {
   std::vector<InterfaceMesh> meshes;
   const bool network = !options.path.empty() && input_kind(options.path) == InputKind::kNetwork;
-  const bool named = network && file_extension(options.path) == ".vtp";
+  const std::string extension = file_extension(options.path);
+  const bool named = network && (extension == ".vtp" || extension == ".ply");
   if (!options.region_names.empty() && (!network || named)) {
     wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
   }

@@ -272,10 +272,11 @@ void add_info(CLI::App& app, Session& session) {
   CLI::App* command = add_command(app, session, "info", "What is in a file", "adamas info cth.vtr",
                                   [options, &session] { run(*options, session); });
   command
-      ->add_option("input", options->input.path,
-                   std::string("Any file that can be read: ") + kGridFiles +
-                       ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .arec, .txt), a surface "
-                       "(.obj, .off, .ply, .stl) or a store (.adm)")
+      ->add_option(
+          "input", options->input.path,
+          std::string("Any file that can be read: ") + kGridFiles +
+              ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .ply, .arec, .txt), a surface "
+              "(.obj, .off, .ply, .stl) or a store (.adm)")
       ->type_name("FILE");
   add_material_options(*command, options->input);
   command

@@ -8,6 +8,7 @@
 #include "cli/saved_hierarchy_input.h"
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
+#include "core/io/network_ply.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/grid_source.h"
 
@@ -90,7 +91,7 @@ std::string InputOptions::interface_option() const {
 InputKind input_kind(const std::string& path) {
   const std::string extension = file_extension(path);
   if (extension == ".vtu" || is_saved_hierarchy(path)) return InputKind::kMesh;
-  if (is_one_of(extension, {".vtp", ".arec", ".txt"})) return InputKind::kNetwork;
+  if (is_one_of(extension, {".vtp", ".arec", ".txt"}) || is_network_ply(path)) return InputKind::kNetwork;
   if (is_one_of(extension, {".obj", ".off", ".ply", ".stl"})) return InputKind::kSurface;
   return InputKind::kGrid;
 }

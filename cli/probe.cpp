@@ -179,7 +179,7 @@ void add_probe(CLI::App& app, Session& session) {
   command
       ->add_option("input", options->input.path,
                    std::string("What to probe: ") + kGridFiles +
-                       ", interfaces (.vtp, .arec, .txt), or a mesh from adamas resample (.vtu)")
+                       ", interfaces (.vtp, .ply, .arec, .txt), or a mesh from adamas resample (.vtu)")
       ->type_name("FILE");
   command->add_option("--points-file", options->points, "Points, x,y,z a line")->type_name("FILE");
   command->add_option("--point", options->single, "A point; repeatable")

@@ -144,7 +144,7 @@ void add_reconstruct(CLI::App& app, Session& session) {
   command
       ->add_option("input", options->input.path,
                    std::string("What to reconstruct: ") + kGridFiles +
-                       ", or a network to check and write anew (.vtp, .arec, .txt)")
+                       ", or a network to check and write anew (.vtp, .ply, .arec, .txt)")
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
       ->required()

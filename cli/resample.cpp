@@ -269,9 +269,9 @@ void add_resample(CLI::App& app, Session& session) {
                   "adamas resample cth.vtr --interface-error 0.5% --field-error Pressure=5% -o mesh.vtu",
                   [options, &session] { run(*options, session); });
   command
-      ->add_option(
-          "input", options->input.path,
-          std::string("What to resample: ") + kGridFiles + ", or a labelled network (.vtp, .arec, .txt)")
+      ->add_option("input", options->input.path,
+                   std::string("What to resample: ") + kGridFiles +
+                       ", or a labelled network (.vtp, .ply, .arec, .txt)")
       ->type_name("FILE");
   add_resampling_options(*command, options->text);
   add_mesh_output_options(*command, options->outputs);

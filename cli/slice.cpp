@@ -246,7 +246,7 @@ void add_slice(CLI::App& app, Session& session) {
       ->add_option(
           "input", options->input.path,
           std::string("What to cut: ") + kGridFiles +
-              ", a mesh from adamas resample (.vtu), interfaces (.vtp, .arec, .txt), or a store from "
+              ", a mesh from adamas resample (.vtu), interfaces (.vtp, .ply, .arec, .txt), or a store from "
               "adamas store (.adm)")
       ->type_name("FILE");
   command->add_option("--plane", options->plane, "The plane, at right angles to an axis")

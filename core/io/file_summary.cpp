@@ -8,6 +8,7 @@
 #include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
+#include "core/io/network_ply.h"
 #include "core/io/polygon_soup.h"
 #include "core/io/unstructured_mesh_io.h"
 
@@ -108,6 +109,13 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
   if (is_network_file(path)) {
     const InterfaceMesh mesh = read_labelled_network(path);
     summary.kind = "labelled network";
+    set_points(mesh.points, summary);
+    summary.cells = mesh.triangles.size();
+    return summary;
+  }
+  if (is_network_ply(path)) {
+    const InterfaceMesh mesh = read_network_ply(path);
+    summary.kind = "interfaces";
     set_points(mesh.points, summary);
     summary.cells = mesh.triangles.size();
     return summary;

@@ -24,7 +24,7 @@ InterfaceMesh read_labelled_network(const std::filesystem::path& path,
 InterfaceMesh read_surface(const std::filesystem::path& path, const std::string& front_material,
                            const std::string& back_material);
 
-/// Reads what write_interface_mesh wrote as .vtp, or a labelled network.
+/// Reads what write_interface_mesh wrote as .vtp or .ply, or a labelled network.
 InterfaceMesh read_interface_mesh(const std::filesystem::path& path);
 
 /// One network of several: equal points become one, materials of equal names too.

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
+#include "core/io/network_ply.h"
 #include "core/io/network_text.h"
 #include "core/io/polygon_soup.h"
 #include "core/io/unstructured_mesh_io.h"
@@ -99,6 +100,7 @@ InterfaceMesh read_surface(const std::filesystem::path& path, const std::string&
 
 InterfaceMesh read_interface_mesh(const std::filesystem::path& path) {
   if (file_extension(path) == ".vtp") return from_polygons(read_unstructured_mesh(path), path.string());
+  if (file_extension(path) == ".ply") return read_network_ply(path);
   return read_labelled_network(path);
 }
 

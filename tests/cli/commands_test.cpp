@@ -147,6 +147,10 @@ TEST_F(Commands, ResampleHasAllFigures) {
   EXPECT_NEAR(volume(info, "inside"), volume(figures, "inside", "volume_mesh"), 1e-12);
   run_well({"info", "i.ply", "--json", "ply.json"});
   EXPECT_EQ(read_json("ply.json").at("cells"), figures.at("interface_triangles"));
+  EXPECT_EQ(read_json("ply.json").at("open_border_edges"), 0);
+  // A network with its materials.
+  run_well({"probe", "i.ply", "--point", "0.5,0.5,0.5", "-o", "p.csv"});
+  EXPECT_NE(read("p.csv").find("inside"), std::string::npos);
 }
 
 TEST_F(Commands, ResampleKeepsABudget) {

@@ -19,7 +19,7 @@ TEST_F(Help, HelpAndCompletion) {
   const std::string check = "bash -n '" + (folder() / "completion.bash").string() + "'";
   EXPECT_EQ(std::system(check.c_str()), 0);
   for (const std::string command :
-       {"info", "reconstruct", "resample", "slice", "probe", "store", "restore", "verify", "isosurface"}) {
+       {"info", "reconstruct", "resample", "select", "slice", "probe", "store", "restore", "verify", "isosurface"}) {
     EXPECT_NE(all.find("  " + command), std::string::npos);
     const std::string help = run_well({command, "--help"}).out;
     EXPECT_NE(help.find("Example:\n  adamas " + command), std::string::npos);
@@ -62,7 +62,7 @@ TEST_F(Help, TheManualKnowsEveryOption) {
   for (std::size_t i = 0; i < page.size(); ++i) {
     if (page[i] != '\\') plain += page[i];
   }
-  for (const std::string command : {"info", "reconstruct", "resample", "compare", "slice", "probe",
+  for (const std::string command : {"info", "reconstruct", "resample", "select", "compare", "slice", "probe",
                                     "experiment", "store", "restore", "verify", "isosurface"}) {
     const std::size_t section = plain.find(".SS " + command + "\n");
     ASSERT_NE(section, std::string::npos) << command;
@@ -88,7 +88,7 @@ TEST_F(Help, TheManualKnowsEveryOption) {
 }
 
 TEST_F(Help, HelpFitsTheScreen) {
-  for (const std::string command : {"generate", "info", "reconstruct", "resample", "slice", "probe", "store",
+  for (const std::string command : {"generate", "info", "reconstruct", "resample", "select", "slice", "probe", "store",
                                     "restore", "verify", "isosurface"}) {
     const std::string help = run_well({command, "--help"}).out;
     std::istringstream lines(help);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <random>
 
+#include "core/io/input_file.h"
+#include "core/io/network_ply.h"
 #include "core/io/network_text.h"
 #include "core/io/polygon_soup.h"
 #include "sample_data.h"
@@ -99,6 +102,37 @@ TEST(InterfaceMeshIo, NetworkColumnsAreToldApartByVolumes) {
     EXPECT_EQ(first_label_is_front(network), first_is_front);
     EXPECT_EQ(to_interface_mesh(network, {}, "test").triangles, both.triangles);
   }
+}
+
+TEST(InterfaceMeshIo, PlyKeepsNetworks) {
+  const test::Scratch scratch;
+  InterfaceMesh mesh = two_cubes();
+  mesh.materials[MaterialId(0)] = "name with blanks";
+  write_interface_mesh(scratch / "a.ply", mesh);
+  EXPECT_TRUE(is_network_ply(scratch / "a.ply"));
+  const InterfaceMesh read = read_interface_mesh(scratch / "a.ply");
+  EXPECT_EQ(read.points, mesh.points);
+  EXPECT_EQ(read.triangles, mesh.triangles);
+  EXPECT_EQ(read.materials, mesh.materials);
+
+  const std::string bytes = read_file(scratch / "a.ply");
+  const auto refusal = [&](const std::string& changed) {
+    std::ofstream(scratch / "b.ply", std::ios::binary) << changed;
+    return error_of([&] { read_interface_mesh(scratch / "b.ply"); });
+  };
+  EXPECT_TRUE(says(refusal(bytes.substr(0, bytes.size() - 1)), "b.ply: expected "));
+  EXPECT_TRUE(says(refusal(bytes + "x"), "b.ply: expected "));
+  // Of the last triangle the material behind it, a point, and the number of corners.
+  for (const auto& [place, what] : {std::pair{4, "material"}, {12, "point"}, {21, "corners"}}) {
+    std::string changed = bytes;
+    changed[bytes.size() - static_cast<std::size_t>(place)] = 100;
+    EXPECT_TRUE(says(refusal(changed), what)) << what;
+  }
+  std::ofstream(scratch / "s.ply", std::ios::binary)
+      << "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n";
+  EXPECT_FALSE(is_network_ply(scratch / "s.ply"));
+  EXPECT_TRUE(says(error_of([&] { read_interface_mesh(scratch / "s.ply"); }), "s.ply: expected a network"));
+  EXPECT_FALSE(is_network_ply(scratch / "none.ply"));
 }
 
 TEST(InterfaceMeshIo, SurfaceFormatsKeepPointsAndVolume) {

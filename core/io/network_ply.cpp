@@ -1,0 +1,127 @@
+#include "core/io/network_ply.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/interface_mesh_io.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr const char* kEnd = "end_header\n";
+constexpr std::size_t kPointBytes = 3 * sizeof(double);
+constexpr std::size_t kFaceBytes = 1 + 5 * sizeof(std::int32_t);
+
+/// The header up to its end; empty where there is none.
+std::string header_of(const std::string& beginning) {
+  if (beginning.rfind("ply\n", 0) != 0) return "";
+  const std::size_t end = beginning.find(kEnd);
+  return end == std::string::npos ? "" : beginning.substr(0, end + std::strlen(kEnd));
+}
+
+bool has_sides(const std::string& header) {
+  return header.find("\nproperty int front\nproperty int back\n") != std::string::npos;
+}
+
+struct Counts {
+  std::size_t points = 0, faces = 0;
+  std::vector<std::string> materials;
+};
+
+/// What a header of ours says; none for another.
+std::optional<Counts> parse(const std::string& header) {
+  Counts counts;
+  std::istringstream lines(header);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string material = "comment material ";
+    if (line.rfind(material, 0) == 0) {
+      counts.materials.push_back(line.substr(material.size()));
+      continue;
+    }
+    unsigned long long number = 0;
+    if (std::sscanf(line.c_str(), "element vertex %llu", &number) == 1) {
+      counts.points = number;
+      line = "element vertex";
+    } else if (std::sscanf(line.c_str(), "element face %llu", &number) == 1) {
+      counts.faces = number;
+      line = "element face";
+    }
+    text += line + "\n";
+  }
+  const bool ours = text ==
+                    "ply\nformat binary_little_endian 1.0\nelement vertex\nproperty double x\nproperty "
+                    "double y\nproperty double "
+                    "z\nelement face\nproperty list uchar int vertex_indices\nproperty int front\nproperty "
+                    "int back\nend_header\n";
+  return ours ? std::optional(std::move(counts)) : std::nullopt;
+}
+
+}  // namespace
+
+bool is_network_ply(const std::filesystem::path& path) {
+  std::error_code code;
+  if (file_extension(path) != ".ply" || !std::filesystem::is_regular_file(path, code)) return false;
+  std::ifstream stream(path, std::ios::binary);
+  std::string beginning(kLongestHeader, '\0');
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  return has_sides(header_of(beginning));
+}
+
+InterfaceMesh read_network_ply(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path), name = path.string(), header = header_of(bytes);
+  const auto counts = parse(header);
+  if (!counts)
+    fail(
+        "{}: expected a network as adamas writes it (binary, double coordinates, front and back), found "
+        "another "
+        "PLY",
+        name);
+  const std::size_t rest = bytes.size() - header.size();
+  if (counts->points > rest / kPointBytes || counts->faces > rest / kFaceBytes ||
+      counts->points * kPointBytes + counts->faces * kFaceBytes != rest)
+    fail("{}: expected {} points and {} triangles, found {} bytes for them", name, counts->points,
+         counts->faces, rest);
+  InterfaceMesh mesh;
+  mesh.source = name;
+  mesh.materials.assign(counts->materials.begin(), counts->materials.end());
+  const char* at = bytes.data() + header.size();
+  const auto get = [&at](auto value) {
+    std::memcpy(&value, at, sizeof value);
+    at += sizeof value;
+    return value;
+  };
+  for (std::size_t i = 0; i < counts->points; ++i) {
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis) p[axis] = get(0.0);
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      fail("{}: point {}: expected finite coordinates, found others", name, i);
+    mesh.points.push_back(p);
+  }
+  const auto index = [&](std::size_t end, const char* what) {
+    const auto value = get(std::int32_t{0});
+    if (value < 0 || static_cast<std::size_t>(value) >= end)
+      fail("{}: expected a {} below {}, found {}", name, what, end, value);
+    return static_cast<std::uint32_t>(value);
+  };
+  for (std::size_t i = 0; i < counts->faces; ++i) {
+    if (const auto corners = get(std::uint8_t{0}); corners != 3)
+      fail("{}: face {}: expected a triangle, found {} corners", name, i, corners);
+    InterfaceTriangle triangle{};
+    for (std::uint32_t& p : triangle.points) p = index(mesh.points.size(), "point");
+    triangle.front = MaterialId(index(mesh.materials.size(), "material"));
+    triangle.back = MaterialId(index(mesh.materials.size(), "material"));
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+}  // namespace adamas

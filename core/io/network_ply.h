@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/data/interface_mesh.h"
+
+namespace adamas {
+
+/// Whether a .ply file is a network with materials as write_interface_mesh writes it: faces that have `front`
+/// and `back`. False where there is no such file.
+bool is_network_ply(const std::filesystem::path& path);
+
+/// Reads one: binary, little endian, coordinates as double, triangles. Throws Error, with the file's name, at
+/// anything else, at truncated files and at indices out of range.
+InterfaceMesh read_network_ply(const std::filesystem::path& path);
+
+}  // namespace adamas
