@@ -77,7 +77,11 @@ bool is_network_ply(const std::filesystem::path& path) {
 }
 
 InterfaceMesh read_network_ply(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path), name = path.string(), header = header_of(bytes);
+  return parse_network_ply(read_file(path), path.string());
+}
+
+InterfaceMesh parse_network_ply(const std::string& bytes, const std::string& name) {
+  const std::string header = header_of(bytes);
   const auto counts = parse(header);
   if (!counts)
     fail(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "core/data/interface_mesh.h"
 
@@ -13,5 +14,8 @@ bool is_network_ply(const std::filesystem::path& path);
 /// Reads one: binary, little endian, coordinates as double, triangles. Throws Error, with the file's name, at
 /// anything else, at truncated files and at indices out of range.
 InterfaceMesh read_network_ply(const std::filesystem::path& path);
+
+/// The same of a file's bytes; `name`: of the file, for messages.
+InterfaceMesh parse_network_ply(const std::string& bytes, const std::string& name);
 
 }  // namespace adamas

@@ -12,6 +12,7 @@
 #include "core/io/inflate_stream.h"
 #include "core/io/legacy_vtk_check.h"
 #include "core/io/meta_image_check.h"
+#include "core/io/network_ply.h"
 #include "core/io/network_text.h"
 #include "core/io/nrrd_header.h"
 #include "core/io/volume_reader.h"
@@ -27,6 +28,15 @@ inline void network_text(std::string_view bytes) {
   const InterfaceMesh mesh = to_interface_mesh(parse_labelled_network(bytes, "fuzz"), {}, "fuzz");
   for (const InterfaceTriangle& t : mesh.triangles) {
     for (const auto corner : t.points) require(corner < mesh.points.size(), "corner out of range");
+  }
+}
+
+inline void network_ply(std::string_view bytes) {
+  const InterfaceMesh mesh = parse_network_ply(std::string(bytes), "fuzz");
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    for (const auto corner : t.points) require(corner < mesh.points.size(), "corner out of range");
+    for (const MaterialId side : {t.front, t.back})
+      require(side.value < mesh.materials.size(), "material out of range");
   }
 }
 
@@ -49,8 +59,8 @@ inline void inflate(std::string_view bytes) {
 
 inline void bunzip(std::string_view bytes) {
   std::uint64_t received = 0;
-  const std::uint64_t size = bunzip_stream(
-      supply_text(bytes), "fuzz", [&received](std::string_view piece) { received += piece.size(); });
+  const std::uint64_t size = bunzip_stream(supply_text(bytes), "fuzz",
+                                           [&received](std::string_view piece) { received += piece.size(); });
   require(size == received, "another size than the pieces'");
   require(size <= bytes.size() * kGreatestBunzip, "more than bzip2 can pack");
 }
