@@ -146,11 +146,19 @@ void MultiMaterialData::normalise(double tolerance) {
            sum, site_name(grid, site), scale_hint(*this));
     }
     double kept = 0;
-    for (auto& f : fractions) kept += static_cast<double>(f[site]);
+    float* sole = nullptr;
+    for (auto& f : fractions) {
+      if (f[site] > 0) sole = kept > 0 ? nullptr : &f[site];
+      kept += static_cast<double>(f[site]);
+    }
     if (!(kept > 0)) {
       fail("{}: volume fractions: expected a material, found none in {}", source, site_name(grid, site));
     }
-    if (std::abs(kept - 1) <= static_cast<double>(kFractionTrace)) continue;
+    if (std::abs(kept - 1) <= static_cast<double>(kFractionTrace)) {
+      // What is left alone fills the cell: what it shared it with was a trace.
+      if (sole != nullptr) *sole = 1;
+      continue;
+    }
     if (std::abs(kept - 1) > kRoundOff) ++report.renormalised;
     for (auto& f : fractions) f[site] = static_cast<float>(static_cast<double>(f[site]) / kept);
   }

@@ -220,7 +220,7 @@ TEST(VolumeCorrection, PlanesArePlanes) {
       const Reconstruction found(half_space.data);
       EXPECT_EQ(found.body_materials().size(), 2u);
       for (const Vec3& p : found.mesh().points)
-        EXPECT_NEAR(dot(normal, p), half_space.offset, 5e-4 / 12)
+        EXPECT_NEAR(dot(normal, p), half_space.offset, 1e-7 / 12)
             << normal.x << ' ' << normal.y << ' ' << stretched;
     }
   }
