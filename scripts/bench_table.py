@@ -92,6 +92,14 @@ def closest_point_rows(build, quick):
     yield from closest_point_table(output_of(program, *(["--quick"] if quick else [])))
 
 
+def selection_rows(build, quick):
+    program = os.path.join(build, "tests/benchmarks/bench_selection")
+    found = json.loads(output_of(program, *(["--quick"] if quick else [])))
+    rate = found["changed_per_second"]
+    yield ["selection: tetrahedra changed", millions(rate), "1 M/s (aim)", f"{rate / 1e6:.2f}", ">= 1",
+           f"tree of {found['tetrahedra']:,} tetrahedra, to 16 times the error and back, cells listed, 1 thread"]
+
+
 def resample(adamas, folder, data, *options):
     figures = os.path.join(folder, "figures.json")
     output_of(adamas, "resample", data, *options, "--quiet", "--json", figures, "-o", os.path.join(folder, "mesh.vtu"))
@@ -172,8 +180,8 @@ def print_table(rows):
         line(cells)
 
 
-PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "sphere": sphere_rows, "impact": impact_rows,
-         "cth": cth_rows, "volumes": volume_rows, "large": large_rows}
+PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "selection": selection_rows,
+         "sphere": sphere_rows, "impact": impact_rows, "cth": cth_rows, "volumes": volume_rows, "large": large_rows}
 
 
 def main():

@@ -18,6 +18,8 @@ namespace {
 constexpr std::size_t kHeadBytes = 512;
 constexpr hsize_t kChunk = 1 << 16;
 constexpr unsigned kDeflate = 4;
+/// Arrays of so many bytes are not worth chunks of their own.
+constexpr std::size_t kCompact = 4096;
 constexpr std::size_t kGrowth = std::size_t{1} << 20;
 
 [[noreturn]] void broken(const std::string& what) { fail("an array file: {}", what); }
@@ -52,7 +54,9 @@ void add_data(hid_t file, const std::string& name, hid_t type, std::size_t count
       layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links.id(), 1);
   H5Pset_obj_track_times(layout.id(), false);
-  if (count > 0) {
+  if (count * H5Tget_size(type) <= kCompact) {
+    H5Pset_layout(layout.id(), H5D_COMPACT);
+  } else {
     const std::array<hsize_t, 2> chunk{std::min(size[0], std::max<hsize_t>(kChunk / columns, 1)), columns};
     H5Pset_chunk(layout.id(), dimensions, chunk.data());
     H5Pset_shuffle(layout.id());

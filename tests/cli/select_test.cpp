@@ -111,6 +111,18 @@ TEST_F(Select, WrongFilesAndOptions) {
   expect_failure({"resample", "scene.vtr", "--interface-error", "20%", "--save", "x.h5"}, {"x.h5"}, full);
 }
 
+/// A file of version 1 of the format, as it was when that was made:
+/// generate scene tjunction --dimensions 4, resample --interface-error 4% --save.
+TEST_F(Select, FilesOfVersionOneAreRead) {
+  const std::string golden = std::string(ADAMAS_SOURCE_DIR) + "/tests/cli/golden/hierarchy-1.h5";
+  run_well({"select", golden, "--json", "all.json"});
+  EXPECT_EQ(read_json("all.json").at("tetrahedra"), 62);
+  run_well({"select", golden, "--interface-error", "6%", "-o", "m.vtu", "--json", "m.json"});
+  const auto figures = read_json("m.json");
+  EXPECT_EQ(figures.at("tetrahedra"), 6);
+  EXPECT_NEAR(figures.at("interface_error_estimate").get<double>(), 0.09473044295287736, 1e-12);
+}
+
 TEST_F(Select, TheSameBytesOnAnyNumberOfThreads) {
   run_well({"resample", "scene.vtr", "--interface-error", "3%", "--field-error", "smooth=5%", "--save",
             "other.h5", "--threads", "1"});
