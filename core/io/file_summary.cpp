@@ -106,16 +106,10 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
   const std::string extension = file_extension(path);
   if (extension == ".vtu" || extension == ".vtp") return summarize_mesh(path);
   FileSummary summary;
-  if (is_network_file(path)) {
-    const InterfaceMesh mesh = read_labelled_network(path);
-    summary.kind = "labelled network";
-    set_points(mesh.points, summary);
-    summary.cells = mesh.triangles.size();
-    return summary;
-  }
-  if (is_network_ply(path)) {
-    const InterfaceMesh mesh = read_network_ply(path);
-    summary.kind = "interfaces";
+  const bool labelled = is_network_file(path);
+  if (labelled || is_network_ply(path)) {
+    const InterfaceMesh mesh = read_interface_mesh(path);
+    summary.kind = labelled ? "labelled network" : "interfaces";
     set_points(mesh.points, summary);
     summary.cells = mesh.triangles.size();
     return summary;
