@@ -97,10 +97,9 @@ void add_array(hid_t file, const NamedArray& array) {
 
 /// The bytes of an HDF5 file that is kept in memory.
 std::string image_of(const std::vector<NamedArray>& arrays) {
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose),
-      creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_core(access.id(), kGrowth, false);
-  const Hdf5Handle file(H5Fcreate("in memory", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
+  const Hdf5Handle file(H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
   if (!file.good()) broken("HDF5 could not begin a file");
   for (const NamedArray& array : arrays) add_array(file.id(), array);
   H5Fflush(file.id(), H5F_SCOPE_GLOBAL);

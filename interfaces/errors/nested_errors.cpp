@@ -8,26 +8,28 @@
 
 namespace adamas {
 
-namespace {
-
-/// All diamonds, ancestors first: by level, then by phase.
-std::vector<DiamondId> in_order(const HierarchyTopology& hierarchy) {
-  std::vector<std::pair<int, DiamondId>> ranked;
+std::vector<DiamondId> diamonds_in_order(const HierarchyTopology& hierarchy) {
+  struct Ranked {
+    int rank;
+    LatticePoint point;
+    DiamondId diamond;
+  };
+  std::vector<Ranked> ranked;
   hierarchy.for_each_diamond([&](DiamondId d) {
     const TetrahedronId t = *hierarchy.tetrahedra(d).begin();
-    ranked.emplace_back(3 * hierarchy.level(t) + hierarchy.phase(t), d);
+    ranked.push_back({3 * hierarchy.level(t) + hierarchy.phase(t), hierarchy.lattice(d), d});
   });
-  std::sort(ranked.begin(), ranked.end());
+  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    return a.rank != b.rank ? a.rank < b.rank : a.point < b.point;
+  });
   std::vector<DiamondId> order;
-  for (const auto& [rank, d] : ranked) order.push_back(d);
+  for (const Ranked& r : ranked) order.push_back(r.diamond);
   return order;
 }
 
-}  // namespace
-
 NestedErrors nest_errors(const HierarchyTopology& hierarchy,
                          const std::function<double(TetrahedronId)>& direct) {
-  const std::vector<DiamondId> order = in_order(hierarchy);
+  const std::vector<DiamondId> order = diamonds_in_order(hierarchy);
   NestedErrors nested;
   nested.of_tetrahedra.assign(hierarchy.tetrahedron_slots(), 0.0);
   std::size_t slots = 0;
@@ -93,7 +95,7 @@ CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t fie
   const FieldInfo& info = resampler.source().fields->fields()[field];
   CorrectedErrors result;
   result.of_tetrahedra.assign(hierarchy.tetrahedron_slots(), 0.0);
-  const std::vector<DiamondId> order = in_order(hierarchy);
+  const std::vector<DiamondId> order = diamonds_in_order(hierarchy);
   for (auto d = order.rbegin(); d != order.rend(); ++d) {
     for (const TetrahedronId t : hierarchy.tetrahedra(*d)) {
       double& error = result.of_tetrahedra[t.value];

@@ -19,6 +19,10 @@ struct NestedErrors {
   [[nodiscard]] double operator[](DiamondId d) const { return of_diamonds[d.value]; }
 };
 
+/// All diamonds, ancestors first: by level and phase, then by their points, so that the order does not depend
+/// on the history of ids.
+std::vector<DiamondId> diamonds_in_order(const HierarchyTopology& hierarchy);
+
 /// From the direct error of every tetrahedron of the tree, leaf or not; zero for ids that are not in use.
 NestedErrors nest_errors(const HierarchyTopology& hierarchy,
                          const std::function<double(TetrahedronId)>& direct);

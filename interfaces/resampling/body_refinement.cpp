@@ -56,8 +56,9 @@ Resampler::TornLeaves Resampler::torn_leaves() const {
   std::vector<Torn> torn(thin_places_->size());
   parallel_for(torn.size(), 256, [&](std::size_t i) {
     const ThinPlace& place = (*thin_places_)[i];
-    if (wrong[place.body] == 0 || owner_at(place.middle) == place.body) return;
+    if (wrong[place.body] == 0) return;
     const TetrahedronId leaf = leaf_at(place.middle);
+    if (owner_in(leaf, place.middle) == place.body) return;
     const double diameter = frame(leaf).diameter();
     torn[i] = {leaf, diameter > kFinestForThickness * place.thickness ? diameter : 0, true};
   });

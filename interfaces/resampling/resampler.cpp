@@ -191,8 +191,9 @@ TetrahedronId Resampler::leaf_at(const Vec3& p) const {
   return t;
 }
 
-BodyId Resampler::owner_at(const Vec3& p) const {
-  const TetrahedronId leaf = leaf_at(p);
+BodyId Resampler::owner_at(const Vec3& p) const { return owner_in(leaf_at(p), p); }
+
+BodyId Resampler::owner_in(TetrahedronId leaf, const Vec3& p) const {
   CellOwnership owners;
   ownership(leaf, owners);
   if (owners.pure()) return BodyId(owners.problem.candidates[0].owner);

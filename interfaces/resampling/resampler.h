@@ -95,7 +95,8 @@ class Resampler {
   }
   /// The leaf that holds a point.
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
-  /// The body that owns a point in the mesh.
+  /// The body that owns a point of a leaf, and of the mesh.
+  [[nodiscard]] BodyId owner_in(TetrahedronId leaf, const Vec3& p) const;
   [[nodiscard]] BodyId owner_at(const Vec3& p) const;
   /// The leaves, and what their vertices know; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells() const;

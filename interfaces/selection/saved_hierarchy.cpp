@@ -14,27 +14,6 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// Split diamonds, ancestors first, in an order that does not depend on the history of ids.
-std::vector<DiamondId> split_diamonds(const HierarchyTopology& hierarchy) {
-  struct Ranked {
-    int rank;
-    LatticePoint point;
-    DiamondId diamond;
-  };
-  std::vector<Ranked> ranked;
-  hierarchy.for_each_diamond([&](DiamondId d) {
-    if (!hierarchy.is_split(d)) return;
-    const TetrahedronId t = *hierarchy.tetrahedra(d).begin();
-    ranked.push_back({3 * hierarchy.level(t) + hierarchy.phase(t), hierarchy.lattice(d), d});
-  });
-  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
-    return a.rank != b.rank ? a.rank < b.rank : a.point < b.point;
-  });
-  std::vector<DiamondId> result;
-  for (const Ranked& r : ranked) result.push_back(r.diamond);
-  return result;
-}
-
 /// Numbers the tree of a resampler and collects what is known of it.
 class Collector {
  public:
@@ -63,7 +42,8 @@ class Collector {
     result_.root_count = static_cast<std::uint32_t>(cells_.size());
     std::vector<std::uint32_t> number(hierarchy_.tetrahedron_slots(), kNone);
     for (std::uint32_t c = 0; c < cells_.size(); ++c) number[cells_[c].value] = c;
-    diamonds_ = split_diamonds(hierarchy_);
+    diamonds_ = diamonds_in_order(hierarchy_);
+    std::erase_if(diamonds_, [&](DiamondId d) { return !hierarchy_.is_split(d); });
     for (const DiamondId d : diamonds_) {
       std::vector<std::uint32_t> members;
       for (const TetrahedronId t : hierarchy_.tetrahedra(d)) members.push_back(number[t.value]);
@@ -161,6 +141,13 @@ class Collector {
 
 }  // namespace
 
+std::vector<std::uint32_t> SavedHierarchy::diamonds_of_split_cells() const {
+  std::vector<std::uint32_t> result(split_cells.size());
+  for (std::uint32_t d = 0; d < diamond_count(); ++d)
+    std::fill(result.begin() + first_cells[d], result.begin() + first_cells[d + 1], d);
+  return result;
+}
+
 SavedHierarchy take_hierarchy(const Resampler& resampler) { return Collector(resampler).run(); }
 
 void SavedHierarchy::validate(const std::string& name) const {
@@ -181,13 +168,13 @@ void SavedHierarchy::validate(const std::string& name) const {
       diamond_of[cell] = d;
     }
   }
-  for (std::size_t i = 0, d = 0; i < split_cells.size(); ++i) {
-    while (first_cells[d + 1] <= i) ++d;
+  const std::vector<std::uint32_t> owners = diamonds_of_split_cells();
+  for (std::size_t i = 0; i < split_cells.size(); ++i) {
     // Each half has the new vertex in place of an end of the split edge.
     const auto& parent = tree.cells[split_cells[i]].vertices;
     for (std::uint32_t side = 0; side < 2; ++side) {
       auto half = tree.cells[first_child(i) + side].vertices, whole = parent;
-      whole[1 - side] = new_vertices[d];
+      whole[1 - side] = new_vertices[owners[i]];
       std::sort(half.begin(), half.end());
       std::sort(whole.begin(), whole.end());
       if (half != whole) broken("children that are halves of their parents");
@@ -195,11 +182,11 @@ void SavedHierarchy::validate(const std::string& name) const {
   }
   const auto check_nested = [&](const std::vector<double>& errors) {
     if (errors.size() != diamonds) broken("as many errors as diamonds");
-    for (std::size_t i = 0, d = 0; i < split_cells.size(); ++i) {
-      while (first_cells[d + 1] <= i) ++d;
+    for (std::size_t i = 0; i < split_cells.size(); ++i) {
+      const double whole = errors[owners[i]];
       for (std::uint32_t side = 0; side < 2; ++side) {
         const std::uint32_t inner = diamond_of[first_child(i) + side];
-        if (!(errors[d] >= 0) || (inner != kNone && !(errors[inner] <= errors[d])))
+        if (!(whole >= 0) || (inner != kNone && !(errors[inner] <= whole)))
           broken("errors that do not grow from a diamond to its children");
       }
     }

@@ -38,6 +38,12 @@ struct SavedHierarchy {
   IdVector<MaterialId, double> input_volumes;
 
   [[nodiscard]] std::size_t diamond_count() const { return new_vertices.size(); }
+  /// How many tetrahedra a diamond splits.
+  [[nodiscard]] std::uint32_t member_count(std::size_t diamond) const {
+    return first_cells[diamond + 1] - first_cells[diamond];
+  }
+  /// By place in `split_cells`.
+  [[nodiscard]] std::vector<std::uint32_t> diamonds_of_split_cells() const;
   [[nodiscard]] std::uint32_t first_child(std::size_t split_cell) const {
     return root_count + 2 * static_cast<std::uint32_t>(split_cell);
   }

@@ -1,7 +1,6 @@
 #include "interfaces/selection/selection.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/base/error.h"
 
@@ -16,14 +15,11 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 Selection::Selection(const SavedHierarchy& hierarchy)
     : hierarchy_(hierarchy),
       split_number_(hierarchy.tree.cells.size(), kNone),
-      diamond_(hierarchy.split_cells.size()),
+      diamond_(hierarchy.diamonds_of_split_cells()),
       split_(hierarchy.diamond_count(), 0),
       size_(hierarchy.root_count) {
   for (std::uint32_t i = 0; i < hierarchy.split_cells.size(); ++i)
     split_number_[hierarchy.split_cells[i]] = i;
-  for (std::uint32_t d = 0; d < hierarchy.diamond_count(); ++d) {
-    for (std::uint32_t i = hierarchy.first_cells[d]; i < hierarchy.first_cells[d + 1]; ++i) diamond_[i] = d;
-  }
 }
 
 /// Which diamonds are split in the mesh for these targets; ancestors of each among them, since errors are
@@ -49,12 +45,9 @@ std::vector<char> Selection::wanted(const SelectionTargets& targets) {
   }
   std::vector<char> result(count, 0);
   std::size_t size = hierarchy_.root_count;
-  const auto members = [&](std::size_t d) {
-    return hierarchy_.first_cells[d + 1] - hierarchy_.first_cells[d];
-  };
   for (std::size_t d = 0; d < count; ++d) {
     result[d] = !any || ratios[d] > 1 ? 1 : 0;
-    if (result[d] != 0) size += members(d);
+    if (result[d] != 0) size += hierarchy_.member_count(d);
   }
   budget_spent_ = targets.max_tetrahedra && size > *targets.max_tetrahedra;
   if (!budget_spent_) return result;
@@ -66,8 +59,8 @@ std::vector<char> Selection::wanted(const SelectionTargets& targets) {
   std::fill(result.begin(), result.end(), 0);
   size = hierarchy_.root_count;
   for (const std::uint32_t d : order) {
-    if (size + members(d) > *targets.max_tetrahedra) break;
-    size += members(d);
+    if (size + hierarchy_.member_count(d) > *targets.max_tetrahedra) break;
+    size += hierarchy_.member_count(d);
     result[d] = 1;
   }
   return result;
@@ -80,15 +73,15 @@ void Selection::select(const SelectionTargets& targets) {
   }
   const std::vector<char> next = wanted(targets);
   changed_ = 0;
-  for (std::size_t d = next.size(); d-- > 0;) {
-    if (split_[d] == 0 || next[d] != 0) continue;
-    const std::size_t members = hierarchy_.first_cells[d + 1] - hierarchy_.first_cells[d];
-    split_[d] = 0, size_ -= members, --split_count_, changed_ += 3 * members;
-  }
   for (std::size_t d = 0; d < next.size(); ++d) {
-    if (split_[d] != 0 || next[d] == 0) continue;
-    const std::size_t members = hierarchy_.first_cells[d + 1] - hierarchy_.first_cells[d];
-    split_[d] = 1, size_ += members, ++split_count_, changed_ += 3 * members;
+    if (split_[d] == next[d]) continue;
+    const std::size_t members = hierarchy_.member_count(d);
+    if (next[d] != 0) {
+      size_ += members, ++split_count_;
+    } else {
+      size_ -= members, --split_count_;
+    }
+    split_[d] = next[d], changed_ += 3 * members;
   }
 }
 
