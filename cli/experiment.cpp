@@ -14,7 +14,8 @@
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
 #include "core/io/unstructured_mesh_io.h"
-#include "interfaces/mesh/cut_mesh.h"
+#include "interfaces/cutting/cut_mesh.h"
+#include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/network_mesh.h"
 
@@ -136,7 +137,9 @@ void Experiment::show_meshes() {
   }
   const ResampledMesh& mesh = record_.with_fields ? mesh_ : interface_mesh_;
   write_unstructured_mesh(folder_.file("mesh.vtu"), to_unstructured_mesh(mesh));
-  write_unstructured_mesh(folder_.file("cut-mesh.vtu"), cut_mesh(mesh));
+  write_unstructured_mesh(
+      folder_.file("cut-mesh.vtu"),
+      to_unstructured_mesh(cut_mesh(mesh, 0.5 * targets_.interface_error, console_), mesh));
 }
 
 void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name,

@@ -1,9 +1,10 @@
 #include "cli/mesh_outputs.h"
 
+#include <nlohmann/json.hpp>
+
 #include "core/io/interface_mesh_io.h"
 #include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"
-#include "interfaces/mesh/cut_mesh.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 
 namespace adamas {
@@ -12,7 +13,7 @@ void MeshOutputs::declare(OutputSet& outputs) const {
   picture.check();
   outputs.declare("-o", mesh, {".vtu"});
   outputs.declare("--interfaces-out", interfaces, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
-  outputs.declare("--cut-mesh", cut, {".vtu"});
+  cut.declare(outputs);
   outputs.declare("--ledger", ledger, {".csv"});
   outputs.declare("--picture", picture.camera.file, {".png", ".svg", ".pdf"});
 }
@@ -23,8 +24,7 @@ void add_mesh_output_options(CLI::App& command, MeshOutputs& outputs) {
       .add_option("--interfaces-out", outputs.interfaces,
                   "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
       ->type_name("FILE");
-  command.add_option("--cut-mesh", outputs.cut, "The mesh with cells cut along the interfaces: .vtu")
-      ->type_name("FILE");
+  add_cut_mesh_options(command, outputs.cut);
   command
       .add_option("--ledger", outputs.ledger,
                   "Volumes and integrals of fields per material, of the input and of what is written: .csv")
@@ -43,24 +43,20 @@ void write_interfaces(const MeshOutputs& outputs, const InterfaceMesh& interface
   });
 }
 
-void write_mesh(const MeshOutputs& outputs, const ResampledMesh& mesh, std::vector<Ledger>& ledgers,
-                Session& session) {
+Figures write_mesh(const MeshOutputs& outputs, const ResampledMesh& mesh, double interface_error,
+                   const ResamplingSource* source, std::vector<Ledger>& ledgers, Session& session) {
   ledgers.push_back({"mesh", material_integrals(mesh)});
   session.outputs.write(outputs.mesh, [&](const auto& path) {
     session.console.step("writing " + outputs.mesh, -1);
     write_unstructured_mesh(path, to_unstructured_mesh(mesh));
   });
-  session.outputs.write(outputs.cut, [&](const auto& path) {
-    session.console.step("writing " + outputs.cut, -1);
-    const UnstructuredMesh cut = cut_mesh(mesh);
-    ledgers.push_back({"cut mesh", material_integrals(cut, mesh.materials.size())});
-    write_unstructured_mesh(path, cut);
-  });
+  Figures cut = write_cut_mesh(outputs.cut, mesh, interface_error, source, ledgers, session);
   session.outputs.write(outputs.ledger, [&](const auto& path) {
     OutputStream stream(path);
     stream.write(ledger_csv(ledgers, mesh.materials, mesh.fields));
     stream.finish();
   });
+  return cut;
 }
 
 }  // namespace adamas

@@ -200,7 +200,7 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
 
 /// Writes what is asked for; returns the ledgers of the input and of all meshes that were written.
 std::vector<Ledger> write_outputs(const Options& options, const Input& input, Resampler& resampler,
-                                  Session& session) {
+                                  Figures& figures, Session& session) {
   Console& console = session.console;
   if (options.outputs.need_interfaces())
     write_interfaces(options.outputs, approximated_interfaces(resampler, console), resampler.source().box,
@@ -220,7 +220,8 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
   }
   if (!options.outputs.need_mesh()) return ledgers;
   console.step("completing fields", -1);
-  write_mesh(options.outputs, take_mesh(resampler), ledgers, session);
+  figures["cut_mesh"] = write_mesh(options.outputs, take_mesh(resampler), resampler.options().interface_error,
+                                   &resampler.source(), ledgers, session);
   return ledgers;
 }
 
@@ -248,7 +249,7 @@ void run(const Options& options, Session& session) {
   print_materials(measured, input.source, console);
   print_conservation(measured, resampler, console);
   Figures figures = resample_json(measured, resampler);
-  const std::vector<Ledger> ledgers = write_outputs(options, input, resampler, session);
+  const std::vector<Ledger> ledgers = write_outputs(options, input, resampler, figures, session);
   figures["ledger"] =
       ledger_figures(ledgers, input.source.materials,
                      input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>());

@@ -147,7 +147,10 @@ void run(const Options& options, Session& session) {
   }
   std::vector<Ledger> ledgers;
   if (!hierarchy.input_volumes.empty()) ledgers.push_back(volume_ledger("input", hierarchy.input_volumes));
-  if (options.outputs.need_mesh()) write_mesh(options.outputs, mesh, ledgers, session);
+  if (options.outputs.need_mesh()) {
+    figures["cut_mesh"] =
+        write_mesh(options.outputs, mesh, selection.interface_error(), nullptr, ledgers, session);
+  }
   figures["ledger"] = ledger_figures(ledgers, mesh.materials, mesh.fields);
   figures["seconds"] = console.seconds();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });

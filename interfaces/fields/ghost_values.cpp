@@ -27,6 +27,11 @@ Vec3 closest_on_body(const InterfaceNetwork& network, const Vec3& position, cons
 
 }  // namespace
 
+bool VertexRecord::knows(BodyId body) const {
+  return std::binary_search(rows.begin(), rows.end(), BodyRow{body, {}},
+                            [](const BodyRow& a, const BodyRow& b) { return a.body < b.body; });
+}
+
 std::span<const double> VertexRecord::row(BodyId body) const {
   const auto found =
       std::lower_bound(rows.begin(), rows.end(), body, [](const BodyRow& r, BodyId b) { return r.body < b; });

@@ -27,6 +27,8 @@ struct VertexRecord {
   };
   std::vector<BodyRow> rows;
 
+  /// Whether there is a row of the body's own.
+  [[nodiscard]] bool knows(BodyId body) const;
   /// The row of a body; of the next one by number, or the last, where the body owns no part of any cell round
   /// the vertex.
   [[nodiscard]] std::span<const double> row(BodyId body) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -23,8 +24,15 @@ class CellLocator {
   /// None for a point outside the mesh's box. Of cells that share the point, the one with the lowest number
   /// that the weights put it into.
   [[nodiscard]] std::optional<Location> locate(const Vec3& p) const;
+  /// Among the cells that are accepted the one that holds the point, or is near it: the one whose least
+  /// weight is the greatest. None where none is accepted, or the point lies outside of the box.
+  [[nodiscard]] std::optional<Location> nearest(const Vec3& p,
+                                                const std::function<bool(std::uint32_t)>& accept) const;
 
  private:
+  [[nodiscard]] std::optional<Location> best_within(const Vec3& p, double radius,
+                                                    const std::function<bool(std::uint32_t)>& accept) const;
+
   const ResampledMesh& mesh_;
   BoxTree tree_;
 };

@@ -9,16 +9,11 @@
 #include "core/base/progress.h"
 #include "core/base/typed_id.h"
 #include "interfaces/errors/field_error.h"
+#include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/network/closest_point_tree.h"
 #include "interfaces/source.h"
 
 namespace adamas {
-
-/// Smallest and greatest angle between two faces of a tetrahedron, in degrees.
-struct DihedralRange {
-  double min = 180, max = 0;
-  void add(const std::array<Vec3, 4>& corners);
-};
 
 /// Upper bounds of the two directed distances between a mesh's interfaces and the input's, in units of
 /// length.

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "interfaces/mesh/cut_mesh.h"
+#include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/reference/peak_memory.h"
 
 namespace adamas {
@@ -46,21 +46,16 @@ std::vector<char> elements_at_interfaces(const ResampledMesh& mesh, const Elemen
   return result;
 }
 
-void add_cut_figures(const ResampledMesh& mesh, OwnMesh& own) {
+void add_cut_figures(const ResampledMesh& mesh, double tolerance, OwnMesh& own, Progress& progress) {
   own.cut_row = own.row;
   own.cut_row.kind = MeshKind::kOwnCut;
   const auto start = Clock::now();
-  const UnstructuredMesh cut = cut_mesh(mesh);
+  const ConformingMesh cut = cut_mesh(mesh, tolerance, progress);
   own.cut_row.seconds += seconds_since(start);
   MeshFigures& figures = own.cut_row.figures;
-  figures.tetrahedra = cut.cell_count();
+  figures.tetrahedra = cut.tetrahedra.size();
   figures.vertices = cut.points.size();
-  figures.dihedral = {};
-  for (std::size_t c = 0; c < cut.cell_count(); ++c) {
-    std::array<Vec3, 4> corners;
-    for (std::size_t i = 0; i < 4; ++i) corners[i] = cut.points[cut.connectivity[4 * c + i]];
-    figures.dihedral.add(corners);
-  }
+  figures.dihedral = dihedral_range(cut);
 }
 
 }  // namespace
@@ -100,7 +95,7 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
     own.at_interface = elements_at_interfaces(mesh, errors, progress);
     figures.fields = errors.figures(own.at_interface);
   }
-  add_cut_figures(mesh, own);
+  add_cut_figures(mesh, 0.5 * options.interface_error, own, progress);
   return own;
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "interfaces/reference/child_program.h"
-#include "interfaces/reference/conforming_mesh.h"
+#include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/reference/mesher_messages.h"
 #include "interfaces/reference/piecewise_linear_complex.h"
 

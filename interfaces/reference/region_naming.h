@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "interfaces/reference/conforming_mesh.h"
+#include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/reference/piecewise_linear_complex.h"
 
 namespace adamas {

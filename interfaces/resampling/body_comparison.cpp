@@ -29,17 +29,6 @@ InterfaceMesh mesh_of_bodies(const InterfaceNetwork& network) {
   return mesh;
 }
 
-InterfaceMesh mesh_of_bodies(const ExtractedInterfaces& shown) {
-  InterfaceMesh mesh;
-  mesh.points = shown.mesh.points;
-  mesh.triangles = shown.mesh.triangles;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    mesh.triangles[t].front = as_material(shown.bodies[t][0]);
-    mesh.triangles[t].back = as_material(shown.bodies[t][1]);
-  }
-  return mesh;
-}
-
 bool contains(Box3 box, std::span<const Vec3> points) {
   const double margin = kOnDomainFace * box.diagonal();
   box.min -= {margin, margin, margin};
@@ -48,6 +37,16 @@ bool contains(Box3 box, std::span<const Vec3> points) {
 }
 
 }  // namespace
+
+IdVector<BodyId, BodyTopology> body_topology(const ExtractedInterfaces& shown, std::size_t bodies,
+                                             const Box3& domain) {
+  InterfaceMesh mesh = shown.mesh;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    mesh.triangles[t].front = as_material(shown.bodies[t][0]);
+    mesh.triangles[t].back = as_material(shown.bodies[t][1]);
+  }
+  return body_topology(mesh, bodies, domain);
+}
 
 BodyComparison::BodyComparison(const ResamplingSource& source)
     : source_(source), sizes_(source.network->table().body_count(), 0.0) {
@@ -88,7 +87,7 @@ void BodyComparison::find_touching() {
 }
 
 void BodyComparison::measure(const ExtractedInterfaces& shown) {
-  report_.mesh = body_topology(mesh_of_bodies(shown), sizes_.size(), source_.box);
+  report_.mesh = body_topology(shown, sizes_.size(), source_.box);
   report_.contacts.clear();
   contact_triangles_.clear();
   for (std::uint32_t t = 0; t < shown.bodies.size(); ++t) {

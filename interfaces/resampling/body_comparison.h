@@ -9,6 +9,10 @@
 
 namespace adamas {
 
+/// The topology of so many bodies as extracted interfaces show them.
+IdVector<BodyId, BodyTopology> body_topology(const ExtractedInterfaces& shown, std::size_t bodies,
+                                             const Box3& domain);
+
 /// What became of the bodies of the input in a mesh.
 struct BodyReport {
   IdVector<BodyId, BodyTopology> input, mesh;

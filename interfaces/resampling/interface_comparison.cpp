@@ -39,12 +39,17 @@ InterfaceDistance greater(const InterfaceDistance& a, const InterfaceDistance& b
 }  // namespace
 
 InterfaceComparison::InterfaceComparison(const ResamplingSource& source, double target)
-    : source_(source),
+    : InterfaceComparison(network_mesh(*source.network, source.materials, source.name), source.box,
+                          !source.network->has_open_border() && source.network->inconsistencies() == 0,
+                          target) {}
+
+InterfaceComparison::InterfaceComparison(InterfaceMesh input, const Box3& box, bool closed, double target)
+    : mesh_(std::move(input)),
+      box_(box),
       target_(target),
-      mesh_(network_mesh(*source.network, source.materials, source.name)),
-      part_of_(source.materials.size(), kNoPart),
-      junctions_known_(!source.network->has_open_border() && source.network->inconsistencies() == 0) {
-  IdVector<MaterialId, char> used(source.materials.size(), 0);
+      part_of_(mesh_.materials.size(), kNoPart),
+      junctions_known_(closed) {
+  IdVector<MaterialId, char> used(mesh_.materials.size(), 0);
   for (const InterfaceTriangle& t : mesh_.triangles) used[t.front] = used[t.back] = 1;
   std::uint32_t parts = 0;
   for (MaterialId m(0); m.value < used.size(); ++m.value) {
@@ -97,7 +102,7 @@ InterfaceDistance InterfaceComparison::Bounds::distance() const {
 void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress) {
   shown_ = take_apart(shown);
   HausdorffOptions options;
-  options.domain = source_.box;
+  options.domain = box_;
   options.accept = target_;
   options.relative = kSharp;
   options.each = true;
@@ -147,7 +152,7 @@ std::vector<Vec3> InterfaceComparison::far_points(const Part& lines, const Dista
     seen.clear();
     for (double s = 0; s <= steps; ++s) {
       const Vec3 p = a + (s / steps) * (b - a);
-      if (!source_.box.contains(p)) continue;
+      if (!box_.contains(p)) continue;
       seen.push_back(p);
       if (!others.closest(p, target_)) result.push_back(p);
     }
@@ -164,7 +169,7 @@ const ClosestPointTree& InterfaceComparison::shown_boundary(std::uint32_t triang
 /// Distances below what was seen elsewhere need not be known.
 void InterfaceComparison::tighten(std::size_t part, double seen, const Progress& progress) {
   HausdorffOptions options;
-  options.domain = source_.box;
+  options.domain = box_;
   options.accept = kSmall * target_;
   options.relative = kTight;
   const auto tightened = [&](const Part& from, const Part& to, DistanceBound& bound) {
@@ -182,25 +187,26 @@ void InterfaceComparison::tighten(std::size_t part, double seen, const Progress&
 InterfaceDistance InterfaceComparison::measure_networks(const InterfaceMesh& shown,
                                                         const Progress& progress) const {
   const std::vector<ClosestPointTree::Triangle> triangles = indices(shown);
-  const InterfaceNetwork& network = *source_.network;
+  const std::vector<ClosestPointTree::Triangle> of_mesh = indices(mesh_);
   HausdorffOptions options;
-  options.domain = source_.box;
+  options.domain = box_;
   options.accept = kSmall * target_;
   options.relative = kTight;
   const DistanceBound of_input = directed_distance_bound(
-      network.points(), network.triangles(), ClosestPointTree(shown.points, triangles), options, progress);
+      mesh_.points, of_mesh, ClosestPointTree(shown.points, triangles), options, progress);
   // The other direction need not be known better than this one.
   DistanceBound of_shown;
   of_shown.lower = of_input.lower;
   of_shown.worst = of_input.worst;
   of_shown.triangle_upper.assign(triangles.size(), kInfinity);
-  tighten_distance_bound(shown.points, triangles, network.tree(), options, of_shown, progress);
+  tighten_distance_bound(shown.points, triangles, ClosestPointTree(mesh_.points, of_mesh), options, of_shown,
+                         progress);
   return Bounds{of_input, of_shown}.distance();
 }
 
 InterfaceDistance InterfaceComparison::certified(InterfaceDistance distance) const {
   if (distance.upper <= target_)
-    distance.upper = std::min(distance.upper + kRoundOff * source_.box.diagonal(), target_);
+    distance.upper = std::min(distance.upper + kRoundOff * box_.diagonal(), target_);
   return distance;
 }
 

@@ -35,8 +35,11 @@ struct InterfaceCertificate {
 /// boundary may be far off where the whole networks are close: near a third material.
 class InterfaceComparison {
  public:
-  /// `target`: the distance wanted. The source must outlive this object.
+  /// `target`: the distance wanted.
   InterfaceComparison(const ResamplingSource& source, double target);
+  /// The same for a mesh of interfaces, welded. Only what lies in the box counts. `closed`: all interfaces
+  /// end at each other or at the box, so that junction lines are known.
+  InterfaceComparison(InterfaceMesh input, const Box3& box, bool closed, double target);
 
   /// Measures what is shown now, so well that each triangle's distance is known to be within the target or
   /// not. The mesh's materials are those of the source.
@@ -86,9 +89,9 @@ class InterfaceComparison {
   /// point otherwise.
   [[nodiscard]] InterfaceDistance certified(InterfaceDistance distance) const;
 
-  const ResamplingSource& source_;
+  InterfaceMesh mesh_;  ///< of the input
+  Box3 box_;
   double target_;
-  InterfaceMesh mesh_;                           ///< of the input
   IdVector<MaterialId, std::uint32_t> part_of_;  ///< where two materials share all their triangles, one part
   std::size_t material_parts_ = 0;
   bool junctions_known_;  ///< the input's interfaces are closed

@@ -115,8 +115,7 @@ void Integrals::expect_agreement(const std::string& input, const std::string& fi
     EXPECT_LE(std::abs(made - given), bound);
     bound_of_all += bound;
     given_of_all += std::abs(given);
-    // Coordinates and values of the file are floats.
-    EXPECT_NEAR(from_file.at(name).mass, made, 1e-5 * std::abs(made));
+    EXPECT_NEAR(from_file.at(name).mass, made, bound);
     EXPECT_NEAR(from_file.at(name).volume, b.at("volume").get<double>(), 1e-5 * volume);
   }
   // So that the bounds say something.

@@ -36,11 +36,12 @@ TEST_F(Ledgers, AreThoseOfTheFiles) {
   for (const auto& row : rows) {
     const std::string of = row.at("of"), material = row.at("material");
     SCOPED_TRACE(of + " " + material);
-    // The mesh with whole cells holds the same as the one that is cut.
+    // The mesh with whole cells has the volumes of the one that is cut, and almost its masses, for snapping
+    // moves a little of each material.
     const LedgerEntry& expected = of == "input" ? input.at(material) : cut.at(material);
     EXPECT_NEAR(row.at("volume").get<double>(), expected.volume, 1e-9);
     EXPECT_NEAR(row.at("integrals").at("linear").get<double>(), expected.mass,
-                1e-7 * std::abs(expected.mass));
+                (of == "mesh" ? 1e-3 : 1e-7) * std::abs(expected.mass));
   }
   std::istringstream lines(read("ledger.csv"));
   std::string line;

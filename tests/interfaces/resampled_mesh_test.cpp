@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "interfaces/fields/grid_field_source.h"
-#include "interfaces/mesh/cut_mesh.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "tests/interfaces/resampler_scenes.h"
 
@@ -87,31 +86,6 @@ TEST(ResampledMesh, DamagedFilesAreRefused) {
   EXPECT_TRUE(refused([](UnstructuredMesh& m) { m.points[2].y = std::nan(""); }));
   EXPECT_TRUE(refused([](UnstructuredMesh& m) { std::swap(m.connectivity[0], m.connectivity[1]); }));
   EXPECT_TRUE(refused([](UnstructuredMesh& m) { m.connectivity[3] = 1u << 30; }));
-}
-
-/// Volumes per body, and points that have the values of their body's field there.
-TEST(CutMesh, HasTheVolumesOfTheBodies) {
-  for (const std::string scene : {"tjunction", "sphere", "reflex"}) {
-    SCOPED_TRACE(scene);
-    const ResampledMesh mesh = resampled(scene);
-    const UnstructuredMesh cut = cut_mesh(mesh);
-    const auto expected = body_volumes(mesh.table, mesh.cell_set());
-    std::map<std::int32_t, double> volumes;
-    const std::vector<std::int32_t>* bodies = nullptr;
-    for (const NamedArray& a : cut.cell_arrays) {
-      if (a.name == "body") bodies = &std::get<std::vector<std::int32_t>>(a.values);
-    }
-    ASSERT_NE(bodies, nullptr);
-    for (std::size_t c = 0; c < cut.cell_count(); ++c) {
-      std::array<Vec3, 4> x;
-      for (std::size_t i = 0; i < 4; ++i) x[i] = cut.points[cut.connectivity[4 * c + i]];
-      const double volume = signed_volume(x[0], x[1], x[2], x[3]);
-      ASSERT_GT(volume, 0);
-      volumes[(*bodies)[c]] += volume;
-    }
-    for (BodyId b(0); b.value < expected.size(); ++b.value)
-      EXPECT_NEAR(volumes[static_cast<std::int32_t>(b.value)], expected[b], 1e-12);
-  }
 }
 
 /// Trees of vertices are built on first need, from within a parallel loop, while other threads ask.

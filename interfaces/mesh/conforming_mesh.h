@@ -7,6 +7,7 @@
 
 #include "core/base/typed_id.h"
 #include "core/geometry/vec3.h"
+#include "interfaces/mesh/extraction.h"
 #include "interfaces/network/closest_point_tree.h"
 
 namespace adamas {
@@ -23,8 +24,20 @@ struct ConformingMesh {
   }
 };
 
+/// Smallest and greatest angle between two faces of a tetrahedron, in degrees.
+struct DihedralRange {
+  double min = 180, max = 0;
+  void add(const std::array<Vec3, 4>& corners);
+};
+
+/// Of all tetrahedra of a mesh.
+DihedralRange dihedral_range(const ConformingMesh& mesh);
+
 /// The faces between two bodies, each once.
 std::vector<ClosestPointTree::Triangle> interface_faces(const ConformingMesh& mesh);
+
+/// The same with the bodies in front and behind, on points of their own. Names are left to the caller.
+ExtractedInterfaces interfaces_of(const ConformingMesh& mesh, const InterfaceTable& table);
 
 /// Volume of each of so many bodies, in the cube of the unit of length.
 IdVector<BodyId, double> body_volumes(const ConformingMesh& mesh, std::size_t bodies);

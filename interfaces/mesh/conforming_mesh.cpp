@@ -1,6 +1,8 @@
-#include "interfaces/reference/conforming_mesh.h"
+#include "interfaces/mesh/conforming_mesh.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "core/base/error.h"
 
@@ -47,6 +49,28 @@ std::vector<std::array<std::uint32_t, 4>> find_neighbours(
   return result;
 }
 
+void DihedralRange::add(const std::array<Vec3, 4>& x) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      // The faces at the edge from i to j, each with one of the other two corners.
+      std::array<std::size_t, 2> other{};
+      for (std::size_t k = 0, n = 0; k < 4; ++k) {
+        if (k != i && k != j) other[n++] = k;
+      }
+      const Vec3 a = cross(x[j] - x[i], x[other[0]] - x[i]), b = cross(x[j] - x[i], x[other[1]] - x[i]);
+      const double angle = std::atan2(norm(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
+      min = std::min(min, angle);
+      max = std::max(max, angle);
+    }
+  }
+}
+
+DihedralRange dihedral_range(const ConformingMesh& mesh) {
+  DihedralRange range;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) range.add(mesh.corners(t));
+  return range;
+}
+
 std::vector<ClosestPointTree::Triangle> interface_faces(const ConformingMesh& mesh) {
   const auto neighbours = find_neighbours(mesh.tetrahedra, "mesh");
   std::vector<ClosestPointTree::Triangle> result;
@@ -56,6 +80,35 @@ std::vector<ClosestPointTree::Triangle> interface_faces(const ConformingMesh& me
       if (other == kNoNeighbour || other < t || mesh.bodies[other] == mesh.bodies[t]) continue;
       const auto& v = mesh.tetrahedra[t];
       result.push_back({v[(i + 1) % 4], v[(i + 2) % 4], v[(i + 3) % 4]});
+    }
+  }
+  return result;
+}
+
+ExtractedInterfaces interfaces_of(const ConformingMesh& mesh, const InterfaceTable& table) {
+  ExtractedInterfaces result;
+  const auto neighbours = find_neighbours(mesh.tetrahedra, "cut mesh");
+  std::vector<std::uint32_t> number(mesh.points.size(), kNoNeighbour);
+  for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::uint32_t other = neighbours[t][i];
+      if (other == kNoNeighbour || other < t || mesh.bodies[other] == mesh.bodies[t]) continue;
+      const auto& v = mesh.tetrahedra[t];
+      ClosestPointTree::Triangle face{v[(i + 1) % 4], v[(i + 2) % 4], v[(i + 3) % 4]};
+      // The normal points into the tetrahedron.
+      if (signed_volume(mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]], mesh.points[v[i]]) <
+          0)
+        std::swap(face[1], face[2]);
+      for (std::uint32_t& p : face) {
+        if (number[p] == kNoNeighbour) {
+          number[p] = static_cast<std::uint32_t>(result.mesh.points.size());
+          result.mesh.points.push_back(mesh.points[p]);
+        }
+        p = number[p];
+      }
+      const BodyId front = mesh.bodies[t], back = mesh.bodies[other];
+      result.mesh.triangles.push_back({face, table.material(front), table.material(back)});
+      result.bodies.push_back({front, back});
     }
   }
   return result;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/data/unstructured_mesh.h"
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// A tetrahedral mesh as solvers take it: neighbours share their points, each tetrahedron belongs to a named
+/// block, and named groups of faces stand for boundaries.
+struct SolverMesh {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented
+  std::vector<std::uint32_t> block;                      ///< of each tetrahedron
+  std::vector<std::string> blocks;                       ///< their names
+  struct Face {
+    std::uint32_t tetrahedron;
+    std::uint8_t opposite;  ///< the face is opposite to this corner of it
+  };
+  struct FaceGroup {
+    std::string name;
+    std::vector<Face> faces;
+  };
+  std::vector<FaceGroup> face_groups;
+  std::vector<NamedArray> fields;  ///< doubles, of each tetrahedron
+
+  /// The corners of a face, anticlockwise as seen from outside of its tetrahedron.
+  [[nodiscard]] std::array<std::uint32_t, 3> corners(const Face& face) const {
+    constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+    const auto& v = tetrahedra[face.tetrahedron];
+    const auto& f = kFaces[face.opposite];
+    return {v[f[0]], v[f[1]], v[f[2]]};
+  }
+};
+
+}  // namespace adamas

@@ -1,0 +1,318 @@
+#include "interfaces/cutting/bisected_cells.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "core/geometry/tetrahedron.h"
+
+namespace adamas {
+
+namespace {
+
+/// Cells are not bisected further where their longest edge is shorter than so many tolerances.
+constexpr double kSmallestCell = 2;
+constexpr int kMostRounds = 24;
+/// Parts of a cell count as small whose size is less than so much of the cell's.
+constexpr double kSmallPart = 0.8;
+/// Changes of owner keep away from the ends of an edge by this part of it, so that no cut has a volume of
+/// zero.
+constexpr double kMargin = 1e-3;
+
+Weights mix(const Weights& a, const Weights& b, double t) {
+  Weights w;
+  for (std::size_t i = 0; i < 4; ++i) w[i] = (1 - t) * a[i] + t * b[i];
+  return w;
+}
+
+double value(const LinearFunction& f, const Weights& w) {
+  return f.values[0] * w[0] + f.values[1] * w[1] + f.values[2] * w[2] + f.values[3] * w[3];
+}
+
+/// The problem of a part of a tetrahedron, given by the weights of its corners.
+void restrict_problem(const OwnershipProblem& whole, const std::array<Weights, 4>& corners,
+                      OwnershipProblem& part) {
+  part = whole;
+  for (LinearFunction& f : part.functions) {
+    const LinearFunction original = f;
+    for (std::size_t c = 0; c < 4; ++c) f.values[c] = value(original, corners[c]);
+  }
+}
+
+}  // namespace
+
+BisectedCells::BisectedCells(const ResampledMesh& mesh, double tolerance, Progress& progress)
+    : mesh_(mesh),
+      locator_(mesh),
+      tolerance_(tolerance),
+      points_(mesh.points),
+      cells_at_(mesh.points.size()) {
+  cells_.reserve(mesh.cells.size());
+  for (std::uint32_t c = 0; c < mesh.cells.size(); ++c) {
+    Cell cell{mesh.cells[c].vertices, c, {}};
+    for (std::size_t i = 0; i < 4; ++i) {
+      cell.corners[i][i] = 1;
+      cells_at_[cell.vertices[i]].push_back(c);
+    }
+    cells_.push_back(cell);
+  }
+  dead_.assign(cells_.size(), 0);
+  find_owners();
+  std::vector<std::uint32_t> wanted(cells_.size());
+  for (std::uint32_t c = 0; c < wanted.size(); ++c) wanted[c] = c;
+  bisect_wanting(std::move(wanted), progress);
+}
+
+void BisectedCells::bisect_wanting(std::vector<std::uint32_t> wanted, Progress& progress) {
+  for (int round = 0; round < kMostRounds && !wanted.empty(); ++round) {
+    progress.step("bisecting cells", -1);
+    const auto looked_at = static_cast<std::uint32_t>(cells_.size());
+    for (const std::uint32_t c : wanted) {
+      if (dead_[c] == 0 && wants_bisection(c)) bisect(c);
+    }
+    wanted.clear();
+    for (std::uint32_t c = looked_at; c < cells_.size(); ++c) {
+      if (dead_[c] == 0) wanted.push_back(c);
+    }
+  }
+  for (const std::uint32_t c : wanted) (void)wants_bisection(c);
+}
+
+bool BisectedCells::bisect_at(const std::vector<Vec3>& places, Progress& progress) {
+  constexpr int kToHalfTheSize = 3;
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> parts;  // by cell of the mesh
+  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
+    if (dead_[c] == 0 && problems_.contains(cells_[c].origin)) parts[cells_[c].origin].push_back(c);
+  }
+  const auto before = static_cast<std::uint32_t>(cells_.size());
+  for (const Vec3& place : places) {
+    const auto origin = locator_.locate(place);
+    if (!origin) continue;
+    const auto found = parts.find(origin->cell);
+    if (found == parts.end()) continue;
+    auto& list = found->second;
+    // The part that holds the point: the children of those that have been bisected meanwhile are in none.
+    std::uint32_t best = before;
+    double greatest = -1e-9;
+    for (const std::uint32_t c : list) {
+      std::array<Vec3, 4> x;
+      for (std::size_t i = 0; i < 4; ++i) x[i] = points_[cells_[c].vertices[i]];
+      const Weights w = Tetrahedron(x).weights(place);
+      const double least = std::min({w[0], w[1], w[2], w[3]});
+      if (least > greatest) greatest = least, best = c;
+    }
+    if (best == before || dead_[best] != 0 || !may_be_bisected(cells_[best])) continue;
+    std::vector<std::uint32_t> inside{best};
+    for (int step = 0; step < kToHalfTheSize; ++step) {
+      const auto first = static_cast<std::uint32_t>(cells_.size());
+      for (const std::uint32_t c : inside) {
+        if (dead_[c] == 0) bisect(c);
+      }
+      // Neighbours that were bisected on the way are small enough already.
+      inside.clear();
+      for (auto c = first; c < cells_.size(); ++c) {
+        if (dead_[c] == 0 && cells_[c].origin == origin->cell) inside.push_back(c);
+      }
+    }
+  }
+  std::vector<std::uint32_t> added;
+  for (auto c = before; c < cells_.size(); ++c) {
+    if (dead_[c] == 0) added.push_back(c);
+  }
+  const bool any = !added.empty();
+  bisect_wanting(std::move(added), progress);
+  return any;
+}
+
+double BisectedCells::size(const Cell& cell) const {
+  const auto [i, j] = longest_edge(cell);
+  return distance(points_[cell.vertices[i]], points_[cell.vertices[j]]);
+}
+
+bool BisectedCells::may_be_bisected(const Cell& cell) const {
+  return size(cell) >= kSmallestCell * tolerance_;
+}
+
+double BisectedCells::change(std::uint32_t a, std::uint32_t b) const {
+  const auto found = edges_.find(edge_key(a, b));
+  return found == edges_.end() ? 0.5 : found->second.change;
+}
+
+void BisectedCells::find_owners() {
+  owners_.resize(points_.size());
+  CellOwnership ownership;
+  for (std::size_t c = 0; c < mesh_.cells.size(); ++c) {
+    mesh_.ownership(c, ownership);
+    for (std::size_t i = 0; i < 4; ++i) {
+      BodyId& owner = owners_[mesh_.cells[c].vertices[i]];
+      if (owner.valid()) continue;
+      owner = BodyId(ownership.pure() ? ownership.problem.candidates[0].owner
+                                      : ownership.problem.owner(cells_[c].corners[i]));
+    }
+    if (ownership.pure()) continue;
+    drop_hopeless(ownership.problem);
+    keep_owners(ownership.problem);
+    problems_.emplace(static_cast<std::uint32_t>(c), ownership.problem);
+  }
+}
+
+BisectedCells::Edge BisectedCells::examine_edge(const OwnershipProblem& problem, const Cell& cell,
+                                                std::size_t i, std::size_t j) const {
+  if (cell.vertices[i] > cell.vertices[j]) std::swap(i, j);
+  const Weights &from = cell.corners[i], &to = cell.corners[j];
+  // Owners change only where two functions cross.
+  std::vector<double> crossings{0, 1};
+  for (std::size_t f = 0; f < problem.functions.size(); ++f) {
+    const double f0 = value(problem.functions[f], from), f1 = value(problem.functions[f], to);
+    for (std::size_t g = 0; g < f; ++g) {
+      const double d0 = f0 - value(problem.functions[g], from), d1 = f1 - value(problem.functions[g], to);
+      if ((d0 < 0) != (d1 < 0)) crossings.push_back(d0 / (d0 - d1));
+    }
+  }
+  std::sort(crossings.begin(), crossings.end());
+  const BodyId first = owners_[cell.vertices[i]], last = owners_[cell.vertices[j]];
+  double first_ends = 0, last_begins = 1;
+  std::vector<BodyId> pieces(crossings.size() - 1);
+  for (std::size_t k = 0; k < pieces.size(); ++k)
+    pieces[k] = BodyId(problem.owner(mix(from, to, (crossings[k] + crossings[k + 1]) / 2)));
+  for (std::size_t k = 0; k < pieces.size() && (pieces[k] == first || crossings[k] == crossings[k + 1]); ++k)
+    first_ends = crossings[k + 1];
+  for (std::size_t k = pieces.size(); k > 0 && (pieces[k - 1] == last || crossings[k - 1] == crossings[k]);
+       --k)
+    last_begins = crossings[k - 1];
+  Edge edge;
+  const double length = distance(points_[cell.vertices[i]], points_[cell.vertices[j]]);
+  if (last_begins > first_ends) edge.hidden = (last_begins - first_ends) * length;
+  if (first != last) edge.change = std::clamp((first_ends + last_begins) / 2, kMargin, 1 - kMargin);
+  return edge;
+}
+
+void BisectedCells::examine_edges(const Cell& cell) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      const auto [entry, fresh] = edges_.try_emplace(edge_key(cell.vertices[i], cell.vertices[j]));
+      if (fresh) entry->second = examine_edge(problem(cell), cell, i, j);
+    }
+  }
+}
+
+bool BisectedCells::hides_body(const Cell& cell) const {
+  if (problem(cell).candidates.size() < 3) return false;
+  thread_local OwnershipProblem part;
+  restrict_problem(problem(cell), cell.corners, part);
+  keep_owners(part);
+  const auto owns_corner = [&](std::uint32_t body) {
+    return std::any_of(cell.vertices.begin(), cell.vertices.end(),
+                       [&](std::uint32_t v) { return owners_[v].value == body; });
+  };
+  if (std::all_of(part.candidates.begin(), part.candidates.end(),
+                  [&](const auto& candidate) { return owns_corner(candidate.owner); }))
+    return false;
+  const double smallest = std::max(tolerance_, kSmallPart * size(cell));
+  std::vector<ContactPolygon> contacts;
+  contact_polygons(part, contacts);
+  for (const auto& candidate : part.candidates) {
+    if (owns_corner(candidate.owner)) continue;
+    Box3 box;
+    for (const ContactPolygon& polygon : contacts) {
+      if (polygon.front != candidate.owner && polygon.back != candidate.owner) continue;
+      for (const auto& corner : polygon.corners) {
+        Vec3 p;
+        for (std::size_t i = 0; i < 4; ++i) p += corner.weights[i] * points_[cell.vertices[i]];
+        box.extend(p);
+      }
+    }
+    if (box.min.x <= box.max.x && box.diagonal() > smallest) return true;
+  }
+  return false;
+}
+
+bool BisectedCells::wants_bisection(std::uint32_t c) {
+  const Cell cell = cells_[c];
+  if (!problems_.contains(cell.origin)) return false;
+  examine_edges(cell);
+  if (!may_be_bisected(cell)) return false;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = a + 1; b < 4; ++b) {
+      const double length = distance(points_[cell.vertices[a]], points_[cell.vertices[b]]);
+      if (edges_.at(edge_key(cell.vertices[a], cell.vertices[b])).hidden >
+          std::max(tolerance_, kSmallPart * length))
+        return true;
+    }
+  }
+  return hides_body(cell);
+}
+
+std::array<std::size_t, 2> BisectedCells::longest_edge(const Cell& cell) const {
+  std::array<std::size_t, 2> best{0, 1};
+  std::tuple<double, std::uint64_t> greatest{-1, 0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      const std::uint32_t a = std::min(cell.vertices[i], cell.vertices[j]),
+                          b = std::max(cell.vertices[i], cell.vertices[j]);
+      // The order of lengths and numbers is the same in all cells round an edge.
+      const std::tuple<double, std::uint64_t> length{squared_norm(points_[a] - points_[b]), edge_key(a, b)};
+      if (length > greatest) greatest = length, best = {i, j};
+    }
+  }
+  return best;
+}
+
+void BisectedCells::cells_at_edge(std::uint32_t a, std::uint32_t b,
+                                  std::vector<std::uint32_t>& result) const {
+  result.clear();
+  std::set_intersection(cells_at_[a].begin(), cells_at_[a].end(), cells_at_[b].begin(), cells_at_[b].end(),
+                        std::back_inserter(result));
+}
+
+void BisectedCells::bisect(std::uint32_t cell) {
+  std::vector<std::uint32_t> round_edge;
+  while (dead_[cell] == 0) {
+    const auto [i, j] = longest_edge(cells_[cell]);
+    const std::uint32_t a = cells_[cell].vertices[i], b = cells_[cell].vertices[j];
+    cells_at_edge(a, b, round_edge);
+    // Cells with a longer edge go first: lengths grow from cell to cell, so that this ends.
+    const auto longer = std::find_if(round_edge.begin(), round_edge.end(), [&](std::uint32_t other) {
+      const auto [k, l] = longest_edge(cells_[other]);
+      return edge_key(cells_[other].vertices[k], cells_[other].vertices[l]) != edge_key(a, b);
+    });
+    if (longer == round_edge.end()) {
+      bisect_edge(a, b, round_edge);
+    } else {
+      bisect(*longer);
+    }
+  }
+}
+
+void BisectedCells::bisect_edge(std::uint32_t a, std::uint32_t b, const std::vector<std::uint32_t>& cells) {
+  const auto middle = static_cast<std::uint32_t>(points_.size());
+  points_.push_back(0.5 * (points_[a] + points_[b]));
+  cells_at_.emplace_back();
+  BodyId owner;
+  for (const std::uint32_t c : cells) {
+    const Cell parent = cells_[c];
+    const auto i = static_cast<std::size_t>(std::find(parent.vertices.begin(), parent.vertices.end(), a) -
+                                            parent.vertices.begin());
+    const auto j = static_cast<std::size_t>(std::find(parent.vertices.begin(), parent.vertices.end(), b) -
+                                            parent.vertices.begin());
+    const Weights w = mix(parent.corners[i], parent.corners[j], 0.5);
+    // In a cell of one body all corners have its owner.
+    if (!owner.valid()) {
+      const auto found = problems_.find(parent.origin);
+      owner = found == problems_.end() ? owners_[a] : BodyId(found->second.owner(w));
+    }
+    dead_[c] = 1;
+    for (const std::uint32_t v : parent.vertices) std::erase(cells_at_[v], c);
+    for (const std::size_t replaced : {i, j}) {
+      Cell child = parent;
+      child.vertices[replaced] = middle;
+      child.corners[replaced] = w;
+      const auto number = static_cast<std::uint32_t>(cells_.size());
+      for (const std::uint32_t v : child.vertices) cells_at_[v].push_back(number);
+      cells_.push_back(child);
+      dead_.push_back(0);
+    }
+  }
+  owners_.push_back(owner);
+}
+
+}  // namespace adamas

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/probe/cell_locator.h"
+
+namespace adamas {
+
+/// An edge of a tetrahedral mesh by its two vertices, the lower one first, as one number.
+constexpr std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+  return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
+}
+
+/// The cells of a resampled mesh, bisected further at their longest edges until each edge changes its owner
+/// once at most and every body in a cell owns one of its corners, but for parts that are small beside the
+/// cell, or smaller than a tolerance. The mesh stays conforming, and its interfaces where they are: a part of
+/// a cell goes by the cell's own functions.
+class BisectedCells {
+ public:
+  struct Cell {
+    std::array<std::uint32_t, 4> vertices;  ///< positively oriented
+    std::uint32_t origin;                   ///< cell of the resampled mesh
+    std::array<Weights, 4> corners;         ///< of the vertices, in that cell
+  };
+
+  /// `tolerance`: a length. The mesh must outlive this object.
+  BisectedCells(const ResampledMesh& mesh, double tolerance, Progress& progress);
+
+  [[nodiscard]] const ResampledMesh& mesh() const { return mesh_; }
+  [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
+  /// Who owns each point.
+  [[nodiscard]] const std::vector<BodyId>& owners() const { return owners_; }
+  /// Cells that are there, and others, which have been bisected.
+  [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
+  [[nodiscard]] bool is_leaf(std::size_t cell) const { return dead_[cell] == 0; }
+  /// Bisects the cells of several bodies that hold these points, to half their size, but none that is as
+  /// small as the tolerance; returns whether there were others.
+  bool bisect_at(const std::vector<Vec3>& places, Progress& progress);
+  /// Where an edge changes its owner: the weight of its vertex of higher number, inside (0, 1); one half for
+  /// an edge that does not.
+  [[nodiscard]] double change(std::uint32_t a, std::uint32_t b) const;
+  /// Who owns what of the cell that a cell of several bodies is a part of.
+  [[nodiscard]] const OwnershipProblem& problem(const Cell& cell) const { return problems_.at(cell.origin); }
+
+ private:
+  struct Edge {
+    double change = 0.5;
+    double hidden = 0;  ///< length of what belongs neither to the first nor to the last owner
+  };
+
+  void find_owners();
+  [[nodiscard]] double size(const Cell& cell) const;
+  [[nodiscard]] bool may_be_bisected(const Cell& cell) const;
+  void bisect_wanting(std::vector<std::uint32_t> wanted, Progress& progress);
+  void examine_edges(const Cell& cell);
+  [[nodiscard]] Edge examine_edge(const OwnershipProblem& problem, const Cell& cell, std::size_t i,
+                                  std::size_t j) const;
+  [[nodiscard]] bool hides_body(const Cell& cell) const;
+  [[nodiscard]] bool wants_bisection(std::uint32_t cell);
+  [[nodiscard]] std::array<std::size_t, 2> longest_edge(const Cell& cell) const;
+  void cells_at_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& result) const;
+  void bisect(std::uint32_t cell);
+  void bisect_edge(std::uint32_t a, std::uint32_t b, const std::vector<std::uint32_t>& cells);
+
+  const ResampledMesh& mesh_;
+  CellLocator locator_;
+  double tolerance_;
+  std::vector<Vec3> points_;
+  std::vector<BodyId> owners_;
+  std::vector<Cell> cells_;
+  std::vector<char> dead_;                                        ///< by cell: it has been bisected
+  std::vector<std::vector<std::uint32_t>> cells_at_;              ///< by vertex; ascending
+  std::unordered_map<std::uint64_t, Edge> edges_;                 ///< those in cells of several bodies
+  std::unordered_map<std::uint32_t, OwnershipProblem> problems_;  ///< of the mesh's cells of several bodies
+};
+
+}  // namespace adamas

@@ -1,0 +1,66 @@
+#include "interfaces/cutting/cut_mesh.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "interfaces/cutting/cell_division.h"
+#include "interfaces/cutting/drop_specks.h"
+#include "interfaces/cutting/local_changes.h"
+#include "interfaces/cutting/mesh_improvement.h"
+#include "interfaces/cutting/restore_volumes.h"
+#include "interfaces/resampling/body_comparison.h"
+#include "interfaces/resampling/interface_comparison.h"
+
+namespace adamas {
+
+namespace {
+
+/// The angle between faces that cells are improved to, in degrees.
+constexpr double kWantedAngle = 12;
+/// Moves that restore volumes leave so much of the least quality.
+constexpr double kKeptQuality = 0.9;
+constexpr int kMostRounds = 10;
+/// Pieces that the mesh has not are left out if they are no larger than so many tolerances.
+constexpr double kSpeck = 4;
+
+/// Places where the boundaries of materials, as two meshes of interfaces have them, are farther apart than
+/// wanted.
+std::vector<Vec3> far_places(InterfaceComparison& comparison, const InterfaceMesh& wanted,
+                             const InterfaceMesh& shown, const Progress& progress) {
+  comparison.measure(shown, progress);
+  std::vector<Vec3> places;
+  for (std::uint32_t t = 0; t < wanted.triangles.size(); ++t) {
+    if (comparison.too_far(t, 0) || comparison.too_far(t, 1)) places.push_back(wanted.centroid(t));
+  }
+  for (const std::uint32_t t : comparison.far_shown()) places.push_back(shown.centroid(t));
+  return places;
+}
+
+}  // namespace
+
+ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& progress) {
+  ExtractedInterfaces wanted = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
+  wanted.mesh.materials = mesh.materials;
+  const InterfaceTarget target(wanted, tolerance);
+  InterfaceComparison comparison(wanted.mesh, mesh.box, true, tolerance);
+  BisectedCells cells(mesh, tolerance, progress);
+  LabelledMesh cut = divide_cells(cells);
+  for (int round = 0; round < kMostRounds; ++round) {
+    snap_vertices(cut, target);
+    const auto places =
+        far_places(comparison, wanted.mesh, interfaces_of(cut.finish(), mesh.table).mesh, progress);
+    if (places.empty() || !cells.bisect_at(places, progress)) break;
+    cut = divide_cells(cells);
+  }
+  drop_specks(cut, body_topology(wanted, mesh.table.body_count(), mesh.box), kSpeck * tolerance);
+  const double wanted_quality = std::sin(kWantedAngle * std::numbers::pi / 180);
+  improve_mesh(cut, target, wanted_quality, progress);
+  double least = wanted_quality;
+  for (std::uint32_t c = 0; c < cut.cell_count(); ++c) {
+    if (cut.is_alive(c)) least = std::min(least, cut.quality(c));
+  }
+  restore_volumes(cut, body_volumes(mesh.table, mesh.cell_set()), kKeptQuality * least, tolerance);
+  return cut.finish();
+}
+
+}  // namespace adamas

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/base/progress.h"
+#include "interfaces/mesh/conforming_mesh.h"
+#include "interfaces/mesh/resampled_mesh.h"
+
+namespace adamas {
+
+/// A resampled mesh cut along its interfaces (docs/method.md, Cut meshes): tetrahedra of one body each,
+/// conforming, without slivers, so that solvers can take it. `tolerance`: how far the faces between bodies
+/// may be from the mesh's interfaces, in units of length; positive. It is what snapping keeps to at the
+/// points that it looks at; CutMeshReport has bounds.
+ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance,
+                        Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas

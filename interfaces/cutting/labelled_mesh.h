@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "core/geometry/vec3.h"
+#include "interfaces/mesh/conforming_mesh.h"
+
+namespace adamas {
+
+/// The least sine of the angles between two faces of a tetrahedron: 0.943 for the regular one, 0 for a flat
+/// one, negative for one that is inside out.
+double least_dihedral_sine(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// A conforming tetrahedral mesh of a box, each tetrahedron in one body, that can be changed place by place.
+class LabelledMesh {
+ public:
+  using Tetrahedron = std::array<std::uint32_t, 4>;  ///< positively oriented
+  struct Cell {
+    Tetrahedron vertices;
+    BodyId body;
+  };
+
+  /// `walls`: bits of the faces of the box that a vertex lies on: 1, 2 for least and greatest x, and so on.
+  std::uint32_t add_vertex(const Vec3& position, std::uint8_t walls);
+  void add_cell(const Tetrahedron& vertices, BodyId body);
+
+  [[nodiscard]] const Vec3& point(std::uint32_t v) const { return points_[v]; }
+  [[nodiscard]] std::uint8_t walls(std::uint32_t v) const { return walls_[v]; }
+  [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
+  /// Numbers of cells that were, are, or will be used again; `is_alive` tells which are.
+  [[nodiscard]] std::size_t cell_count() const { return cells_.size(); }
+  [[nodiscard]] bool is_alive(std::uint32_t cell) const { return cells_[cell].body.valid(); }
+  [[nodiscard]] const Cell& cell(std::uint32_t c) const { return cells_[c]; }
+  /// The cells round a vertex, in no order that means anything.
+  [[nodiscard]] std::span<const std::uint32_t> star(std::uint32_t v) const { return cells_at_[v]; }
+  [[nodiscard]] double quality(std::uint32_t cell) const { return quality_[cell]; }
+  [[nodiscard]] double quality_of(const Tetrahedron& t) const {
+    return least_dihedral_sine(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]);
+  }
+  [[nodiscard]] static bool has(const Tetrahedron& t, std::uint32_t v) {
+    return t[0] == v || t[1] == v || t[2] == v || t[3] == v;
+  }
+
+  /// Sides of a place: the bodies of cells, in ascending order, and the box's faces, above all bodies.
+  struct Sides {
+    std::array<std::uint32_t, 12> values;
+    std::size_t count = 0;
+    bool overflow = false;  ///< more than there is room for
+    void add(std::uint32_t value);
+    void add_walls(std::uint8_t walls);
+    [[nodiscard]] std::size_t bodies() const;  ///< without faces of the box
+    bool operator==(const Sides& other) const;
+  };
+  /// What meets at a vertex, and along an edge: in two or more an interface or a face of the box, in three a
+  /// line.
+  [[nodiscard]] Sides sides(std::uint32_t v) const;
+  [[nodiscard]] Sides sides(std::uint32_t a, std::uint32_t b) const;
+  /// The cells that have both vertices; replaces `result`.
+  void cells_at_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& result) const;
+  /// The cell beyond the face of a cell that is opposite to its vertex v; kNoNeighbour at the box.
+  [[nodiscard]] std::uint32_t neighbour(std::uint32_t cell, std::uint32_t v) const;
+
+  /// Puts `added` in the place of the cells `removed`; together they fill the same.
+  void replace(std::span<const std::uint32_t> removed, std::span<const Cell> added);
+  void move(std::uint32_t v, const Vec3& position);
+  void set_body(std::uint32_t cell, BodyId body) { cells_[cell].body = body; }
+
+  /// Throws Error that begins with `name` and tells the first broken law: positive volumes, each face in two
+  /// cells or on the box, stars.
+  void validate(const std::string& name) const;
+  /// The cells and the vertices that they use.
+  [[nodiscard]] ConformingMesh finish() const;
+
+ private:
+  void link(std::uint32_t cell);
+
+  std::vector<Vec3> points_;
+  std::vector<std::uint8_t> walls_;
+  std::vector<Cell> cells_;
+  std::vector<double> quality_;
+  std::vector<std::uint32_t> unused_;
+  std::vector<std::vector<std::uint32_t>> cells_at_;
+};
+
+}  // namespace adamas

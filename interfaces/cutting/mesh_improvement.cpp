@@ -1,0 +1,125 @@
+#include "interfaces/cutting/mesh_improvement.h"
+
+#include <algorithm>
+
+#include "interfaces/cutting/local_changes.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr int kMostPasses = 12;
+
+class Improvement {
+ public:
+  Improvement(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress)
+      : mesh_(mesh), target_(target), wanted_(wanted), progress_(progress) {}
+
+  void run() {
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      const std::vector<std::uint32_t> bad = bad_cells();
+      if (bad.empty()) return;
+      std::size_t changed = 0;
+      for (std::size_t i = 0; i < bad.size(); ++i) {
+        if (i % 1024 == 0)
+          progress_.step("improving the cut mesh", static_cast<double>(i) / static_cast<double>(bad.size()));
+        const std::uint32_t c = bad[i];
+        if (mesh_.is_alive(c) && mesh_.quality(c) < wanted_ && improve(c)) ++changed;
+      }
+      if (changed == 0) return;
+    }
+  }
+
+ private:
+  /// The cells below what is wanted, worst first.
+  std::vector<std::uint32_t> bad_cells() const {
+    std::vector<std::uint32_t> bad;
+    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
+      if (mesh_.is_alive(c) && mesh_.quality(c) < wanted_) bad.push_back(c);
+    }
+    std::sort(bad.begin(), bad.end(), [&](std::uint32_t x, std::uint32_t y) {
+      return mesh_.quality(x) != mesh_.quality(y) ? mesh_.quality(x) < mesh_.quality(y) : x < y;
+    });
+    return bad;
+  }
+
+  void keep_if_better() {
+    if (!has_best_ || change_.quality > best_.quality) {
+      std::swap(change_, best_);
+      has_best_ = true;
+    }
+  }
+
+  /// The best change of the cell's edges and faces, else of its vertices' places.
+  bool improve(std::uint32_t c) {
+    const LabelledMesh::Tetrahedron v = mesh_.cell(c).vertices;
+    has_best_ = false;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        if (i != j && collapse_edge(mesh_, target_, v[i], v[j], change_)) keep_if_better();
+      }
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        if (remove_edge(mesh_, target_, v[i], v[j], change_)) keep_if_better();
+      }
+      if (remove_face(mesh_, c, v[i], change_)) keep_if_better();
+    }
+    if (has_best_) {
+      mesh_.replace(best_.removed, best_.added);
+      return true;
+    }
+    bool moved = false;
+    for (const std::uint32_t vertex : v) {
+      if (smooth_vertex(mesh_, target_, vertex)) moved = true;
+    }
+    return moved || give_away(c) || split(v);
+  }
+
+  /// Gives the cell to another body, if that helps.
+  bool give_away(std::uint32_t c) {
+    if (giving_away_) return false;
+    const LabelledMesh::Cell cell = mesh_.cell(c);
+    giving_away_ = true;
+    for (const std::uint32_t v : cell.vertices) {
+      const std::uint32_t other = mesh_.neighbour(c, v);
+      if (other == kNoNeighbour || mesh_.cell(other).body == cell.body) continue;
+      const BodyId body = mesh_.cell(other).body;
+      if (!may_change_body(mesh_, target_, c, body)) continue;
+      mesh_.set_body(c, body);
+      if (improve(c)) return giving_away_ = false, true;
+      mesh_.set_body(c, cell.body);
+    }
+    return giving_away_ = false;
+  }
+
+  /// The best division at an edge.
+  bool split(const LabelledMesh::Tetrahedron& v) {
+    if (giving_away_) return false;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        if (split_edge(mesh_, v[i], v[j], change_)) keep_if_better();
+      }
+    }
+    if (!has_best_) return false;
+    mesh_.add_vertex(best_.point, best_.walls);
+    mesh_.replace(best_.removed, best_.added);
+    return true;
+  }
+
+  LabelledMesh& mesh_;
+  const InterfaceTarget& target_;
+  double wanted_;
+  Progress& progress_;
+  LocalChange change_, best_;
+  bool has_best_ = false;
+  bool giving_away_ = false;  ///< a cell's body has been changed, to see whether that helps
+};
+
+}  // namespace
+
+void improve_mesh(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress) {
+  Improvement(mesh, target, wanted, progress).run();
+}
+
+}  // namespace adamas

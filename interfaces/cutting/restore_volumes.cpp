@@ -1,0 +1,164 @@
+#include "interfaces/cutting/restore_volumes.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+
+namespace adamas {
+
+namespace {
+
+constexpr int kMostSteps = 12;
+constexpr double kEnough = 1e-11;  ///< of the whole volume
+
+/// How the volumes of the bodies round a vertex change with its place.
+struct Slopes {
+  std::uint32_t vertex;
+  double weight;  ///< of its moves
+  std::vector<std::pair<std::uint32_t, Vec3>> of_bodies;
+};
+
+class Restoration {
+ public:
+  Restoration(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double least_quality, double most)
+      : mesh_(mesh), wanted_(volumes), least_quality_(least_quality), most_(most) {
+    for (const double volume : volumes) whole_ += volume;
+    for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+      if (mesh.sides(v).bodies() > 1) free_.push_back(v);
+    }
+    start_.reserve(free_.size());
+    for (const std::uint32_t v : free_) start_.push_back(mesh.point(v));
+    give_lost_volumes();
+  }
+
+  bool run() {
+    for (int step = 0; step < kMostSteps; ++step) {
+      const Eigen::VectorXd missing = wanted_volumes() - volumes();
+      if (missing.size() == 0 || missing.cwiseAbs().maxCoeff() <= kEnough * whole_) return true;
+      if (!move(missing)) return false;
+    }
+    return (wanted_volumes() - volumes()).cwiseAbs().maxCoeff() <= kEnough * whole_;
+  }
+
+ private:
+  void give_lost_volumes() {
+    const Eigen::VectorXd there = volumes();
+    const auto largest = std::max_element(wanted_.begin(), wanted_.end());
+    for (std::size_t b = 0; b < wanted_.size(); ++b) {
+      if (there[static_cast<Eigen::Index>(b)] > 0 ||
+          wanted_.begin() + static_cast<std::ptrdiff_t>(b) == largest)
+        continue;
+      *largest += std::exchange(wanted_[BodyId(b)], 0.0);
+    }
+  }
+
+  [[nodiscard]] Eigen::VectorXd wanted_volumes() const {
+    return Eigen::Map<const Eigen::VectorXd>(wanted_.data(), static_cast<Eigen::Index>(wanted_.size()));
+  }
+  [[nodiscard]] Eigen::VectorXd volumes() const {
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wanted_.size()));
+    for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
+      if (!mesh_.is_alive(c)) continue;
+      const auto& v = mesh_.cell(c).vertices;
+      sums[mesh_.cell(c).body.value] +=
+          signed_volume(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
+    }
+    return sums;
+  }
+
+  [[nodiscard]] Slopes slopes_at(std::uint32_t v) const {
+    Slopes slopes{v, 0, {}};
+    for (const std::uint32_t c : mesh_.star(v)) {
+      LabelledMesh::Tetrahedron t = mesh_.cell(c).vertices;
+      // The face opposite, such that with v as its apex the volume is positive.
+      const auto place = std::find(t.begin(), t.end(), v) - t.begin();
+      if (place % 2 == 0)
+        std::swap(t[static_cast<std::size_t>(place + 1) % 4], t[static_cast<std::size_t>(place + 2) % 4]);
+      const Vec3 &a = mesh_.point(t[static_cast<std::size_t>(place + 1) % 4]),
+                 &b = mesh_.point(t[static_cast<std::size_t>(place + 2) % 4]),
+                 &d = mesh_.point(t[static_cast<std::size_t>(place + 3) % 4]);
+      const Vec3 slope = (1.0 / 6) * cross(b - a, d - a);
+      const std::uint32_t body = mesh_.cell(c).body.value;
+      const auto found = std::find_if(slopes.of_bodies.begin(), slopes.of_bodies.end(),
+                                      [&](const auto& entry) { return entry.first == body; });
+      if (found == slopes.of_bodies.end()) {
+        slopes.of_bodies.emplace_back(body, slope);
+      } else {
+        found->second += slope;
+      }
+    }
+    double area = 0;
+    for (auto& [body, slope] : slopes.of_bodies) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((mesh_.walls(v) >> (2 * axis) & 3u) != 0) slope[axis] = 0;
+      }
+      area += norm(slope);
+    }
+    slopes.weight = area > 0 ? 1 / area : 0;
+    return slopes;
+  }
+
+  /// One step; none where no vertex is left that could move.
+  bool move(const Eigen::VectorXd& missing) {
+    std::vector<Slopes> slopes;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const std::uint32_t v : free_) {
+      slopes.push_back(slopes_at(v));
+      const Slopes& s = slopes.back();
+      for (const auto& [a, slope_a] : s.of_bodies) {
+        for (const auto& [b, slope_b] : s.of_bodies)
+          entries.emplace_back(a, b, s.weight * dot(slope_a, slope_b));
+      }
+    }
+    if (entries.empty()) return false;
+    Eigen::SparseMatrix<double> matrix(missing.size(), missing.size());
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    // The volumes add up to the whole, so that one equation follows from the others: conjugate gradients do
+    // not mind.
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
+    solver.setTolerance(1e-10);
+    solver.compute(matrix);
+    const Eigen::VectorXd factors = solver.solve(missing);
+    if (!factors.allFinite()) return false;
+    std::vector<std::uint32_t> still_free;
+    std::vector<Vec3> still_start;
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      Vec3 step;
+      for (const auto& [body, slope] : slopes[i].of_bodies) step += slopes[i].weight * factors[body] * slope;
+      const std::uint32_t v = slopes[i].vertex;
+      const Vec3 before = mesh_.point(v);
+      mesh_.move(v, before + step);
+      if (distance(mesh_.point(v), start_[i]) > most_ || worst(v) < least_quality_) {
+        mesh_.move(v, before);
+      } else {
+        still_free.push_back(v);
+        still_start.push_back(start_[i]);
+      }
+    }
+    free_ = std::move(still_free);
+    start_ = std::move(still_start);
+    return true;
+  }
+
+  [[nodiscard]] double worst(std::uint32_t v) const {
+    double least = 1;
+    for (const std::uint32_t c : mesh_.star(v)) least = std::min(least, mesh_.quality(c));
+    return least;
+  }
+
+  LabelledMesh& mesh_;
+  IdVector<BodyId, double> wanted_;
+  double least_quality_, most_, whole_ = 0;
+  std::vector<std::uint32_t> free_;  ///< vertices that may move
+  std::vector<Vec3> start_;          ///< where they were at first
+};
+
+}  // namespace
+
+bool restore_volumes(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double least_quality,
+                     double most) {
+  return Restoration(mesh, volumes, least_quality, most).run();
+}
+
+}  // namespace adamas

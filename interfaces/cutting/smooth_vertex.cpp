@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <limits>
+
+#include "interfaces/cutting/local_changes.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr int kMostSteps = 6;
+
+class Smoothing {
+ public:
+  Smoothing(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t v)
+      : mesh_(mesh), target_(target), v_(v), sides_(mesh.sides(v)), bodies_(sides_.bodies()) {
+    double longest = 0;
+    for (const std::uint32_t c : mesh.star(v)) {
+      for (const std::uint32_t w : mesh.cell(c).vertices)
+        longest = std::max(longest, squared_norm(mesh.point(w) - mesh.point(v)));
+    }
+    size_ = std::sqrt(longest);
+    astray_ = !target.allows(sides_, mesh.point(v));
+  }
+
+  bool run() {
+    bool moved = false;
+    for (int step = 0; step < kMostSteps; ++step) {
+      if (!climb()) break;
+      moved = true;
+    }
+    return moved;
+  }
+
+ private:
+  /// Least quality round the vertex if it were at p; no better than `bound` where it is not above that.
+  double quality_at(const Vec3& p, double bound) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t c : mesh_.star(v_)) {
+      least = std::min(least, quality_at(p, c));
+      if (least <= bound) break;
+    }
+    return least;
+  }
+  double quality_at(const Vec3& p, std::uint32_t c) const {
+    const auto& v = mesh_.cell(c).vertices;
+    std::array<Vec3, 4> x;
+    for (std::size_t i = 0; i < 4; ++i) x[i] = v[i] == v_ ? p : mesh_.point(v[i]);
+    return least_dihedral_sine(x[0], x[1], x[2], x[3]);
+  }
+  Vec3 gradient(std::uint32_t c) const {
+    const double h = 1e-4 * size_;
+    const Vec3& p = mesh_.point(v_);
+    Vec3 result;
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 up = p, down = p;
+      up[axis] += h;
+      down[axis] -= h;
+      result[axis] = (quality_at(up, c) - quality_at(down, c)) / (2 * h);
+    }
+    return result;
+  }
+
+  /// The place on what the vertex lies on that is closest to p, more or less.
+  std::optional<Vec3> placed(const Vec3& p) const {
+    Vec3 q = p;
+    for (int round = 0; round < (bodies_ > 1 ? 2 : 1); ++round) {
+      if (bodies_ > 1 && !astray_ && stays_) {
+        const auto near = target_.closest(sides_, q, 2 * size_);
+        if (!near) return std::nullopt;
+        q = *near;
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((mesh_.walls(v_) >> (2 * axis) & 3u) != 0) q[axis] = mesh_.point(v_)[axis];
+      }
+    }
+    return q;
+  }
+
+  /// Whether the interfaces round the vertex, if it were at p, are where they may be.
+  bool allowed(const Vec3& p) const {
+    if (bodies_ < 2) return true;
+    if (!target_.allows(sides_, p, astray_)) return false;
+    for (const std::uint32_t c : mesh_.star(v_)) {
+      const auto& cell = mesh_.cell(c);
+      for (const std::uint32_t opposite : cell.vertices) {
+        if (opposite == v_) continue;
+        const std::uint32_t other = mesh_.neighbour(c, opposite);
+        if (other == kNoNeighbour || other < c || mesh_.cell(other).body == cell.body) continue;
+        LabelledMesh::Sides pair;
+        pair.add(cell.body.value);
+        pair.add(mesh_.cell(other).body.value);
+        Vec3 sum = p;
+        for (const std::uint32_t w : cell.vertices) {
+          if (w == v_ || w == opposite) continue;
+          sum += mesh_.point(w);
+          if (!target_.allows(pair, 0.5 * (p + mesh_.point(w)), astray_)) return false;
+        }
+        if (!target_.allows(pair, (1.0 / 3) * sum, astray_)) return false;
+      }
+    }
+    return true;
+  }
+
+  bool try_move(const Vec3& p, double before) {
+    const auto place = placed(p);
+    if (!place) return false;
+    if (!(quality_at(*place, before) > before * (1 + 1e-3) + 1e-6) || !allowed(*place)) return false;
+    mesh_.move(v_, *place);
+    return true;
+  }
+
+  bool climb() {
+    const auto star = mesh_.star(v_);
+    const double before = least_quality(mesh_, star);
+    // The worst cells' gradients, and their mean direction.
+    std::vector<std::uint32_t> worst(star.begin(), star.end());
+    std::sort(worst.begin(), worst.end(), [&](std::uint32_t x, std::uint32_t y) {
+      return mesh_.quality(x) != mesh_.quality(y) ? mesh_.quality(x) < mesh_.quality(y) : x < y;
+    });
+    std::vector<Vec3> directions{normalized(gradient(worst[0]))};
+    if (worst.size() > 1) {
+      const Vec3 second = normalized(gradient(worst[1]));
+      directions.push_back(normalized(directions[0] + second));
+    }
+    const Vec3 p = mesh_.point(v_);
+    // First along the interface, then away from it.
+    for (stays_ = true;; stays_ = false) {
+      for (const double step : {0.3, 0.1, 0.03}) {
+        for (const Vec3& direction : directions) {
+          if (try_move(p + step * size_ * direction, before)) return true;
+        }
+        if (step == 0.3 && try_move(middle(), before)) return true;
+      }
+      if (bodies_ < 2 || astray_ || !stays_) return false;
+    }
+  }
+
+  /// Mean of the vertices round it.
+  Vec3 middle() const {
+    Vec3 sum;
+    double count = 0;
+    for (const std::uint32_t c : mesh_.star(v_)) {
+      for (const std::uint32_t w : mesh_.cell(c).vertices) {
+        if (w != v_) sum += mesh_.point(w), ++count;
+      }
+    }
+    return (1 / count) * sum;
+  }
+
+  LabelledMesh& mesh_;
+  const InterfaceTarget& target_;
+  std::uint32_t v_;
+  LabelledMesh::Sides sides_;
+  std::size_t bodies_;
+  double size_ = 0;
+  bool stays_ = true;    ///< moves end where the bodies meet, not near it
+  bool astray_ = false;  ///< the vertex is not where it should be
+};
+
+}  // namespace
+
+bool smooth_vertex(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t v) {
+  return Smoothing(mesh, target, v).run();
+}
+
+}  // namespace adamas

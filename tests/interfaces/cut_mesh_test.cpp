@@ -1,0 +1,189 @@
+#include "interfaces/cutting/cut_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <set>
+
+#include "interfaces/cutting/cut_mesh_file.h"
+#include "interfaces/cutting/cut_mesh_report.h"
+#include "interfaces/probe/cell_locator.h"
+#include "tests/interfaces/cutting_meshes.h"
+
+namespace adamas::test {
+
+namespace {
+
+struct CutCase {
+  std::string scene;
+  std::uint64_t seed = 0;
+  std::size_t cells = 12;
+  double error = 0.02;      ///< of the diagonal
+  bool same_bodies = true;  ///< no necks of bodies are thinner than the tolerance
+};
+
+std::ostream& operator<<(std::ostream& stream, const CutCase& c) {
+  return stream << c.scene << " " << c.seed << " at " << c.error;
+}
+
+/// Points that coincide, within 1e-11 of the diagonal, get one number.
+std::vector<std::size_t> merged(const std::vector<Vec3>& points, double diagonal) {
+  std::map<std::array<std::int64_t, 3>, std::vector<std::size_t>> cells;
+  const double size = 1e-11 * diagonal;
+  std::vector<std::size_t> number(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::array<std::int64_t, 3> at{};
+    for (int axis = 0; axis < 3; ++axis)
+      at[static_cast<std::size_t>(axis)] = std::llround(points[i][axis] / size);
+    number[i] = i;
+    for (std::int64_t dx = -1; dx <= 1; ++dx) {
+      for (std::int64_t dy = -1; dy <= 1; ++dy) {
+        for (std::int64_t dz = -1; dz <= 1; ++dz) {
+          const auto found = cells.find({at[0] + dx, at[1] + dy, at[2] + dz});
+          if (found == cells.end()) continue;
+          for (const std::size_t other : found->second) {
+            if (distance(points[i], points[other]) <= size) number[i] = std::min(number[i], other);
+          }
+        }
+      }
+    }
+    if (number[i] == i) cells[at].push_back(i);
+  }
+  return number;
+}
+
+class CutMeshes : public testing::TestWithParam<CutCase> {
+ protected:
+  void SetUp() override {
+    const CutCase& c = GetParam();
+    mesh_ = resampled_scene(c.scene, c.seed, c.cells, c.error);
+    tolerance_ = 0.5 * c.error * mesh_.box.diagonal();
+    cut_ = cut_mesh(mesh_, tolerance_);
+  }
+
+  ResampledMesh mesh_;
+  ConformingMesh cut_;
+  double tolerance_ = 0;
+};
+
+/// As it is written: each face inside the box belongs to two tetrahedra, each other one lies on the box.
+TEST_P(CutMeshes, ConformOnceCoincidingPointsAreMerged) {
+  const UnstructuredMesh written = to_unstructured_mesh(cut_, mesh_);
+  const std::vector<std::size_t> number = merged(written.points, mesh_.box.diagonal());
+  EXPECT_LT(std::set<std::size_t>(number.begin(), number.end()).size(), written.points.size());
+  std::map<std::array<std::size_t, 3>, int> faces;
+  for (std::size_t c = 0; c < written.cell_count(); ++c) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<std::size_t, 3> face{};
+      for (std::size_t k = 0; k < 3; ++k) face[k] = number[written.connectivity[4 * c + (i + 1 + k) % 4]];
+      std::sort(face.begin(), face.end());
+      ASSERT_TRUE(face[0] != face[1] && face[1] != face[2]);
+      ++faces[face];
+    }
+  }
+  for (const auto& [face, count] : faces) {
+    bool on_box = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double wall : {mesh_.box.min[axis], mesh_.box.max[axis]}) {
+        on_box = on_box || std::all_of(face.begin(), face.end(), [&](std::size_t p) {
+                   return std::abs(written.points[p][axis] - wall) < 1e-12;
+                 });
+      }
+    }
+    ASSERT_EQ(count, on_box ? 1 : 2);
+  }
+}
+
+TEST_P(CutMeshes, HaveNoSlivers) {
+  double sum = 0;
+  for (std::size_t t = 0; t < cut_.tetrahedra.size(); ++t) {
+    const auto x = cut_.corners(t);
+    const double volume = signed_volume(x[0], x[1], x[2], x[3]);
+    ASSERT_GT(volume, 0);
+    sum += volume;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        // Angle between the planes through the edge, by the other two corners seen along it.
+        std::vector<Vec3> aside;
+        const Vec3 along = normalized(x[i] - x[j]);
+        for (std::size_t k = 0; k < 4; ++k) {
+          if (k != i && k != j) aside.push_back((x[k] - x[j]) - dot(x[k] - x[j], along) * along);
+        }
+        const double angle = std::acos(dot(normalized(aside[0]), normalized(aside[1]))) * 180 / M_PI;
+        ASSERT_GT(angle, 5) << "at (" << x[i].x << ", " << x[i].y << ", " << x[i].z << ")";
+        ASSERT_LT(angle, 175);
+      }
+    }
+  }
+  EXPECT_NEAR(sum, mesh_.box.volume(), 1e-12 * mesh_.box.volume());
+}
+
+/// The reported distances are bounds: no point of a face between materials is farther from the mesh's
+/// interfaces, and back.
+TEST_P(CutMeshes, StayWithinTheDistancesReported) {
+  const CutMeshReport report = examine_cut_mesh(cut_, mesh_, tolerance_);
+  EXPECT_LE(report.distance.networks.upper, 2 * tolerance_);
+  const ExtractedInterfaces of_mesh = extract_interfaces(mesh_.table, mesh_.cell_set(), mesh_.box);
+  const ExtractedInterfaces of_cut = interfaces_of(cut_, mesh_.table);
+  const auto seen = [](const InterfaceMesh& from, const InterfaceMesh& to) {
+    std::vector<ClosestPointTree::Triangle> triangles;
+    for (const auto& t : to.triangles) triangles.push_back(t.points);
+    const ClosestPointTree tree(to.points, triangles);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    double greatest = 0;
+    for (const auto& t : from.triangles) {
+      double u = uniform(random), v = uniform(random);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Vec3 p = from.points[t.points[0]] + u * (from.points[t.points[1]] - from.points[t.points[0]]) +
+                     v * (from.points[t.points[2]] - from.points[t.points[0]]);
+      greatest = std::max(greatest, std::sqrt(tree.closest(p)->squared_distance));
+      for (const std::uint32_t c : t.points)
+        greatest = std::max(greatest, std::sqrt(tree.closest(from.points[c])->squared_distance));
+    }
+    return greatest;
+  };
+  EXPECT_LE(seen(of_cut.mesh, of_mesh.mesh), report.distance.networks.upper * (1 + 1e-9) + 1e-12);
+  EXPECT_LE(seen(of_mesh.mesh, of_cut.mesh), report.distance.networks.upper * (1 + 1e-9) + 1e-12);
+}
+
+/// A tetrahedron farther from the interfaces than the distance certified has the owner that the mesh gives
+/// its middle.
+TEST_P(CutMeshes, HaveTheOwnersOfTheMeshAwayFromInterfaces) {
+  const CutMeshReport report = examine_cut_mesh(cut_, mesh_, tolerance_);
+  if (GetParam().same_bodies) {
+    EXPECT_TRUE(report.changed.empty());
+  }
+  const ExtractedInterfaces of_mesh = extract_interfaces(mesh_.table, mesh_.cell_set(), mesh_.box);
+  std::vector<ClosestPointTree::Triangle> triangles;
+  for (const auto& t : of_mesh.mesh.triangles) triangles.push_back(t.points);
+  const ClosestPointTree tree(of_mesh.mesh.points, triangles);
+  const CellLocator locator(mesh_);
+  std::size_t looked_at = 0;
+  for (std::size_t t = 0; t < cut_.tetrahedra.size(); ++t) {
+    const auto x = cut_.corners(t);
+    const Vec3 middle = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+    if (std::sqrt(tree.closest(middle)->squared_distance) <= report.distance.materials.upper) continue;
+    const auto place = locator.locate(middle);
+    CellOwnership ownership;
+    mesh_.ownership(place->cell, ownership);
+    const std::uint32_t owner =
+        ownership.pure() ? ownership.problem.candidates[0].owner : ownership.problem.owner(place->weights);
+    ASSERT_EQ(owner, cut_.bodies[t].value);
+    ++looked_at;
+  }
+  EXPECT_GT(looked_at, cut_.tetrahedra.size() / 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CutMeshes,
+                         testing::Values(CutCase{"sphere"}, CutCase{"sphere", 0, 16, 0.01}, CutCase{"plate"},
+                                         CutCase{"tjunction"}, CutCase{"reflex"},
+                                         CutCase{"voronoi10", 0, 12, 0.03},
+                                         CutCase{"random", 1, 8, 0.03, false},
+                                         CutCase{"random", 2, 8, 0.03, false},
+                                         CutCase{"random", 3, 8, 0.03, false}));
+
+}  // namespace
+
+}  // namespace adamas::test

@@ -1,0 +1,143 @@
+#include "interfaces/cutting/labelled_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "interfaces/cutting/cell_division.h"
+#include "interfaces/cutting/local_changes.h"
+#include "interfaces/cutting/mesh_improvement.h"
+#include "interfaces/resampling/body_comparison.h"
+#include "tests/interfaces/cutting_meshes.h"
+
+namespace adamas::test {
+
+namespace {
+
+/// A scene's cells, divided between their owners.
+struct Divided {
+  Divided(const std::string& scene, std::uint64_t seed, std::size_t cells, double error)
+      : mesh(resampled_scene(scene, seed, cells, error)),
+        tolerance(0.5 * error * mesh.box.diagonal()),
+        cut(divide_cells(BisectedCells(mesh, tolerance, SilentProgress::instance()))),
+        target(extract_interfaces(mesh.table, mesh.cell_set(), mesh.box), tolerance) {}
+
+  [[nodiscard]] IdVector<BodyId, BodyTopology> topology() const {
+    return body_topology(interfaces_of(cut.finish(), mesh.table), mesh.table.body_count(), mesh.box);
+  }
+  /// Faces between bodies, with those on the box, tell more than bodies alone: how many there are, and their
+  /// edges and points, alternating.
+  [[nodiscard]] std::map<std::vector<std::uint32_t>, long> euler_by_bodies() const {
+    std::map<std::vector<std::uint32_t>, std::vector<std::uint32_t>> simplices;  // points -> bodies and walls
+    for (std::uint32_t c = 0; c < cut.cell_count(); ++c) {
+      if (!cut.is_alive(c)) continue;
+      for (unsigned set = 1; set < 16; ++set) {
+        std::vector<std::uint32_t> points;
+        std::uint8_t walls = 0x3f;
+        for (std::size_t i = 0; i < 4; ++i) {
+          if ((set >> i & 1u) == 0) continue;
+          points.push_back(cut.cell(c).vertices[i]);
+          walls &= cut.walls(points.back());
+        }
+        std::sort(points.begin(), points.end());
+        auto& bodies = simplices[points];
+        bodies.push_back(cut.cell(c).body.value);
+        for (std::uint32_t wall = 0; wall < 6; ++wall) {
+          if ((walls >> wall & 1u) != 0) bodies.push_back(1000 + wall);
+        }
+      }
+    }
+    std::map<std::vector<std::uint32_t>, long> euler;
+    for (auto& [points, bodies] : simplices) {
+      std::sort(bodies.begin(), bodies.end());
+      bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+      euler[bodies] += points.size() % 2 == 1 ? 1 : -1;
+    }
+    std::erase_if(euler, [](const auto& entry) { return entry.second == 0; });
+    return euler;
+  }
+
+  ResampledMesh mesh;
+  double tolerance;
+  LabelledMesh cut;
+  InterfaceTarget target;
+};
+
+TEST(LabelledMeshes, DividedCellsConform) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Divided divided("random", seed, 5, 0.08);
+    EXPECT_NO_THROW(divided.cut.validate("divided"));
+    double volume = 0;
+    for (const double body : body_volumes(divided.cut.finish(), divided.mesh.table.body_count()))
+      volume += body;
+    EXPECT_NEAR(volume, divided.mesh.box.volume(), 1e-12 * divided.mesh.box.volume());
+  }
+}
+
+/// Random changes in random places: all laws hold after each, and what meets where keeps its topology: the
+/// characteristics of all bodies, interfaces, lines and points, on the box and inside.
+TEST(LabelledMeshes, RandomChangesKeepAllLaws) {
+  for (const std::uint64_t seed : {1, 2, 7}) {
+    Divided divided("random", seed, 5, 0.08);
+    LabelledMesh& cut = divided.cut;
+    const auto before = divided.euler_by_bodies();
+    const auto bodies = divided.topology();
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::array<int, 6> made{};
+    LocalChange change;
+    for (int step = 0; step < 3000; ++step) {
+      const auto c = static_cast<std::uint32_t>(random() % cut.cell_count());
+      if (!cut.is_alive(c)) continue;
+      const auto v = cut.cell(c).vertices;
+      const std::size_t i = random() % 4, j = (i + 1 + random() % 3) % 4;
+      const auto kind = random() % 6;
+      bool done = false;
+      if (kind == 0) done = collapse_edge(cut, divided.target, v[i], v[j], change);
+      if (kind == 1) done = remove_edge(cut, divided.target, v[i], v[j], change);
+      if (kind == 2) done = remove_face(cut, c, v[i], change);
+      if (kind == 3 && (done = split_edge(cut, v[i], v[j], change)))
+        cut.add_vertex(change.point, change.walls);
+      if (done) cut.replace(change.removed, change.added);
+      if (kind == 4) done = smooth_vertex(cut, divided.target, v[i]);
+      const std::uint32_t other = kind == 5 ? cut.neighbour(c, v[i]) : kNoNeighbour;
+      if (kind == 5 && other != kNoNeighbour && cut.cell(other).body != cut.cell(c).body &&
+          (done = may_change_body(cut, divided.target, c, cut.cell(other).body)))
+        cut.set_body(c, cut.cell(other).body);
+      if (!done) continue;
+      if (++made[kind] % 16 == 0) {
+        ASSERT_NO_THROW(cut.validate("changed"));
+      }
+    }
+    EXPECT_EQ(divided.euler_by_bodies(), before) << "seed " << seed;
+    EXPECT_EQ(divided.topology(), bodies);
+    for (const int count : made) EXPECT_GT(count, 0);
+  }
+}
+
+TEST(LabelledMeshes, ImprovingKeepsTheTopologyOfBodies) {
+  for (const auto& [scene, seed] : {std::pair<std::string, std::uint64_t>{"tjunction", 0},
+                                    {"reflex", 0},
+                                    {"voronoi10", 0},
+                                    {"random", 1},
+                                    {"random", 2}}) {
+    SCOPED_TRACE(scene);
+    Divided divided(scene, seed, 8, 0.04);
+    const auto bodies = divided.topology();
+    improve_mesh(divided.cut, divided.target, 0.2, SilentProgress::instance());
+    ASSERT_NO_THROW(divided.cut.validate("improved"));
+    EXPECT_EQ(divided.topology(), bodies);
+  }
+}
+
+TEST(LabelledMeshes, QualityOfSimpleTetrahedra) {
+  EXPECT_NEAR(least_dihedral_sine({1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}), std::sqrt(8.0) / 3,
+              1e-15);
+  EXPECT_NEAR(least_dihedral_sine({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}), std::sqrt(2.0 / 3), 1e-15);
+  EXPECT_LT(least_dihedral_sine({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}), 0);
+  EXPECT_EQ(least_dihedral_sine({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}), 0);
+  EXPECT_EQ(least_dihedral_sine({0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {1, 1, 0}), 0);
+}
+
+}  // namespace
+
+}  // namespace adamas::test
