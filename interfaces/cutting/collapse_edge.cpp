@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "interfaces/cutting/local_changes.h"
+#include "interfaces/network/triangle_distance.h"
 
 namespace adamas {
 
@@ -42,11 +43,12 @@ bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
   return true;
 }
 
-/// Whether the interfaces' triangles at a, with b in its place, may be there.
+/// Whether the interfaces' triangles at a, with b in its place, may be there, and a is not far from them.
 bool is_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t a,
                     std::uint32_t b) {
   const Vec3& p = mesh.point(b);
   const bool astray = !target.allows(mesh.sides(a), mesh.point(a));
+  double to_a = std::numeric_limits<double>::infinity();
   for (const std::uint32_t c : mesh.star(a)) {
     const auto& cell = mesh.cell(c);
     for (const std::uint32_t opposite : cell.vertices) {
@@ -63,6 +65,7 @@ bool is_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std
       }
       if (ends[0] == b || ends[1] == b) continue;
       const Vec3 &x = mesh.point(ends[0]), &y = mesh.point(ends[1]);
+      to_a = std::min(to_a, closest_on_triangle(mesh.point(a), {p, x, y}).squared_distance);
       if (!target.allows(pair, (1.0 / 3) * (p + x + y), astray) ||
           !target.allows(pair, 0.5 * (p + x), astray) || !target.allows(pair, 0.5 * (p + y), astray))
         return false;
@@ -72,7 +75,7 @@ bool is_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std
       }
     }
   }
-  return true;
+  return astray || to_a <= target.tolerance() * target.tolerance();
 }
 
 }  // namespace

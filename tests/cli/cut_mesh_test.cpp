@@ -1,0 +1,101 @@
+// Meshes cut along their interfaces, as the commands write them.
+
+#include <set>
+#include <sstream>
+
+#include "program.h"
+
+namespace adamas::test {
+
+namespace {
+
+class CutMesh : public ProgramTest {
+ protected:
+  CutMesh() { make_scene("voronoi10", 10); }
+
+  /// Lines of a section of a file of Gmsh.
+  [[nodiscard]] std::vector<std::string> section(const std::string& file, const std::string& name) const {
+    std::istringstream in(read(file));
+    std::vector<std::string> lines;
+    bool inside = false;
+    for (std::string line; std::getline(in, line);) {
+      if (line == "$End" + name) return lines;
+      if (inside) lines.push_back(line);
+      inside = inside || line == "$" + name;
+    }
+    return {};
+  }
+};
+
+TEST_F(CutMesh, FiguresAndFilesAgree) {
+  const auto run = run_well({"resample", "scene.vtr", "--interface-error", "4%", "--cut-mesh", "c.msh",
+                             "--save", "h.h5", "--ledger", "l.csv", "--json", "j.json"});
+  EXPECT_NE(run.out.find("dihedral angles"), std::string::npos);
+  const auto figures = read_json("j.json");
+  const auto cut = figures.at("cut_mesh");
+  EXPECT_GT(cut.at("dihedral_min"), 5);
+  EXPECT_LT(cut.at("dihedral_max"), 175);
+  EXPECT_EQ(cut.at("lost_bodies"), 0);
+  const double target = figures.at("interface_error_target");
+  EXPECT_LE(cut.at("to_mesh").at("interface_error"), target);
+  EXPECT_LE(cut.at("to_input").at("interface_error"), 2 * target);
+  EXPECT_LE(cut.at("to_input").at("interface_error_found"), cut.at("to_input").at("interface_error"));
+  EXPECT_LE(cut.at("to_input").at("interface_error"), cut.at("to_input").at("interface_error_per_material"));
+  // The file: counts, names of all ten materials and of the box's sides, elements that refer to nodes.
+  EXPECT_EQ(section("c.msh", "Nodes").at(0), std::to_string(cut.at("vertices").get<std::size_t>()));
+  std::size_t tetrahedra = 0;
+  std::set<std::string> groups;
+  for (const std::string& line : section("c.msh", "Elements")) {
+    std::istringstream in(line);
+    int number = 0, type = 0, tags = 0;
+    std::string group;
+    if (in >> number >> type >> tags >> group) {
+      tetrahedra += type == 4 ? 1 : 0;
+      groups.insert(group);
+    }
+  }
+  EXPECT_EQ(tetrahedra, cut.at("tetrahedra"));
+  const auto names = section("c.msh", "PhysicalNames");
+  for (const char* name : {"\"cell0\"", "\"cell9\"", "\"x min\"", "\"z max\"", "\"cell0 | cell"}) {
+    EXPECT_TRUE(std::any_of(names.begin(), names.end(), [&](const std::string& line) {
+      return line.find(name) != std::string::npos;
+    })) << name;
+  }
+  EXPECT_EQ(groups.size() + 1, names.size());
+  // Volumes are those of the mesh.
+  std::map<std::string, std::map<std::string, double>> volumes;
+  for (const auto& row : figures.at("ledger")) volumes[row.at("of")][row.at("material")] = row.at("volume");
+  for (const auto& [material, volume] : volumes.at("mesh"))
+    EXPECT_NEAR(volumes.at("cut mesh").at(material), volume, 1e-9);
+  // From the saved hierarchy the same, without what only the input tells.
+  run_well({"select", "h.h5", "--cut-mesh", "s.exo", "--json", "s.json"});
+  const auto selected = read_json("s.json").at("cut_mesh");
+  EXPECT_TRUE(selected.at("to_input").is_null());
+  EXPECT_GT(selected.at("dihedral_min"), 5);
+  EXPECT_EQ(read("s.exo").substr(0, 3), "CDF");
+}
+
+TEST_F(CutMesh, ErrorsAndThreads) {
+  const std::vector<std::string> resample{"resample", "scene.vtr", "--interface-error", "5%", "--cut-mesh"};
+  const auto with = [&](std::vector<std::string> more) {
+    auto arguments = resample;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  run_well(with({"coarse.msh", "--cut-error", "3%", "--threads", "1", "--json", "coarse.json"}));
+  run_well(with({"fine.msh", "--cut-error", "0.5%", "--json", "fine.json"}));
+  run_well(with({"again.msh", "--cut-error", "3%", "--threads", "3"}));
+  EXPECT_TRUE(read("coarse.msh") == read("again.msh"));
+  const auto distance = [&](const std::string& file) {
+    return read_json(file).at("cut_mesh").at("to_mesh").at("interface_error").get<double>();
+  };
+  EXPECT_LT(distance("fine.json"), distance("coarse.json"));
+  EXPECT_EQ(run({"resample", "scene.vtr", "-o", "m.vtu", "--cut-error", "1%"}).status, 2);
+  EXPECT_EQ(run(with({"c.vtu", "--cut-error", "0"})).status, 2);
+  EXPECT_EQ(run(with({"c.vtu", "--cut-error", "-1%"})).status, 2);
+  EXPECT_EQ(run(with({"c.mesh"})).status, 2);
+}
+
+}  // namespace
+
+}  // namespace adamas::test
