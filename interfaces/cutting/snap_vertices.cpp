@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/parallel.h"
 #include "interfaces/cutting/local_changes.h"
 
 namespace adamas {
@@ -9,6 +10,8 @@ namespace adamas {
 namespace {
 
 constexpr int kSweeps = 3;
+/// Moves of less than so much of the tolerance gain nothing.
+constexpr double kNothing = 1e-3;
 /// Cells round a vertex keep so much of the least quality that they had, or this quality.
 constexpr double kKept = 0.3, kGood = 0.1;
 
@@ -35,22 +38,34 @@ double longest_edge(const LabelledMesh& mesh, std::uint32_t v) {
 }  // namespace
 
 void snap_vertices(LabelledMesh& mesh, const InterfaceTarget& target) {
+  struct Snap {
+    std::uint32_t vertex;
+    LabelledMesh::Sides sides;
+    Vec3 step;  ///< to where it should be, as far as the box lets it; zero where there is nothing to gain
+  };
+  std::vector<Snap> snaps;
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    const auto sides = mesh.sides(v);
+    if (sides.bodies() > 1) snaps.push_back({v, sides, {}});
+  }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
-      const auto sides = mesh.sides(v);
-      if (sides.bodies() < 2) continue;
-      const Vec3& p = mesh.point(v);
-      const auto goal = target.closest(sides, p, longest_edge(mesh, v));
-      if (!goal) continue;
-      Vec3 step = *goal - p;
+    parallel_for(snaps.size(), 512, [&](std::size_t i) {
+      Snap& snap = snaps[i];
+      const Vec3& p = mesh.point(snap.vertex);
+      const auto goal = target.closest(snap.sides, p, longest_edge(mesh, snap.vertex));
+      snap.step = goal ? *goal - p : Vec3{};
       for (int axis = 0; axis < 3; ++axis) {
-        if ((mesh.walls(v) >> (2 * axis) & 3u) != 0) step[axis] = 0;
+        if ((mesh.walls(snap.vertex) >> (2 * axis) & 3u) != 0) snap.step[axis] = 0;
       }
-      // Nothing to gain.
-      if (norm(step) < 1e-3 * target.tolerance()) continue;
+      if (norm(snap.step) < kNothing * target.tolerance()) snap.step = {};
+    });
+    std::erase_if(snaps, [](const Snap& snap) { return snap.step == Vec3{}; });
+    for (const Snap& snap : snaps) {
+      const std::uint32_t v = snap.vertex;
+      const Vec3 p = mesh.point(v);
       const double bound = std::min(kGood, kKept * least_quality(mesh, mesh.star(v)));
       for (const double part : {1.0, 0.6, 0.3}) {
-        const Vec3 q = p + part * step;
+        const Vec3 q = p + part * snap.step;
         if (quality_at(mesh, v, q) <= bound) continue;
         mesh.move(v, q);
         break;
