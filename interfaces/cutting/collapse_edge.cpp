@@ -49,30 +49,18 @@ bool is_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std
   const Vec3& p = mesh.point(b);
   const bool astray = !target.allows(mesh.sides(a), mesh.point(a));
   double to_a = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t c : mesh.star(a)) {
-    const auto& cell = mesh.cell(c);
-    for (const std::uint32_t opposite : cell.vertices) {
-      if (opposite == a) continue;
-      const std::uint32_t other = mesh.neighbour(c, opposite);
-      if (other == kNoNeighbour || other < c || mesh.cell(other).body == cell.body) continue;
-      LabelledMesh::Sides pair;
-      pair.add(cell.body.value);
-      pair.add(mesh.cell(other).body.value);
-      std::array<std::uint32_t, 2> ends{};
-      std::size_t n = 0;
-      for (const std::uint32_t w : cell.vertices) {
-        if (w != a && w != opposite) ends[n++] = w;
-      }
-      if (ends[0] == b || ends[1] == b) continue;
-      const Vec3 &x = mesh.point(ends[0]), &y = mesh.point(ends[1]);
-      to_a = std::min(to_a, closest_on_triangle(mesh.point(a), {p, x, y}).squared_distance);
-      if (!target.allows(pair, (1.0 / 3) * (p + x + y), astray) ||
-          !target.allows(pair, 0.5 * (p + x), astray) || !target.allows(pair, 0.5 * (p + y), astray))
-        return false;
-      for (const std::uint32_t end : ends) {
-        const auto line = mesh.sides(a, end);
-        if (line.bodies() > 2 && !target.allows(line, 0.5 * (p + mesh.point(end)), astray)) return false;
-      }
+  thread_local std::vector<LabelledMesh::InterfaceFace> faces;
+  mesh.interface_faces(a, faces);
+  for (const auto& [pair, ends] : faces) {
+    if (ends[0] == b || ends[1] == b) continue;
+    const Vec3 &x = mesh.point(ends[0]), &y = mesh.point(ends[1]);
+    to_a = std::min(to_a, closest_on_triangle(mesh.point(a), {p, x, y}).squared_distance);
+    if (!target.allows(pair, (1.0 / 3) * (p + x + y), astray) ||
+        !target.allows(pair, 0.5 * (p + x), astray) || !target.allows(pair, 0.5 * (p + y), astray))
+      return false;
+    for (const std::uint32_t end : ends) {
+      const auto line = mesh.sides(a, end);
+      if (line.bodies() > 2 && !target.allows(line, 0.5 * (p + mesh.point(end)), astray)) return false;
     }
   }
   return astray || to_a <= target.tolerance() * target.tolerance();

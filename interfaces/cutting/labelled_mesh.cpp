@@ -118,6 +118,26 @@ std::uint32_t LabelledMesh::neighbour(std::uint32_t cell, std::uint32_t v) const
   return kNoNeighbour;
 }
 
+void LabelledMesh::interface_faces(std::uint32_t v, std::vector<InterfaceFace>& result) const {
+  result.clear();
+  for (const std::uint32_t c : cells_at_[v]) {
+    const Cell& cell = cells_[c];
+    for (const std::uint32_t opposite : cell.vertices) {
+      if (opposite == v) continue;
+      const std::uint32_t other = neighbour(c, opposite);
+      if (other == kNoNeighbour || other < c || cells_[other].body == cell.body) continue;
+      InterfaceFace face{};
+      face.bodies.add(cell.body.value);
+      face.bodies.add(cells_[other].body.value);
+      std::size_t n = 0;
+      for (const std::uint32_t w : cell.vertices) {
+        if (w != v && w != opposite) face.ends[n++] = w;
+      }
+      result.push_back(face);
+    }
+  }
+}
+
 void LabelledMesh::replace(std::span<const std::uint32_t> removed, std::span<const Cell> added) {
   for (const std::uint32_t c : removed) {
     for (const std::uint32_t v : cells_[c].vertices) {

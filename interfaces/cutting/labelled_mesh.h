@@ -65,6 +65,13 @@ class LabelledMesh {
   /// The cell beyond the face of a cell that is opposite to its vertex v; kNoNeighbour at the box.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t cell, std::uint32_t v) const;
 
+  /// A face between two bodies at a vertex: the bodies, and the other two corners.
+  struct InterfaceFace {
+    Sides bodies;
+    std::array<std::uint32_t, 2> ends;
+  };
+  void interface_faces(std::uint32_t v, std::vector<InterfaceFace>& result) const;
+
   /// Puts `added` in the place of the cells `removed`; together they fill the same.
   void replace(std::span<const std::uint32_t> removed, std::span<const Cell> added);
   void move(std::uint32_t v, const Vec3& position);

@@ -80,23 +80,13 @@ class Smoothing {
   bool allowed(const Vec3& p) const {
     if (bodies_ < 2) return true;
     if (!target_.allows(sides_, p, astray_)) return false;
-    for (const std::uint32_t c : mesh_.star(v_)) {
-      const auto& cell = mesh_.cell(c);
-      for (const std::uint32_t opposite : cell.vertices) {
-        if (opposite == v_) continue;
-        const std::uint32_t other = mesh_.neighbour(c, opposite);
-        if (other == kNoNeighbour || other < c || mesh_.cell(other).body == cell.body) continue;
-        LabelledMesh::Sides pair;
-        pair.add(cell.body.value);
-        pair.add(mesh_.cell(other).body.value);
-        Vec3 sum = p;
-        for (const std::uint32_t w : cell.vertices) {
-          if (w == v_ || w == opposite) continue;
-          sum += mesh_.point(w);
-          if (!target_.allows(pair, 0.5 * (p + mesh_.point(w)), astray_)) return false;
-        }
-        if (!target_.allows(pair, (1.0 / 3) * sum, astray_)) return false;
-      }
+    thread_local std::vector<LabelledMesh::InterfaceFace> faces;
+    mesh_.interface_faces(v_, faces);
+    for (const auto& [pair, ends] : faces) {
+      const Vec3 &x = mesh_.point(ends[0]), &y = mesh_.point(ends[1]);
+      if (!target_.allows(pair, 0.5 * (p + x), astray_) || !target_.allows(pair, 0.5 * (p + y), astray_) ||
+          !target_.allows(pair, (1.0 / 3) * (p + x + y), astray_))
+        return false;
     }
     return true;
   }
