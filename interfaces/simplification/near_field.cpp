@@ -1,0 +1,96 @@
+#include "interfaces/simplification/near_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "interfaces/network/triangle_distance.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr double kCellsPerReach = 2;
+/// Cells along a side of the surface's box, at most: their numbers have 21 bits.
+constexpr double kMostCells = 1 << 20;
+/// Pieces that a triangle is divided into, at most: so many, and so many for each cell's face of area.
+constexpr double kMostPieces = 256, kPiecesPerCell = 64;
+
+std::uint64_t bits(double cell) {
+  return static_cast<std::uint64_t>(std::clamp(cell, 0.0, 2 * kMostCells - 1));
+}
+
+}  // namespace
+
+NearField::NearField(const ClosestPointTree& tree, double reach) : tree_(tree), reach_(reach) {
+  const Box3& bounds = tree.bounds();
+  cell_ = std::max(reach / kCellsPerReach, bounds.diagonal() / kMostCells);
+  const double margin = 2 * (reach + cell_);
+  origin_ = bounds.min - Vec3{margin, margin, margin};
+}
+
+const NearField::Seen& NearField::seen_from(const Vec3& p, Vec3& center) {
+  const Vec3 scaled = (1 / cell_) * (p - origin_);
+  const Vec3 cell{std::floor(scaled.x), std::floor(scaled.y), std::floor(scaled.z)};
+  center = origin_ + cell_ * (cell + Vec3{0.5, 0.5, 0.5});
+  const auto [found, fresh] = cells_.try_emplace(bits(cell.x) << 42 | bits(cell.y) << 21 | bits(cell.z));
+  if (fresh) {
+    // Beyond this distance the whole cube is out of reach.
+    const auto closest = tree_.closest(center, reach_ + cell_);
+    found->second = closest ? Seen{std::sqrt(closest->squared_distance), closest->triangle}
+                            : Seen{std::numeric_limits<double>::infinity(), ClosestPointTree::kNoTriangle};
+  }
+  return found->second;
+}
+
+bool NearField::near_triangle(const Piece& piece, std::uint32_t triangle, double limit) const {
+  const auto& target = tree_.triangle(triangle);
+  return std::all_of(piece.corners.begin(), piece.corners.end(), [&](const Vec3& p) {
+    return closest_on_triangle(p, target).squared_distance <= limit * limit;
+  });
+}
+
+NearField::Verdict NearField::judge(const Piece& piece, double limit) {
+  const auto& [a, b, c] = piece.corners;
+  const Vec3 middle = 1.0 / 3 * (a + b + c);
+  const double radius =
+      std::sqrt(std::max({squared_norm(a - middle), squared_norm(b - middle), squared_norm(c - middle)}));
+  Vec3 center;
+  const Seen seen = seen_from(middle, center);
+  const double offset = distance(middle, center);
+  if (seen.distance - offset > limit) return Verdict::kFar;
+  if (seen.distance + offset + radius <= limit) return Verdict::kNear;
+  if (near_triangle(piece, seen.triangle, limit)) return Verdict::kNear;
+  if (radius > 0.5 * cell_) return Verdict::kOpen;
+  const auto closest = tree_.closest(middle, limit);
+  if (!closest) return Verdict::kFar;
+  if (std::sqrt(closest->squared_distance) + radius <= limit) return Verdict::kNear;
+  return near_triangle(piece, closest->triangle, limit) ? Verdict::kNear : Verdict::kOpen;
+}
+
+bool NearField::within(const std::array<Vec3, 3>& corners, double limit) {
+  const double area = 0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0]));
+  double longest = 0;
+  for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, distance(corners[i], corners[(i + 1) % 3]));
+  double budget = kMostPieces + kPiecesPerCell * (area / (cell_ * cell_) + longest / cell_);
+  open_.assign(1, {corners});
+  while (!open_.empty()) {
+    const Piece piece = open_.back();
+    open_.pop_back();
+    const Verdict verdict = judge(piece, limit);
+    if (verdict == Verdict::kNear) continue;
+    if (verdict == Verdict::kFar || --budget < 0) return false;
+    std::size_t i = 0;
+    double most = -1;
+    for (std::size_t e = 0; e < 3; ++e) {
+      const double length = squared_norm(piece.corners[(e + 1) % 3] - piece.corners[e]);
+      if (length > most) most = length, i = e;
+    }
+    const Vec3 &p = piece.corners[i], &q = piece.corners[(i + 1) % 3], &r = piece.corners[(i + 2) % 3];
+    const Vec3 half = 0.5 * (p + q);
+    open_.push_back({{p, half, r}});
+    open_.push_back({{half, q, r}});
+  }
+  return true;
+}
+
+}  // namespace adamas
