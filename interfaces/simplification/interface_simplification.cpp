@@ -21,9 +21,9 @@ namespace {
 /// The part of the error that collapses may use: measuring afterwards is not exact.
 constexpr double kLimit = 0.995;
 /// Interfaces and lines take turns, since short edges of lines keep triangles small, at most so often.
-constexpr int kMostTurns = 6;
+constexpr int kMostTurns = 20;
 /// Another turn is worth it where the last one did that part of all collapses.
-constexpr double kWorthwhile = 0.01;
+constexpr double kWorthwhile = 0.0005;
 /// Where distances came out too great, what is near is simplified to so many parts of the limit, and in the
 /// end not at all.
 constexpr double kTighter = 0.5;

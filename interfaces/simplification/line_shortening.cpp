@@ -26,7 +26,33 @@ Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return a + t * edge;
 }
 
+/// A triangle that stays as it is.
+SurfaceChange unchanged(const PatchMesh& mesh, PatchMesh::FaceHandle face) {
+  SurfaceChange::Face same{mesh.data(face).triangle, {}};
+  std::size_t c = 0;
+  for (const Vertex corner : mesh.fv_range(face)) same.corners[c++] = mesh.data(corner).point;
+  SurfaceChange change;
+  change.old_faces.push_back(same.face);
+  change.faces.push_back(same);
+  return change;
+}
+
+/// The half-edge of a border from one vertex to another point, with its triangle on either side.
+Halfedge border_to(const PatchMesh& mesh, Vertex from, std::uint32_t to) {
+  for (const Halfedge h : mesh.voh_range(from)) {
+    if (mesh.data(mesh.to_vertex_handle(h)).point == to && mesh.is_boundary(mesh.edge_handle(h))) return h;
+  }
+  return Halfedge();
+}
+
 }  // namespace
+
+/// What a patch loses: the triangles at an edge that is collapsed, or a triangle.
+struct LineShortener::Removal {
+  std::uint32_t patch;
+  Halfedge halfedge;
+  PatchMesh::FaceHandle face;
+};
 
 /// An edge from a point that goes to one that stays, and what comes before them on the line.
 struct LineShortener::Candidate {
@@ -151,22 +177,40 @@ bool LineShortener::line_allowed(const Candidate& c, double limit, std::vector<s
   return near && kinds_[c.kind].near->within({a, b, b}, limit);
 }
 
+/// Adds what becomes of a patch. A triangle between both edges of the line goes, and the one beyond it stays
+/// as it is. False where the patch cannot lose the edge.
+bool LineShortener::add_change(const Use& use, std::uint32_t to, SurfaceChange& change,
+                               std::vector<Removal>& removals) const {
+  PatchMesh& mesh = patches_[use.patch].mesh;
+  const Vertex vertex(use.vertex);
+  const Halfedge along = border_to(mesh, vertex, to);
+  if (!along.is_valid()) return false;
+  SurfaceChange part;
+  if (mesh.valence(vertex) == 2) {
+    const auto face = *mesh.cvf_begin(vertex);
+    for (const Halfedge h : mesh.fh_range(face)) {
+      if (mesh.from_vertex_handle(h) == vertex || mesh.to_vertex_handle(h) == vertex) continue;
+      const auto beyond = mesh.opposite_face_handle(h);
+      if (!beyond.is_valid()) return false;
+      part = unchanged(mesh, beyond);
+    }
+    part.old_faces.push_back(mesh.data(face).triangle);
+    removals.push_back({use.patch, Halfedge(), face});
+  } else {
+    if (!mesh.is_collapse_ok(along)) return false;
+    part = collapse_change(mesh, along);
+    removals.push_back({use.patch, along, PatchMesh::FaceHandle()});
+  }
+  change.old_faces.insert(change.old_faces.end(), part.old_faces.begin(), part.old_faces.end());
+  change.faces.insert(change.faces.end(), part.faces.begin(), part.faces.end());
+  return true;
+}
+
 bool LineShortener::collapse(const Candidate& c, double least_angle) {
   SurfaceChange change;
-  std::vector<std::pair<PatchMesh*, Halfedge>> halfedges;
+  std::vector<Removal> removals;
   for (const Use* use : uses_of(c.from)) {
-    PatchMesh& mesh = patches_[use->patch].mesh;
-    Halfedge along;
-    for (const Halfedge h : mesh.voh_range(Vertex(use->vertex))) {
-      if (mesh.data(mesh.to_vertex_handle(h)).point == c.to && mesh.is_boundary(mesh.edge_handle(h)))
-        along = h;
-    }
-    if (!along.is_valid() || mesh.valence(Vertex(use->vertex)) < 3 || !mesh.is_collapse_ok(along))
-      return false;
-    const SurfaceChange part = collapse_change(mesh, along);
-    change.old_faces.insert(change.old_faces.end(), part.old_faces.begin(), part.old_faces.end());
-    change.faces.insert(change.faces.end(), part.faces.begin(), part.faces.end());
-    halfedges.emplace_back(&mesh, along);
+    if (!add_change(*use, c.to, change, removals)) return false;
   }
   change.dropped = c.from;
   change.line = {c.before, c.to};
@@ -174,7 +218,14 @@ bool LineShortener::collapse(const Candidate& c, double least_angle) {
   std::vector<std::uint32_t> dropped;
   if (!line_allowed(c, guard_.limit_at(change.old_faces), dropped) || !guard_.allows(change)) return false;
   guard_.apply(change);
-  for (const auto& [mesh, halfedge] : halfedges) mesh->collapse(halfedge);
+  for (const Removal& removal : removals) {
+    PatchMesh& mesh = patches_[removal.patch].mesh;
+    if (removal.face.is_valid()) {
+      mesh.delete_face(removal.face);
+    } else {
+      mesh.collapse(removal.halfedge);
+    }
+  }
   for (const std::uint32_t end : {c.to, c.before}) {
     dropped_.erase(ordered(c.from, end));
     kind_of_edge_.erase(ordered(c.from, end));

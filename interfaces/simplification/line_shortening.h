@@ -17,6 +17,7 @@ namespace adamas {
 
 struct InterfacePatch;
 class SurfaceGuard;
+struct SurfaceChange;
 
 /// Shortens the lines that patches have in common and their borders in the sides of the domain: an edge of a
 /// line is collapsed in all patches at once, where both of its ends lie on the same line, the guard allows it
@@ -37,6 +38,7 @@ class LineShortener {
     int vertex;
   };
   struct Candidate;
+  struct Removal;
   /// What lines of one kind were: those between the same interfaces, in the same sides of the domain.
   struct Kind {
     ClosestPointTree tree;
@@ -47,6 +49,8 @@ class LineShortener {
   void find_uses();
   [[nodiscard]] std::optional<Edge> neighbours(std::uint32_t point) const;
   [[nodiscard]] std::vector<Candidate> candidates_at(std::uint32_t point) const;
+  [[nodiscard]] bool add_change(const Use& use, std::uint32_t to, SurfaceChange& change,
+                                std::vector<Removal>& removals) const;
   [[nodiscard]] bool collapse(const Candidate& candidate, double least_angle);
   [[nodiscard]] bool line_allowed(const Candidate& candidate, double limit,
                                   std::vector<std::uint32_t>& dropped);

@@ -16,6 +16,8 @@ namespace {
 constexpr double kLeastCosine = 0.1;
 /// Below this angle, in degrees, a triangle's normal says little.
 constexpr double kSliver = 1;
+/// Where triangles of small angles become fewer, their least angle may fall to this part.
+constexpr double kWorse = 0.3;
 /// The least angle of any triangle that is made.
 constexpr double kAlmostFlat = 1e-3;
 
@@ -92,14 +94,26 @@ double SurfaceGuard::limit_at(std::span<const std::uint32_t> faces) const {
   return part * options_.limit;
 }
 
+/// Of triangles with an angle below what is wanted: how many, and the least angle of all.
+struct SurfaceGuard::Shapes {
+  std::size_t bad = 0;
+  double smallest = 180;
+  void add(const Corners& corners, double wanted) {
+    const double angle = adamas::smallest_angle(corners);
+    smallest = std::min(smallest, angle);
+    if (angle < wanted) ++bad;
+  }
+};
+
 bool SurfaceGuard::shapes_allowed(const SurfaceChange& change) const {
-  double least = change.angle_above;
-  if (change.least_angle > 0)
-    least = std::max(least, std::min(change.least_angle, smallest_angle(change.old_faces)));
-  least = std::max(least, kAlmostFlat);
-  return std::all_of(change.faces.begin(), change.faces.end(), [&](const SurfaceChange::Face& face) {
-    return adamas::smallest_angle(corners_after(face, change)) >= least;
-  });
+  Shapes before, after;
+  for (const SurfaceChange::Face& face : change.faces)
+    after.add(corners_after(face, change), change.least_angle);
+  if (after.smallest < std::max(change.angle_above, kAlmostFlat)) return false;
+  if (after.bad == 0) return true;
+  for (const std::uint32_t f : change.old_faces) before.add(corners_now(f), change.least_angle);
+  return after.smallest >= before.smallest ||
+         (after.bad < before.bad && after.smallest >= kWorse * before.smallest);
 }
 
 /// Triangles may not turn much against what they were, nor against the whole of what they replace.

@@ -31,7 +31,8 @@ struct SurfaceChange {
   std::optional<Move> move;
   /// An edge that replaces edges of a line: it may lie in a side of the domain.
   std::optional<std::array<std::uint32_t, 2>> line;
-  /// No angle may become smaller, in degrees, but for those of triangles that are replaced.
+  /// Triangles may have angles below this, in degrees, only where they replace such triangles: with a
+  /// smallest angle no less, or fewer of them.
   double least_angle = 0;
   /// Every angle has to be greater than that, whatever was there; in degrees.
   double angle_above = 0;
@@ -73,6 +74,7 @@ class SurfaceGuard {
 
  private:
   using Corners = std::array<Vec3, 3>;
+  struct Shapes;
   [[nodiscard]] Vec3 place(std::uint32_t p, const SurfaceChange& change) const {
     return change.move && change.move->point == p ? change.move->to : points_[p];
   }
