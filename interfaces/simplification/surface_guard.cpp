@@ -227,10 +227,52 @@ bool SurfaceGuard::free_of_contact(const SurfaceChange& change) const {
   return true;
 }
 
+/// Triangles without contact before and after may have passed through each other on the way, as where a thin
+/// body turns inside out: the tetrahedron between a triangle as it was and as it will be has to be empty.
+bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
+  const auto changes = [&](std::uint32_t f) {
+    if (std::find(change.old_faces.begin(), change.old_faces.end(), f) == change.old_faces.end())
+      return false;
+    return std::none_of(change.faces.begin(), change.faces.end(), [&](const SurfaceChange::Face& face) {
+      return face.face == f && corners_after(face, change) == corners_now(f);
+    });
+  };
+  for (const SurfaceChange::Face& face : change.faces) {
+    const Corners before = corners_now(face.face), after = corners_after(face, change);
+    std::size_t moved = 0;
+    while (moved < 3 && before[moved] == after[moved]) ++moved;
+    if (moved == 3) continue;
+    // A point that moves has one number: its place before gets none.
+    constexpr std::uint32_t kBefore = 0xffffffffu;
+    const std::size_t i = (moved + 1) % 3, j = (moved + 2) % 3;
+    Box3 box = box_of(after);
+    box.extend(before[moved]);
+    bool empty = true;
+    boxes_.for_each_touching(box, [&](std::uint32_t other) {
+      if (changes(other)) return true;
+      const PlacedTriangle there{faces_[other], corners_now(other)};
+      for (const std::size_t side : {i, j}) {
+        empty = empty && !in_contact({{kBefore, face.corners[moved], face.corners[side]},
+                                      {before[moved], after[moved], after[side]}},
+                                     there);
+      }
+      for (std::size_t c = 0; c < 3 && empty; ++c) {
+        const auto& own = face.corners;
+        if (std::find(own.begin(), own.end(), there.points[c]) == own.end())
+          empty = !holds({before[moved], after[moved], after[i], after[j]}, there.corners[c]);
+      }
+      return empty;
+    });
+    if (!empty) return false;
+  }
+  return true;
+}
+
 bool SurfaceGuard::allows(const SurfaceChange& change) {
   const double limit = limit_at(change.old_faces);
   return limit > 0 && shapes_allowed(change) && !turned_over(change) && leaves_domain_sides(change) &&
-         original_near(change, limit) && near_original(change, limit) && free_of_contact(change);
+         original_near(change, limit) && near_original(change, limit) && free_of_contact(change) &&
+         passes_nothing(change);
 }
 
 void SurfaceGuard::apply(const SurfaceChange& change) {

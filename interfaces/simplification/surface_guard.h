@@ -39,8 +39,8 @@ struct SurfaceChange {
 };
 
 /// Watches over an interface network while its triangles are changed: it stays near the original one, with no
-/// triangles in contact that were not before, no triangle turned over, and none in a side of the domain. For
-/// one thread.
+/// triangles in contact that were not before, none that has passed through another or turned over, and none
+/// in a side of the domain. For one thread.
 class SurfaceGuard {
  public:
   struct Options {
@@ -86,6 +86,7 @@ class SurfaceGuard {
   [[nodiscard]] bool near_original(const SurfaceChange& change, double limit);
   [[nodiscard]] bool original_near(const SurfaceChange& change, double limit);
   [[nodiscard]] bool free_of_contact(const SurfaceChange& change) const;
+  [[nodiscard]] bool passes_nothing(const SurfaceChange& change) const;
   [[nodiscard]] bool is_old_edge(const SurfaceChange& change, std::uint32_t patch, std::uint32_t a,
                                  std::uint32_t b) const;
   [[nodiscard]] bool clear_of(const SurfaceChange& change, const SurfaceChange::Face& face,

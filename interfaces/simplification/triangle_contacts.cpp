@@ -61,6 +61,20 @@ bool in_contact(const PlacedTriangle& a, const PlacedTriangle& b) {
   }
 }
 
+bool holds(const std::array<Vec3, 4>& tetrahedron, const Vec3& p) {
+  const auto orientation = [&](std::size_t replaced) {
+    std::array<Vec3, 4> c = tetrahedron;
+    if (replaced < 4) c[replaced] = p;
+    return CGAL::orientation(at(c[0]), at(c[1]), at(c[2]), at(c[3]));
+  };
+  const auto whole = orientation(4);
+  if (whole == CGAL::ZERO) return false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (orientation(i) == -whole) return false;
+  }
+  return true;
+}
+
 std::vector<std::array<std::uint32_t, 2>> find_contacts(const InterfaceMesh& mesh) {
   std::vector<PlacedTriangle> placed;
   placed.reserve(mesh.triangles.size());

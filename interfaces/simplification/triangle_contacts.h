@@ -19,6 +19,9 @@ struct PlacedTriangle {
 /// without area touch nothing.
 bool in_contact(const PlacedTriangle& a, const PlacedTriangle& b);
 
+/// Whether a tetrahedron holds a point, on its boundary too. Exact. One without volume holds none.
+bool holds(const std::array<Vec3, 4>& tetrahedron, const Vec3& p);
+
 /// Pairs of triangles of a welded mesh that are in contact, the lower one first, in ascending order. Points
 /// must be finite and indices within range.
 std::vector<std::array<std::uint32_t, 2>> find_contacts(const InterfaceMesh& mesh);
