@@ -40,7 +40,7 @@ class Simplifier {
   void lock_contacts();
   [[nodiscard]] JoinedPatches simplify_once();
   void lock_borders(std::vector<InterfacePatch>& patches) const;
-  [[nodiscard]] SurfaceGuard make_guard(const std::vector<InterfacePatch>& patches) const;
+  [[nodiscard]] SurfaceGuard make_guard(const std::vector<InterfacePatch>& patches);
   void take_turns(std::vector<InterfacePatch>& patches, SurfaceGuard& guard);
   void improve(std::vector<InterfacePatch>& patches, SurfaceGuard& guard);
   void tighten_round(const InterfaceComparison& comparison, const InterfaceMesh& shown);
@@ -53,7 +53,9 @@ class Simplifier {
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> sides_;
   IdVector<BodyId, MaterialId> body_materials_;
+  double limit_;
   std::vector<double> limit_parts_;  ///< by point
+  std::vector<NearField> fields_;    ///< by interface
   bool input_in_contact_ = false;
 };
 
@@ -72,6 +74,7 @@ Simplifier::Simplifier(const ResamplingSource& source, const SimplificationOptio
       options_(options),
       progress_(progress),
       mesh_(network_mesh(*source.network, source.materials, source.name)),
+      limit_(kLimit * options.error),
       limit_parts_(mesh_.points.size(), 1.0) {
   const InterfaceTable& table = source.network->table();
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -79,6 +82,8 @@ Simplifier::Simplifier(const ResamplingSource& source, const SimplificationOptio
     sides_.push_back({interface.a, interface.b});
   }
   for (BodyId b(0); b.value < table.body_count(); ++b.value) body_materials_.push_back(table.material(b));
+  for (InterfaceId i(0); i.value < table.interface_count(); ++i.value)
+    fields_.emplace_back(source.network->tree(i), limit_);
 }
 
 /// What is in contact stays as it is: it cannot become worse then.
@@ -106,7 +111,7 @@ void Simplifier::lock_borders(std::vector<InterfacePatch>& patches) const {
   }
 }
 
-SurfaceGuard Simplifier::make_guard(const std::vector<InterfacePatch>& patches) const {
+SurfaceGuard Simplifier::make_guard(const std::vector<InterfacePatch>& patches) {
   const InterfaceNetwork& network = *source_.network;
   std::vector<std::uint32_t> interface_of, patch_of(mesh_.triangles.size(), 0);
   std::vector<Triangle> triangles;
@@ -117,11 +122,8 @@ SurfaceGuard Simplifier::make_guard(const std::vector<InterfacePatch>& patches) 
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
     for (const auto face : patches[p].mesh.faces()) patch_of[patches[p].mesh.data(face).triangle] = p;
   }
-  std::vector<const ClosestPointTree*> trees;
-  for (InterfaceId i(0); i.value < network.table().interface_count(); ++i.value)
-    trees.push_back(&network.tree(i));
-  SurfaceGuard guard(mesh_.points, std::move(triangles), std::move(interface_of), std::move(patch_of), trees,
-                     {kLimit * options_.error, source_.box});
+  SurfaceGuard guard(mesh_.points, std::move(triangles), std::move(interface_of), std::move(patch_of),
+                     fields_, {limit_, source_.box});
   guard.set_limit_parts(limit_parts_);
   return guard;
 }

@@ -91,6 +91,9 @@ void LineShortener::find_kinds() {
     if (fresh) edges.emplace_back();
     edges[found->second].push_back(edge);
     kind_of_edge_[edge] = found->second;
+    const Vec3 &a = guard_.point(edge[0]), &b = guard_.point(edge[1]);
+    if (distance(a, b) > guard_.limit())
+      dropped_[edge] = {0.75 * a + 0.25 * b, 0.5 * (a + b), 0.25 * a + 0.75 * b};
   }
   for (const auto& of_kind : edges) {
     std::vector<Vec3> points;
@@ -164,15 +167,15 @@ std::vector<LineShortener::Candidate> LineShortener::candidates_at(std::uint32_t
 }
 
 /// Both ways: the new edge near the old line, and the points it leaves near the new edge.
-bool LineShortener::line_allowed(const Candidate& c, double limit, std::vector<std::uint32_t>& dropped) {
+bool LineShortener::line_allowed(const Candidate& c, double limit, std::vector<Vec3>& dropped) {
   for (const std::uint32_t end : {c.to, c.before}) {
     const auto found = dropped_.find(ordered(c.from, end));
     if (found != dropped_.end()) dropped.insert(dropped.end(), found->second.begin(), found->second.end());
   }
-  dropped.push_back(c.from);
+  dropped.push_back(guard_.original(c.from));
   const Vec3 &a = guard_.point(c.before), &b = guard_.point(c.to);
-  const bool near = std::all_of(dropped.begin(), dropped.end(), [&](std::uint32_t p) {
-    return distance(guard_.original(p), nearest_on_segment(guard_.original(p), a, b)) <= limit;
+  const bool near = std::all_of(dropped.begin(), dropped.end(), [&](const Vec3& p) {
+    return distance(p, nearest_on_segment(p, a, b)) <= limit;
   });
   return near && kinds_[c.kind].near->within({a, b, b}, limit);
 }
@@ -215,7 +218,7 @@ bool LineShortener::collapse(const Candidate& c, double least_angle) {
   change.dropped = c.from;
   change.line = {c.before, c.to};
   change.least_angle = least_angle;
-  std::vector<std::uint32_t> dropped;
+  std::vector<Vec3> dropped;
   if (!line_allowed(c, guard_.limit_at(change.old_faces), dropped) || !guard_.allows(change)) return false;
   guard_.apply(change);
   for (const Removal& removal : removals) {

@@ -52,8 +52,7 @@ class LineShortener {
   [[nodiscard]] bool add_change(const Use& use, std::uint32_t to, SurfaceChange& change,
                                 std::vector<Removal>& removals) const;
   [[nodiscard]] bool collapse(const Candidate& candidate, double least_angle);
-  [[nodiscard]] bool line_allowed(const Candidate& candidate, double limit,
-                                  std::vector<std::uint32_t>& dropped);
+  [[nodiscard]] bool line_allowed(const Candidate& candidate, double limit, std::vector<Vec3>& dropped);
   [[nodiscard]] std::vector<const Use*> uses_of(std::uint32_t point) const;
 
   std::vector<InterfacePatch>& patches_;
@@ -61,7 +60,7 @@ class LineShortener {
   std::vector<Use> uses_;  ///< by point
   std::map<Edge, std::uint32_t> kind_of_edge_;
   std::vector<Kind> kinds_;
-  std::map<Edge, std::vector<std::uint32_t>> dropped_;  ///< points of the original line along an edge
+  std::map<Edge, std::vector<Vec3>> dropped_;  ///< points of the original line along an edge
 };
 
 }  // namespace adamas

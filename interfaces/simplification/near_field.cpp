@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "interfaces/network/triangle_distance.h"
 
@@ -10,6 +12,7 @@ namespace adamas {
 namespace {
 
 constexpr double kCellsPerReach = 2;
+constexpr std::size_t kFirstSize = 64;
 /// Cells along a side of the surface's box, at most: their numbers have 21 bits.
 constexpr double kMostCells = 1 << 20;
 /// Pieces that a triangle is divided into, at most: so many, and so many for each cell's face of area.
@@ -21,25 +24,43 @@ std::uint64_t bits(double cell) {
 
 }  // namespace
 
-NearField::NearField(const ClosestPointTree& tree, double reach) : tree_(tree), reach_(reach) {
+NearField::NearField(const ClosestPointTree& tree, double reach)
+    : tree_(tree), reach_(reach), cubes_(kFirstSize) {
   const Box3& bounds = tree.bounds();
   cell_ = std::max(reach / kCellsPerReach, bounds.diagonal() / kMostCells);
   const double margin = 2 * (reach + cell_);
   origin_ = bounds.min - Vec3{margin, margin, margin};
 }
 
+std::size_t NearField::slot_of(std::uint64_t cube) const {
+  const std::size_t mask = cubes_.size() - 1;
+  std::size_t slot = (cube * 0x9e3779b97f4a7c15ull >> 20) & mask;
+  while (cubes_[slot].cube != cube && cubes_[slot].cube != kNoCube) slot = (slot + 1) & mask;
+  return slot;
+}
+
+void NearField::grow() {
+  const std::vector<Seen> before = std::exchange(cubes_, std::vector<Seen>(2 * cubes_.size()));
+  for (const Seen& seen : before) {
+    if (seen.cube != kNoCube) cubes_[slot_of(seen.cube)] = seen;
+  }
+}
+
 const NearField::Seen& NearField::seen_from(const Vec3& p, Vec3& center) {
   const Vec3 scaled = (1 / cell_) * (p - origin_);
   const Vec3 cell{std::floor(scaled.x), std::floor(scaled.y), std::floor(scaled.z)};
   center = origin_ + cell_ * (cell + Vec3{0.5, 0.5, 0.5});
-  const auto [found, fresh] = cells_.try_emplace(bits(cell.x) << 42 | bits(cell.y) << 21 | bits(cell.z));
-  if (fresh) {
-    // Beyond this distance the whole cube is out of reach.
-    const auto closest = tree_.closest(center, reach_ + cell_);
-    found->second = closest ? Seen{std::sqrt(closest->squared_distance), closest->triangle}
-                            : Seen{std::numeric_limits<double>::infinity(), ClosestPointTree::kNoTriangle};
-  }
-  return found->second;
+  const std::uint64_t cube = bits(cell.x) << 42 | bits(cell.y) << 21 | bits(cell.z);
+  const std::size_t slot = slot_of(cube);
+  if (cubes_[slot].cube == cube) return cubes_[slot];
+  // Beyond this distance the whole cube is out of reach.
+  const auto closest = tree_.closest(center, reach_ + cell_);
+  const Seen seen = closest ? Seen{cube, std::sqrt(closest->squared_distance), closest->triangle}
+                            : Seen{cube, std::numeric_limits<double>::infinity(), 0};
+  cubes_[slot] = seen;
+  if (2 * ++cube_count_ <= cubes_.size()) return cubes_[slot];
+  grow();
+  return cubes_[slot_of(cube)];
 }
 
 bool NearField::near_triangle(const Piece& piece, std::uint32_t triangle, double limit) const {

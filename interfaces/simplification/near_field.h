@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "core/geometry/vec3.h"
@@ -26,22 +25,27 @@ class NearField {
  private:
   /// The surface as seen from the centre of a cube.
   struct Seen {
-    double distance;
-    std::uint32_t triangle;
+    std::uint64_t cube = kNoCube;
+    double distance = 0;
+    std::uint32_t triangle = 0;
   };
+  static constexpr std::uint64_t kNoCube = ~std::uint64_t{0};
   struct Piece {
     std::array<Vec3, 3> corners;
   };
   enum class Verdict { kNear, kFar, kOpen };
 
   [[nodiscard]] const Seen& seen_from(const Vec3& p, Vec3& center);
+  [[nodiscard]] std::size_t slot_of(std::uint64_t cube) const;
+  void grow();
   [[nodiscard]] Verdict judge(const Piece& piece, double limit);
   [[nodiscard]] bool near_triangle(const Piece& piece, std::uint32_t triangle, double limit) const;
 
   const ClosestPointTree& tree_;
   double reach_, cell_;
   Vec3 origin_;
-  std::unordered_map<std::uint64_t, Seen> cells_;
+  std::vector<Seen> cubes_;  ///< a hash table with linear probing, a power of two in size, half full at most
+  std::size_t cube_count_ = 0;
   std::vector<Piece> open_;
 };
 

@@ -18,6 +18,10 @@ constexpr double kLeastCosine = 0.1;
 constexpr double kSliver = 1;
 /// Where triangles of small angles become fewer, their least angle may fall to this part.
 constexpr double kWorse = 0.3;
+/// The part of the limit for points of the original, since what lies between them may be a little farther.
+constexpr double kAtPoints = 0.97;
+/// Pieces that an edge is divided into for that, at most.
+constexpr double kMostPieces = 4;
 /// The least angle of any triangle that is made.
 constexpr double kAlmostFlat = 1e-3;
 
@@ -52,22 +56,40 @@ double smallest_angle(const std::array<Vec3, 3>& corners) {
 
 SurfaceGuard::SurfaceGuard(std::vector<Vec3> points, std::vector<ClosestPointTree::Triangle> triangles,
                            std::vector<std::uint32_t> interfaces, std::vector<std::uint32_t> patches,
-                           const std::vector<const ClosestPointTree*>& trees, const Options& options)
+                           std::vector<NearField>& fields, const Options& options)
     : options_(options),
       points_(std::move(points)),
       originals_(points_),
       faces_(std::move(triangles)),
       interfaces_(std::move(interfaces)),
       patches_(std::move(patches)),
+      fields_(fields),
       limit_parts_(points_.size(), 1.0),
       moved_(points_.size(), 0),
       covered_(faces_.size()) {
-  for (const ClosestPointTree* tree : trees) fields_.emplace_back(*tree, options.limit);
   for (const Vec3& p : points_) sides_.push_back(static_cast<unsigned char>(sides_of(p, options.domain)));
   std::vector<Box3> boxes;
   boxes.reserve(faces_.size());
   for (std::uint32_t f = 0; f < faces_.size(); ++f) boxes.push_back(box_of(corners_now(f)));
   boxes_ = ChangingBoxTree(boxes);
+  cover_edges();
+}
+
+/// Where edges are longer than the limit, points along them are looked after as well.
+void SurfaceGuard::cover_edges() {
+  for (std::uint32_t f = 0; f < faces_.size(); ++f) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t a = faces_[f][c], b = faces_[f][(c + 1) % 3];
+      const double length = distance(points_[a], points_[b]);
+      // Two triangles at an edge run along it in opposite ways.
+      if (b < a || length <= options_.limit) continue;
+      const double pieces = std::min(std::ceil(length / options_.limit), kMostPieces);
+      for (double i = 1; i < pieces; ++i) {
+        covered_[f].push_back(static_cast<std::uint32_t>(originals_.size()));
+        originals_.push_back(points_[a] + (i / pieces) * (points_[b] - points_[a]));
+      }
+    }
+  }
 }
 
 SurfaceGuard::Corners SurfaceGuard::corners_after(const SurfaceChange::Face& face,
@@ -271,8 +293,8 @@ bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
 bool SurfaceGuard::allows(const SurfaceChange& change) {
   const double limit = limit_at(change.old_faces);
   return limit > 0 && shapes_allowed(change) && !turned_over(change) && leaves_domain_sides(change) &&
-         original_near(change, limit) && near_original(change, limit) && free_of_contact(change) &&
-         passes_nothing(change);
+         original_near(change, kAtPoints * limit) && near_original(change, limit) &&
+         free_of_contact(change) && passes_nothing(change);
 }
 
 void SurfaceGuard::apply(const SurfaceChange& change) {

@@ -49,10 +49,10 @@ class SurfaceGuard {
   };
 
   /// The network as it is: for each triangle its corners, its interface, and its patch, within which edges
-  /// are shared by right. `trees`: of the original interfaces; they must outlive this object.
+  /// are shared by right. `fields`: of the original interfaces; they must outlive this object.
   SurfaceGuard(std::vector<Vec3> points, std::vector<ClosestPointTree::Triangle> triangles,
                std::vector<std::uint32_t> interfaces, std::vector<std::uint32_t> patches,
-               const std::vector<const ClosestPointTree*>& trees, const Options& options);
+               std::vector<NearField>& fields, const Options& options);
 
   /// Of each point, the part of the limit that holds round it; 1 for all at first.
   void set_limit_parts(std::vector<double> parts) { limit_parts_ = std::move(parts); }
@@ -78,6 +78,7 @@ class SurfaceGuard {
   [[nodiscard]] Vec3 place(std::uint32_t p, const SurfaceChange& change) const {
     return change.move && change.move->point == p ? change.move->to : points_[p];
   }
+  void cover_edges();
   [[nodiscard]] Corners corners_after(const SurfaceChange::Face& face, const SurfaceChange& change) const;
   [[nodiscard]] Corners corners_now(std::uint32_t face) const;
   [[nodiscard]] bool shapes_allowed(const SurfaceChange& change) const;
@@ -93,10 +94,11 @@ class SurfaceGuard {
                               std::uint32_t other) const;
 
   Options options_;
-  std::vector<Vec3> points_, originals_;
+  std::vector<Vec3> points_;
+  std::vector<Vec3> originals_;  ///< the points in the beginning, and then others of the original surface
   std::vector<ClosestPointTree::Triangle> faces_;
   std::vector<std::uint32_t> interfaces_, patches_;
-  std::vector<NearField> fields_;  ///< by interface
+  std::vector<NearField>& fields_;  ///< by interface
   std::vector<double> limit_parts_;
   std::vector<unsigned char> sides_;
   std::vector<char> moved_;
