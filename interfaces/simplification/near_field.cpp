@@ -15,6 +15,8 @@ constexpr double kCellsPerReach = 2;
 constexpr std::size_t kFirstSize = 64;
 /// Cells along a side of the surface's box, at most: their numbers have 21 bits.
 constexpr double kMostCells = 1 << 20;
+/// Pieces are cut where they reach over an edge by more than this part of a cell.
+constexpr double kLeastCut = 0.05;
 /// Pieces that a triangle is divided into, at most: so many, and so many for each cell's face of area.
 constexpr double kMostPieces = 256, kPiecesPerCell = 64;
 
@@ -70,7 +72,8 @@ bool NearField::near_triangle(const Piece& piece, std::uint32_t triangle, double
   });
 }
 
-NearField::Verdict NearField::judge(const Piece& piece, double limit) {
+/// `triangle`: one that the piece is near, where nothing is known yet.
+NearField::Verdict NearField::judge(const Piece& piece, double limit, std::uint32_t& triangle) {
   const auto& [a, b, c] = piece.corners;
   const Vec3 middle = 1.0 / 3 * (a + b + c);
   const double radius =
@@ -81,11 +84,54 @@ NearField::Verdict NearField::judge(const Piece& piece, double limit) {
   if (seen.distance - offset > limit) return Verdict::kFar;
   if (seen.distance + offset + radius <= limit) return Verdict::kNear;
   if (near_triangle(piece, seen.triangle, limit)) return Verdict::kNear;
+  triangle = seen.triangle;
   if (radius > 0.5 * cell_) return Verdict::kOpen;
   const auto closest = tree_.closest(middle, limit);
   if (!closest) return Verdict::kFar;
   if (std::sqrt(closest->squared_distance) + radius <= limit) return Verdict::kNear;
   return near_triangle(piece, closest->triangle, limit) ? Verdict::kNear : Verdict::kOpen;
+}
+
+/// Cuts a piece in two at the edge of a triangle that it reaches farthest over: what is on the inner side is
+/// then near that triangle alone. False where it reaches over none of them by much.
+bool NearField::cut(const Piece& piece, const std::array<Vec3, 3>& triangle) {
+  const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  std::array<double, 3> best{};
+  double reach = kLeastCut * cell_;
+  bool found = false;
+  for (std::size_t e = 0; e < 3; ++e) {
+    const Vec3 outwards = normalized(cross(triangle[(e + 1) % 3] - triangle[e], normal));
+    std::array<double, 3> beyond;
+    for (std::size_t i = 0; i < 3; ++i) beyond[i] = dot(piece.corners[i] - triangle[e], outwards);
+    const auto [least, most] = std::minmax_element(beyond.begin(), beyond.end());
+    if (std::min(-*least, *most) <= reach) continue;
+    reach = std::min(-*least, *most), best = beyond, found = true;
+  }
+  if (!found) return false;
+  // The corner that is alone on its side, and the others in their order.
+  std::size_t alone = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if ((best[i] > 0) != (best[(i + 1) % 3] > 0) && (best[i] > 0) != (best[(i + 2) % 3] > 0)) alone = i;
+  }
+  const std::size_t j = (alone + 1) % 3, k = (alone + 2) % 3;
+  const Vec3 &a = piece.corners[alone], &b = piece.corners[j], &c = piece.corners[k];
+  const Vec3 p = a + best[alone] / (best[alone] - best[j]) * (b - a);
+  const Vec3 q = a + best[alone] / (best[alone] - best[k]) * (c - a);
+  for (const Piece& part : {Piece{{a, p, q}}, Piece{{p, b, c}}, Piece{{p, c, q}}}) open_.push_back(part);
+  return true;
+}
+
+void NearField::halve(const Piece& piece) {
+  std::size_t i = 0;
+  double most = -1;
+  for (std::size_t e = 0; e < 3; ++e) {
+    const double length = squared_norm(piece.corners[(e + 1) % 3] - piece.corners[e]);
+    if (length > most) most = length, i = e;
+  }
+  const Vec3 &p = piece.corners[i], &q = piece.corners[(i + 1) % 3], &r = piece.corners[(i + 2) % 3];
+  const Vec3 half = 0.5 * (p + q);
+  open_.push_back({{p, half, r}});
+  open_.push_back({{half, q, r}});
 }
 
 bool NearField::within(const std::array<Vec3, 3>& corners, double limit) {
@@ -97,19 +143,15 @@ bool NearField::within(const std::array<Vec3, 3>& corners, double limit) {
   while (!open_.empty()) {
     const Piece piece = open_.back();
     open_.pop_back();
-    const Verdict verdict = judge(piece, limit);
+    std::uint32_t triangle = ClosestPointTree::kNoTriangle;
+    const Verdict verdict = judge(piece, limit, triangle);
     if (verdict == Verdict::kNear) continue;
     if (verdict == Verdict::kFar || --budget < 0) return false;
-    std::size_t i = 0;
-    double most = -1;
-    for (std::size_t e = 0; e < 3; ++e) {
-      const double length = squared_norm(piece.corners[(e + 1) % 3] - piece.corners[e]);
-      if (length > most) most = length, i = e;
-    }
-    const Vec3 &p = piece.corners[i], &q = piece.corners[(i + 1) % 3], &r = piece.corners[(i + 2) % 3];
-    const Vec3 half = 0.5 * (p + q);
-    open_.push_back({{p, half, r}});
-    open_.push_back({{half, q, r}});
+    // Great triangles are worth following; small ones disappear in the reach.
+    const auto& target = tree_.triangle(triangle);
+    const bool great =
+        squared_norm(target[1] - target[0]) + squared_norm(target[2] - target[0]) > reach_ * reach_;
+    if (!great || !cut(piece, target)) halve(piece);
   }
   return true;
 }

@@ -38,7 +38,9 @@ class NearField {
   [[nodiscard]] const Seen& seen_from(const Vec3& p, Vec3& center);
   [[nodiscard]] std::size_t slot_of(std::uint64_t cube) const;
   void grow();
-  [[nodiscard]] Verdict judge(const Piece& piece, double limit);
+  [[nodiscard]] Verdict judge(const Piece& piece, double limit, std::uint32_t& triangle);
+  [[nodiscard]] bool cut(const Piece& piece, const std::array<Vec3, 3>& triangle);
+  void halve(const Piece& piece);
   [[nodiscard]] bool near_triangle(const Piece& piece, std::uint32_t triangle, double limit) const;
 
   const ClosestPointTree& tree_;
