@@ -110,11 +110,12 @@ void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
   session.outputs.declare("--csv", options.csv, {".csv"});
   comparison.interface_errors.resize(wishes.size());
+  if (!options.input.labels.empty() && !has_given_interfaces(options.input)) comparison.image.emplace();
   print_plan(comparison, console);
   const Input input = load_input(options.input, console, [&wishes](const InputFacts& found) {
     for (const ResamplingWishes& wish : wishes) wish.check(found);
   });
-  if (!has_given_interfaces(options.input)) comparison.image = label_image(input);
+  comparison.image = has_given_interfaces(options.input) ? std::nullopt : label_image(input);
   comparison.resampling = wishes.front().options(input.source);
   for (std::size_t i = 0; i < wishes.size(); ++i)
     comparison.interface_errors[i] = wishes[i].options(input.source).interface_error;

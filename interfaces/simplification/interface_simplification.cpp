@@ -137,7 +137,7 @@ void Simplifier::take_turns(std::vector<InterfacePatch>& patches, SurfaceGuard& 
       progress_.step("simplifying interfaces", static_cast<double>(p) / static_cast<double>(patches.size()));
       // Elements that are marked as deleted are in the way of the quadrics.
       patches[p].mesh.garbage_collection();
-      collapses += PatchDecimater(patches[p].mesh, guard, options_.least_angle).decimate(progress_);
+      collapses += decimate_patch(patches[p], guard, options_.least_angle, progress_);
     }
     if (options_.lines) {
       progress_.step("shortening lines", -1);

@@ -201,7 +201,7 @@ bool LineShortener::add_change(const Use& use, std::uint32_t to, SurfaceChange& 
     removals.push_back({use.patch, Halfedge(), face});
   } else {
     if (!mesh.is_collapse_ok(along)) return false;
-    part = collapse_change(mesh, along);
+    part = collapse_change(patches_[use.patch], along.idx());
     removals.push_back({use.patch, along, PatchMesh::FaceHandle()});
   }
   change.old_faces.insert(change.old_faces.end(), part.old_faces.begin(), part.old_faces.end());

@@ -1,6 +1,11 @@
 #include "interfaces/simplification/patch_decimater.h"
 
-#include <algorithm>
+#include <OpenMesh/Tools/Decimater/BaseDecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+#include <queue>
+#include <vector>
+
+#include "interfaces/simplification/openmesh_patches.h"
 
 namespace adamas {
 
@@ -12,9 +17,7 @@ constexpr double kLengthWeight = 0.05;
 /// Collapses between two looks at whether the user wants to stop.
 constexpr std::size_t kCheckEvery = 256;
 
-}  // namespace
-
-SurfaceChange collapse_change(const PatchMesh& mesh, PatchMesh::HalfedgeHandle halfedge) {
+SurfaceChange change_of(const PatchMesh& mesh, PatchMesh::HalfedgeHandle halfedge) {
   SurfaceChange change;
   const auto from = mesh.from_vertex_handle(halfedge), to = mesh.to_vertex_handle(halfedge);
   change.dropped = mesh.data(from).point;
@@ -31,6 +34,69 @@ SurfaceChange collapse_change(const PatchMesh& mesh, PatchMesh::HalfedgeHandle h
   }
   return change;
 }
+
+/// An OpenMesh decimation module: refuses what a guard refuses, and keeps it up to date.
+template <class MeshT>
+class ModGuardT : public OpenMesh::Decimater::ModBaseT<MeshT> {
+ public:
+  DECIMATING_MODULE(ModGuardT, MeshT, Guard)  // NOLINT: OpenMesh's names
+
+  explicit ModGuardT(MeshT& mesh) : Base(mesh, true) {}
+  /// Before the first collapse. The guard must outlive the decimater.
+  void set_guard(SurfaceGuard& guard, double least_angle) {
+    guard_ = &guard;
+    least_angle_ = least_angle;
+  }
+
+  float collapse_priority(const CollapseInfo& collapse) override {
+    SurfaceChange change = change_of(Base::mesh(), collapse.v0v1);
+    change.least_angle = least_angle_;
+    return guard_->allows(change) ? float(Base::LEGAL_COLLAPSE) : float(Base::ILLEGAL_COLLAPSE);
+  }
+  void preprocess_collapse(const CollapseInfo& collapse) override {
+    guard_->apply(change_of(Base::mesh(), collapse.v0v1));
+  }
+
+ private:
+  SurfaceGuard* guard_ = nullptr;
+  double least_angle_ = 0;
+};
+
+/// An OpenMesh decimater of one patch, by error quadrics and a guard. OpenMesh's own asks its modules about
+/// every collapse that it may come to, and not again when it comes to it; this one asks when it comes to it,
+/// since a guard's answers take long and change with other patches.
+class PatchDecimater : public OpenMesh::Decimater::BaseDecimaterT<PatchMesh> {
+ public:
+  /// Vertices that are not to go are marked as locked.
+  PatchDecimater(PatchMesh& mesh, SurfaceGuard& guard, double least_angle);
+  /// Collapses as long as something may be; returns how often.
+  std::size_t decimate(const Progress& progress);
+
+ private:
+  using Halfedge = PatchMesh::HalfedgeHandle;
+  using Vertex = PatchMesh::VertexHandle;
+  struct Candidate {
+    float priority;
+    int vertex;
+    std::uint32_t version;  ///< of the vertex's surroundings
+    Halfedge halfedge;
+    /// The least one comes first out of a queue.
+    bool operator<(const Candidate& other) const {
+      return priority != other.priority ? priority > other.priority : vertex > other.vertex;
+    }
+  };
+
+  void push_best(Vertex vertex);
+  [[nodiscard]] float priority(const CollapseInfo& collapse);
+
+  PatchMesh& mesh_;
+  double limit_;
+  OpenMesh::Decimater::ModQuadricT<PatchMesh>::Handle quadric_;
+  ModGuardT<PatchMesh>::Handle guard_;
+  std::priority_queue<Candidate> candidates_;
+  std::vector<std::uint32_t> version_;  ///< by vertex
+  std::vector<std::uint32_t> refused_;  ///< by half-edge: in which version of its first vertex, and 1 more
+};
 
 PatchDecimater::PatchDecimater(PatchMesh& mesh, SurfaceGuard& guard, double least_angle)
     : BaseDecimaterT<PatchMesh>(mesh), mesh_(mesh), limit_(guard.limit()) {
@@ -90,6 +156,17 @@ std::size_t PatchDecimater::decimate(const Progress& progress) {
     for (const Vertex other : ring) push_best(other);
   }
   return collapses;
+}
+
+}  // namespace
+
+SurfaceChange collapse_change(const InterfacePatch& patch, int halfedge) {
+  return change_of(patch.mesh, PatchMesh::HalfedgeHandle(halfedge));
+}
+
+std::size_t decimate_patch(InterfacePatch& patch, SurfaceGuard& guard, double least_angle,
+                           const Progress& progress) {
+  return PatchDecimater(patch.mesh, guard, least_angle).decimate(progress);
 }
 
 }  // namespace adamas
