@@ -143,10 +143,12 @@ TEST_F(Compare, OneLimitIsForAllTrialsOfAMesh) {
   // Each call takes almost half of the limit and fails, so that a greater size is tried.
   replace_mesher("sleep 0.5; exit 3");
   const auto rows = references({"--time-limit", "1.2", "--reference", "mesh3"});
-  ASSERT_EQ(rows.size(), 1u);
-  EXPECT_LE(rows[0]["trials"].get<int>(), 3);
-  ASSERT_TRUE(rows[0]["note"].is_string()) << rows[0].dump();
-  EXPECT_NE(std::string(rows[0]["note"]).find("the time limit of 1.2 s ended the search"), std::string::npos);
+  ASSERT_EQ(rows.size(), 2u);
+  for (const auto& row : rows) {
+    EXPECT_LE(row["trials"].get<int>(), 3);
+    ASSERT_TRUE(row["note"].is_string()) << row.dump();
+    EXPECT_NE(std::string(row["note"]).find("the time limit of 1.2 s ended the search"), std::string::npos);
+  }
 }
 
 TEST_F(Compare, ChoosesReferences) {
