@@ -122,7 +122,8 @@ std::vector<InterfacePatch> to_openmesh(const InterfaceMesh& mesh,
   for (auto& [pair, triangles] : interfaces) {
     // The first triangle of all is never refused.
     while (!triangles.empty()) {
-      InterfacePatch& patch = patches.emplace_back(InterfacePatch{pair[0], pair[1], {}});
+      InterfacePatch& patch = patches.emplace_back();
+      patch.front = pair[0], patch.back = pair[1];
       triangles = fill(mesh, triangles, patch.mesh);
     }
   }

@@ -38,13 +38,18 @@ class SimplifiedScene : public testing::TestWithParam<Case> {
         after_(simplify_interfaces(source_,
                                    simplification(GetParam().error, GetParam().lines, GetParam().smooth))) {}
 
+  void expect_within_the_error() const;
+  void expect_the_same_bodies() const;
+  void expect_volumes_within_a_shell() const;
+  void expect_known_points() const;
+
   ResamplingSource source_;
   InterfaceMesh before_;
   SimplifiedInterfaces after_;
 };
 
 /// Samples both ways, by other means than those that certify.
-TEST_P(SimplifiedScene, IsWithinTheError) {
+void SimplifiedScene::expect_within_the_error() const {
   const double error = GetParam().error;
   EXPECT_LE(after_.certificate.networks.upper, error);
   EXPECT_LE(after_.certificate.materials.upper, error);
@@ -61,7 +66,7 @@ TEST_P(SimplifiedScene, IsWithinTheError) {
   }
 }
 
-TEST_P(SimplifiedScene, StaysANetworkOfTheSameBodies) {
+void SimplifiedScene::expect_the_same_bodies() const {
   const InterfaceMeshReport report = check_interface_mesh(after_.mesh, &source_.box);
   EXPECT_EQ(report.open_border_edges, 0u);
   EXPECT_EQ(report.degenerate_triangles, 0u);
@@ -77,7 +82,7 @@ TEST_P(SimplifiedScene, StaysANetworkOfTheSameBodies) {
   EXPECT_EQ(network.table().interface_count(), source_.network->table().interface_count());
 }
 
-TEST_P(SimplifiedScene, ChangesVolumesByNoMoreThanAShell) {
+void SimplifiedScene::expect_volumes_within_a_shell() const {
   const InterfaceNetwork network(after_.mesh, source_.box);
   const auto before = measure_network(*source_.network, source_.box, source_.materials.size());
   const auto after = measure_network(network, source_.box, source_.materials.size());
@@ -87,7 +92,7 @@ TEST_P(SimplifiedScene, ChangesVolumesByNoMoreThanAShell) {
     EXPECT_NEAR(after.volumes[m], before.volumes[m], GetParam().error * area);
 }
 
-TEST_P(SimplifiedScene, KeepsPointsOfSidesThere) {
+void SimplifiedScene::expect_known_points() const {
   std::set<std::tuple<double, double, double>> known;
   for (const Vec3& p : before_.points) known.insert({p.x, p.y, p.z});
   for (const Vec3& p : after_.mesh.points) {
