@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/compare_figures.h"
 #include "cli/compare_picture.h"
+#include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "cli/reference_program.h"
@@ -74,6 +75,23 @@ ComparisonOptions comparison_options(const Options& options) {
   return result;
 }
 
+/// Walls between the sites of a grid along an axis: half way between nodes where these have the values.
+std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
+  const auto& nodes = grid.nodes[static_cast<std::size_t>(axis)];
+  if (grid.centering == Centering::kCells) return nodes;
+  std::vector<double> walls{nodes.front()};
+  for (std::size_t i = 1; i < nodes.size(); ++i) walls.push_back(0.5 * (nodes[i - 1] + nodes[i]));
+  walls.push_back(nodes.back());
+  return walls;
+}
+
+/// The labels of an input; none where it has no labels, or interfaces of its own.
+std::optional<LabelImage> label_image(const Input& input) {
+  if (!input.data || input.data->labels.empty()) return std::nullopt;
+  const RectilinearGrid& grid = input.data->grid;
+  return LabelImage{walls_of(grid, 0), walls_of(grid, 1), walls_of(grid, 2), input.data->labels};
+}
+
 /// Where the rows are that were finished before the user stopped.
 std::string where_kept(const Options& options, const std::string& json) {
   std::string files;
@@ -92,10 +110,12 @@ void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
   session.outputs.declare("--csv", options.csv, {".csv"});
   comparison.interface_errors.resize(wishes.size());
+  if (!options.input.labels.empty() && !has_given_interfaces(options.input)) comparison.image.emplace();
   print_plan(comparison, console);
   const Input input = load_input(options.input, console, [&wishes](const InputFacts& found) {
     for (const ResamplingWishes& wish : wishes) wish.check(found);
   });
+  comparison.image = has_given_interfaces(options.input) ? std::nullopt : label_image(input);
   comparison.resampling = wishes.front().options(input.source);
   for (std::size_t i = 0; i < wishes.size(); ++i)
     comparison.interface_errors[i] = wishes[i].options(input.source).interface_error;

@@ -148,10 +148,13 @@ void print_plan(const ComparisonOptions& options, Console& console) {
   const std::size_t errors = options.interface_errors.size();
   const double seconds = options.mesher.limits.seconds;
   std::string others;
-  if (options.tetgen) others += "TetGen with the input's interfaces and with ours";
+  if (options.tetgen)
+    others += "TetGen with the input's interfaces, with ours, and with the input's simplified";
   if (options.mesh3)
-    others += fmt::format("{}Mesh_3, in up to {} trials of its size, and once more with its optimisers",
-                          options.tetgen ? "; " : "", SizingOptions().most_trials);
+    others += fmt::format(
+        "{}Mesh_3, in up to {} trials of its size, once more with its optimisers, and from the input's "
+        "simplified{}",
+        options.tetgen ? "; " : "", SizingOptions().most_trials, options.image ? " and its labels" : "");
   const std::size_t meshes = reference_count(options);
   console.print(
       "Comparing at {} interface error{}: adamas; {}. {} mesh{} of other generators, at most {:g} s each and "

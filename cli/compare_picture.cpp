@@ -11,8 +11,14 @@ namespace adamas {
 
 namespace {
 
-constexpr std::array kJoined{MeshKind::kOwn, MeshKind::kOwnCut, MeshKind::kTetGen, MeshKind::kMesh3,
-                             MeshKind::kMesh3Optimised};
+constexpr std::array kJoined{MeshKind::kOwn,
+                             MeshKind::kOwnCut,
+                             MeshKind::kTetGen,
+                             MeshKind::kMesh3,
+                             MeshKind::kMesh3Optimised,
+                             MeshKind::kTetGenSimplified,
+                             MeshKind::kMesh3Simplified,
+                             MeshKind::kMesh3Labels};
 
 /// One diagram: a line per kind of mesh, and a level where the distance is none.
 Plot make_plot(const std::vector<ComparedMesh>& rows, const std::string& title, const std::string& label,

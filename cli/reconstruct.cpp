@@ -7,6 +7,7 @@
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
+#include "cli/simplification_options.h"
 #include "cli/surface_picture.h"
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
@@ -20,6 +21,7 @@ namespace {
 struct Options {
   InputOptions input;
   SurfacePictureOptions picture;
+  SimplificationText simplification;
   std::string output;
 };
 
@@ -85,8 +87,18 @@ struct Interfaces {
   Box3 box;
 };
 
-Interfaces reconstruct(const Options& options, Figures& figures, Console& console) {
+/// Takes fewer triangles where that is wanted.
+Interfaces simplified(Interfaces&& found, const ResamplingSource& source, const SimplificationWish& wish,
+                      Figures& figures, Console& console) {
+  if (wish.wanted()) found.mesh = simplify_and_print(source, wish, figures, console).mesh;
+  return std::move(found);
+}
+
+Interfaces reconstruct(const Options& options, const SimplificationWish& wish, Figures& figures,
+                       Console& console) {
   const MultiMaterialData data = load_data(options.input, console);
+  const double voxel = data.grid.least_spacing();
+  wish.check({data.source, data.grid.domain(), {}, voxel});
   options.picture.check_materials(data.materials, data.source);
   Reconstruction result(data, reconstruction_options(options.input, data), console);
   figures["materials"] = print_volumes(data, result, console);
@@ -94,21 +106,30 @@ Interfaces reconstruct(const Options& options, Figures& figures, Console& consol
   note_losses(data, result, figures, console);
   figures["interfaces"] = print_interfaces(result.mesh(), console);
   figures["bodies"] = result.body_materials().size();
-  return {result.take_mesh(), data.grid.domain()};
+  const Box3 box = data.grid.domain();
+  if (!wish.wanted()) return {result.take_mesh(), box};
+  ResamplingSource source =
+      source_of_interfaces(result.mesh(), box, result.take_bodies(), result.body_materials());
+  source.voxel = voxel;
+  return simplified({result.take_mesh(), box}, source, wish, figures, console);
 }
 
 /// Given interfaces: checked, welded, without triangles that bound nothing.
-Interfaces take_given(const Options& options, Figures& figures, Console& console) {
-  const Input input = load_input(options.input, console);
+Interfaces take_given(const Options& options, const SimplificationWish& wish, Figures& figures,
+                      Console& console) {
+  const Input input =
+      load_input(options.input, console, [&wish](const InputFacts& found) { wish.check(found); });
   const ResamplingSource& source = input.source;
   options.picture.check_materials(source.materials, source.name);
   figures["materials"] = print_network_volumes(source, "volume_reconstructed", true, console);
   figures["interfaces"] = print_interface_areas(source, true, console);
   figures["bodies"] = source.network->table().body_count();
-  return {network_mesh(*source.network, source.materials, source.name), source.box};
+  return simplified({network_mesh(*source.network, source.materials, source.name), source.box}, source, wish,
+                    figures, console);
 }
 
 void run(const Options& options, Session& session) {
+  const SimplificationWish wish(options.simplification);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf"});
@@ -119,7 +140,7 @@ void run(const Options& options, Session& session) {
   if (!given && !options.input.interface_option().empty())
     wrong_usage("{}: expected given interfaces as INPUT", options.input.interface_option());
   const Interfaces found =
-      given ? take_given(options, figures, console) : reconstruct(options, figures, console);
+      given ? take_given(options, wish, figures, console) : reconstruct(options, wish, figures, console);
   figures["triangles"] = found.mesh.triangles.size();
   console.step("writing", -1);
   session.outputs.write(options.output, [&](const auto& path) { write_interface_mesh(path, found.mesh); });
@@ -139,7 +160,7 @@ void add_reconstruct(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       add_command(app, session, "reconstruct", "Interface meshes from volume fractions, or of a network",
-                  "adamas reconstruct cth.vtr -o interfaces.vtp --picture interfaces.png",
+                  "adamas reconstruct cth.vtr --simplify 0.5% -o interfaces.vtp --picture interfaces.png",
                   [options, &session] { run(*options, session); });
   command
       ->add_option("input", options->input.path,
@@ -149,6 +170,7 @@ void add_reconstruct(CLI::App& app, Session& session) {
   command->add_option("-o,--output", options->output, "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
       ->required()
       ->type_name("FILE");
+  add_simplification_options(*command, options->simplification, "the interfaces");
   add_surface_picture_options(*command, options->picture);
   add_material_options(*command, options->input);
   add_smoothing_option(*command, options->input);

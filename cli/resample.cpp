@@ -10,6 +10,7 @@
 #include "cli/mesh_outputs.h"
 #include "cli/resample_figures.h"
 #include "cli/resampling_setup.h"
+#include "cli/simplification_options.h"
 #include "cli/usage_error.h"
 #include "core/io/array_file.h"
 #include "interfaces/resampling/shortfall.h"
@@ -28,6 +29,7 @@ struct Options {
   InputOptions input;
   ResamplingText text;
   MeshOutputs outputs;
+  SimplificationText simplification;
   std::string save;
 };
 
@@ -198,13 +200,27 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
   if (source.materials.size() > kMost) console.print("  ... and {} more\n", source.materials.size() - kMost);
 }
 
+/// The interfaces of the mesh, with fewer triangles where that is wanted.
+InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationWish& wish, Figures& figures,
+                               Console& console) {
+  if (!wish.wanted()) return approximated_interfaces(resampler, console);
+  const ResamplingSource shown = source_of_approximated_interfaces(resampler, console);
+  SimplifiedInterfaces found = simplify_and_print(shown, wish, figures, console);
+  console.note(
+      "the simplified interfaces are within {:.4g} of those of the mesh, and so within the interface error "
+      "and "
+      "that of the input's",
+      found.certificate.networks.upper);
+  return std::move(found.mesh);
+}
+
 /// Writes what is asked for; returns the ledgers of the input and of all meshes that were written.
 std::vector<Ledger> write_outputs(const Options& options, const Input& input, Resampler& resampler,
-                                  Figures& figures, Session& session) {
+                                  const SimplificationWish& wish, Figures& figures, Session& session) {
   Console& console = session.console;
   if (options.outputs.need_interfaces())
-    write_interfaces(options.outputs, approximated_interfaces(resampler, console), resampler.source().box,
-                     session);
+    write_interfaces(options.outputs, shown_interfaces(resampler, wish, figures, console),
+                     resampler.source().box, session);
   session.outputs.write(options.save, [&](const auto& path) {
     console.step("measuring all cells of the hierarchy", -1);
     const SavedHierarchy hierarchy = take_hierarchy(resampler);
@@ -228,6 +244,9 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
 void run(const Options& options, Session& session) {
   Console& console = session.console;
   const ResamplingWishes wishes(options.text);
+  const SimplificationWish simplification(options.simplification);
+  if (simplification.wanted() && !options.outputs.need_interfaces())
+    wrong_usage("--simplify: expected --interfaces-out or --picture beside it, found none");
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && options.save.empty() &&
       session.json.empty()) {
     wrong_usage(
@@ -237,8 +256,10 @@ void run(const Options& options, Session& session) {
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
-  const Input input =
-      load_input(options.input, console, [&](const InputFacts& found) { wishes.check(found); });
+  const Input input = load_input(options.input, console, [&](const InputFacts& found) {
+    wishes.check(found);
+    simplification.check(found);
+  });
   options.outputs.picture.check_materials(input.source.materials, input.source.name);
   Resampler resampler(input.source, wishes.options(input.source), console);
   resampler.refine();
@@ -249,7 +270,8 @@ void run(const Options& options, Session& session) {
   print_materials(measured, input.source, console);
   print_conservation(measured, resampler, console);
   Figures figures = resample_json(measured, resampler);
-  const std::vector<Ledger> ledgers = write_outputs(options, input, resampler, figures, session);
+  const std::vector<Ledger> ledgers =
+      write_outputs(options, input, resampler, simplification, figures, session);
   figures["ledger"] =
       ledger_figures(ledgers, input.source.materials,
                      input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>());
@@ -276,6 +298,9 @@ void add_resample(CLI::App& app, Session& session) {
       ->type_name("FILE");
   add_resampling_options(*command, options->text);
   add_mesh_output_options(*command, options->outputs);
+  add_simplification_options(
+      *command, options->simplification,
+      "the approximated interfaces that --interfaces-out and --picture show, on top of the interface error");
   command
       ->add_option("--save", options->save,
                    "The hierarchy, from which adamas select takes meshes of other errors: .h5")

@@ -134,6 +134,7 @@ class InterfaceNetwork {
   [[nodiscard]] BodyId body_by_touch(const Vec3& p, const ClosestPoint& closest, bool* flagged) const;
   [[nodiscard]] BodyId body_by_arc(const Vec3& offset, std::uint32_t triangle, TriangleFeature feature) const;
   [[nodiscard]] Vec3 interface_normal(std::uint32_t triangle, TriangleFeature feature) const;
+  [[nodiscard]] std::optional<ClosestPoint> nearest_vertex(InterfaceId i, const Vec3& p, double radius) const;
   [[nodiscard]] std::optional<NearInterface> near_interface(InterfaceId i, const Vec3& p, double radius,
                                                             BodyId body, DistanceMode mode) const;
 

@@ -232,19 +232,25 @@ void InterfaceNetwork::near_interfaces(const Vec3& p, double radius, BodyId body
   }
 }
 
+/// As the closest point of an interface: a corner of one of its triangles.
+std::optional<ClosestPoint> InterfaceNetwork::nearest_vertex(InterfaceId i, const Vec3& p,
+                                                             double radius) const {
+  const VertexTrees::Tree& vertices = vertex_trees_->trees[i];
+  const auto nearest = vertices.tree.nearest(p, radius);
+  if (!nearest) return std::nullopt;
+  const VertexTrees::Corner& corner = vertices.corners[nearest->index];
+  return ClosestPoint{triangle_corners(corner.triangle)[feature_index(corner.feature)],
+                      nearest->squared_distance, corner.triangle - interfaces_[i].first, corner.feature};
+}
+
 std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, const Vec3& p, double radius,
                                                               BodyId body, DistanceMode mode) const {
   const Interface& interface = interfaces_[i];
-  const bool exact = mode == DistanceMode::kExact;
-  const auto closest = (exact ? tree(i) : vertex_trees_->trees[i].tree).closest(p, radius);
+  const auto closest =
+      mode == DistanceMode::kExact ? tree(i).closest(p, radius) : nearest_vertex(i, p, radius);
   if (!closest) return std::nullopt;
-  std::uint32_t triangle = interface.first + closest->triangle;
-  TriangleFeature feature = closest->feature;
-  if (!exact) {
-    const auto& corner = vertex_trees_->trees[i].corners[closest->triangle];
-    triangle = corner.triangle;
-    feature = corner.feature;
-  }
+  const std::uint32_t triangle = interface.first + closest->triangle;
+  const TriangleFeature feature = closest->feature;
   const double distance = std::sqrt(closest->squared_distance);
   Vec3 normal;
   bool border = false;
@@ -258,7 +264,7 @@ std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, con
     normal = interface_normal(triangle, feature);
   }
   const double height = dot(p - closest->point, normal);
-  const bool continued = exact && border;
+  const bool continued = mode == DistanceMode::kExact && border;
   double value = continued ? height : (height >= 0 ? distance : -distance);
   // A point on the continued plane is on both sides of it: there the sign tells nothing.
   const double round_off = continued ? 1e-10 * radius : 0;
@@ -287,12 +293,12 @@ void InterfaceNetwork::build_vertex_trees() const {
       for (unsigned k = 0; k < 3; ++k)
         corners.try_emplace(triangles_[t][k], VertexTrees::Corner{t, vertex_feature(k)});
     }
-    std::vector<ClosestPointTree::Triangle> vertices;
+    std::vector<Vec3> vertices;
     for (const auto& [point, corner] : corners) {
-      vertices.push_back({point, point, point});
+      vertices.push_back(points_[point]);
       trees[InterfaceId(i)].corners.push_back(corner);
     }
-    trees[InterfaceId(i)].tree = ClosestPointTree(points_, vertices);
+    trees[InterfaceId(i)].tree = VertexTree(vertices);
   });
 }
 

@@ -4,11 +4,12 @@
 
 #include "core/base/typed_id.h"
 #include "interfaces/network/interface_network.h"
+#include "interfaces/network/vertex_tree.h"
 
 namespace adamas {
 
-/// For distances to the nearest vertex: one tree per interface whose triangles are its points, and for each
-/// of them a triangle that has it as a corner.
+/// For distances to the nearest vertex: one tree per interface of its vertices, and for each of them a
+/// triangle that has it as a corner.
 struct InterfaceNetwork::VertexTrees {
   struct Corner {
     std::uint32_t triangle;
@@ -16,7 +17,7 @@ struct InterfaceNetwork::VertexTrees {
   };
   struct Tree {
     std::vector<Corner> corners;
-    ClosestPointTree tree;
+    VertexTree tree{{}};
   };
   std::once_flag built;
   IdVector<InterfaceId, Tree> trees;

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/base/error.h"
-#include "interfaces/reference/own_mesh.h"
-#include "interfaces/reference/sizing_search.h"
+#include "interfaces/reference/comparison_run.h"
+#include "interfaces/simplification/interface_simplification.h"
 
 namespace adamas {
 
@@ -16,89 +15,44 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Distances below this part of the error wanted are measured no further, and all the same.
-constexpr double kResolution = 0.01;
 /// Points that are nearer to a side of the box than this part of its diagonal are moved onto it.
 constexpr double kOntoBox = 1e-9;
 /// A last try gets as much, so that a limit is told by the child that reaches it.
 constexpr double kLeastSeconds = 0.01;
 
-/// What sizes are matched by.
-double matched_distance(const ComparedMesh& row) {
-  return std::max(row.figures.distance.greatest(), kResolution * *row.interface_error);
+}  // namespace
+
+std::vector<ComparedMesh> Comparison::run() {
+  bool first = true;
+  for (const double error : options_.interface_errors) {
+    ResamplingOptions wanted = options_.resampling;
+    wanted.interface_error = error;
+    const OwnMesh own = make_own_mesh(source_, wanted, progress_);
+    finish(own.row);
+    finish(own.cut_row);
+    if (std::exchange(first, false)) {
+      stitch_input();
+      if (options_.tetgen) add_untouched(own);
+    }
+    if (options_.tetgen) add_resampled(own);
+    if (options_.tetgen) add_simplified(own);
+    if (options_.mesh3) add_mesh3(own);
+    if (options_.mesh3) add_mesh3_simplified(own);
+    if (options_.mesh3 && options_.image) add_mesh3_labels(own);
+  }
+  return std::move(rows_);
 }
 
-class Comparison {
- public:
-  Comparison(const ResamplingSource& source, const ComparisonOptions& options, Progress& progress)
-      : source_(source), options_(options), progress_(progress) {}
+double Comparison::seconds_left() const {
+  return options_.mesher.limits.seconds - std::chrono::duration<double>(Clock::now() - started_).count();
+}
 
-  std::vector<ComparedMesh> run() {
-    bool first = true;
-    for (const double error : options_.interface_errors) {
-      ResamplingOptions wanted = options_.resampling;
-      wanted.interface_error = error;
-      const OwnMesh own = make_own_mesh(source_, wanted, progress_);
-      finish(own.row);
-      finish(own.cut_row);
-      if (std::exchange(first, false)) {
-        stitch_input();
-        if (options_.tetgen) add_untouched(own);
-      }
-      if (options_.tetgen) add_resampled(own);
-      if (options_.mesh3) add_mesh3(own);
-    }
-    return std::move(rows_);
-  }
-
- private:
-  void finish(const ComparedMesh& row) {
-    rows_.push_back(row);
-    if (options_.finished) options_.finished(row);
-  }
-  void start_clock() { started_ = Clock::now(); }
-  [[nodiscard]] double seconds_left() const {
-    return options_.mesher.limits.seconds - std::chrono::duration<double>(Clock::now() - started_).count();
-  }
-  /// The time that is left of one mesh's.
-  [[nodiscard]] MesherOptions mesher() const {
-    MesherOptions result = options_.mesher;
-    result.limits.whole_seconds = result.limits.seconds;
-    result.limits.seconds = std::max(seconds_left(), kLeastSeconds);
-    return result;
-  }
-  void stitch_input();
-  [[nodiscard]] PiecewiseLinearComplex stitch(std::span<const Vec3> points,
-                                              std::span<const BodyTriangle> triangles) const;
-  ReferenceResult run_tetgen(const PiecewiseLinearComplex& complex, ComparedMesh& row);
-  void add_tetgen(const PiecewiseLinearComplex& complex, const OwnMesh& own, ComparedMesh& row);
-  void add_untouched(const OwnMesh& own);
-  void add_resampled(const OwnMesh& own);
-  void add_mesh3(const OwnMesh& own);
-  /// The trial of Mesh_3 that came closest.
-  struct Mesh3Match {
-    ComparedMesh row;
-    Mesh3Criteria criteria;
-    ReferenceResult result;
-    double mismatch = 0;
-    std::size_t trials = 0;
-    bool over = false;  ///< the time ended the search
-  };
-  SizingTrial try_mesh3(double wanted, double facet_distance, Mesh3Match& match);
-  void add_optimised(const OwnMesh& own, const Mesh3Match& match, double wanted);
-  void measure(const ReferenceResult& result, double target, ComparedMesh& row);
-  void measure_fields(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row);
-  [[nodiscard]] std::string lost_materials(const MeshFigures& figures) const;
-  [[nodiscard]] Mesh3Criteria criteria(double facet_distance) const;
-
-  const ResamplingSource& source_;
-  const ComparisonOptions& options_;
-  Progress& progress_;
-  std::vector<ComparedMesh> rows_;
-  std::optional<PiecewiseLinearComplex> input_;
-  std::string input_fault_;
-  Clock::time_point started_ = Clock::now();  ///< work on one mesh of another generator
-};
+MesherOptions Comparison::mesher() const {
+  MesherOptions result = options_.mesher;
+  result.limits.whole_seconds = result.limits.seconds;
+  result.limits.seconds = std::max(seconds_left(), kLeastSeconds);
+  return result;
+}
 
 PiecewiseLinearComplex Comparison::stitch(std::span<const Vec3> points,
                                           std::span<const BodyTriangle> triangles) const {
@@ -220,89 +174,34 @@ void Comparison::add_resampled(const OwnMesh& own) {
   finish(row);
 }
 
-/// Curves are followed by edges of this size, so that their arrows are about the distance where they are bent
-/// like a circle of a quarter of the box.
-Mesh3Criteria Comparison::criteria(double facet_distance) const {
-  const Vec3 size = source_.box.size();
-  const double bend = 0.25 * std::min({size.x, size.y, size.z});
-  Mesh3Criteria result;
-  result.facet_distance = facet_distance;
-  result.edge_size = std::sqrt(8 * facet_distance * bend);
-  return result;
+PiecewiseLinearComplex Comparison::simplified_input(double error, std::string& note) {
+  SimplificationOptions options;
+  options.error = error;
+  const auto start = Clock::now();
+  const SimplifiedInterfaces found = simplify_interfaces(source_, options, progress_);
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  note = fmt::format("{} of {} triangles of the input's within {:.4g}, simplified in {:.3f} s",
+                     found.mesh.triangles.size(), found.triangles_before, found.certificate.networks.upper,
+                     seconds);
+  std::vector<BodyTriangle> triangles;
+  for (std::size_t t = 0; t < found.bodies.size(); ++t)
+    triangles.push_back({found.mesh.triangles[t].points, found.bodies[t][0], found.bodies[t][1]});
+  return stitch(found.mesh.points, triangles);
 }
 
-SizingTrial Comparison::try_mesh3(double wanted, double facet_distance, Mesh3Match& match) {
-  using Outcome = SizingTrial::Outcome;
-  if (match.trials > 0 && seconds_left() <= 0) {
-    match.over = true;
-    return {Outcome::kOver, 0};
-  }
-  ComparedMesh row = match.row;
-  row.failure.clear(), row.note.clear(), row.figures = {};
-  const Mesh3Criteria sizes = criteria(facet_distance);
-  row.switches =
-      fmt::format("facet_distance {:.4g}, edge_size {:.4g}, facet_angle {:g}, radius_edge_ratio {:g}",
-                  sizes.facet_distance, sizes.edge_size, sizes.facet_angle, sizes.radius_edge_ratio);
-  const std::size_t trial = ++match.trials;
-  progress_.step(fmt::format("meshing by Mesh_3, trial {}", trial), -1);
-  ReferenceResult result = mesh_by_mesh3(*input_, sizes, mesher(), progress_);
-  measure(result, *row.interface_error, row);
-  const bool made = row.failure.empty();
-  const double distance = matched_distance(row);
-  const double mismatch = made ? std::abs(std::log(distance / wanted)) : std::numeric_limits<double>::max();
-  if (trial == 1 || mismatch < match.mismatch)
-    match = {row, sizes, std::move(result), mismatch, trial, false};
-  if (made) return {Outcome::kMeasured, distance};
-  return {row.failure.starts_with("lost") ? Outcome::kTooCoarse : Outcome::kTooFine, 0};
-}
-
-void Comparison::add_mesh3(const OwnMesh& own) {
-  Mesh3Match match;
-  ComparedMesh& row = match.row;
-  row.kind = MeshKind::kMesh3;
+void Comparison::add_simplified(const OwnMesh& own) {
+  ComparedMesh row;
+  row.kind = MeshKind::kTetGenSimplified;
   row.interface_error = own.row.interface_error;
-  row.failure = input_fault_;
-  const double wanted = matched_distance(own.row);
-  if (input_ && (own.interfaces.empty() || !std::isfinite(wanted)))
-    row.failure = "there is no distance to match";
-  bool matched = false;
-  if (row.failure.empty()) {
-    // Where there is next to no distance, sizes that are as coarse as may be come first.
-    const bool exact = wanted <= kResolution * *row.interface_error;
-    const double first = 0.5 * (exact ? *row.interface_error : wanted);
-    SizingOptions sizing;
-    sizing.greatest = source_.box.diagonal();
-    start_clock();
-    matched = search_sizing(
-        wanted, first, [&](double size) { return try_mesh3(wanted, size, match); }, sizing);
+  try {
+    add_tetgen(simplified_input(*row.interface_error, row.note), own, row);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    row.failure = error.what();
   }
-  row.matched = matched;
-  row.trials = match.trials;
-  if (match.over)
-    row.note += fmt::format("{}the time limit of {:g} s ended the search", row.note.empty() ? "" : "; ",
-                            options_.mesher.limits.seconds);
-  if (row.failure.empty()) measure_fields(match.result, own, row);
-  finish(row);
-  if (row.failure.empty()) add_optimised(own, match, wanted);
-}
-
-void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match, double wanted) {
-  ComparedMesh row = match.row;
-  row.kind = MeshKind::kMesh3Optimised;
-  row.switches += ", perturb, exude";
-  row.note.clear(), row.trials = 0, row.figures = {};
-  Mesh3Criteria sizes = match.criteria;
-  sizes.optimise = 1;
-  progress_.step("meshing by Mesh_3 with optimisers", -1);
-  start_clock();
-  const ReferenceResult result = mesh_by_mesh3(*input_, sizes, mesher(), progress_);
-  measure(result, *row.interface_error, row);
-  row.matched = std::abs(matched_distance(row) / wanted - 1) <= SizingOptions().tolerance;
-  if (row.failure.empty()) measure_fields(result, own, row);
   finish(row);
 }
-
-}  // namespace
 
 std::string mesh_name(MeshKind kind) {
   switch (kind) {
@@ -314,6 +213,12 @@ std::string mesh_name(MeshKind kind) {
       return "TetGen (our interfaces)";
     case MeshKind::kTetGenUntouched:
       return "TetGen (input's)";
+    case MeshKind::kTetGenSimplified:
+      return "TetGen (simplified)";
+    case MeshKind::kMesh3Simplified:
+      return "Mesh_3 (simplified)";
+    case MeshKind::kMesh3Labels:
+      return "Mesh_3 (labels)";
     case MeshKind::kMesh3:
       return "Mesh_3";
     case MeshKind::kMesh3Optimised:
@@ -324,7 +229,8 @@ std::string mesh_name(MeshKind kind) {
 
 std::size_t reference_count(const ComparisonOptions& options) {
   const std::size_t errors = options.interface_errors.size();
-  return (options.tetgen ? 1 + errors : 0) + (options.mesh3 ? 2 * errors : 0);
+  const std::size_t mesh3 = options.image ? 4 : 3;
+  return (options.tetgen ? 1 + 2 * errors : 0) + (options.mesh3 ? mesh3 * errors : 0);
 }
 
 std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const ComparisonOptions& options,

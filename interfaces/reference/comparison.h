@@ -21,6 +21,8 @@ struct ComparisonOptions {
   ResamplingOptions resampling;          ///< all but the interface error
   bool tetgen = true, mesh3 = true;
   std::string tetgen_switches = "zpq1.414Q";
+  std::optional<LabelImage>
+      image;             ///< what Mesh_3 is given too, where the input is one; labels are materials
   MesherOptions mesher;  ///< its time limit is for all trials of one mesh together, with measuring
   /// Called with each row as soon as it is finished; may be empty.
   std::function<void(const ComparedMesh&)> finished;
@@ -30,12 +32,15 @@ struct ComparisonOptions {
 std::size_t reference_count(const ComparisonOptions& options);
 
 enum class MeshKind {
-  kOwn,              ///< the resampled mesh
-  kOwnCut,           ///< its cells cut along the interfaces
-  kTetGen,           ///< TetGen with the resampled mesh's interfaces
-  kTetGenUntouched,  ///< TetGen with the input's interfaces
-  kMesh3,            ///< Mesh_3, its sizing matched to the resampled mesh's measured distance
-  kMesh3Optimised,   ///< the same, then perturbed and exuded, as Mesh_3 does by default
+  kOwn,               ///< the resampled mesh
+  kOwnCut,            ///< its cells cut along the interfaces
+  kTetGen,            ///< TetGen with the resampled mesh's interfaces
+  kTetGenUntouched,   ///< TetGen with the input's interfaces
+  kMesh3,             ///< Mesh_3, its sizing matched to the resampled mesh's measured distance
+  kMesh3Optimised,    ///< the same, then perturbed and exuded, as Mesh_3 does by default
+  kTetGenSimplified,  ///< TetGen with the input's interfaces, simplified to the interface error
+  kMesh3Simplified,   ///< Mesh_3, matched as well, with the input's interfaces simplified to half of it
+  kMesh3Labels,       ///< Mesh_3, matched as well, straight from the labelled image
 };
 
 /// A row of the comparison.

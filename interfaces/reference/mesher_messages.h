@@ -11,7 +11,7 @@
 
 namespace adamas {
 
-enum class MesherKind : std::uint32_t { kTetGen, kTetGenDiagnosis, kMesh3 };
+enum class MesherKind : std::uint32_t { kTetGen, kTetGenDiagnosis, kMesh3, kMesh3Labels };
 
 /// Criteria of CGAL's Mesh_3, in units of length and degrees; 0 stands for none.
 struct Mesh3Criteria {
@@ -20,6 +20,13 @@ struct Mesh3Criteria {
   double edge_size = 0;
   double radius_edge_ratio = 3;
   std::uint64_t optimise = 0;  ///< 1: perturb and exude, for better angles
+};
+
+/// Labels in boxes that fill the domain: box (i, j, k), x fastest, lies between walls i and i + 1 of x, and
+/// so on.
+struct LabelImage {
+  std::vector<double> walls_x, walls_y, walls_z;  ///< ascending
+  std::vector<std::uint16_t> labels;
 };
 
 /// What the separate program is asked: triangles on shared points, each of a patch, whose sides are regions
@@ -32,13 +39,16 @@ struct MesherRequest {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_patches;
   std::vector<std::array<std::uint32_t, 2>> patch_regions;  ///< in front (where normals point to) and behind
+  LabelImage image;  ///< instead of triangles; regions are labels and 1 more
 
-  static constexpr std::array<char, 8> kMark{'a', 'd', 'a', 'm', 'e', 's', 'h', '1'};
+  static constexpr std::array<char, 8> kMark{'a', 'd', 'a', 'm', 'e', 's', 'h', '2'};
   template <class Request, class Visit>
   static void members(Request& request, Visit& visit) {
     visit(request.kind), visit(request.switches), visit(request.criteria);
     visit(request.points), visit(request.triangles), visit(request.triangle_patches);
     visit(request.patch_regions);
+    visit(request.image.walls_x), visit(request.image.walls_y), visit(request.image.walls_z);
+    visit(request.image.labels);
   }
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/base/error.h"
 #include "interfaces/reference/region_naming.h"
@@ -55,27 +57,47 @@ void orient(MesherReply& reply) {
   }
 }
 
-ReferenceResult ask(const MesherRequest& request, const PiecewiseLinearComplex& complex,
-                    const MesherOptions& options, const Progress& progress) {
-  ReferenceResult result;
+/// The answer where there is one that can be read and used.
+std::optional<MesherReply> ask_for_reply(const MesherRequest& request, const MesherOptions& options,
+                                         const Progress& progress, ReferenceResult& result) {
   ChildResult child = run_child_program(options.program, encode(request), options.limits, progress);
   if (!child.failure.empty()) {
     result.failure = child.failure;
     result.crashed = child.crashed;
-    return result;
+    return std::nullopt;
   }
   auto reply = decode<MesherReply>(std::move(child.output));
   if (!reply) {
     result.failure = "gave no answer that can be read";
-    return result;
+    return std::nullopt;
   }
-  result.failure = reply->failure.empty() ? fault_of(*reply, complex.patches.size()) : reply->failure;
+  result.failure = reply->failure.empty() ? fault_of(*reply, request.patch_regions.size()) : reply->failure;
   result.seconds = reply->seconds;
   result.peak_memory_bytes = static_cast<std::size_t>(reply->peak_memory_bytes);
-  if (!result.failure.empty()) return result;
+  if (!result.failure.empty()) return std::nullopt;
   orient(*reply);
   result.mesh.points = std::move(reply->points);
   result.mesh.tetrahedra = std::move(reply->tetrahedra);
+  return reply;
+}
+
+/// Bodies by their regions, which have to be among the known ones.
+void take_regions(const MesherReply& reply, std::vector<std::uint32_t> known, ReferenceResult& result) {
+  std::sort(known.begin(), known.end());
+  for (const std::uint32_t region : reply.regions) {
+    if (region == 0 || !std::binary_search(known.begin(), known.end(), region)) {
+      result.failure = "made tetrahedra outside of all regions";
+      return;
+    }
+    result.mesh.bodies.emplace_back(region - 1);
+  }
+}
+
+ReferenceResult ask(const MesherRequest& request, const PiecewiseLinearComplex& complex,
+                    const MesherOptions& options, const Progress& progress) {
+  ReferenceResult result;
+  const auto reply = ask_for_reply(request, options, progress, result);
+  if (!reply) return result;
   if (reply->regions.empty()) {
     result.failure = name_regions(complex, result.mesh.tetrahedra, reply->triangles, reply->triangle_patches,
                                   result.mesh.bodies);
@@ -83,14 +105,7 @@ ReferenceResult ask(const MesherRequest& request, const PiecewiseLinearComplex& 
   }
   std::vector<std::uint32_t> known;
   for (const auto& sides : request.patch_regions) known.insert(known.end(), sides.begin(), sides.end());
-  std::sort(known.begin(), known.end());
-  for (const std::uint32_t region : reply->regions) {
-    if (region == 0 || !std::binary_search(known.begin(), known.end(), region)) {
-      result.failure = "made tetrahedra outside of all regions";
-      break;
-    }
-    result.mesh.bodies.emplace_back(region - 1);
-  }
+  take_regions(*reply, std::move(known), result);
   return result;
 }
 
@@ -115,6 +130,25 @@ ReferenceResult mesh_by_mesh3(const PiecewiseLinearComplex& complex, const Mesh3
   MesherRequest request = request_of(complex, MesherKind::kMesh3);
   request.criteria = criteria;
   return ask(request, complex, options, progress);
+}
+
+ReferenceResult mesh_by_mesh3(const LabelImage& image, const Mesh3Criteria& criteria,
+                              const MesherOptions& options, const Progress& progress) {
+  MesherRequest request;
+  request.kind = MesherKind::kMesh3Labels;
+  request.criteria = criteria;
+  request.image = image;
+  ReferenceResult result;
+  const auto reply = ask_for_reply(request, options, progress, result);
+  if (!reply) return result;
+  if (reply->regions.empty()) {
+    result.failure = "made tetrahedra without regions";
+    return result;
+  }
+  std::vector<std::uint32_t> known;
+  for (const std::uint16_t label : image.labels) known.push_back(label + 1u);
+  take_regions(*reply, std::move(known), result);
+  return result;
 }
 
 }  // namespace adamas

@@ -34,4 +34,9 @@ ReferenceResult mesh_by_mesh3(const PiecewiseLinearComplex& complex, const Mesh3
                               const MesherOptions& options,
                               const Progress& progress = SilentProgress::instance());
 
+/// CGAL's Mesh_3 straight from labels. The tetrahedra's bodies are the labels.
+ReferenceResult mesh_by_mesh3(const LabelImage& image, const Mesh3Criteria& criteria,
+                              const MesherOptions& options,
+                              const Progress& progress = SilentProgress::instance());
+
 }  // namespace adamas

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -36,7 +37,17 @@ bool write_all(int descriptor, const std::vector<char>& bytes) {
   return true;
 }
 
+bool is_sound(const adamas::LabelImage& image) {
+  std::size_t boxes = 1;
+  for (const auto* walls : {&image.walls_x, &image.walls_y, &image.walls_z}) {
+    if (walls->size() < 2 || !std::is_sorted(walls->begin(), walls->end())) return false;
+    boxes *= walls->size() - 1;
+  }
+  return image.labels.size() == boxes;
+}
+
 bool is_sound(const MesherRequest& request) {
+  if (request.kind == MesherKind::kMesh3Labels && !is_sound(request.image)) return false;
   if (request.triangle_patches.size() != request.triangles.size()) return false;
   for (const auto& triangle : request.triangles) {
     for (const std::uint32_t point : triangle) {
@@ -52,8 +63,14 @@ bool is_sound(const MesherRequest& request) {
 MesherReply answer(const MesherRequest& request) {
   MesherReply reply;
   try {
-    return request.kind == MesherKind::kMesh3 ? adamas::reference::run_mesh3(request)
-                                              : adamas::reference::run_tetgen(request);
+    switch (request.kind) {
+      case MesherKind::kMesh3:
+        return adamas::reference::run_mesh3(request);
+      case MesherKind::kMesh3Labels:
+        return adamas::reference::run_mesh3_labels(request);
+      default:
+        return adamas::reference::run_tetgen(request);
+    }
   } catch (const std::bad_alloc&) {
     reply.failure = "the mesher ran out of memory";
   } catch (const std::exception& error) {

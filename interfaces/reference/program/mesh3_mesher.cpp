@@ -15,6 +15,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "interfaces/reference/program/mesh3_reply.h"
 #include "interfaces/reference/program/meshers.h"
 
 namespace adamas::reference {
@@ -83,24 +84,6 @@ Criteria make_criteria(const Mesh3Criteria& c) {
   const double edge_size = c.edge_size > 0 ? c.edge_size : std::numeric_limits<double>::max();
   return Criteria(CGAL::parameters::edge_size = edge_size, facet_angle = c.facet_angle,
                   facet_distance = c.facet_distance, cell_radius_edge_ratio = c.radius_edge_ratio);
-}
-
-void take(const Complex& complex, MesherReply& reply) {
-  std::unordered_map<Complex::Vertex_handle, std::uint32_t> number;
-  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
-    std::array<std::uint32_t, 4> corners;
-    for (int i = 0; i < 4; ++i) {
-      const auto vertex = cell->vertex(i);
-      const auto [entry, fresh] = number.try_emplace(vertex, static_cast<std::uint32_t>(reply.points.size()));
-      if (fresh) {
-        const auto& p = vertex->point().point();
-        reply.points.push_back({p.x(), p.y(), p.z()});
-      }
-      corners[static_cast<std::size_t>(i)] = entry->second;
-    }
-    reply.tetrahedra.push_back(corners);
-    reply.regions.push_back(static_cast<std::uint32_t>(complex.subdomain_index(cell)));
-  }
 }
 
 }  // namespace

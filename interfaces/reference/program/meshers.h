@@ -11,4 +11,7 @@ MesherReply run_tetgen(const MesherRequest& request);
 /// The patches as surfaces of a polyhedral complex, their borders protected, by CGAL's Mesh_3.
 MesherReply run_mesh3(const MesherRequest& request);
 
+/// The image as CGAL's labelled domain, by Mesh_3. It protects nothing.
+MesherReply run_mesh3_labels(const MesherRequest& request);
+
 }  // namespace adamas::reference

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+
+#include "cli/console.h"
+#include "cli/figures.h"
+#include "cli/input_options.h"
+#include "cli/option_values.h"
+#include "interfaces/simplification/interface_simplification.h"
+
+namespace adamas {
+
+/// The options that say how to simplify interfaces, as text.
+struct SimplificationText {
+  std::string error;
+  bool smooth = false;
+};
+
+/// `of_what`: what is simplified, for the help.
+void add_simplification_options(CLI::App& command, SimplificationText& text, const std::string& of_what);
+
+/// The options with their values checked, before the input is known.
+struct SimplificationWish {
+  /// Throws UsageError.
+  explicit SimplificationWish(const SimplificationText& text);
+  /// Throws UsageError for an error that says nothing in this domain.
+  void check(const InputFacts& input) const;
+  [[nodiscard]] bool wanted() const { return error.has_value(); }
+
+  std::optional<ErrorTarget> error;
+  bool smooth = false;
+};
+
+/// Simplifies the interfaces of a source and prints what came of it; the figures are put into `figures`.
+SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const SimplificationWish& wish,
+                                        Figures& figures, Console& console);
+
+}  // namespace adamas

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+
+#include "interfaces/reference/mesher_messages.h"
+
+namespace adamas::reference {
+
+/// The tetrahedra of what Mesh_3 has made, and their regions.
+template <class Complex>
+void take(const Complex& complex, MesherReply& reply) {
+  std::unordered_map<typename Complex::Vertex_handle, std::uint32_t> number;
+  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
+    std::array<std::uint32_t, 4> corners;
+    for (int i = 0; i < 4; ++i) {
+      const auto vertex = cell->vertex(i);
+      const auto [entry, fresh] = number.try_emplace(vertex, static_cast<std::uint32_t>(reply.points.size()));
+      if (fresh) {
+        const auto& p = vertex->point().point();
+        reply.points.push_back({p.x(), p.y(), p.z()});
+      }
+      corners[static_cast<std::size_t>(i)] = entry->second;
+    }
+    reply.tetrahedra.push_back(corners);
+    reply.regions.push_back(static_cast<std::uint32_t>(complex.subdomain_index(cell)));
+  }
+}
+
+}  // namespace adamas::reference

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "interfaces/network/closest_point_tree.h"
+
+namespace adamas {
+
+/// Tells whether whole triangles are near a surface. What is known of the surface round a point is kept, so
+/// that neighbouring questions cost little. For one thread.
+class NearField {
+ public:
+  /// `reach`: the greatest limit that is asked for. The tree must outlive this object.
+  NearField(const ClosestPointTree& tree, double reach);
+
+  /// Whether no point of the triangle, which may be without area, is farther from the surface than `limit`:
+  /// true only where that is proved, for pieces of it by the distance of their centre or by that of their
+  /// corners from one triangle, to which distances are convex.
+  [[nodiscard]] bool within(const std::array<Vec3, 3>& corners, double limit);
+
+ private:
+  /// The surface as seen from the centre of a cube.
+  struct Seen {
+    std::uint64_t cube = kNoCube;
+    double distance = 0;
+    std::uint32_t triangle = 0;
+  };
+  static constexpr std::uint64_t kNoCube = ~std::uint64_t{0};
+  struct Piece {
+    std::array<Vec3, 3> corners;
+  };
+  enum class Verdict { kNear, kFar, kOpen };
+
+  [[nodiscard]] const Seen& seen_from(const Vec3& p, Vec3& center);
+  [[nodiscard]] std::size_t slot_of(std::uint64_t cube) const;
+  void grow();
+  [[nodiscard]] Verdict judge(const Piece& piece, double limit, std::uint32_t& triangle);
+  [[nodiscard]] bool cut(const Piece& piece, const std::array<Vec3, 3>& triangle);
+  void halve(const Piece& piece);
+  [[nodiscard]] bool near_triangle(const Piece& piece, std::uint32_t triangle, double limit) const;
+
+  const ClosestPointTree& tree_;
+  double reach_, cell_;
+  Vec3 origin_;
+  std::vector<Seen> cubes_;  ///< a hash table with linear probing, a power of two in size, half full at most
+  std::size_t cube_count_ = 0;
+  std::vector<Piece> open_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/data/interface_mesh.h"
+#include "interfaces/network/bodies.h"
+
+namespace adamas {
+
+/// Double precision, and what a patch's elements are in the mesh they were made of.
+struct PatchTraits : OpenMesh::DefaultTraitsDouble {
+  VertexAttributes(OpenMesh::Attributes::Status);
+  HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge | OpenMesh::Attributes::Status);
+  EdgeAttributes(OpenMesh::Attributes::Status);
+  FaceAttributes(OpenMesh::Attributes::Status);
+  VertexTraits { std::uint32_t point = 0; };
+  FaceTraits { std::uint32_t triangle = 0; };
+};
+using PatchMesh = OpenMesh::TriMesh_ArrayKernelT<PatchTraits>;
+
+/// An interface between two bodies as an OpenMesh mesh, or a part of it; its normals point to `front`.
+struct InterfacePatch {
+  BodyId front, back;
+  PatchMesh mesh;
+};
+
+inline OpenMesh::Vec3d to_openmesh(const Vec3& p) { return {p.x, p.y, p.z}; }
+inline Vec3 from_openmesh(const OpenMesh::Vec3d& p) { return {p[0], p[1], p[2]}; }
+
+/// One patch per pair of bodies, in the order of the pairs. The lower body is in front: triangles are turned
+/// where it is not. An edge of three or more triangles of one interface, or of two that run the same way
+/// along it, is a border of each of them, and a point where fans touch becomes a vertex of each fan; what
+/// OpenMesh refuses all the same is another patch of the same pair. Every triangle is in one patch, but those
+/// two of whose points are one: `sides` of these need not be valid. `sides`: bodies in front and behind;
+/// throws Error where their number is not that of the triangles.
+std::vector<InterfacePatch> to_openmesh(const InterfaceMesh& mesh,
+                                        const std::vector<std::array<BodyId, 2>>& sides);
+
+/// The triangles of patches that share points.
+struct JoinedPatches {
+  InterfaceMesh mesh;  ///< its source is left to the caller
+  std::vector<std::array<BodyId, 2>> sides;
+  std::vector<std::uint32_t> points;  ///< of each point of the mesh, its number in the vertices
+};
+
+/// The reverse: vertices with the same number of a point become one point, in the order of these numbers;
+/// triangles are in the order of theirs. What is marked as deleted is left out. `body_materials`: of each
+/// body; `materials` names them.
+JoinedPatches from_openmesh(const std::vector<InterfacePatch>& patches,
+                            const IdVector<BodyId, MaterialId>& body_materials,
+                            const IdVector<MaterialId, std::string>& materials);
+
+}  // namespace adamas

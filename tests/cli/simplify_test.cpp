@@ -1,0 +1,83 @@
+// reconstruct --simplify and resample --simplify.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "program.h"
+
+namespace adamas::test {
+
+namespace {
+
+class Simplify : public ProgramTest {
+ protected:
+  Simplify() { make_scene("voronoi10", 12); }
+};
+
+TEST_F(Simplify, ReconstructsFewerTriangles) {
+  const RunResult result =
+      run_well({"reconstruct", "scene.vtr", "--simplify", "1%", "-o", "few.vtp", "--json", "few.json"});
+  EXPECT_NE(result.out.find("distance certified"), std::string::npos);
+  const auto figures = read_json("few.json");
+  const auto& simplified = figures["simplification"];
+  EXPECT_LT(4 * int(simplified["triangles"]), int(simplified["triangles_before"]));
+  EXPECT_EQ(simplified["triangles"], figures["triangles"]);
+  const double error = simplified["error_target"];
+  EXPECT_NEAR(error, 0.01 * std::sqrt(3.0), 1e-12);
+  for (const char* what : {"error", "error_per_material", "junction_error"}) {
+    EXPECT_LE(simplified[what]["certified"], error);
+    EXPECT_LE(simplified[what]["found"], simplified[what]["certified"]);
+  }
+  EXPECT_GE(simplified["smallest_angle"], simplified["smallest_angle_before"]);
+  EXPECT_EQ(simplified["changed_bodies"], 0);
+  // What was written is a sound network; a length stands for the same as its part of the diagonal.
+  run_well({"reconstruct", "few.vtp", "--box", "0,1,0,1,0,1", "-o", "again.vtp", "--json", "again.json"});
+  EXPECT_EQ(read_json("again.json")["triangles"], figures["triangles"]);
+  run_well({"reconstruct", "scene.vtr", "--simplify", fmt::format("{:.17g}", error), "-o", "same.vtp"});
+  EXPECT_EQ(read("same.vtp"), read("few.vtp"));
+}
+
+TEST_F(Simplify, IsTheSameOnAnyNumberOfThreads) {
+  for (const char* threads : {"1", "2"}) {
+    run_well({"reconstruct", "scene.vtr", "--simplify", "0.5%", "--smooth", "--threads", threads, "-o",
+              std::string("t") + threads + ".arec"});
+  }
+  EXPECT_EQ(read("t1.arec"), read("t2.arec"));
+}
+
+TEST_F(Simplify, TakesGivenInterfaces) {
+  run_well({"reconstruct", "scene.vtr", "-o", "net.vtp"});
+  run_well({"reconstruct", "net.vtp", "--box", "0,1,0,1,0,1", "--simplify", "1%", "-o", "few.vtp", "--json",
+            "few.json"});
+  const auto simplified = read_json("few.json")["simplification"];
+  EXPECT_LT(4 * int(simplified["triangles"]), int(simplified["triangles_before"]));
+}
+
+TEST_F(Simplify, ResamplesOnTopOfTheInterfaceError) {
+  const RunResult result = run({"resample", "scene.vtr", "--interface-error", "4%", "--interfaces-out",
+                                "few.vtp", "--simplify", "1%", "--json", "few.json"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("the simplified interfaces are within"), std::string::npos) << result.err;
+  const auto figures = read_json("few.json");
+  const auto& simplified = figures["simplification"];
+  EXPECT_LT(simplified["triangles"], simplified["triangles_before"]);
+  EXPECT_LE(simplified["error"]["certified"], simplified["error_target"]);
+  run_well({"reconstruct", "few.vtp", "--box", "0,1,0,1,0,1", "-o", "again.vtp"});
+}
+
+TEST_F(Simplify, RefusesNonsense) {
+  expect_wrong_usage({"reconstruct", "scene.vtr", "-o", "a.vtp", "--smooth"},
+                     {"--smooth: expected --simplify beside it, found none"});
+  expect_wrong_usage({"reconstruct", "scene.vtr", "-o", "a.vtp", "--simplify", "none"},
+                     {"--simplify: expected a positive error as 0.15", "found 'none'"});
+  expect_wrong_usage({"reconstruct", "scene.vtr", "-o", "a.vtp", "--simplify", "-1%"}, {"--simplify"});
+  expect_wrong_usage({"reconstruct", "scene.vtr", "-o", "a.vtp", "--simplify", "2"},
+                     {"--simplify: expected less than the domain's diagonal", "found 2"});
+  expect_wrong_usage({"resample", "scene.vtr", "-o", "a.vtu", "--simplify", "1%"},
+                     {"--simplify: expected --interfaces-out or --picture beside it, found none"});
+}
+
+}  // namespace
+
+}  // namespace adamas::test

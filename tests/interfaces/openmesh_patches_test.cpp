@@ -1,0 +1,136 @@
+#include "interfaces/simplification/openmesh_patches.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "core/base/error.h"
+#include "tests/interfaces/network_meshes.h"
+#include "tests/interfaces/simplification_scenes.h"
+
+namespace adamas {
+namespace {
+
+using Sides = std::vector<std::array<BodyId, 2>>;
+
+/// A triangle by its places, from the lowest one on, as seen from the lower body.
+using Placed = std::tuple<std::array<std::array<double, 3>, 3>, BodyId, BodyId>;
+
+std::multiset<Placed> placed(const InterfaceMesh& mesh, const Sides& sides) {
+  std::multiset<Placed> result;
+  for (std::size_t t = 0; t < sides.size(); ++t) {
+    std::array<std::array<double, 3>, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3& p = mesh.points[mesh.triangles[t].points[c]];
+      corners[c] = {p.x, p.y, p.z};
+    }
+    auto [front, back] = sides[t];
+    if (back < front) std::swap(front, back), std::swap(corners[1], corners[2]);
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    result.insert({corners, front, back});
+  }
+  return result;
+}
+
+void expect_round_trip(const InterfaceMesh& mesh, const Sides& sides, std::size_t patches) {
+  const auto found = to_openmesh(mesh, sides);
+  EXPECT_EQ(found.size(), patches);
+  std::size_t faces = 0;
+  for (const InterfacePatch& patch : found) {
+    faces += patch.mesh.n_faces();
+    EXPECT_LT(patch.front, patch.back);
+    for (const auto edge : patch.mesh.edges()) EXPECT_FALSE(patch.mesh.status(edge).deleted());
+  }
+  EXPECT_EQ(faces, mesh.triangles.size());
+  IdVector<BodyId, MaterialId> materials;
+  BodyId most(0);
+  for (const auto& pair : sides) most = std::max({most, pair[0], pair[1]});
+  for (std::uint32_t b = 0; b <= most.value; ++b) materials.emplace_back(b % 2);
+  const JoinedPatches joined = from_openmesh(found, materials, {"a", "b"});
+  EXPECT_EQ(placed(joined.mesh, joined.sides), placed(mesh, sides));
+  for (std::size_t t = 0; t < joined.sides.size(); ++t) {
+    EXPECT_EQ(joined.mesh.triangles[t].front, materials[joined.sides[t][0]]);
+    EXPECT_EQ(joined.mesh.triangles[t].back, materials[joined.sides[t][1]]);
+  }
+  for (std::size_t p = 0; p < joined.points.size(); ++p)
+    EXPECT_EQ(joined.mesh.points[p], mesh.points[joined.points[p]]);
+}
+
+Sides one_interface(std::size_t count) { return Sides(count, {BodyId(0), BodyId(1)}); }
+
+TEST(OpenMeshPatches, OnePerPairOfBodies) {
+  const ResamplingSource source = test::reconstructed_scene("voronoi10", 8, 2);
+  const InterfaceMesh mesh = test::interfaces_of(source);
+  Sides sides;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    sides.push_back(source.network->table().sides(source.network->interface_of(t)));
+    if (t % 3 == 0) std::swap(sides.back()[0], sides.back()[1]);
+  }
+  expect_round_trip(mesh, sides, source.network->table().interface_count());
+}
+
+TEST(OpenMeshPatches, ThreeSheetsOfOneInterfaceAtAnEdge) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  mesh.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}};
+  for (const std::uint32_t p : {2u, 3u, 4u})
+    mesh.triangles.push_back({{0, 1, p}, MaterialId(0), MaterialId(1)});
+  expect_round_trip(mesh, one_interface(3), 1);
+}
+
+TEST(OpenMeshPatches, TwoFansThatTouchAtAPoint) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  test::add_patch(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1), 2);
+  const auto count = static_cast<std::uint32_t>(mesh.points.size());
+  test::add_patch(mesh, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1), 2);
+  // The middles of both patches become one.
+  for (InterfaceTriangle& t : mesh.triangles) {
+    for (std::uint32_t& p : t.points) p = p == count + 4 ? 4 : p;
+  }
+  expect_round_trip(mesh, one_interface(mesh.triangles.size()), 1);
+  const auto patches = to_openmesh(mesh, one_interface(mesh.triangles.size()));
+  EXPECT_EQ(patches[0].mesh.n_vertices(), 2 * count);
+}
+
+TEST(OpenMeshPatches, TrianglesOnTheSamePointsAreSeveralPatches) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (int i = 0; i < 3; ++i) mesh.triangles.push_back({{0, 1, 2}, MaterialId(0), MaterialId(1)});
+  mesh.triangles.push_back({{0, 2, 1}, MaterialId(0), MaterialId(1)});
+  const auto patches = to_openmesh(mesh, one_interface(4));
+  std::size_t faces = 0;
+  for (const InterfacePatch& patch : patches) faces += patch.mesh.n_faces();
+  EXPECT_EQ(faces, 4u);
+  expect_round_trip(mesh, one_interface(4), patches.size());
+}
+
+/// Any triangles at all on few points, most of them in each other's way.
+TEST(OpenMeshPatches, NothingIsLostOfRandomTriangles) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    std::mt19937_64 random(seed);
+    InterfaceMesh mesh = test::mesh_with_materials(2);
+    for (int i = 0; i < 8; ++i) mesh.points.push_back(test::random_point(random, test::unit_box()));
+    Sides sides;
+    while (mesh.triangles.size() < 40) {
+      const auto pick = [&random] { return static_cast<std::uint32_t>(random() % 8); };
+      const std::uint32_t a = pick(), b = pick(), c = pick();
+      if (a == b || b == c || c == a) continue;
+      mesh.triangles.push_back({{a, b, c}, MaterialId(0), MaterialId(1)});
+      const BodyId front(random() % 2), back(2 + random() % 2);
+      sides.push_back(random() % 2 == 0 ? std::array{front, back} : std::array{back, front});
+    }
+    expect_round_trip(mesh, sides, to_openmesh(mesh, sides).size());
+  }
+}
+
+TEST(OpenMeshPatches, LeavesOutTrianglesOfTwoPoints) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{{0, 1, 2}, MaterialId(0), MaterialId(1)}, {{0, 1, 1}, MaterialId(0), MaterialId(1)}};
+  EXPECT_EQ(to_openmesh(mesh, one_interface(2)).at(0).mesh.n_faces(), 1u);
+  EXPECT_THROW(to_openmesh(mesh, one_interface(1)), Error);
+}
+
+}  // namespace
+}  // namespace adamas

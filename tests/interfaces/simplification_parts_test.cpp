@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "interfaces/simplification/changing_box_tree.h"
+#include "interfaces/simplification/near_field.h"
+#include "interfaces/simplification/triangle_contacts.h"
+#include "tests/interfaces/network_meshes.h"
+
+namespace adamas {
+namespace {
+
+PlacedTriangle placed(std::array<std::uint32_t, 3> points, std::array<Vec3, 3> corners) {
+  return {points, corners};
+}
+
+TEST(TriangleContacts, SharedCornersAndEdgesAreNone) {
+  const PlacedTriangle first = placed({0, 1, 2}, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
+  EXPECT_FALSE(in_contact(first, placed({1, 0, 3}, {{{1, 0, 0}, {0, 0, 0}, {0, -1, 0}}})));
+  EXPECT_FALSE(in_contact(first, placed({1, 0, 3}, {{{1, 0, 0}, {0, 0, 0}, {0, 1, 1e-9}}})));
+  EXPECT_TRUE(in_contact(first, placed({1, 0, 3}, {{{1, 0, 0}, {0, 0, 0}, {0.5, 2, 0}}})));
+  EXPECT_FALSE(in_contact(first, placed({0, 3, 4}, {{{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}}})));
+  EXPECT_TRUE(in_contact(first, placed({0, 3, 4}, {{{0, 0, 0}, {1, 1, 1}, {1, 1, -1}}})));
+  EXPECT_TRUE(in_contact(first, placed({3, 4, 5}, {{{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}}})));
+  EXPECT_TRUE(in_contact(first, placed({2, 0, 1}, {{{0, 1, 0}, {0, 0, 0}, {1, 0, 0}}})));
+  EXPECT_FALSE(in_contact(first, placed({3, 4, 5}, {{{0, 0, 0}, {1, 1, 0}, {0.5, 0.5, 0}}}))) << "no area";
+}
+
+TEST(TriangleContacts, FoundInAMesh) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  test::add_patch(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1), 4);
+  EXPECT_TRUE(find_contacts(mesh).empty());
+  const auto base = static_cast<std::uint32_t>(mesh.points.size());
+  mesh.points.insert(mesh.points.end(), {{0.3, 0.3, -1}, {0.31, 0.3, 1}, {0.3, 0.31, 1}});
+  mesh.triangles.push_back({{base, base + 1, base + 2}, MaterialId(0), MaterialId(1)});
+  const auto pairs = find_contacts(mesh);
+  ASSERT_FALSE(pairs.empty());
+  for (const auto& [a, b] : pairs) {
+    EXPECT_LT(a, b);
+    EXPECT_EQ(b, mesh.triangles.size() - 1);
+  }
+}
+
+TEST(TriangleContacts, TetrahedraHoldWhatIsInsideOrOnThem) {
+  const std::array<Vec3, 4> tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  EXPECT_TRUE(holds(tetrahedron, {0.1, 0.1, 0.1}));
+  EXPECT_TRUE(holds(tetrahedron, {0.5, 0.5, 0}));
+  EXPECT_FALSE(holds(tetrahedron, {0.5, 0.5, 1e-12}));
+  EXPECT_FALSE(holds({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}}, {0.5, 0.5, 0})) << "no volume";
+}
+
+TEST(ChangingBoxTree, FindsWhatLookingAtAllFinds) {
+  std::mt19937_64 random(3);
+  const auto random_box = [&random] {
+    Box3 box;
+    const Vec3 p = test::random_point(random, test::unit_box());
+    box.extend(p);
+    box.extend(p + 0.2 * test::random_point(random, test::unit_box()));
+    return box;
+  };
+  for (const std::size_t count : {0u, 1u, 2u, 3u, 17u, 200u}) {
+    std::vector<Box3> boxes(count);
+    for (Box3& box : boxes) box = random_box();
+    ChangingBoxTree tree(boxes);
+    for (int step = 0; step < 200; ++step) {
+      if (count > 0) {
+        const auto i = static_cast<std::uint32_t>(random() % count);
+        boxes[i] = step % 5 == 0 ? Box3{} : random_box();
+        tree.set(i, boxes[i]);
+      }
+      const Box3 query = random_box();
+      std::vector<std::uint32_t> expected, found;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (boxes[i].touches(query)) expected.push_back(i);
+      }
+      tree.for_each_touching(query, [&found](std::uint32_t i) { return found.push_back(i), true; });
+      std::sort(found.begin(), found.end());
+      ASSERT_EQ(found, expected);
+    }
+  }
+}
+
+/// What it takes as near is near at every sample; what is nearer than most of the limit it takes.
+TEST(NearField, AgreesWithSamples) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  test::add_sphere(mesh, {0.5, 0.5, 0.5}, 0.3, MaterialId(0), MaterialId(1), 12);
+  const ClosestPointTree tree(mesh.points, test::triangles_of(mesh));
+  std::mt19937_64 random(5);
+  std::size_t taken = 0;
+  for (const double reach : {0.003, 0.03, 0.3}) {
+    NearField field(tree, reach);
+    for (int i = 0; i < 300; ++i) {
+      // Corners near the sphere, some of them of thin triangles.
+      std::array<Vec3, 3> corners;
+      const Vec3 around = test::random_point(random, test::unit_box());
+      for (Vec3& c : corners) {
+        const Vec3 p = around + 0.3 * test::random_point(random, test::unit_box());
+        c = tree.closest(p)->point +
+            reach * (test::random_point(random, test::unit_box()) - Vec3{0.5, 0.5, 0.5});
+      }
+      if (i % 10 == 0) corners[2] = corners[1];
+      double farthest = 0;
+      for (int u = 0; u <= 20; ++u) {
+        for (int v = 0; u + v <= 20; ++v) {
+          const Vec3 p = u / 20.0 * corners[0] + v / 20.0 * corners[1] + (20 - u - v) / 20.0 * corners[2];
+          farthest = std::max(farthest, std::sqrt(tree.closest(p)->squared_distance));
+        }
+      }
+      const bool near = field.within(corners, reach);
+      taken += near ? 1 : 0;
+      if (near) {
+        EXPECT_LE(farthest, reach * (1 + 1e-12));
+      }
+      if (farthest < 0.8 * reach) {
+        EXPECT_TRUE(near) << farthest / reach;
+      }
+    }
+  }
+  EXPECT_GT(taken, 100u);
+}
+
+}  // namespace
+}  // namespace adamas
