@@ -189,18 +189,24 @@ PiecewiseLinearComplex Comparison::simplified_input(double error, std::string& n
   return stitch(found.mesh.points, triangles);
 }
 
+/// To the error wanted, and where TetGen fails with that, to a part of it.
 void Comparison::add_simplified(const OwnMesh& own) {
-  ComparedMesh row;
-  row.kind = MeshKind::kTetGenSimplified;
-  row.interface_error = own.row.interface_error;
-  try {
-    add_tetgen(simplified_input(*row.interface_error, row.note), own, row);
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& error) {
-    row.failure = error.what();
+  std::string failed;
+  for (const double part : {1.0, 0.5, 0.25}) {
+    ComparedMesh row;
+    row.kind = MeshKind::kTetGenSimplified;
+    row.interface_error = own.row.interface_error;
+    try {
+      add_tetgen(simplified_input(part * *row.interface_error, row.note), own, row);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      row.failure = error.what();
+    }
+    row.note += failed;
+    if (row.failure.empty() || part == 0.25) return finish(row);
+    failed += fmt::format("; failed with those simplified to {:.4g}", part * *row.interface_error);
   }
-  finish(row);
 }
 
 std::string mesh_name(MeshKind kind) {

@@ -103,6 +103,14 @@ void SimplifiedScene::expect_known_points() const {
   }
 }
 
+/// In one test, since the simplifying takes its time.
+TEST_P(SimplifiedScene, KeepsTheLaws) {
+  expect_within_the_error();
+  expect_the_same_bodies();
+  expect_volumes_within_a_shell();
+  expect_known_points();
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, SimplifiedScene,
     testing::Values(Case{"sphere", 12, 0, 0.02, true, false}, Case{"sphere", 12, 0, 0.02, true, true},
