@@ -64,7 +64,8 @@ class Reconstruction {
                            Layer& layer) const;
   [[nodiscard]] Part part_in(const MaterialLattice::Index& cell, std::size_t path,
                              const std::array<std::uint32_t, 4>& corners,
-                             const std::vector<OwnershipProblem::Candidate>& owners, MaterialId m) const;
+                             const std::vector<OwnershipProblem::Candidate>& owners,
+                             std::uint32_t number) const;
   [[nodiscard]] bool is_pointless(Part part) const { return part >= lattice_.point_count(); }
   [[nodiscard]] MaterialId material_of(Part part) const;
   void join_points();

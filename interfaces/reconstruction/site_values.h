@@ -17,7 +17,7 @@ class SiteValues {
   struct Entry {
     double value;
     float fraction;
-    std::uint16_t material;  ///< its number in the order of names
+    std::uint16_t material;  ///< its number in the order of names, or that of a region of it
 
     /// Whether the material fills the cell or is absent from it.
     [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
@@ -35,8 +35,17 @@ class SiteValues {
   }
   [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
-  /// The material with a number in the order of names, on which nothing else may depend.
+  /// The material with a number in the order of names, on which nothing else may depend. Above these are
+  /// regions of materials, which may lie on the two sides of a thin sheet. Where a site has a value of the
+  /// material itself it is that of all its regions.
   [[nodiscard]] MaterialId material(std::uint16_t number) const { return by_name_[number]; }
+  /// The number of the material itself.
+  [[nodiscard]] std::uint16_t whole(std::uint16_t number) const {
+    return parents_.empty() ? number : parents_[number];
+  }
+  [[nodiscard]] bool has_regions() const { return !parents_.empty(); }
+  /// How many numbers there are.
+  [[nodiscard]] std::size_t number_count() const { return by_name_.size(); }
   /// The number of the one material of a site that has no values.
   [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_[site]; }
   /// The value of a material that has none near a site: less than any that counts.
@@ -52,9 +61,11 @@ class SiteValues {
  private:
   void set_distances(const MultiMaterialData& data);
   void find_entries(const MultiMaterialData& data);
+  void split_at_sheets(const MultiMaterialData& data);
 
   std::vector<MaterialId> by_name_;
-  std::vector<std::uint16_t> sole_;  // by site; the number of materials where there are several
+  std::vector<std::uint16_t> parents_;  // by number; empty where there are no regions
+  std::vector<std::uint16_t> sole_;     // by site; the number of materials where there are several
   std::vector<std::uint32_t> first_;
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> mixed_;

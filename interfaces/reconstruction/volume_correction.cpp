@@ -71,7 +71,8 @@ class Correction {
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
         cell.go_to(mixed[n]);
-        differences[n] = greatest_difference(entries(mixed[n]), cell.measure());
+        cell.measure();
+        differences[n] = cell.greatest_difference();
       }
     });
     VolumeAgreement result;
@@ -90,13 +91,6 @@ class Correction {
 
   [[nodiscard]] std::span<const Entry> entries(std::size_t site) const {
     return static_cast<const SiteValues&>(values_).at(site);
-  }
-
-  static double greatest_difference(std::span<const Entry> entries, const std::vector<double>& volumes) {
-    double greatest = 0;
-    for (std::size_t m = 0; m < entries.size(); ++m)
-      greatest = std::max(greatest, std::abs(volumes[m] - static_cast<double>(entries[m].fraction)));
-    return greatest;
   }
 
   /// Whether a value at a site or a neighbour has changed since some time.
@@ -128,32 +122,36 @@ class Correction {
   }
 
   bool correct(std::size_t site, CellVolumes& cell) {
-    const std::span<Entry> own = values_.at(site);
     cell.go_to(site);
-    if (greatest_difference(own, cell.measure()) <= kFarOff) return false;
+    cell.measure();
+    if (cell.greatest_difference() <= kFarOff) return false;
     std::vector<std::size_t> present;
-    for (std::size_t m = 0; m < own.size(); ++m) {
-      if (own[m].fraction > 0) present.push_back(m);
+    for (std::size_t m = 0; m < cell.materials().size(); ++m) {
+      if (cell.materials()[m].fraction > 0) present.push_back(m);
     }
     if (present.size() == 2) {
-      raise(own, cell, present[0], present[1]);
+      raise(cell, present[0], present[1]);
     } else {
-      for (const std::size_t m : present) raise(own, cell, m, m);
+      for (const std::size_t m : present) raise(cell, m, m);
     }
-    for (std::size_t m = 0; m < own.size(); ++m) own[m].value = cell.own(m);
+    for (std::size_t row = 0; row < cell.rows(); ++row) {
+      const std::uint32_t entry = cell.entry(row, SiteCell::kSelf);
+      if (entry != CellVolumes::kNone) values_.entries()[entry].value = cell.own(row);
+    }
     return true;
   }
 
-  /// Raises the m-th value, and lowers the n-th as much where that is another, until the m-th volume is
-  /// right, by two steps of the secant method: volumes grow with values.
-  void raise(std::span<const Entry> own, CellVolumes& cell, std::size_t m, std::size_t n) const {
-    const double first_m = cell.own(m), first_n = cell.own(n), most = values_.greatest();
+  /// Raises the values of the m-th material, and lowers those of the n-th as much where that is another,
+  /// until the m-th volume is right, by two steps of the secant method: volumes grow with values.
+  void raise(CellVolumes& cell, std::size_t m, std::size_t n) const {
+    const double most = values_.greatest();
+    cell.keep();
     const auto set = [&](double shift) {
       const double part = m == n ? shift : 0.5 * shift;
-      cell.own(m) = std::clamp(first_m + part, -most, most);
-      if (m != n) cell.own(n) = std::clamp(first_n - part, -most, most);
+      cell.move(m, part, most);
+      if (m != n) cell.move(n, -part, most);
     };
-    const double before = cell.measure()[m], missing = static_cast<double>(own[m].fraction) - before;
+    const double before = cell.measure()[m], missing = cell.materials()[m].fraction - before;
     const double guess = std::clamp(2.5 * missing * step_, -step_, step_);
     if (guess == 0) return;
     set(guess);
@@ -241,12 +239,11 @@ class Correction {
       block.cells_off = 0;
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
-        const std::span<const Entry> own = entries(mixed[n]);
         cell.go_to(mixed[n]);
         const std::vector<double>& volumes = cell.measure(true);
-        block.cells_off += greatest_difference(own, volumes) > kCellOff ? 1 : 0;
-        for (std::size_t m = 0; m < own.size(); ++m)
-          system.missing[row_of_[n] + m] = static_cast<double>(own[m].fraction) - volumes[m];
+        block.cells_off += cell.greatest_difference() > kCellOff ? 1 : 0;
+        for (std::size_t m = 0; m < volumes.size(); ++m)
+          system.missing[row_of_[n] + m] = cell.materials()[m].fraction - volumes[m];
         for (const CellVolumes::Pair& pair : cell.pairs()) add_exchange(cell, pair, row_of_[n], block);
       }
     });
@@ -264,8 +261,8 @@ class Correction {
       if (gains != kNone) block.coefficients.push_back({gains, by});
       if (loses != kNone) block.coefficients.push_back({loses, -by});
     }
-    block.exchanges.push_back({row + static_cast<std::uint32_t>(pair.first),
-                               row + static_cast<std::uint32_t>(pair.second), first,
+    block.exchanges.push_back({row + static_cast<std::uint32_t>(cell.material_of(pair.first)),
+                               row + static_cast<std::uint32_t>(cell.material_of(pair.second)), first,
                                static_cast<std::uint32_t>(block.coefficients.size()) - first});
   }
 
@@ -291,8 +288,8 @@ class Correction {
       Eigen::VectorXd offsets = solver.solve(missing);
       offsets.array() -= offsets.mean();
       for (Entry& entry : values_.entries())
-        shift(entry,
-              std::clamp(offsets[static_cast<Eigen::Index>(entry.material)], -0.1 * step_, 0.1 * step_));
+        shift(entry, std::clamp(offsets[static_cast<Eigen::Index>(values_.whole(entry.material))],
+                                -0.1 * step_, 0.1 * step_));
     }
   }
 
@@ -338,9 +335,11 @@ class Correction {
           }
           cell.go_to(site);
           const std::vector<double>& parts = cell.measure(true);
-          for (std::size_t m = 0; m < own.size(); ++m) sum.volumes[own[m].material] += parts[m] * volume;
+          for (std::size_t m = 0; m < parts.size(); ++m)
+            sum.volumes[cell.materials()[m].number] += parts[m] * volume;
           for (const CellVolumes::Pair& pair : cell.pairs()) {
-            sum.pairs.push_back({own[pair.first].material, own[pair.second].material});
+            sum.pairs.push_back({cell.materials()[cell.material_of(pair.first)].number,
+                                 cell.materials()[cell.material_of(pair.second)].number});
             double by = 0;
             for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
               const int movable = static_cast<int>(moves(cell.entry(pair.first, n))) +

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/site_values.h"
+#include "interfaces/reconstruction/thin_sheets.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+/// Places beside each other are of one sheet where the cosine of their normals is at least this, and their
+/// heights between them differ by no more cells.
+constexpr double kLeastCosine = 0.5, kMostStep = 0.6;
+
+/// Sides of places: 2 p for what lies before place p, 2 p + 1 for what lies behind. A set of sides knows
+/// which others lie across sheets, and never becomes one with these.
+class SideSets {
+ public:
+  explicit SideSets(std::size_t places) : parent_(2 * places), across_(2 * places) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+    for (std::uint32_t s = 0; s < parent_.size(); ++s) across_[s] = {s ^ 1u};
+  }
+
+  std::uint32_t find(std::uint32_t side) {
+    while (parent_[side] != side) side = parent_[side] = parent_[parent_[side]];
+    return side;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a), b = find(b);
+    if (a == b || lies_across(a, b)) return;
+    if (across_[a].size() < across_[b].size()) std::swap(a, b);
+    parent_[b] = a;
+    // Those across are one in most cases.
+    for (const std::uint32_t s : across_[b]) {
+      const std::uint32_t root = find(s);
+      if (std::none_of(across_[a].begin(), across_[a].end(),
+                       [&](std::uint32_t t) { return find(t) == root; }))
+        across_[a].push_back(root);
+    }
+    across_[b] = {};
+  }
+
+ private:
+  bool lies_across(std::uint32_t a, std::uint32_t b) {
+    return std::any_of(across_[a].begin(), across_[a].end(), [&](std::uint32_t s) { return find(s) == b; }) ||
+           std::any_of(across_[b].begin(), across_[b].end(), [&](std::uint32_t s) { return find(s) == a; });
+  }
+
+  std::vector<std::uint32_t> parent_;
+  std::vector<std::vector<std::uint32_t>> across_;  // by root
+};
+
+class RegionSearch {
+ public:
+  RegionSearch(const MultiMaterialData& data, const SiteValues& values, ThinSheets& sheets)
+      : data_(data),
+        values_(values),
+        grid_sites_(data.grid),
+        sheets_(sheets),
+        sets_(sheets.places.size()),
+        place_of_(data.grid.site_count(), kNone) {
+    for (std::size_t p = 0; p < sheets.places.size(); ++p)
+      place_of_[sheets.places[p].site] = static_cast<std::uint32_t>(p);
+  }
+
+  void run() {
+    for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3& d) { join_along_sheet(p, q, d); });
+    for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) { join_through_cells(p, q); });
+    drop_ends();
+    number();
+  }
+
+ private:
+  [[nodiscard]] const SheetPlace& place(std::uint32_t p) const { return sheets_.places[p]; }
+
+  /// Calls visit(p, q, offset of q from p) for places with twins that are beside each other.
+  template <class Visit>
+  void for_each_pair(const Visit& visit) {
+    for (std::uint32_t p = 0; p < sheets_.places.size(); ++p) {
+      if (!place(p).has_twins()) continue;
+      grid_sites_.for_each_neighbour(place(p).site, [&](std::size_t other, int di, int dj, int dk) {
+        const std::uint32_t q = place_of_[other];
+        if (q == kNone || q < p || place(q).sides != place(p).sides) return;
+        visit(p, q, Vec3{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
+      });
+    }
+  }
+
+  void join_along_sheet(std::uint32_t p, std::uint32_t q, const Vec3& d) {
+    const Slab &a = place(p).slab, &b = place(q).slab;
+    const double cosine = dot(a.normal, b.normal), sign = cosine < 0 ? -1 : 1;
+    if (place(p).material != place(q).material || std::abs(cosine) < kLeastCosine) return;
+    if (std::abs(a.height(0.5 * d) - sign * b.height(-0.5 * d)) > kMostStep) return;
+    const std::uint32_t turned = sign < 0 ? 1 : 0;
+    sets_.join(2 * p, 2 * q + turned);
+    sets_.join(2 * p + 1, 2 * q + (1 - turned));
+  }
+
+  /// Whether a place is in a cell that what lies beside the sheet fills.
+  [[nodiscard]] bool is_filled(std::uint32_t p) const {
+    return data_.fractions[values_.material(place(p).sides[0])][place(p).site] >= 1;
+  }
+  /// The side on which a place in such a cell is.
+  [[nodiscard]] std::uint32_t home(std::uint32_t p) const {
+    return 2 * p + (place(p).slab.offset > 0 ? 1 : 0);
+  }
+
+  void join_through_cells(std::uint32_t p, std::uint32_t q) {
+    if (is_filled(p) && is_filled(q)) sets_.join(home(p), home(q));
+  }
+
+  /// Between two cells that one material fills, face to face, there is no sheet: where they are on two sides
+  /// of one it has ended.
+  void drop_ends() {
+    std::vector<char> ended(sheets_.places.size(), 0);
+    for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3& d) {
+      if (squared_norm(d) > 1.5 || !is_filled(p) || !is_filled(q)) return;
+      if (sets_.find(home(p)) != sets_.find(home(q))) ended[p] = ended[q] = 1;
+    });
+    for (std::uint32_t p = 0; p < ended.size(); ++p) {
+      SheetPlace& dropped = sheets_.places[p];
+      dropped.regions = {ended[p] != 0 ? kNone : sets_.find(2 * p),
+                         ended[p] != 0 ? kNone : sets_.find(2 * p + 1)};
+    }
+    std::erase_if(sheets_.places, [](const SheetPlace& p) { return p.regions[0] == kNone; });
+  }
+
+  void number() {
+    std::vector<std::uint32_t> number_of(2 * sheets_.places.size(), kNone);
+    for (SheetPlace& p : sheets_.places) {
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (!p.has_twins()) {
+          p.regions[side] = ThinSheets::kNoRegion;
+          continue;
+        }
+        const std::uint32_t root = p.regions[side];
+        if (number_of.size() <= root) number_of.resize(root + std::size_t{1}, kNone);
+        if (number_of[root] == kNone) {
+          number_of[root] = static_cast<std::uint32_t>(sheets_.region_materials.size());
+          sheets_.region_materials.push_back(p.sides[side]);
+        }
+        p.regions[side] = number_of[root];
+      }
+    }
+  }
+
+  const MultiMaterialData& data_;
+  const SiteValues& values_;
+  GridSites grid_sites_;
+  ThinSheets& sheets_;
+  SideSets sets_;
+  std::vector<std::uint32_t> place_of_;
+};
+
+}  // namespace
+
+void join_regions(const MultiMaterialData& data, const SiteValues& values, ThinSheets& sheets) {
+  RegionSearch(data, values, sheets).run();
+}
+
+}  // namespace adamas
