@@ -20,7 +20,7 @@ constexpr double kThickest = 1.5, kThinnest = 0.03;
 /// The middle of a layer is no farther away from a cell that it cuts.
 constexpr double kMostOffset = 1.2;
 /// What a fit may leave, as a part of the fractions' and of a cell.
-constexpr double kMostRelative = 0.35, kMostLeft = 0.12;
+constexpr double kMostRelative = 0.5, kMostLeft = 0.15;
 constexpr int kRounds = 6;
 
 struct Sides {

@@ -18,6 +18,9 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 /// What a value differs from zero by at least, in cells, where its sign is known.
 constexpr double kLeastValue = 0.25;
 
+/// The part of a sheet's thickness that no correction of volumes takes away.
+constexpr double kLeastKept = 0.3;
+
 /// The length of a cell of some size along a direction that is given in cells.
 double length_along(const Vec3& n, const Vec3& size) {
   return 1 / norm(Vec3{n.x / size.x, n.y / size.y, n.z / size.z});
@@ -146,6 +149,40 @@ void SiteValues::split_at_sheets(const MultiMaterialData& data) {
   }
   entries_ = std::move(entries);
   first_ = std::move(first);
+  find_layers(sheets, materials);
+}
+
+void SiteValues::find_layers(const ThinSheets& sheets, std::size_t materials) {
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  for (const SheetPlace& place : sheets.places) {
+    if (sole_[place.site] != materials) continue;
+    const auto entry_of = [&](std::size_t number) {
+      for (std::uint32_t e = first_[place.site]; e < first_[place.site + 1]; ++e) {
+        if (entries_[e].material == number) return e;
+      }
+      return kNone;
+    };
+    Layer layer{entry_of(place.material), {}, 0};
+    for (std::size_t side = 0; side < 2; ++side)
+      layer.sides[side] = entry_of(place.has_twins() ? materials + place.regions[side] : place.sides[side]);
+    if (layer.sheet == kNone || layer.sides[0] == kNone || layer.sides[1] == kNone) continue;
+    if (!(entries_[layer.sheet].fraction > 0)) continue;
+    const double above =
+        entries_[layer.sheet].value - 0.5 * (entries_[layer.sides[0]].value + entries_[layer.sides[1]].value);
+    layer.least = kLeastKept * above;
+    if (layer.least > 0) layers_.push_back(layer);
+  }
+}
+
+void SiteValues::hold_layers() {
+  for (const Layer& layer : layers_) {
+    Entry &sheet = entries_[layer.sheet], &front = entries_[layer.sides[0]], &back = entries_[layer.sides[1]];
+    const double missing = layer.least - (sheet.value - 0.5 * (front.value + back.value));
+    if (missing <= 0) continue;
+    sheet.value += 0.5 * missing;
+    front.value -= 0.5 * missing;
+    back.value -= 0.5 * missing;
+  }
 }
 
 }  // namespace adamas

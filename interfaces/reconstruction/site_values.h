@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "core/data/multi_material_data.h"
 
 namespace adamas {
+
+struct ThinSheets;
 
 /// A value per site and material near it, whose greatest says who owns a point (docs/method.md, Interfaces
 /// from volume fractions): lengths, about the signed distance from the material's boundary. Sites all of
@@ -55,6 +58,16 @@ class SiteValues {
   /// What no value of labels that are smoothed may be nearer to zero than, so that sites keep their labels; 0
   /// of other data.
   [[nodiscard]] double least() const { return least_; }
+  /// A place in a thin sheet of a mixed site, by its entries: it holds together as long as the sheet's value
+  /// is above the mean of those of what lies on its two sides.
+  struct Layer {
+    std::uint32_t sheet;
+    std::array<std::uint32_t, 2> sides;
+    double least;  ///< how much it is to be above
+  };
+  [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
+  /// Lifts the values of sheets above what is on their sides where they have come below.
+  void hold_layers();
   /// Sites where two materials or more have a fraction, in order.
   [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
 
@@ -62,6 +75,7 @@ class SiteValues {
   void set_distances(const MultiMaterialData& data);
   void find_entries(const MultiMaterialData& data);
   void split_at_sheets(const MultiMaterialData& data);
+  void find_layers(const ThinSheets& sheets, std::size_t materials);
 
   std::vector<MaterialId> by_name_;
   std::vector<std::uint16_t> parents_;  // by number; empty where there are no regions
@@ -69,6 +83,7 @@ class SiteValues {
   std::vector<std::uint32_t> first_;
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> mixed_;
+  std::vector<Layer> layers_;
   double far_ = 0, least_ = 0;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 
 #include "core/base/parallel.h"
@@ -22,7 +24,7 @@ constexpr int kRings = 2;
 /// their heights differ by no more cells.
 constexpr double kLeastCosine = 0.7, kMostStep = 0.5;
 /// A sheet has an end where a cell should hold so much of it and has none, or less than this part of it.
-constexpr double kMissing = 0.1, kHalf = 0.5;
+constexpr double kMissing = 0.1, kHalf = 0.5, kAside = 0.4;
 
 class SheetSearch {
  public:
@@ -158,20 +160,20 @@ class SheetSearch {
     const auto for_each_place = [&](auto&& visit) {
       sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
         if (place_of[other] == kNone) return;
+        const Vec3 d{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)};
         SheetPlace place = places_[place_of[other]];
-        place.slab.offset += dot(place.slab.normal, Vec3{static_cast<double>(di), static_cast<double>(dj),
-                                                         static_cast<double>(dk)});
-        visit(place, static_cast<double>(di * di + dj * dj + dk * dk));
+        place.slab.offset += dot(place.slab.normal, d);
+        visit(place, squared_norm(d), d);
       });
     };
-    for_each_place([&](const SheetPlace& place, double squared) {
+    for_each_place([&](const SheetPlace& place, double squared, const Vec3&) {
       const std::array<double, 2> rank{squared, std::abs(place.slab.offset)};
       if (!nearest || rank < least) nearest = place, least = rank;
     });
     if (!nearest) return {};
-    Vec3 normal;
+    Vec3 normal, middle;
     double offset = 0, thickness = 0, weights = 0;
-    for_each_place([&](const SheetPlace& place, double squared) {
+    for_each_place([&](const SheetPlace& place, double squared, const Vec3& d) {
       const double cosine = dot(place.slab.normal, nearest->slab.normal), sign = cosine < 0 ? -1 : 1;
       if (place.material != nearest->material || std::abs(cosine) < kLeastCosine ||
           std::abs(sign * place.slab.offset - nearest->slab.offset) > kMostStep)
@@ -184,20 +186,25 @@ class SheetSearch {
       offset += w * sign * place.slab.offset;
       thickness += w * place.slab.thickness;
       weights += w;
+      middle += w * d;
     });
     SheetPlace place = *nearest;
     place.site = static_cast<std::uint32_t>(site);
     place.slab = {normalized(normal), offset / weights, thickness / weights};
-    return goes_on(place) ? std::optional(place) : std::nullopt;
+    middle *= 1 / weights;
+    const double aside = norm(middle - dot(middle, place.slab.normal) * place.slab.normal);
+    const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
+    if (own > 0 && aside > kAside && own < kHalf * part) place.slab.thickness *= own / part;
+    return goes_on(place, aside) ? std::optional(place) : std::nullopt;
   }
 
   /// Whether what a cell holds agrees with a sheet that is continued to it.
-  [[nodiscard]] bool goes_on(const SheetPlace& place) const {
+  [[nodiscard]] bool goes_on(const SheetPlace& place, double aside) const {
     const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
     const double front = fraction(place.sides[0], place.site), back = fraction(place.sides[1], place.site);
     if (own + front + back <= 0) return false;
-    if (own > 0) return own >= kHalf * part;
-    if (part > kMissing) return false;
+    if (own > 0) return true;
+    if (aside > kAside && part > kMissing) return false;
     const double height = -place.slab.offset;
     return place.has_twins() || (height > 0 ? front : back) > 0;
   }
@@ -217,7 +224,28 @@ ThinSheets find_thin_sheets(const MultiMaterialData& data, const SiteValues& val
   ThinSheets sheets;
   if (!data.labels.empty()) return sheets;
   sheets.places = SheetSearch(data, values).run();
+  const auto dump = [&](const char* w) {
+    if (!getenv("DBG")) return;
+    std::vector<char> has(data.grid.site_count(), 0);
+    std::size_t tw = 0;
+    for (auto& p : sheets.places) has[p.site] = 1, tw += p.has_twins();
+    std::size_t miss = 0;
+    for (auto m : values.mixed()) miss += !has[m];
+    fprintf(stderr, "%s places %zu twins %zu mixed %zu missing %zu\n", w, sheets.places.size(), tw,
+            values.mixed().size(), miss);
+    const GridSites g(data.grid);
+    for (auto m : values.mixed())
+      if (!has[m]) {
+        auto c = g.cell(m).center();
+        fprintf(stderr, "MISS %s %.4f %.4f %.4f:", w, c.x, c.y, c.z);
+        for (auto& e : values.at(m)) fprintf(stderr, " %d:%.3f", e.material, double(e.fraction));
+        fprintf(stderr, "\n");
+      }
+  };
+  dump("found");
   if (!sheets.places.empty()) join_regions(data, values, sheets);
+  dump("joined");
+  if (getenv("DBG")) fprintf(stderr, "regions %zu\n", sheets.region_materials.size());
   return sheets;
 }
 

@@ -56,6 +56,7 @@ class Correction {
       progress.step("correcting volumes", -1);
       std::size_t off = 0;
       for (int colour = 0; colour < 8; ++colour) off += correct(colour, 1 + 8 * sweep + colour);
+      values_.hold_layers();
       if (off == 0) break;
     }
     std::fill(changed_.begin(), changed_.end(), 0);
@@ -193,17 +194,18 @@ class Correction {
       std::vector<double> move = system.solve(unknowns_.size(), kDamping / (step_ * step_));
       for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
       double share = 1;
-      apply(move, share);
+      start_ = unknown_values();
+      apply(move, share, share);
       linearise(system);
       double sum = sum_of_squares(system.missing);
       while (sum > best && share > kLeastShare) {
         share *= 0.5;
-        apply(move, -share);
+        apply(move, -share, share);
         linearise(system);
         sum = sum_of_squares(system.missing);
       }
       if (sum > best) {
-        apply(move, -share);
+        apply(move, -share, 0);
         return;
       }
       const std::size_t off_before = off;
@@ -215,11 +217,30 @@ class Correction {
     }
   }
 
-  void apply(const std::vector<double>& move, double share) {
+  [[nodiscard]] std::vector<double> unknown_values() const {
+    std::vector<double> values;
+    if (values_.layers().empty()) return values;
+    for (const std::uint32_t entry : unknowns_) values.push_back(values_.entries()[entry].value);
+    return values;
+  }
+
+  /// Moves values by so much more, to a share of the move in all.
+  void apply(const std::vector<double>& move, double more, double share) {
+    if (values_.layers().empty()) {
+      for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+        const double by = more * move[i];
+        values_.entries()[unknowns_[i]].value += by;
+        if (std::abs(by) > kStill * step_) changed_[site_of_[i]] = 1;
+      }
+      return;
+    }
+    const std::vector<double> before = unknown_values();
+    for (std::size_t i = 0; i < unknowns_.size(); ++i)
+      values_.entries()[unknowns_[i]].value = start_[i] + share * move[i];
+    values_.hold_layers();
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-      const double by = share * move[i];
-      values_.entries()[unknowns_[i]].value += by;
-      if (std::abs(by) > kStill * step_) changed_[site_of_[i]] = 1;
+      if (std::abs(values_.entries()[unknowns_[i]].value - before[i]) > kStill * step_)
+        changed_[site_of_[i]] = 1;
     }
   }
 
@@ -377,6 +398,7 @@ class Correction {
   std::vector<std::uint32_t> unknowns_;                // entries that are moved
   std::vector<std::uint32_t> site_of_;                 // of an unknown
   std::vector<std::uint32_t> unknown_of_;              // by entry
+  std::vector<double> start_;                          // of unknowns, where there are layers to hold
 };
 
 }  // namespace
