@@ -75,7 +75,7 @@ class SiteValues {
   void set_distances(const MultiMaterialData& data);
   void find_entries(const MultiMaterialData& data);
   void split_at_sheets(const MultiMaterialData& data);
-  void find_layers(const ThinSheets& sheets, std::size_t materials);
+  void find_layers(const MultiMaterialData& data, const ThinSheets& sheets, std::size_t materials);
 
   std::vector<MaterialId> by_name_;
   std::vector<std::uint16_t> parents_;  // by number; empty where there are no regions
