@@ -19,7 +19,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr double kLeastValue = 0.25;
 
 /// The part of a sheet's thickness that no correction of volumes takes away.
-constexpr double kLeastKept = 0.05;
+constexpr double kLeastKept = 0.05, kLeastHeld = 0.1;
 
 /// The length of a cell of some size along a direction that is given in cells.
 double length_along(const Vec3& n, const Vec3& size) {
@@ -154,15 +154,21 @@ void SiteValues::split_at_sheets(const MultiMaterialData& data) {
 
 void SiteValues::find_layers(const MultiMaterialData& data, const ThinSheets& sheets, std::size_t materials) {
   const GridSites sites(data.grid);
-  std::vector<char> in_sheet(data.grid.site_count(), 0);
-  for (const SheetPlace& place : sheets.places) in_sheet[place.site] = 1;
+  std::vector<const SheetPlace*> place_at(data.grid.site_count(), nullptr);
+  for (const SheetPlace& place : sheets.places) place_at[place.site] = &place;
+  const auto is_alike = [](const SheetPlace& a, const SheetPlace& b) {
+    return a.material == b.material &&
+           std::minmax(a.sides[0], a.sides[1]) == std::minmax(b.sides[0], b.sides[1]);
+  };
   constexpr std::uint32_t kNone = 0xffffffffu;
   for (const SheetPlace& place : sheets.places) {
     if (sole_[place.site] != materials) continue;
-    // Where a sheet ends its value has to come down.
+    if (place.slab.thickness < kLeastHeld) continue;
+    // Where a sheet ends its value has to come down, and where something else begins beside it sides change.
     bool inside = true;
-    sites.for_each_neighbour(
-        place.site, [&](std::size_t other, int, int, int) { inside = inside && in_sheet[other] != 0; });
+    sites.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
+      inside = inside && place_at[other] != nullptr && is_alike(place, *place_at[other]);
+    });
     if (!inside) continue;
     const auto entry_of = [&](std::size_t number) {
       for (std::uint32_t e = first_[place.site]; e < first_[place.site + 1]; ++e) {

@@ -31,6 +31,7 @@ constexpr double kMostOff = 8e-3, kLeastGain = 0.02;
 constexpr double kDamping = 1e-4;
 /// Steps are not halved below this, and moves that are smaller, in cells, leave what was measured as it is.
 constexpr double kLeastShare = 0.1, kStill = 1e-6;
+constexpr int kMostHalvings = 4;
 /// Of the domain.
 constexpr double kTotalTolerance = 2e-11;
 
@@ -193,21 +194,8 @@ class Correction {
       if (static_cast<double>(off) <= kMostOff * static_cast<double>(values_.mixed().size())) return;
       std::vector<double> move = system.solve(unknowns_.size(), kDamping / (step_ * step_));
       for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
-      double share = 1;
-      start_ = unknown_values();
-      apply(move, share, share);
-      linearise(system);
-      double sum = sum_of_squares(system.missing);
-      while (sum > best && share > kLeastShare) {
-        share *= 0.5;
-        apply(move, -share, share);
-        linearise(system);
-        sum = sum_of_squares(system.missing);
-      }
-      if (sum > best) {
-        apply(move, -share, 0);
-        return;
-      }
+      double sum = values_.layers().empty() ? step(system, move, best) : step_layers(system, move, best);
+      if (sum > best) return;
       const std::size_t off_before = off;
       off = system.cells_off();
       const bool settled = sum > (1 - kLeastGain) * best &&
@@ -217,28 +205,91 @@ class Correction {
     }
   }
 
-  [[nodiscard]] std::vector<double> unknown_values() const {
-    std::vector<double> values;
-    if (values_.layers().empty()) return values;
-    for (const std::uint32_t entry : unknowns_) values.push_back(values_.entries()[entry].value);
-    return values;
+  /// Moves values as far along a move as brings volumes nearer to what they should be; returns the sum of
+  /// squares of what is missing then, which is greater than `best` where nothing does: then values stay.
+  double step(LinearSystem& system, const std::vector<double>& move, double best) {
+    double share = 1;
+    apply(move, share);
+    linearise(system);
+    double sum = sum_of_squares(system.missing);
+    while (sum > best && share > kLeastShare) {
+      share *= 0.5;
+      apply(move, -share);
+      linearise(system);
+      sum = sum_of_squares(system.missing);
+    }
+    if (sum > best) apply(move, -share);
+    return sum;
   }
 
-  /// Moves values by so much more, to a share of the move in all.
-  void apply(const std::vector<double>& move, double more, double share) {
-    if (values_.layers().empty()) {
-      for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-        const double by = more * move[i];
-        values_.entries()[unknowns_[i]].value += by;
-        if (std::abs(by) > kStill * step_) changed_[site_of_[i]] = 1;
-      }
-      return;
-    }
-    const std::vector<double> before = unknown_values();
-    for (std::size_t i = 0; i < unknowns_.size(); ++i)
-      values_.entries()[unknowns_[i]].value = start_[i] + share * move[i];
-    values_.hold_layers();
+  void apply(const std::vector<double>& move, double share) {
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+      const double by = share * move[i];
+      values_.entries()[unknowns_[i]].value += by;
+      if (std::abs(by) > kStill * step_) changed_[site_of_[i]] = 1;
+    }
+  }
+
+  /// The same where there are sheets to hold. Where no share of the whole move helps it is shortened only
+  /// where it leads too far.
+  double step_layers(LinearSystem& system, const std::vector<double>& move, double best) {
+    std::vector<double> start, shares(unknowns_.size(), 1);
+    for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
+    const std::vector<double> before = squares_round_sites(system.missing);
+    const auto try_shares = [&] {
+      place(start, move, shares);
+      linearise(system);
+      return sum_of_squares(system.missing);
+    };
+    double sum = try_shares();
+    for (double share = 0.5; sum > best && share > 0.5 * kLeastShare; share *= 0.5) {
+      std::fill(shares.begin(), shares.end(), share);
+      sum = try_shares();
+    }
+    if (sum <= best) return sum;
+    std::fill(shares.begin(), shares.end(), 1);
+    sum = try_shares();
+    for (int halving = 1; halving <= kMostHalvings; ++halving) {
+      const std::vector<double> after = squares_round_sites(system.missing);
+      for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+        if (after[site_of_[i]] > before[site_of_[i]])
+          shares[i] = halving < kMostHalvings ? 0.5 * shares[i] : 0;
+      }
+      sum = try_shares();
+    }
+    if (sum <= best) return sum;
+    std::fill(shares.begin(), shares.end(), 0);
+    place(start, move, shares);
+    return sum;
+  }
+
+  /// The sums of squares of what is missing in the cells of a site and its neighbours, by site.
+  [[nodiscard]] std::vector<double> squares_round_sites(const std::vector<double>& missing) const {
+    const auto& mixed = values_.mixed();
+    std::vector<double> own(data_.grid.site_count(), 0), sums(own.size(), 0);
+    for (std::size_t n = 0; n < mixed.size(); ++n) {
+      for (std::uint32_t row = row_of_[n]; row < row_of_[n + 1]; ++row)
+        own[mixed[n]] += missing[row] * missing[row];
+    }
+    parallel_for(mixed.size(), 1024, [&](std::size_t n) {
+      double sum = own[mixed[n]];
+      grid_sites_.for_each_neighbour(mixed[n], [&](std::size_t other, int, int, int) { sum += own[other]; });
+      sums[mixed[n]] = sum;
+    });
+    return sums;
+  }
+
+  /// Puts values where shares of a move lead from a start on, but for sheets that would tear.
+  void place(const std::vector<double>& start, const std::vector<double>& move,
+             const std::vector<double>& shares) {
+    std::vector<double> before;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      double& value = values_.entries()[unknowns_[i]].value;
+      before.push_back(value);
+      value = start[i] + shares[i] * move[i];
+    }
+    values_.hold_layers();
+    for (std::size_t i = 0; i < start.size(); ++i) {
       if (std::abs(values_.entries()[unknowns_[i]].value - before[i]) > kStill * step_)
         changed_[site_of_[i]] = 1;
     }
@@ -398,7 +449,6 @@ class Correction {
   std::vector<std::uint32_t> unknowns_;                // entries that are moved
   std::vector<std::uint32_t> site_of_;                 // of an unknown
   std::vector<std::uint32_t> unknown_of_;              // by entry
-  std::vector<double> start_;                          // of unknowns, where there are layers to hold
 };
 
 }  // namespace
