@@ -106,7 +106,7 @@ void CellVolumes::keep() {
 
 void CellVolumes::move(std::size_t m, double by, double most) {
   for (std::size_t row = 0; row < count_; ++row) {
-    if (material_of_[row] != m) continue;
+    if (material_of_[row] != m || (count_ > materials_.size() && settled_[row][SiteCell::kSelf])) continue;
     round_[row][SiteCell::kSelf] =
         std::clamp(kept_[row] + by, std::min(-most, kept_[row]), std::max(most, kept_[row]));
   }

@@ -40,7 +40,7 @@ class CellVolumes {
   /// Keeps the site's values as they are, for move().
   void keep();
   /// Sets the site's values of a material, here alone, to those kept and so much more, at most so far from
-  /// zero.
+  /// zero; not those in regions that hold nothing of it here.
   void move(std::size_t m, double by, double most);
   /// The volumes as parts of the cell's; with `growth` pairs() are found too.
   const std::vector<double>& measure(bool growth = false);

@@ -77,14 +77,13 @@ class RegionSearch {
  private:
   [[nodiscard]] const SheetPlace& place(std::uint32_t p) const { return sheets_.places[p]; }
 
-  /// Calls visit(p, q, offset of q from p) for places with twins that are beside each other.
+  /// Calls visit(p, q, offset of q from p) for places that are beside each other.
   template <class Visit>
   void for_each_pair(const Visit& visit) {
     for (std::uint32_t p = 0; p < sheets_.places.size(); ++p) {
-      if (!place(p).has_twins()) continue;
       grid_sites_.for_each_neighbour(place(p).site, [&](std::size_t other, int di, int dj, int dk) {
         const std::uint32_t q = place_of_[other];
-        if (q == kNone || q < p || place(q).sides != place(p).sides) return;
+        if (q == kNone || q < p) return;
         visit(p, q, Vec3{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
       });
     }
@@ -100,9 +99,9 @@ class RegionSearch {
     sets_.join(2 * p + 1, 2 * q + (1 - turned));
   }
 
-  /// Whether a place is in a cell that what lies beside the sheet fills.
-  [[nodiscard]] bool is_filled(std::uint32_t p) const {
-    return data_.fractions[values_.material(place(p).sides[0])][place(p).site] >= 1;
+  /// Whether a place is in a cell that holds nothing of the sheet.
+  [[nodiscard]] bool is_beside(std::uint32_t p) const {
+    return data_.fractions[values_.material(place(p).material)][place(p).site] <= 0;
   }
   /// The side on which a place in such a cell is.
   [[nodiscard]] std::uint32_t home(std::uint32_t p) const {
@@ -110,15 +109,15 @@ class RegionSearch {
   }
 
   void join_through_cells(std::uint32_t p, std::uint32_t q) {
-    if (is_filled(p) && is_filled(q)) sets_.join(home(p), home(q));
+    if (is_beside(p) && is_beside(q)) sets_.join(home(p), home(q));
   }
 
-  /// Between two cells that one material fills, face to face, there is no sheet: where they are on two sides
-  /// of one it has ended.
+  /// Between two cells without it, face to face, there is no sheet: where they are on two sides of one it
+  /// has ended.
   void drop_ends() {
     std::vector<char> ended(sheets_.places.size(), 0);
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3& d) {
-      if (squared_norm(d) > 1.5 || !is_filled(p) || !is_filled(q)) return;
+      if (squared_norm(d) > 1.5 || !is_beside(p) || !is_beside(q)) return;
       if (sets_.find(home(p)) != sets_.find(home(q))) ended[p] = ended[q] = 1;
     });
     for (std::uint32_t p = 0; p < ended.size(); ++p) {
@@ -130,20 +129,12 @@ class RegionSearch {
   }
 
   void number() {
-    std::vector<std::uint32_t> number_of(2 * sheets_.places.size(), kNone);
+    std::vector<std::uint32_t> number_of;
     for (SheetPlace& p : sheets_.places) {
-      for (std::size_t side = 0; side < 2; ++side) {
-        if (!p.has_twins()) {
-          p.regions[side] = ThinSheets::kNoRegion;
-          continue;
-        }
-        const std::uint32_t root = p.regions[side];
-        if (number_of.size() <= root) number_of.resize(root + std::size_t{1}, kNone);
-        if (number_of[root] == kNone) {
-          number_of[root] = static_cast<std::uint32_t>(sheets_.region_materials.size());
-          sheets_.region_materials.push_back(p.sides[side]);
-        }
-        p.regions[side] = number_of[root];
+      for (std::uint32_t& region : p.regions) {
+        if (number_of.size() <= region) number_of.resize(region + std::size_t{1}, kNone);
+        if (number_of[region] == kNone) number_of[region] = static_cast<std::uint32_t>(sheets_.regions++);
+        region = number_of[region];
       }
     }
   }

@@ -1,25 +1,19 @@
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
-#include <vector>
+#include "interfaces/reconstruction/sheet_values.h"
 
-#include "core/base/error.h"
-#include "core/base/parallel.h"
-#include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/site_values.h"
-#include "interfaces/reconstruction/thin_sheets.h"
+#include <algorithm>
+#include <cmath>
 
 namespace adamas {
 
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
-/// What a value differs from zero by at least, in cells, where its sign is known.
+/// What a value differs from zero by at least, in cells, where its sign is known, and what lies on the other
+/// side of a sheet is less than what there is most of.
 constexpr double kLeastValue = 0.25;
-
-/// The part of a sheet's thickness that no correction of volumes takes away.
-constexpr double kLeastKept = 0.05, kLeastHeld = 0.1;
+/// How much less is what a side does not hold, in relation to that.
+constexpr double kFarBelow = 6;
+/// How much of a material the cells on a side hold together where it is there, in cells.
+constexpr double kLeastPresent = 0.1;
 
 /// The length of a cell of some size along a direction that is given in cells.
 double length_along(const Vec3& n, const Vec3& size) {
@@ -41,162 +35,126 @@ double signed_value(double value, bool positive, double least) {
 
 }  // namespace
 
-/// At thin sheets values are those of the layers fitted there, and what lies on both sides gets two values
-/// instead of one. A sheet's own value is the distance into it, negative outside, and the others differ from
-/// it by twice the distance from the sheet's face on their side: linear across the sheet, so that even layers
-/// come out as they are.
-void SiteValues::split_at_sheets(const MultiMaterialData& data) {
-  const ThinSheets sheets = find_thin_sheets(data, *this);
-  if (sheets.places.empty()) return;
-  const std::size_t materials = by_name_.size();
-  if (materials + sheets.region_materials.size() > 0xfffeu) return;
-  parents_.resize(materials);
-  for (std::size_t n = 0; n < materials; ++n) parents_[n] = static_cast<std::uint16_t>(n);
-  for (const std::uint16_t m : sheets.region_materials) {
-    parents_.push_back(m);
-    by_name_.push_back(by_name_[m]);
-  }
-  const GridSites sites(data.grid);
-  std::vector<std::uint32_t> place_of(data.grid.site_count(), kNone);
+SheetValues::SheetValues(const MultiMaterialData& data, const SiteValues& values, const ThinSheets& sheets)
+    : data_(data),
+      values_(values),
+      sheets_(sheets),
+      sites_(data.grid),
+      materials_(data.materials.size()),
+      place_of_(data.grid.site_count(), kNone) {
   for (std::size_t p = 0; p < sheets.places.size(); ++p)
-    place_of[sheets.places[p].site] = static_cast<std::uint32_t>(p);
-
-  /// A region at a site, by the place that says most of it there.
-  struct Twin {
-    std::uint16_t number;
-    double value;
+    place_of_[sheets.places[p].site] = static_cast<std::uint32_t>(p);
+  const auto add = [&](std::uint32_t region, std::uint16_t material) {
+    const auto [at, fresh] =
+        numbers_.try_emplace({region, material}, static_cast<std::uint16_t>(materials_ + parts_.size()));
+    if (fresh) parts_.push_back({region, material});
   };
-  const auto find_twins = [&](const SheetPlace& place, std::vector<Twin>& twins) {
-    const Vec3 size = sites.cell(place.site).size();
-    const double own =
-        (0.5 * place.slab.thickness - std::abs(place.slab.offset)) * length_along(place.slab.normal, size);
-    std::vector<double> distances;
-    const auto add = [&](const SheetPlace& other, const Vec3& d, double squared) {
-      for (std::size_t side = 0; side < 2; ++side) {
-        const auto number = static_cast<std::uint16_t>(materials + other.regions[side]);
-        const double value = own + above_sheet(other, side, d, size);
-        const auto known =
-            std::find_if(twins.begin(), twins.end(), [&](const Twin& t) { return t.number == number; });
-        const auto at = static_cast<std::size_t>(known - twins.begin());
-        if (known == twins.end()) {
-          twins.push_back({number, value});
-          distances.push_back(squared);
-        } else if (squared < distances[at]) {
-          *known = {number, value}, distances[at] = squared;
-        }
-      }
-    };
-    twins.clear();
-    add(place, {}, 0);
-    sites.for_each_neighbour(place.site, [&](std::size_t s, int di, int dj, int dk) {
-      if (place_of[s] == kNone) return;
-      const SheetPlace& other = sheets.places[place_of[s]];
-      if (other.has_twins() && other.sides == place.sides)
-        add(other, {-static_cast<double>(di), -static_cast<double>(dj), -static_cast<double>(dk)},
-            static_cast<double>(di * di + dj * dj + dk * dk));
-    });
-    std::sort(twins.begin(), twins.end(), [](const Twin& a, const Twin& b) { return a.number < b.number; });
-  };
-
-  std::vector<std::vector<Entry>> changed(sheets.places.size());
-  parallel_for(changed.size(), 256, [&](std::size_t p) {
-    thread_local std::vector<Twin> twins;
-    const SheetPlace& place = sheets.places[p];
-    const Vec3 size = sites.cell(place.site).size();
-    const double least = kLeastValue * std::min({size.x, size.y, size.z});
-    const double own =
-        (0.5 * place.slab.thickness - std::abs(place.slab.offset)) * length_along(place.slab.normal, size);
-    if (place.has_twins()) find_twins(place, twins);
-    for (Entry entry : at(place.site)) {
-      const bool settled = entry.settled();
-      const auto set = [&](double value) {
-        entry.value = settled ? signed_value(value, entry.fraction > 0, least) : value;
-        changed[p].push_back(entry);
-      };
-      if (entry.material == place.material) {
-        set(own);
-      } else if (entry.material == place.sides[0] && place.has_twins()) {
-        // Added behind the others.
-      } else if (entry.material == place.sides[0] || entry.material == place.sides[1]) {
-        set(own + above_sheet(place, entry.material == place.sides[0] ? 0 : 1, {}, size));
-      } else {
-        changed[p].push_back(entry);
-      }
-    }
-    if (!place.has_twins()) return;
-    const float fraction = data.fractions[by_name_[place.sides[0]]][place.site];
-    for (const Twin& twin : twins) {
-      Entry entry{twin.value, fraction, twin.number};
-      if (fraction >= 1 && twin.value <= 0) entry.fraction = 0;
-      if (entry.settled()) entry.value = signed_value(twin.value, entry.fraction > 0, least);
-      changed[p].push_back(entry);
-    }
-  });
-
-  std::vector<Entry> entries;
-  entries.reserve(entries_.size() + 2 * changed.size());
-  std::vector<std::uint32_t> first(first_.size(), 0);
-  for (std::size_t site = 0; site + 1 < first_.size(); ++site) {
-    if (place_of[site] != kNone) {
-      const auto& own = changed[place_of[site]];
-      entries.insert(entries.end(), own.begin(), own.end());
-    } else {
-      entries.insert(entries.end(), entries_.begin() + first_[site], entries_.begin() + first_[site + 1]);
-    }
-    if (entries.size() > 0xffffffffu)
-      fail("{}: expected fewer materials beside sites, found too many", data.source);
-    first[site + 1] = static_cast<std::uint32_t>(entries.size());
-  }
-  entries_ = std::move(entries);
-  first_ = std::move(first);
-  find_layers(data, sheets, materials);
-}
-
-void SiteValues::find_layers(const MultiMaterialData& data, const ThinSheets& sheets, std::size_t materials) {
-  const GridSites sites(data.grid);
-  std::vector<const SheetPlace*> place_at(data.grid.site_count(), nullptr);
-  for (const SheetPlace& place : sheets.places) place_at[place.site] = &place;
-  const auto is_alike = [](const SheetPlace& a, const SheetPlace& b) {
-    return a.material == b.material &&
-           std::minmax(a.sides[0], a.sides[1]) == std::minmax(b.sides[0], b.sides[1]);
-  };
-  constexpr std::uint32_t kNone = 0xffffffffu;
   for (const SheetPlace& place : sheets.places) {
-    if (sole_[place.site] != materials) continue;
-    if (place.slab.thickness < kLeastHeld) continue;
-    // Where a sheet ends its value has to come down, and where something else begins beside it sides change.
-    bool inside = true;
-    sites.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
-      inside = inside && place_at[other] != nullptr && is_alike(place, *place_at[other]);
-    });
-    if (!inside) continue;
-    const auto entry_of = [&](std::size_t number) {
-      for (std::uint32_t e = first_[place.site]; e < first_[place.site + 1]; ++e) {
-        if (entries_[e].material == number) return e;
+    const std::vector<Side> round = sides(place, 0, {1, 1, 1});
+    const std::vector<Entry> plain = plain_entries(place, round);
+    for (const Side& side : round) {
+      for (const Entry& entry : plain) {
+        if (entry.material != place.material) add(side.region, entry.material);
       }
-      return kNone;
-    };
-    Layer layer{entry_of(place.material), {}, 0};
-    for (std::size_t side = 0; side < 2; ++side)
-      layer.sides[side] = entry_of(place.has_twins() ? materials + place.regions[side] : place.sides[side]);
-    if (layer.sheet == kNone || layer.sides[0] == kNone || layer.sides[1] == kNone) continue;
-    if (!(entries_[layer.sheet].fraction > 0)) continue;
-    const double above =
-        entries_[layer.sheet].value - 0.5 * (entries_[layer.sides[0]].value + entries_[layer.sides[1]].value);
-    layer.least = kLeastKept * above;
-    if (layer.least > 0) layers_.push_back(layer);
+    }
   }
 }
 
-void SiteValues::hold_layers() {
-  for (const Layer& layer : layers_) {
-    Entry &sheet = entries_[layer.sheet], &front = entries_[layer.sides[0]], &back = entries_[layer.sides[1]];
-    const double missing = layer.least - (sheet.value - 0.5 * (front.value + back.value));
-    if (missing <= 0) continue;
-    sheet.value += 0.5 * missing;
-    front.value -= 0.5 * missing;
-    back.value -= 0.5 * missing;
+/// The entries of a site, and of what there is most of on sides of sheets there.
+std::vector<SiteValues::Entry> SheetValues::plain_entries(const SheetPlace& place,
+                                                          const std::vector<Side>& sides) const {
+  const std::span<const Entry> own = values_.at(place.site);
+  std::vector<Entry> entries(own.begin(), own.end());
+  for (const Side& side : sides) {
+    if (std::none_of(entries.begin(), entries.end(), [&](const Entry& e) { return e.material == side.most; }))
+      entries.push_back({-values_.greatest(), 0, side.most});
   }
+  return entries;
+}
+
+std::vector<SheetValues::Side> SheetValues::sides(const SheetPlace& place, double own,
+                                                  const Vec3& size) const {
+  std::vector<Side> sides;
+  const auto add = [&](const SheetPlace& other, const Vec3& d) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Side side{other.regions[s], other.sides[s], own + above_sheet(other, s, d, size),
+                      squared_norm(d)};
+      const auto known =
+          std::find_if(sides.begin(), sides.end(), [&](const Side& k) { return k.region == side.region; });
+      if (known == sides.end()) {
+        sides.push_back(side);
+      } else if (side.squared < known->squared) {
+        *known = side;
+      }
+    }
+  };
+  add(place, {});
+  sites_.for_each_neighbour(place.site, [&](std::size_t site, int di, int dj, int dk) {
+    if (const SheetPlace* other = at(site); other != nullptr && other->material == place.material)
+      add(*other, {-static_cast<double>(di), -static_cast<double>(dj), -static_cast<double>(dk)});
+  });
+  return sides;
+}
+
+/// Whether cells beside the sheet, round a place, hold a material on one of its sides.
+bool SheetValues::is_on_side(const SheetPlace& place, std::uint32_t region, std::uint16_t material) const {
+  if (region != place.regions[0] && region != place.regions[1]) return false;
+  const double side = region == place.regions[0] ? 1 : -1;
+  const std::vector<float>& fractions = data_.fractions[values_.material(material)];
+  const std::vector<float>& sheet = data_.fractions[values_.material(place.material)];
+  double sum = 0;
+  const auto add = [&](std::size_t site, int di, int dj, int dk) {
+    const double height =
+        place.slab.height({static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
+    if (side * height > 0.5 * place.slab.thickness && sheet[site] <= 0)
+      sum += static_cast<double>(fractions[site]);
+  };
+  add(place.site, 0, 0, 0);
+  sites_.for_each_neighbour(place.site, add);
+  return sum > kLeastPresent;
+}
+
+std::vector<SiteValues::Entry> SheetValues::entries(const SheetPlace& place) const {
+  std::vector<Entry> entries;
+  const Vec3 size = sites_.cell(place.site).size();
+  const double least = kLeastValue * std::min({size.x, size.y, size.z});
+  const double own =
+      (0.5 * place.slab.thickness - std::abs(place.slab.offset)) * length_along(place.slab.normal, size);
+  const std::vector<Side> round = sides(place, own, size);
+  const std::vector<Entry> plain = plain_entries(place, round);
+  const auto value_of = [&](std::uint16_t material) {
+    return std::find_if(plain.begin(), plain.end(), [&](const Entry& e) { return e.material == material; })
+        ->value;
+  };
+  bool beside = true;
+  for (Entry entry : plain) {
+    if (entry.material != place.material) continue;
+    beside = entry.fraction <= 0;
+    entry.value = entry.settled() ? signed_value(own, entry.fraction > 0, least) : own;
+    entries.push_back(entry);
+  }
+  const std::uint32_t home = place.regions[place.slab.offset > 0 ? 1 : 0];
+  for (const Side& side : round) {
+    for (Entry entry : plain) {
+      if (entry.material == place.material) continue;
+      double value = side.value;
+      const bool here = beside && side.region == home;
+      if (entry.material != side.most) {
+        const double less = entry.value - value_of(side.most);
+        value += here ? less : std::min(less, -least);
+      }
+      if (entry.fraction >= 1 && value <= 0) entry.fraction = 0;
+      // Values of what a side does not hold are far below and stay as they are.
+      const bool absent = entry.material != side.most && !is_on_side(place, side.region, entry.material);
+      if (absent) entry.fraction = 0, value = std::min(value, side.value - kFarBelow * least);
+      entry.value = entry.settled() && !absent ? signed_value(value, entry.fraction > 0, least) : value;
+      entry.material = number(side.region, entry.material);
+      entries.push_back(entry);
+    }
+  }
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return a.material < b.material; });
+  return entries;
 }
 
 }  // namespace adamas

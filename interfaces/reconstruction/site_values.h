@@ -10,6 +10,7 @@
 
 namespace adamas {
 
+class SheetValues;
 struct ThinSheets;
 
 /// A value per site and material near it, whose greatest says who owns a point (docs/method.md, Interfaces
@@ -59,11 +60,12 @@ class SiteValues {
   /// of other data.
   [[nodiscard]] double least() const { return least_; }
   /// A place in a thin sheet of a mixed site, by its entries: it holds together as long as the sheet's value
-  /// is above the mean of those of what lies on its two sides.
+  /// is above the mean of the greatest on either side.
   struct Layer {
-    std::uint32_t sheet;
-    std::array<std::uint32_t, 2> sides;
-    double least;  ///< how much it is to be above
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    std::uint32_t sheet = kNone;
+    std::array<std::vector<std::uint32_t>, 2> sides;
+    double least = 0;  ///< how much it is to be above
   };
   [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
   /// Lifts the values of sheets above what is on their sides where they have come below.
@@ -75,7 +77,8 @@ class SiteValues {
   void set_distances(const MultiMaterialData& data);
   void find_entries(const MultiMaterialData& data);
   void split_at_sheets(const MultiMaterialData& data);
-  void find_layers(const MultiMaterialData& data, const ThinSheets& sheets, std::size_t materials);
+  void find_layers(const MultiMaterialData& data, const ThinSheets& sheets, const SheetValues& values);
+  [[nodiscard]] double above(const Layer& layer) const;
 
   std::vector<MaterialId> by_name_;
   std::vector<std::uint16_t> parents_;  // by number; empty where there are no regions

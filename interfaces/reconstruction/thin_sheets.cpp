@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include "core/base/parallel.h"
@@ -95,11 +93,12 @@ class SheetSearch {
     if (!thin) return {};
     const auto guess = guess_sheet(window);
     if (!guess) return {};
-    SheetPlace place{static_cast<std::uint32_t>(site), material, sides_of(site, material, *guess), {}, {}};
+    SheetPlace place{static_cast<std::uint32_t>(site), material, {material, material}, {}, {}};
+    place.sides = sides_of(place, *guess);
     if (place.sides[0] == material) return {};
     for_each_in_window(site, [&](std::size_t cell, std::size_t other) {
       double sum = fraction(material, other) + fraction(place.sides[0], other);
-      if (!place.has_twins()) sum += fraction(place.sides[1], other);
+      if (place.sides[0] != place.sides[1]) sum += fraction(place.sides[1], other);
       if (sum < kLeastOfThree) window.known[cell] = 0;
       return true;
     });
@@ -110,24 +109,27 @@ class SheetSearch {
   }
 
   /// What there is most of before and behind a layer; the layer's own where there is nothing else.
-  [[nodiscard]] std::array<std::uint16_t, 2> sides_of(std::size_t site, std::uint16_t material,
-                                                      const Slab& slab) const {
-    std::array<std::uint16_t, 2> sides{material, material};
+  [[nodiscard]] std::array<std::uint16_t, 2> sides_of(const SheetPlace& place, const Slab& slab) const {
+    std::vector<std::uint16_t> near;
+    for (const Entry& entry : values_.at(place.site)) near.push_back(entry.material);
+    near.insert(near.end(), place.sides.begin(), place.sides.end());
+    std::sort(near.begin(), near.end());
+    std::array<std::uint16_t, 2> sides = place.sides;
     std::array<double, 2> most{0, 0};
-    for (const Entry& entry : values_.at(site)) {
-      if (entry.material == material) continue;
+    for (const std::uint16_t material : near) {
+      if (material == place.material) continue;
       std::array<double, 2> sums{0, 0};
-      for_each_in_window(site, [&](std::size_t cell, std::size_t other) {
+      for_each_in_window(place.site, [&](std::size_t cell, std::size_t other) {
         const double y = slab.height(SheetWindow::place(cell));
         if (std::abs(y) > 0.5 * slab.thickness && std::abs(y) < 2.2)
-          sums[y > 0 ? 0 : 1] += fraction(entry.material, other);
+          sums[y > 0 ? 0 : 1] += fraction(material, other);
         return true;
       });
       for (std::size_t side = 0; side < 2; ++side) {
-        if (sums[side] > most[side]) most[side] = sums[side], sides[side] = entry.material;
+        if (sums[side] > most[side]) most[side] = sums[side], sides[side] = material;
       }
     }
-    if (most[0] == 0 || most[1] == 0) return {material, material};
+    if (most[0] == 0 || most[1] == 0) return place.sides;
     return sides;
   }
 
@@ -178,9 +180,6 @@ class SheetSearch {
       if (place.material != nearest->material || std::abs(cosine) < kLeastCosine ||
           std::abs(sign * place.slab.offset - nearest->slab.offset) > kMostStep)
         return;
-      if (place.sides[sign > 0 ? 0 : 1] != nearest->sides[0] ||
-          place.sides[sign > 0 ? 1 : 0] != nearest->sides[1])
-        return;
       const double w = 1 / squared;
       normal += w * sign * place.slab.normal;
       offset += w * sign * place.slab.offset;
@@ -194,19 +193,20 @@ class SheetSearch {
     middle *= 1 / weights;
     const double aside = norm(middle - dot(middle, place.slab.normal) * place.slab.normal);
     const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
-    if (own > 0 && aside > kAside && own < kHalf * part) place.slab.thickness *= own / part;
-    return goes_on(place, aside) ? std::optional(place) : std::nullopt;
-  }
-
-  /// Whether what a cell holds agrees with a sheet that is continued to it.
-  [[nodiscard]] bool goes_on(const SheetPlace& place, double aside) const {
-    const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
-    const double front = fraction(place.sides[0], place.site), back = fraction(place.sides[1], place.site);
-    if (own + front + back <= 0) return false;
-    if (own > 0) return true;
-    if (aside > kAside && part > kMissing) return false;
-    const double height = -place.slab.offset;
-    return place.has_twins() || (height > 0 ? front : back) > 0;
+    if (own > 0) {
+      if (aside > kAside && own < kHalf * part) place.slab.thickness *= own / part;
+      place.sides = sides_of(place, place.slab);
+      return place;
+    }
+    if (aside > kAside && part > kMissing) return {};
+    // On its side there is what the cell holds.
+    double most = 0;
+    for (const Entry& entry : values_.at(site)) {
+      if (static_cast<double>(entry.fraction) <= most) continue;
+      most = static_cast<double>(entry.fraction);
+      place.sides[place.slab.offset > 0 ? 1 : 0] = entry.material;
+    }
+    return place;
   }
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -224,28 +224,7 @@ ThinSheets find_thin_sheets(const MultiMaterialData& data, const SiteValues& val
   ThinSheets sheets;
   if (!data.labels.empty()) return sheets;
   sheets.places = SheetSearch(data, values).run();
-  const auto dump = [&](const char* w) {
-    if (!getenv("DBG")) return;
-    std::vector<char> has(data.grid.site_count(), 0);
-    std::size_t tw = 0;
-    for (auto& p : sheets.places) has[p.site] = 1, tw += p.has_twins();
-    std::size_t miss = 0;
-    for (auto m : values.mixed()) miss += !has[m];
-    fprintf(stderr, "%s places %zu twins %zu mixed %zu missing %zu\n", w, sheets.places.size(), tw,
-            values.mixed().size(), miss);
-    const GridSites g(data.grid);
-    for (auto m : values.mixed())
-      if (!has[m]) {
-        auto c = g.cell(m).center();
-        fprintf(stderr, "MISS %s %.4f %.4f %.4f:", w, c.x, c.y, c.z);
-        for (auto& e : values.at(m)) fprintf(stderr, " %d:%.3f", e.material, double(e.fraction));
-        fprintf(stderr, "\n");
-      }
-  };
-  dump("found");
   if (!sheets.places.empty()) join_regions(data, values, sheets);
-  dump("joined");
-  if (getenv("DBG")) fprintf(stderr, "regions %zu\n", sheets.region_materials.size());
   return sheets;
 }
 

@@ -15,20 +15,16 @@ class SiteValues;
 struct SheetPlace {
   std::uint32_t site = 0;
   std::uint16_t material = 0;              ///< of the sheet: its number in the order of names
-  std::array<std::uint16_t, 2> sides{};    ///< the same of what lies where the normal points, and behind
-  std::array<std::uint32_t, 2> regions{};  ///< of the sides; ThinSheets::kNoRegion where these differ
+  std::array<std::uint16_t, 2> sides{};    ///< of what there is most of where the normal points, and behind
+  std::array<std::uint32_t, 2> regions{};  ///< of the sides
   Slab slab;                               ///< round the site, in cells
-
-  [[nodiscard]] bool has_twins() const { return sides[0] == sides[1]; }
 };
 
-/// Where thin sheets are. A material on both sides of a sheet is in two regions there, its twins, which are
-/// the same wherever the same side of the same sheet is meant.
+/// Where thin sheets are. Their two sides are in different regions, which are the same wherever the same side
+/// of the same sheet is meant.
 struct ThinSheets {
-  static constexpr std::uint32_t kNoRegion = 0xffffffffu;
-
-  std::vector<SheetPlace> places;               ///< in the order of sites
-  std::vector<std::uint16_t> region_materials;  ///< by region
+  std::vector<SheetPlace> places;  ///< in the order of sites
+  std::size_t regions = 0;
 };
 
 /// Finds sheets by fitting layers of even thickness to the fractions round mixed cells, and what they are
