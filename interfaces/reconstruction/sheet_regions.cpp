@@ -68,6 +68,7 @@ class RegionSearch {
   }
 
   void run() {
+    drop_mixed_sheets();
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3& d) { join_along_sheet(p, q, d); });
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) { join_through_cells(p, q); });
     drop_ends();
@@ -87,6 +88,31 @@ class RegionSearch {
         visit(p, q, Vec3{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
       });
     }
+  }
+
+  /// Sheets that touch sheets of another material are left out: what is on whose side is not clear there.
+  void drop_mixed_sheets() {
+    std::vector<std::uint32_t> parent(sheets_.places.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto find = [&](std::uint32_t p) {
+      while (parent[p] != p) p = parent[p] = parent[parent[p]];
+      return p;
+    };
+    std::vector<char> mixed(parent.size(), 0);
+    for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
+      if (place(p).material == place(q).material) parent[find(q)] = find(p);
+    });
+    for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
+      if (place(p).material != place(q).material) mixed[find(p)] = mixed[find(q)] = 1;
+    });
+    std::vector<SheetPlace> kept;
+    std::fill(place_of_.begin(), place_of_.end(), kNone);
+    for (std::uint32_t p = 0; p < parent.size(); ++p) {
+      if (mixed[find(p)] != 0) continue;
+      place_of_[place(p).site] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(place(p));
+    }
+    sheets_.places = std::move(kept);
   }
 
   void join_along_sheet(std::uint32_t p, std::uint32_t q, const Vec3& d) {

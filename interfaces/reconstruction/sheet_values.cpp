@@ -13,7 +13,7 @@ constexpr double kLeastValue = 0.25;
 /// How much less is what a side does not hold, in relation to that.
 constexpr double kFarBelow = 6;
 /// How much of a material the cells on a side hold together where it is there, in cells.
-constexpr double kLeastPresent = 0.1;
+constexpr double kLeastPresent = 1e-3;
 
 /// The length of a cell of some size along a direction that is given in cells.
 double length_along(const Vec3& n, const Vec3& size) {
