@@ -15,6 +15,8 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 /// Places beside each other are of one sheet where the cosine of their normals is at least this, and their
 /// heights between them differ by no more cells.
 constexpr double kLeastCosine = 0.5, kMostStep = 0.6;
+/// What the cells between two hold of a sheet that runs through, in relation to its thickness.
+constexpr double kLeastBetween = 0.25;
 
 /// Sides of places: 2 p for what lies before place p, 2 p + 1 for what lies behind. A set of sides knows
 /// which others lie across sheets, and never becomes one with these.
@@ -138,13 +140,25 @@ class RegionSearch {
     if (is_beside(p) && is_beside(q)) sets_.join(home(p), home(q));
   }
 
-  /// Between two cells without it, face to face, there is no sheet: where they are on two sides of one it
-  /// has ended.
+  /// The cells of the box that two sites beside each other span hold together so much of a material.
+  [[nodiscard]] double held_between(std::size_t site, const Vec3& d, std::uint16_t material) const {
+    const std::vector<float>& fractions = data_.fractions[values_.material(material)];
+    double sum = static_cast<double>(fractions[site]);
+    grid_sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+      const auto within = [](int step, double end) { return step == 0 || static_cast<double>(step) == end; };
+      if (within(di, d.x) && within(dj, d.y) && within(dk, d.z)) sum += static_cast<double>(fractions[other]);
+    });
+    return sum;
+  }
+
+  /// Between two cells without it there is no sheet if those between them hold next to nothing of it: where
+  /// the two are on two sides of one it has ended.
   void drop_ends() {
     std::vector<char> ended(sheets_.places.size(), 0);
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3& d) {
-      if (squared_norm(d) > 1.5 || !is_beside(p) || !is_beside(q)) return;
-      if (sets_.find(home(p)) != sets_.find(home(q))) ended[p] = ended[q] = 1;
+      if (!is_beside(p) || !is_beside(q) || sets_.find(home(p)) == sets_.find(home(q))) return;
+      if (held_between(place(p).site, d, place(p).material) < kLeastBetween * place(p).slab.thickness)
+        ended[p] = ended[q] = 1;
     });
     for (std::uint32_t p = 0; p < ended.size(); ++p) {
       SheetPlace& dropped = sheets_.places[p];
