@@ -37,6 +37,8 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   mesh_.source = data.source;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);
+  // As many as numbers suffice for.
+  slots_ = 0xffffffffu / lattice_.point_count() > 6 * 8 + 1 ? 8 : 4;
   join_points();
   constexpr std::uint32_t kBatch = 8;
   for (std::uint32_t begin = 0; begin < layers; begin += kBatch) {
@@ -140,18 +142,18 @@ Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell,
     if (lattice_.is_one_region(lattice_.owner(p), number)) return p;
   }
   // A tetrahedron has at most four regions that hold a corner; those that hold none are told apart by the
-  // position of their material among those that own something. More than four such in one tetrahedron,
-  // which hardly comes about, count as one.
+  // position of their material among those that own something. More of them in one tetrahedron than there
+  // are numbers for, which hardly comes about, count as one.
   std::uint32_t slot = 0;
   for (const auto& candidate : owners) {
     if (candidate.owner == number) break;
     const bool holds = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t p) {
       return lattice_.is_one_region(lattice_.owner(p), candidate.owner);
     });
-    if (!holds) slot = std::min(slot + 1, 3u);
+    if (!holds) slot = std::min(slot + 1, slots_ - 1);
   }
   const std::uint32_t tetrahedron = lattice_.point_index(cell) * 6 + static_cast<std::uint32_t>(path);
-  return lattice_.point_count() + tetrahedron * 4 + slot;
+  return lattice_.point_count() + tetrahedron * slots_ + slot;
 }
 
 void Reconstruction::join_points() {

@@ -86,7 +86,8 @@ class Reconstruction {
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<BodyId, MaterialId> body_materials_;
   IdVector<MaterialId, double> volume_input_, volume_reconstructed_;
-  std::vector<Part> parent_;                            ///< union-find over lattice points
+  std::uint32_t slots_ = 4;   ///< numbers of a tetrahedron for parts that hold no lattice point
+  std::vector<Part> parent_;  ///< union-find over lattice points
   std::unordered_map<Part, Part> pointless_parent_;     ///< and over parts that hold no lattice point
   std::vector<std::pair<Part, MaterialId>> pointless_;  ///< in the order of their numbers
   std::vector<BodyId> body_of_point_;

@@ -16,7 +16,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 /// heights between them differ by no more cells.
 constexpr double kLeastCosine = 0.5, kMostStep = 0.6;
 /// What the cells between two hold of a sheet that runs through, in relation to its thickness.
-constexpr double kLeastBetween = 0.25;
+constexpr double kLeastBetween = 0.4;
 
 /// Sides of places: 2 p for what lies before place p, 2 p + 1 for what lies behind. A set of sides knows
 /// which others lie across sheets, and never becomes one with these.
