@@ -21,6 +21,8 @@ constexpr double kThickest = 1.5, kThinnest = 0.03;
 constexpr double kMostOffset = 1.2;
 /// What a fit may leave, as a part of the fractions' and of a cell.
 constexpr double kMostRelative = 0.5, kMostLeft = 0.15;
+/// The weight of cells on either side of a layer at least.
+constexpr double kLeastSeen = 0.1;
 constexpr int kRounds = 6;
 
 struct Sides {
@@ -153,7 +155,7 @@ std::optional<Slab> fit_sheet(const SheetWindow& window, const Slab& guess) {
     if (part < 0.02) (y > 0 ? before : behind) += sample.weight;
   }
   if (left > kMostRelative * kMostRelative * all || left > kMostLeft * kMostLeft * weights) return {};
-  if (std::min(before, behind) < 0.5) return {};
+  if (std::min(before, behind) < kLeastSeen) return {};
   return slab;
 }
 

@@ -15,6 +15,9 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 /// Places beside each other are of one sheet where the cosine of their normals is at least this, and their
 /// heights between them differ by no more cells.
 constexpr double kLeastCosine = 0.5, kMostStep = 0.6;
+/// The cells with layers fitted to what is round them that a sheet has at least, also as a part of its own.
+constexpr std::size_t kFewest = 12;
+constexpr double kLeastFitted = 0.4;
 /// What the cells between two hold of a sheet that runs through, in relation to its thickness.
 constexpr double kLeastBetween = 0.4;
 
@@ -70,7 +73,7 @@ class RegionSearch {
   }
 
   void run() {
-    drop_mixed_sheets();
+    drop_unclear_sheets();
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3& d) { join_along_sheet(p, q, d); });
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) { join_through_cells(p, q); });
     drop_ends();
@@ -92,8 +95,10 @@ class RegionSearch {
     }
   }
 
-  /// Sheets that touch sheets of another material are left out: what is on whose side is not clear there.
-  void drop_mixed_sheets() {
+  /// Leaves out sheets that touch sheets of another material, where it is not clear what is on whose side,
+  /// and those with fits for few of their cells: fractions of a simulation that are smeared look like it here
+  /// and there.
+  void drop_unclear_sheets() {
     std::vector<std::uint32_t> parent(sheets_.places.size());
     std::iota(parent.begin(), parent.end(), 0u);
     const auto find = [&](std::uint32_t p) {
@@ -101,16 +106,24 @@ class RegionSearch {
       return p;
     };
     std::vector<char> mixed(parent.size(), 0);
+    std::vector<std::size_t> fitted(parent.size(), 0), held(parent.size(), 0);
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
       if (place(p).material == place(q).material) parent[find(q)] = find(p);
     });
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
       if (place(p).material != place(q).material) mixed[find(p)] = mixed[find(q)] = 1;
     });
+    for (std::uint32_t p = 0; p < parent.size(); ++p) {
+      fitted[find(p)] += place(p).is_fitted ? 1 : 0;
+      held[find(p)] += is_beside(p) ? 0 : 1;
+    }
     std::vector<SheetPlace> kept;
     std::fill(place_of_.begin(), place_of_.end(), kNone);
     for (std::uint32_t p = 0; p < parent.size(); ++p) {
-      if (mixed[find(p)] != 0) continue;
+      const std::uint32_t sheet = find(p);
+      const bool is_clear = fitted[sheet] >= kFewest && static_cast<double>(fitted[sheet]) >=
+                                                            kLeastFitted * static_cast<double>(held[sheet]);
+      if (mixed[sheet] != 0 || !is_clear) continue;
       place_of_[place(p).site] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(place(p));
     }

@@ -93,7 +93,7 @@ class SheetSearch {
     if (!thin) return {};
     const auto guess = guess_sheet(window);
     if (!guess) return {};
-    SheetPlace place{static_cast<std::uint32_t>(site), material, {material, material}, {}, {}};
+    SheetPlace place{static_cast<std::uint32_t>(site), material, {material, material}, {}, {}, false};
     place.sides = sides_of(place, *guess);
     if (place.sides[0] == material) return {};
     for_each_in_window(site, [&](std::size_t cell, std::size_t other) {
@@ -105,6 +105,7 @@ class SheetSearch {
     const auto slab = fit_sheet(window, *guess);
     if (!slab) return {};
     place.slab = *slab;
+    place.is_fitted = true;
     return place;
   }
 
@@ -189,6 +190,7 @@ class SheetSearch {
     });
     SheetPlace place = *nearest;
     place.site = static_cast<std::uint32_t>(site);
+    place.is_fitted = false;
     place.slab = {normalized(normal), offset / weights, thickness / weights};
     middle *= 1 / weights;
     const double aside = norm(middle - dot(middle, place.slab.normal) * place.slab.normal);

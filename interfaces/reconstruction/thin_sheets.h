@@ -18,6 +18,7 @@ struct SheetPlace {
   std::array<std::uint16_t, 2> sides{};    ///< of what there is most of where the normal points, and behind
   std::array<std::uint32_t, 2> regions{};  ///< of the sides
   Slab slab;                               ///< round the site, in cells
+  bool is_fitted = false;                  ///< to the fractions round the site itself
 };
 
 /// Where thin sheets are. Their two sides are in different regions, which are the same wherever the same side
