@@ -16,6 +16,25 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
 }
 
+/// Leaves out points that no triangle has: those on contacts of a material with itself.
+void drop_unused_points(InterfaceMesh& mesh) {
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> number(mesh.points.size(), kUnused);
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    for (const std::uint32_t p : t.points) number[p] = 0;
+  }
+  std::uint32_t count = 0;
+  for (std::size_t p = 0; p < number.size(); ++p) {
+    if (number[p] == kUnused) continue;
+    mesh.points[count] = mesh.points[p];
+    number[p] = count++;
+  }
+  mesh.points.resize(count);
+  for (InterfaceTriangle& t : mesh.triangles) {
+    for (std::uint32_t& p : t.points) p = number[p];
+  }
+}
+
 }  // namespace
 
 /// What one layer of lattice cells gives; layers are worked on in parallel and joined in order.
@@ -56,6 +75,7 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   }
   InterfaceMesh extracted = builder.finish();
   settle_parts(extracted);
+  drop_unused_points(extracted);
   join_round_edges(extracted, data.grid.domain());
   number_bodies();
 
