@@ -18,8 +18,7 @@ void CellVolumes::go_to(std::size_t site) {
   place_ = {s % sites_[0], s / sites_[0] % sites_[1], s / (sites_[0] * sites_[1])};
   cell_ = &cells_.at(static_cast<std::size_t>(place_[0]), static_cast<std::size_t>(place_[1]),
                      static_cast<std::size_t>(place_[2]), scratch_);
-  const std::span<const SiteValues::Entry> own = values_.at(site);
-  count_ = own.size();
+  find_rows(site);
   round_.resize(count_);
   settled_.resize(count_);
   entry_.resize(count_);
@@ -38,12 +37,87 @@ void CellVolumes::go_to(std::size_t site) {
     const std::span<const SiteValues::Entry> there = values_.at(*other);
     auto entry = there.begin();
     for (std::size_t m = 0; m < count_; ++m) {
-      while (entry != there.end() && entry->material < own[m].material) ++entry;
-      if (entry != there.end() && entry->material == own[m].material)
-        round_[m][n] = entry->value, settled_[m][n] = entry->settled(),
-        entry_[m][n] = static_cast<std::uint32_t>(&*entry - values_.entries().data());
+      while (entry != there.end() && entry->material < number_of_[m]) ++entry;
+      auto found = entry;
+      if (found == there.end() || found->material != number_of_[m]) {
+        const std::uint16_t whole = values_.whole(number_of_[m]);
+        if (whole == number_of_[m]) continue;
+        found = std::find_if(there.begin(), there.end(), [&](const auto& e) { return e.material == whole; });
+        if (found == there.end()) continue;
+      }
+      round_[m][n] = found->value, settled_[m][n] = found->settled(),
+      entry_[m][n] = static_cast<std::uint32_t>(&*found - values_.entries().data());
     }
   }
+}
+
+/// The rows of a site's materials: of those that have regions here or beside it, the regions'.
+void CellVolumes::find_rows(std::size_t site) {
+  materials_.clear();
+  number_of_.clear();
+  material_of_.clear();
+  for (const SiteValues::Entry& entry : values_.at(site)) {
+    const std::uint16_t whole = values_.whole(entry.material);
+    const auto known = std::find_if(materials_.begin(), materials_.end(),
+                                    [&](const Material& m) { return m.number == whole; });
+    const auto fraction = static_cast<double>(entry.fraction);
+    if (known == materials_.end()) {
+      materials_.push_back({whole, fraction});
+    } else {
+      known->fraction = std::max(known->fraction, fraction);
+    }
+    number_of_.push_back(entry.material);
+  }
+  if (values_.has_regions()) {
+    std::sort(materials_.begin(), materials_.end(),
+              [](const Material& a, const Material& b) { return a.number < b.number; });
+    const auto belongs = [&](std::uint16_t number) {
+      return std::any_of(materials_.begin(), materials_.end(),
+                         [&](const Material& m) { return m.number == values_.whole(number); });
+    };
+    for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+      const auto other = neighbour(n);
+      if (!other) continue;
+      for (const SiteValues::Entry& entry : values_.at(*other)) {
+        if (values_.whole(entry.material) != entry.material && belongs(entry.material))
+          number_of_.push_back(entry.material);
+      }
+    }
+    std::sort(number_of_.begin(), number_of_.end());
+    number_of_.erase(std::unique(number_of_.begin(), number_of_.end()), number_of_.end());
+    std::erase_if(number_of_, [&](std::uint16_t number) {
+      return std::any_of(number_of_.begin(), number_of_.end(), [&](std::uint16_t region) {
+        return region != number && values_.whole(region) == number;
+      });
+    });
+  }
+  count_ = number_of_.size();
+  for (const std::uint16_t number : number_of_) {
+    const auto found = std::find_if(materials_.begin(), materials_.end(),
+                                    [&](const Material& m) { return m.number == values_.whole(number); });
+    material_of_.push_back(static_cast<std::size_t>(found - materials_.begin()));
+  }
+}
+
+void CellVolumes::keep() {
+  kept_.resize(count_);
+  for (std::size_t row = 0; row < count_; ++row) kept_[row] = own(row);
+}
+
+void CellVolumes::move(std::size_t m, double by, double most) {
+  for (std::size_t row = 0; row < count_; ++row) {
+    if (material_of_[row] != m || (count_ > materials_.size() && settled_[row][SiteCell::kSelf])) continue;
+    round_[row][SiteCell::kSelf] =
+        std::clamp(kept_[row] + by, std::min(-most, kept_[row]), std::max(most, kept_[row]));
+  }
+}
+
+double CellVolumes::greatest_difference() const {
+  const std::vector<double>& volumes = count_ == materials_.size() ? volumes_ : material_volumes_;
+  double greatest = 0;
+  for (std::size_t m = 0; m < materials_.size(); ++m)
+    greatest = std::max(greatest, std::abs(volumes[m] - materials_[m].fraction));
+  return greatest;
 }
 
 std::optional<std::size_t> CellVolumes::neighbour(std::size_t n) const {
@@ -57,18 +131,25 @@ const std::vector<double>& CellVolumes::measure(bool growth) {
   with_growth_ = growth;
   pairs_.clear();
   if (at_border_) extend();
+  measure_rows();
+  if (count_ == materials_.size()) return volumes_;
+  material_volumes_.assign(materials_.size(), 0.0);
+  for (std::size_t row = 0; row < count_; ++row) material_volumes_[material_of_[row]] += volumes_[row];
+  return material_volumes_;
+}
+
+void CellVolumes::measure_rows() {
   std::fill(volumes_.begin(), volumes_.end(), 0.0);
   for (std::size_t m = 0; m < count_; ++m) {
     if (!is_sole(m)) continue;
     volumes_[m] = 1;
-    return volumes_;
+    return;
   }
   find_nodes();
   for (const SiteCell::Part& part : cell_->parts) measure_part(part);
   if (at_border_) {
     for (Pair& pair : pairs_) fold(pair.growth);
   }
-  return volumes_;
 }
 
 /// Whether no value in the cell is above those of a material.
@@ -255,6 +336,7 @@ PositivePart CellVolumes::first_of_two(const SiteCell::Part& part, std::size_t m
 }
 
 void CellVolumes::add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth) {
+  if (material_of_[m] == material_of_[n]) return;
   auto pair = std::find_if(pairs_.begin(), pairs_.end(),
                            [&](const Pair& p) { return p.first == m && p.second == n; });
   if (pair == pairs_.end()) pair = pairs_.insert(pair, {m, n, {}});

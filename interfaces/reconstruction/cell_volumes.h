@@ -15,40 +15,58 @@
 namespace adamas {
 
 /// The volumes of materials in the cell of one site after another, exactly, and how they depend on the values
-/// at the sites round it. Materials are those that have a value at the site, by their place there.
+/// at the sites round it. Materials are those that have a value at the site, in the order of their numbers;
+/// each has a row of values, or several where it has regions near the site.
 class CellVolumes {
  public:
   CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells);
 
-  /// How much the first of two materials gains of the second when its values at the neighbours of the site
-  /// grow; the second gains as much when its own do.
+  /// How much the first of two rows of different materials gains of the second when its values at the
+  /// neighbours of the site grow; the second gains as much when its own do.
   struct Pair {
     std::size_t first, second;
     std::array<double, SiteCell::kNeighbours> growth;
   };
+  struct Material {
+    std::uint16_t number;
+    double fraction;
+  };
 
   /// Looks up the values round a site.
   void go_to(std::size_t site);
-  /// The site's value of a material, here alone.
-  double& own(std::size_t m) { return round_[m][SiteCell::kSelf]; }
+  [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
+  /// The place of a row's material among these.
+  [[nodiscard]] std::size_t material_of(std::size_t row) const { return material_of_[row]; }
+  /// Keeps the site's values as they are, for move().
+  void keep();
+  /// Sets the site's values of a material, here alone, to those kept and so much more, at most so far from
+  /// zero; not those in regions that hold nothing of it here.
+  void move(std::size_t m, double by, double most);
   /// The volumes as parts of the cell's; with `growth` pairs() are found too.
   const std::vector<double>& measure(bool growth = false);
+  /// How far the volumes measured last are from the fractions, at most.
+  [[nodiscard]] double greatest_difference() const;
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
-  /// The number of the m-th material's value at the n-th neighbour among SiteValues::entries(); kNone where
-  /// it has none there.
-  [[nodiscard]] std::uint32_t entry(std::size_t m, std::size_t n) const { return entry_[m][n]; }
+  /// The number of a row's value at the n-th neighbour among SiteValues::entries(); kNone where it has none
+  /// there.
+  [[nodiscard]] std::uint32_t entry(std::size_t row, std::size_t n) const { return entry_[row][n]; }
+  [[nodiscard]] std::size_t rows() const { return count_; }
+  /// The site's value of a row, as it is here.
+  [[nodiscard]] double own(std::size_t row) const { return round_[row][SiteCell::kSelf]; }
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
  private:
   using Values = std::array<double, 4>;
 
   [[nodiscard]] std::optional<std::size_t> neighbour(std::size_t n) const;
+  void find_rows(std::size_t site);
   template <class Visit>
   void for_each_border(Visit&& visit) const;
   void extend();
   void fold(std::array<double, SiteCell::kNeighbours>& round) const;
   [[nodiscard]] double border_step(int axis, bool high) const;
   [[nodiscard]] bool is_sole(std::size_t m) const;
+  void measure_rows();
   void find_nodes();
   void measure_part(const SiteCell::Part& part);
   void share(const SiteCell::Part& part);
@@ -81,7 +99,12 @@ class CellVolumes {
   std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entry_;
   std::vector<std::vector<double>> at_nodes_;  // by material
   std::vector<std::size_t> owner_of_node_;
-  std::vector<double> volumes_;
+  std::vector<double> volumes_;           // by row
+  std::vector<double> material_volumes_;  // the same added up, where there are more rows than materials
+  std::vector<Material> materials_;
+  std::vector<std::uint16_t> number_of_;  // by row, as in SiteValues
+  std::vector<std::size_t> material_of_;  // by row
+  std::vector<double> kept_;              // by row
   std::vector<Pair> pairs_;
   std::vector<std::size_t> contenders_;
   std::vector<TetrahedronPiece> pieces_, scratch_pieces_;

@@ -27,11 +27,12 @@ class LostBodySearch {
     std::vector<LostBody> lost;
     for (const std::uint32_t site : values_.mixed()) {
       for (const Entry& entry : values_.at(site)) {
-        if (!holds(entry) || seen_[index(entry)] != 0) continue;
+        // Of regions one stands for the material.
+        if (!holds(entry) || &entry != find(site, material(entry)) || seen_[index(entry)] != 0) continue;
         collect(site, entry);
         double held = 0;
         for (const auto& [at, fraction] : group_) held += fraction;
-        if (held > kLeastHeld && !shows(entry.material)) lost.push_back(describe(entry.material));
+        if (held > kLeastHeld && !shows(material(entry))) lost.push_back(describe(material(entry)));
       }
     }
     return lost;
@@ -42,11 +43,14 @@ class LostBodySearch {
   [[nodiscard]] std::size_t index(const Entry& entry) const {
     return static_cast<std::size_t>(&entry - values_.entries().data());
   }
-  [[nodiscard]] const Entry* find(std::size_t site, std::uint16_t material) const {
+  [[nodiscard]] std::uint16_t material(const Entry& entry) const { return values_.whole(entry.material); }
+  /// The entry of a material, or of that region of it which has the greatest part.
+  [[nodiscard]] const Entry* find(std::size_t site, std::uint16_t number) const {
+    const Entry* found = nullptr;
     for (const Entry& entry : values_.at(site)) {
-      if (entry.material == material) return &entry;
+      if (material(entry) == number && (found == nullptr || entry.fraction > found->fraction)) found = &entry;
     }
-    return nullptr;
+    return found;
   }
 
   /// The cells that hang together with one.
@@ -55,7 +59,7 @@ class LostBodySearch {
     seen_[index(first)] = 1;
     for (std::size_t next = 0; next < group_.size(); ++next) {
       sites_.for_each_neighbour(group_[next].first, [&](std::size_t other, int, int, int) {
-        const Entry* entry = find(other, first.material);
+        const Entry* entry = find(other, material(first));
         if (entry == nullptr || !holds(*entry) || seen_[index(*entry)] != 0) return;
         seen_[index(*entry)] = 1;
         group_.emplace_back(other, static_cast<double>(entry->fraction));
@@ -65,17 +69,20 @@ class LostBodySearch {
 
   /// Whether a material owns a part of a cell of the group; whose a site is is asked first, for most show
   /// there.
-  bool shows(std::uint16_t material) {
+  bool shows(std::uint16_t number) {
     const bool at_site = std::any_of(group_.begin(), group_.end(), [&](const auto& member) {
       const auto own = values_.at(member.first);
       const auto most = std::max_element(own.begin(), own.end(),
                                          [](const Entry& a, const Entry& b) { return a.value < b.value; });
-      return most->material == material;
+      return material(*most) == number;
     });
     return at_site || std::any_of(group_.begin(), group_.end(), [&](const auto& member) {
              cell_.go_to(member.first);
-             const auto m = find(member.first, material) - values_.at(member.first).data();
-             return cell_.measure()[static_cast<std::size_t>(m)] > kNothing;
+             const std::vector<double>& volumes = cell_.measure();
+             for (std::size_t m = 0; m < volumes.size(); ++m) {
+               if (cell_.materials()[m].number == number && volumes[m] > kNothing) return true;
+             }
+             return false;
            });
   }
 

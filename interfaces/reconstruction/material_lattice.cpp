@@ -9,7 +9,7 @@
 namespace adamas {
 
 MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues& values)
-    : far_(values.far()) {
+    : material_count_(data.materials.size()), far_(values.far()) {
   const bool margin = data.grid.centering == Centering::kCells;
   for (int axis = 0; axis < 3; ++axis) {
     auto& x = coordinates_[static_cast<std::size_t>(axis)];
@@ -24,8 +24,10 @@ MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues
                        static_cast<double>(coordinates_[2].size());
   if (count > 1.6e8)
     fail("{}: expected a grid of at most 160 million sites, found {:.0f}", data.source, count);
-  for (std::size_t n = 0; n < data.materials.size(); ++n)
+  for (std::size_t n = 0; n < values.number_count(); ++n) {
     by_name_.push_back(values.material(static_cast<std::uint16_t>(n)));
+    whole_.push_back(values.whole(static_cast<std::uint16_t>(n)));
+  }
   add_values(data, values);
   find_owners(data, values);
 }
@@ -91,11 +93,11 @@ void MaterialLattice::add_values(const MultiMaterialData& data, const SiteValues
   }
 }
 
-double MaterialLattice::value(std::uint32_t point, std::uint16_t material) const {
+double MaterialLattice::value(std::uint32_t point, std::uint16_t number) const {
   for (std::uint32_t e = first_[point]; e < first_[point + 1]; ++e) {
-    if (entries_[e].material == material) return entries_[e].value;
+    if (entries_[e].material == number) return entries_[e].value;
   }
-  return far_;
+  return whole_[number] == number ? far_ : value(point, whole_[number]);
 }
 
 void MaterialLattice::find_owners(const MultiMaterialData& data, const SiteValues& values) {
@@ -129,6 +131,17 @@ std::array<MaterialLattice::Index, 4> MaterialLattice::tetrahedron(const Index& 
   return corners;
 }
 
+bool MaterialLattice::have_one_owner(const std::array<std::uint32_t, 4>& corners) const {
+  std::uint16_t region = owner_[corners[0]];
+  for (const std::uint32_t corner : corners) {
+    const std::uint16_t other = owner_[corner];
+    if (!is_one_region(region, other)) return false;
+    // Of a material and a region of it the latter is more.
+    if (whole_[region] == region) region = other;
+  }
+  return true;
+}
+
 void MaterialLattice::ownership(const std::array<std::uint32_t, 4>& corners,
                                 OwnershipProblem& problem) const {
   problem.clear();
@@ -141,9 +154,14 @@ void MaterialLattice::ownership(const std::array<std::uint32_t, 4>& corners,
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   for (const std::uint16_t m : near) {
-    problem.add_candidate(by_name_[m].value);
-    problem.add_function(
-        {value(corners[0], m), value(corners[1], m), value(corners[2], m), value(corners[3], m)}, m);
+    problem.add_candidate(m);
+    const auto at = [&](std::size_t c) {
+      // A point without values is its one material's, in whatever region.
+      const std::uint32_t point = corners[c];
+      const bool sole = first_[point] == first_[point + 1] && owner_[point] == whole_[m];
+      return sole ? -far_ : value(point, m);
+    };
+    problem.add_function({at(0), at(1), at(2), at(3)}, m);
   }
 }
 

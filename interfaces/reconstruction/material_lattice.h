@@ -35,14 +35,22 @@ class MaterialLattice {
   [[nodiscard]] Vec3 position(const Index& p) const {
     return {coordinates_[0][p[0]], coordinates_[1][p[1]], coordinates_[2][p[2]]};
   }
-  [[nodiscard]] std::size_t material_count() const { return by_name_.size(); }
-  /// Material with the greatest value at a lattice point.
-  [[nodiscard]] MaterialId owner(std::uint32_t point) const { return by_name_[owner_[point]]; }
+  [[nodiscard]] std::size_t material_count() const { return material_count_; }
+  /// The number, as SiteValues has it, of the material or region with the greatest value at a lattice point.
+  [[nodiscard]] std::uint16_t owner(std::uint32_t point) const { return owner_[point]; }
+  [[nodiscard]] MaterialId material(std::uint32_t number) const { return by_name_[number]; }
+  /// Whether one region owns a point and another one, of two numbers of owners: also where one of them is a
+  /// material that has regions elsewhere.
+  [[nodiscard]] bool is_one_region(std::uint32_t a, std::uint32_t b) const {
+    return a == b || (whole_[a] == whole_[b] && (a == whole_[a] || b == whole_[b]));
+  }
+  /// Whether one region owns all corners of a tetrahedron, and so the whole of it.
+  [[nodiscard]] bool have_one_owner(const std::array<std::uint32_t, 4>& corners) const;
 
   /// Corners of a tetrahedron of the lattice cell at `cell`, from the lowest on.
   [[nodiscard]] std::array<Index, 4> tetrahedron(const Index& cell, std::size_t path) const;
   /// Who owns what of a tetrahedron, whose corners have two owners or more; materials that are far from all
-  /// of them are left out. Owners are materials.
+  /// of them are left out. Owners are numbers of materials and regions.
   void ownership(const std::array<std::uint32_t, 4>& corners, OwnershipProblem& problem) const;
   /// The lattice cell, the tetrahedron and the weights of a point; points outside the domain count as the
   /// nearest inside.
@@ -57,11 +65,13 @@ class MaterialLattice {
   void add_values(const MultiMaterialData& data, const SiteValues& values);
   void find_owners(const MultiMaterialData& data, const SiteValues& values);
   [[nodiscard]] std::size_t nearest_site(const MultiMaterialData& data, const Index& p) const;
-  [[nodiscard]] double value(std::uint32_t point, std::uint16_t material) const;
+  [[nodiscard]] double value(std::uint32_t point, std::uint16_t number) const;
 
   std::array<std::vector<double>, 3> coordinates_;
   std::array<std::uint32_t, 3> margin_{};  ///< 1 along an axis with extra boundary points
-  std::vector<MaterialId> by_name_;        ///< in the order of names; numbers below are places in it
+  std::size_t material_count_;
+  std::vector<MaterialId> by_name_;   ///< by number
+  std::vector<std::uint16_t> whole_;  ///< by number
   struct Entry {
     double value;
     std::uint16_t material;

@@ -16,6 +16,25 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
 }
 
+/// Leaves out points that no triangle has: those on contacts of a material with itself.
+void drop_unused_points(InterfaceMesh& mesh) {
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> number(mesh.points.size(), kUnused);
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    for (const std::uint32_t p : t.points) number[p] = 0;
+  }
+  std::uint32_t count = 0;
+  for (std::size_t p = 0; p < number.size(); ++p) {
+    if (number[p] == kUnused) continue;
+    mesh.points[count] = mesh.points[p];
+    number[p] = count++;
+  }
+  mesh.points.resize(count);
+  for (InterfaceTriangle& t : mesh.triangles) {
+    for (std::uint32_t& p : t.points) p = number[p];
+  }
+}
+
 }  // namespace
 
 /// What one layer of lattice cells gives; layers are worked on in parallel and joined in order.
@@ -37,6 +56,8 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   mesh_.source = data.source;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);
+  // As many as numbers suffice for.
+  slots_ = 0xffffffffu / lattice_.point_count() > 6 * 8 + 1 ? 8 : 4;
   join_points();
   constexpr std::uint32_t kBatch = 8;
   for (std::uint32_t begin = 0; begin < layers; begin += kBatch) {
@@ -54,6 +75,7 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   }
   InterfaceMesh extracted = builder.finish();
   settle_parts(extracted);
+  drop_unused_points(extracted);
   join_round_edges(extracted, data.grid.domain());
   number_bodies();
 
@@ -84,7 +106,7 @@ void Reconstruction::extract_cell(const MaterialLattice::Index& cell, Layer& lay
   const Vec3 low = lattice_.position(cell), high = lattice_.position({cell[0] + 1, cell[1] + 1, cell[2] + 1});
   const double volume = Box3{low, high}.volume();
   const std::uint32_t first = lattice_.point_index(cell);
-  const MaterialId owner = lattice_.owner(first);
+  const std::uint16_t owner = lattice_.owner(first);
   bool uniform = true;
   for (std::uint32_t c = 0; c < 8 && uniform; ++c) {
     const std::uint32_t p =
@@ -92,7 +114,7 @@ void Reconstruction::extract_cell(const MaterialLattice::Index& cell, Layer& lay
     uniform = lattice_.owner(p) == owner;
   }
   if (uniform) {
-    layer.volume[owner] += volume;
+    layer.volume[lattice_.material(owner)] += volume;
     return;
   }
   for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path)
@@ -111,25 +133,23 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
     ids[c] = points[c] = lattice_.point_index(corners[c]);
     positions[c] = lattice_.position(corners[c]);
   }
-  if (std::all_of(points.begin(), points.end(),
-                  [&](std::uint32_t p) { return lattice_.owner(p) == lattice_.owner(points[0]); })) {
-    layer.volume[lattice_.owner(points[0])] += volume;
+  if (lattice_.have_one_owner(points)) {
+    layer.volume[lattice_.material(lattice_.owner(points[0]))] += volume;
     return;
   }
   lattice_.ownership(points, problem);
   parts.clear();
   partition_tetrahedron(problem, parts);
   for (const OwnedTetrahedron& part : parts) {
-    layer.volume[MaterialId(part.owner)] += volume * volume_fraction(part.corners);
+    layer.volume[lattice_.material(part.owner)] += volume * volume_fraction(part.corners);
   }
   if (problem.candidates.size() < 2) return;
   // Also what round-off has taken: the tetrahedra on either side of a face agree on what lies on it.
   keep_owners(problem);
   const std::vector<OwnershipProblem::Candidate> owners = problem.candidates;
   for (std::size_t c = 0; c < owners.size(); ++c) {
-    const MaterialId m(owners[c].owner);
-    const Part part = problem.candidates[c].owner = part_in(cell, path, points, owners, m);
-    if (is_pointless(part)) layer.pointless.emplace_back(part, m);
+    const Part part = problem.candidates[c].owner = part_in(cell, path, points, owners, owners[c].owner);
+    if (is_pointless(part)) layer.pointless.emplace_back(part, lattice_.material(owners[c].owner));
   }
   layer.contacts.add(ids, positions, problem);
 }
@@ -137,23 +157,23 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
 Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell, std::size_t path,
                                              const std::array<std::uint32_t, 4>& corners,
                                              const std::vector<OwnershipProblem::Candidate>& owners,
-                                             MaterialId m) const {
+                                             std::uint32_t number) const {
   for (const std::uint32_t p : corners) {
-    if (lattice_.owner(p) == m) return p;
+    if (lattice_.is_one_region(lattice_.owner(p), number)) return p;
   }
   // A tetrahedron has at most four regions that hold a corner; those that hold none are told apart by the
-  // position of their material among those that own something. More than four such in one tetrahedron,
-  // which hardly comes about, count as one.
+  // position of their material among those that own something. More of them in one tetrahedron than there
+  // are numbers for, which hardly comes about, count as one.
   std::uint32_t slot = 0;
   for (const auto& candidate : owners) {
-    if (candidate.owner == m.value) break;
+    if (candidate.owner == number) break;
     const bool holds = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t p) {
-      return lattice_.owner(p).value == candidate.owner;
+      return lattice_.is_one_region(lattice_.owner(p), candidate.owner);
     });
-    if (!holds) slot = std::min(slot + 1, 3u);
+    if (!holds) slot = std::min(slot + 1, slots_ - 1);
   }
   const std::uint32_t tetrahedron = lattice_.point_index(cell) * 6 + static_cast<std::uint32_t>(path);
-  return lattice_.point_count() + tetrahedron * 4 + slot;
+  return lattice_.point_count() + tetrahedron * slots_ + slot;
 }
 
 void Reconstruction::join_points() {
@@ -169,7 +189,7 @@ void Reconstruction::join_points() {
               other[2] >= lattice_.points(2))
             continue;
           const std::uint32_t q = lattice_.point_index(other);
-          if (lattice_.owner(p) == lattice_.owner(q)) join(p, q);
+          if (lattice_.is_one_region(lattice_.owner(p), lattice_.owner(q))) join(p, q);
         }
       }
     }
@@ -200,7 +220,7 @@ void Reconstruction::settle_parts(InterfaceMesh& mesh) {
 }
 
 MaterialId Reconstruction::material_of(Part part) const {
-  if (!is_pointless(part)) return lattice_.owner(part);
+  if (!is_pointless(part)) return lattice_.material(lattice_.owner(part));
   return std::lower_bound(pointless_.begin(), pointless_.end(), std::pair{part, MaterialId(0)})->second;
 }
 
@@ -315,7 +335,7 @@ void Reconstruction::number_bodies() {
     const Part root = find(p);
     if (root == p) {
       body_of_point_[p] = body_materials_.next_id();
-      body_materials_.push_back(lattice_.owner(p));
+      body_materials_.push_back(lattice_.material(lattice_.owner(p)));
     } else {
       body_of_point_[p] = body_of_point_[root];
     }
@@ -341,13 +361,10 @@ BodyId Reconstruction::body_at(const Vec3& p) const {
   const auto corners = lattice_.tetrahedron(location.cell, location.path);
   std::array<std::uint32_t, 4> points{};
   for (std::size_t c = 0; c < 4; ++c) points[c] = lattice_.point_index(corners[c]);
-  const bool uniform = std::all_of(points.begin(), points.end(), [&](std::uint32_t q) {
-    return lattice_.owner(q) == lattice_.owner(points[0]);
-  });
-  if (uniform) return body_of_point_[points[0]];
+  if (lattice_.have_one_owner(points)) return body_of_point_[points[0]];
   OwnershipProblem problem;
   lattice_.ownership(points, problem);
-  const MaterialId owner(problem.owner(location.weights));
+  const std::uint32_t owner = problem.owner(location.weights);
   keep_owners(problem);
   const Part part = part_in(location.cell, location.path, points, problem.candidates, owner);
   if (part < body_of_point_.size()) return body_of_point_[part];

@@ -64,7 +64,8 @@ class Reconstruction {
                            Layer& layer) const;
   [[nodiscard]] Part part_in(const MaterialLattice::Index& cell, std::size_t path,
                              const std::array<std::uint32_t, 4>& corners,
-                             const std::vector<OwnershipProblem::Candidate>& owners, MaterialId m) const;
+                             const std::vector<OwnershipProblem::Candidate>& owners,
+                             std::uint32_t number) const;
   [[nodiscard]] bool is_pointless(Part part) const { return part >= lattice_.point_count(); }
   [[nodiscard]] MaterialId material_of(Part part) const;
   void join_points();
@@ -85,7 +86,8 @@ class Reconstruction {
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<BodyId, MaterialId> body_materials_;
   IdVector<MaterialId, double> volume_input_, volume_reconstructed_;
-  std::vector<Part> parent_;                            ///< union-find over lattice points
+  std::uint32_t slots_ = 4;   ///< numbers of a tetrahedron for parts that hold no lattice point
+  std::vector<Part> parent_;  ///< union-find over lattice points
   std::unordered_map<Part, Part> pointless_parent_;     ///< and over parts that hold no lattice point
   std::vector<std::pair<Part, MaterialId>> pointless_;  ///< in the order of their numbers
   std::vector<BodyId> body_of_point_;

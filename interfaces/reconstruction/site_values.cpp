@@ -29,6 +29,7 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth) {
   find_entries(data);
   if (!smooth) {
     set_distances(data);
+    split_at_sheets(data);
     return;
   }
   if (data.labels.empty()) fail("{}: expected labels to smooth, found volume fractions", data.source);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "core/data/multi_material_data.h"
 
 namespace adamas {
+
+class SheetValues;
+struct ThinSheets;
 
 /// A value per site and material near it, whose greatest says who owns a point (docs/method.md, Interfaces
 /// from volume fractions): lengths, about the signed distance from the material's boundary. Sites all of
@@ -17,7 +21,7 @@ class SiteValues {
   struct Entry {
     double value;
     float fraction;
-    std::uint16_t material;  ///< its number in the order of names
+    std::uint16_t material;  ///< its number in the order of names, or that of a region of it
 
     /// Whether the material fills the cell or is absent from it.
     [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
@@ -35,8 +39,17 @@ class SiteValues {
   }
   [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
-  /// The material with a number in the order of names, on which nothing else may depend.
+  /// The material with a number in the order of names, on which nothing else may depend. Above these are
+  /// regions of materials, which may lie on the two sides of a thin sheet. Where a site has a value of the
+  /// material itself it is that of all its regions.
   [[nodiscard]] MaterialId material(std::uint16_t number) const { return by_name_[number]; }
+  /// The number of the material itself.
+  [[nodiscard]] std::uint16_t whole(std::uint16_t number) const {
+    return parents_.empty() ? number : parents_[number];
+  }
+  [[nodiscard]] bool has_regions() const { return !parents_.empty(); }
+  /// How many numbers there are.
+  [[nodiscard]] std::size_t number_count() const { return by_name_.size(); }
   /// The number of the one material of a site that has no values.
   [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_[site]; }
   /// The value of a material that has none near a site: less than any that counts.
@@ -46,18 +59,34 @@ class SiteValues {
   /// What no value of labels that are smoothed may be nearer to zero than, so that sites keep their labels; 0
   /// of other data.
   [[nodiscard]] double least() const { return least_; }
+  /// A place in a thin sheet of a mixed site, by its entries: it holds together as long as the sheet's value
+  /// is above the mean of the greatest on either side.
+  struct Layer {
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    std::uint32_t sheet = kNone;
+    std::array<std::vector<std::uint32_t>, 2> sides;
+    double least = 0;  ///< how much it is to be above
+  };
+  [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
+  /// Lifts the values of sheets above what is on their sides where they have come below.
+  void hold_layers();
   /// Sites where two materials or more have a fraction, in order.
   [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
 
  private:
   void set_distances(const MultiMaterialData& data);
   void find_entries(const MultiMaterialData& data);
+  void split_at_sheets(const MultiMaterialData& data);
+  void find_layers(const MultiMaterialData& data, const ThinSheets& sheets, const SheetValues& values);
+  [[nodiscard]] double above(const Layer& layer) const;
 
   std::vector<MaterialId> by_name_;
-  std::vector<std::uint16_t> sole_;  // by site; the number of materials where there are several
+  std::vector<std::uint16_t> parents_;  // by number; empty where there are no regions
+  std::vector<std::uint16_t> sole_;     // by site; the number of materials where there are several
   std::vector<std::uint32_t> first_;
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> mixed_;
+  std::vector<Layer> layers_;
   double far_ = 0, least_ = 0;
 };
 

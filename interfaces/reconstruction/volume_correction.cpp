@@ -1,6 +1,5 @@
 #include "interfaces/reconstruction/volume_correction.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/linear_system.h"
+#include "interfaces/reconstruction/total_closing.h"
 
 namespace adamas {
 
@@ -16,9 +16,8 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Sweeps over cells that are far off, rounds of the method for all, steps of each, and rounds that close
-/// totals.
-constexpr int kMostSweeps = 6, kMostRounds = 16, kMostClosings = 12;
+/// Sweeps over cells that are far off, and rounds of the method for all.
+constexpr int kMostSweeps = 6, kMostRounds = 16;
 /// A cell is far off where a volume differs by more than this part of the cell's.
 constexpr double kFarOff = 0.03;
 /// Cells that differ by more are counted.
@@ -31,8 +30,7 @@ constexpr double kMostOff = 8e-3, kLeastGain = 0.02;
 constexpr double kDamping = 1e-4;
 /// Steps are not halved below this, and moves that are smaller, in cells, leave what was measured as it is.
 constexpr double kLeastShare = 0.1, kStill = 1e-6;
-/// Of the domain.
-constexpr double kTotalTolerance = 2e-11;
+constexpr int kMostHalvings = 4;
 
 class Correction {
  public:
@@ -56,12 +54,13 @@ class Correction {
       progress.step("correcting volumes", -1);
       std::size_t off = 0;
       for (int colour = 0; colour < 8; ++colour) off += correct(colour, 1 + 8 * sweep + colour);
+      values_.hold_layers();
       if (off == 0) break;
     }
     std::fill(changed_.begin(), changed_.end(), 0);
     find_unknowns();
     correct_all(progress);
-    close_totals(progress);
+    close_totals(data_, values_, cells_, progress);
   }
 
   [[nodiscard]] VolumeAgreement agreement() const {
@@ -71,7 +70,8 @@ class Correction {
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
         cell.go_to(mixed[n]);
-        differences[n] = greatest_difference(entries(mixed[n]), cell.measure());
+        cell.measure();
+        differences[n] = cell.greatest_difference();
       }
     });
     VolumeAgreement result;
@@ -90,13 +90,6 @@ class Correction {
 
   [[nodiscard]] std::span<const Entry> entries(std::size_t site) const {
     return static_cast<const SiteValues&>(values_).at(site);
-  }
-
-  static double greatest_difference(std::span<const Entry> entries, const std::vector<double>& volumes) {
-    double greatest = 0;
-    for (std::size_t m = 0; m < entries.size(); ++m)
-      greatest = std::max(greatest, std::abs(volumes[m] - static_cast<double>(entries[m].fraction)));
-    return greatest;
   }
 
   /// Whether a value at a site or a neighbour has changed since some time.
@@ -128,32 +121,36 @@ class Correction {
   }
 
   bool correct(std::size_t site, CellVolumes& cell) {
-    const std::span<Entry> own = values_.at(site);
     cell.go_to(site);
-    if (greatest_difference(own, cell.measure()) <= kFarOff) return false;
+    cell.measure();
+    if (cell.greatest_difference() <= kFarOff) return false;
     std::vector<std::size_t> present;
-    for (std::size_t m = 0; m < own.size(); ++m) {
-      if (own[m].fraction > 0) present.push_back(m);
+    for (std::size_t m = 0; m < cell.materials().size(); ++m) {
+      if (cell.materials()[m].fraction > 0) present.push_back(m);
     }
     if (present.size() == 2) {
-      raise(own, cell, present[0], present[1]);
+      raise(cell, present[0], present[1]);
     } else {
-      for (const std::size_t m : present) raise(own, cell, m, m);
+      for (const std::size_t m : present) raise(cell, m, m);
     }
-    for (std::size_t m = 0; m < own.size(); ++m) own[m].value = cell.own(m);
+    for (std::size_t row = 0; row < cell.rows(); ++row) {
+      const std::uint32_t entry = cell.entry(row, SiteCell::kSelf);
+      if (entry != CellVolumes::kNone) values_.entries()[entry].value = cell.own(row);
+    }
     return true;
   }
 
-  /// Raises the m-th value, and lowers the n-th as much where that is another, until the m-th volume is
-  /// right, by two steps of the secant method: volumes grow with values.
-  void raise(std::span<const Entry> own, CellVolumes& cell, std::size_t m, std::size_t n) const {
-    const double first_m = cell.own(m), first_n = cell.own(n), most = values_.greatest();
+  /// Raises the values of the m-th material, and lowers those of the n-th as much where that is another,
+  /// until the m-th volume is right, by two steps of the secant method: volumes grow with values.
+  void raise(CellVolumes& cell, std::size_t m, std::size_t n) const {
+    const double most = values_.greatest();
+    cell.keep();
     const auto set = [&](double shift) {
       const double part = m == n ? shift : 0.5 * shift;
-      cell.own(m) = std::clamp(first_m + part, -most, most);
-      if (m != n) cell.own(n) = std::clamp(first_n - part, -most, most);
+      cell.move(m, part, most);
+      if (m != n) cell.move(n, -part, most);
     };
-    const double before = cell.measure()[m], missing = static_cast<double>(own[m].fraction) - before;
+    const double before = cell.measure()[m], missing = cell.materials()[m].fraction - before;
     const double guess = std::clamp(2.5 * missing * step_, -step_, step_);
     if (guess == 0) return;
     set(guess);
@@ -194,20 +191,8 @@ class Correction {
       if (static_cast<double>(off) <= kMostOff * static_cast<double>(values_.mixed().size())) return;
       std::vector<double> move = system.solve(unknowns_.size(), kDamping / (step_ * step_));
       for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
-      double share = 1;
-      apply(move, share);
-      linearise(system);
-      double sum = sum_of_squares(system.missing);
-      while (sum > best && share > kLeastShare) {
-        share *= 0.5;
-        apply(move, -share);
-        linearise(system);
-        sum = sum_of_squares(system.missing);
-      }
-      if (sum > best) {
-        apply(move, -share);
-        return;
-      }
+      double sum = values_.layers().empty() ? step(system, move, best) : step_layers(system, move, best);
+      if (sum > best) return;
       const std::size_t off_before = off;
       off = system.cells_off();
       const bool settled = sum > (1 - kLeastGain) * best &&
@@ -217,11 +202,93 @@ class Correction {
     }
   }
 
+  /// Moves values as far along a move as brings volumes nearer to what they should be; returns the sum of
+  /// squares of what is missing then, which is greater than `best` where nothing does: then values stay.
+  double step(LinearSystem& system, const std::vector<double>& move, double best) {
+    double share = 1;
+    apply(move, share);
+    linearise(system);
+    double sum = sum_of_squares(system.missing);
+    while (sum > best && share > kLeastShare) {
+      share *= 0.5;
+      apply(move, -share);
+      linearise(system);
+      sum = sum_of_squares(system.missing);
+    }
+    if (sum > best) apply(move, -share);
+    return sum;
+  }
+
   void apply(const std::vector<double>& move, double share) {
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
       const double by = share * move[i];
       values_.entries()[unknowns_[i]].value += by;
       if (std::abs(by) > kStill * step_) changed_[site_of_[i]] = 1;
+    }
+  }
+
+  /// The same where there are sheets to hold. Where no share of the whole move helps it is shortened only
+  /// where it leads too far.
+  double step_layers(LinearSystem& system, const std::vector<double>& move, double best) {
+    std::vector<double> start, shares(unknowns_.size(), 1);
+    for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
+    const std::vector<double> before = squares_round_sites(system.missing);
+    const auto try_shares = [&] {
+      place(start, move, shares);
+      linearise(system);
+      return sum_of_squares(system.missing);
+    };
+    double sum = try_shares();
+    for (double share = 0.5; sum > best && share > 0.5 * kLeastShare; share *= 0.5) {
+      std::fill(shares.begin(), shares.end(), share);
+      sum = try_shares();
+    }
+    if (sum <= best) return sum;
+    std::fill(shares.begin(), shares.end(), 1);
+    sum = try_shares();
+    for (int halving = 1; halving <= kMostHalvings; ++halving) {
+      const std::vector<double> after = squares_round_sites(system.missing);
+      for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+        if (after[site_of_[i]] > before[site_of_[i]])
+          shares[i] = halving < kMostHalvings ? 0.5 * shares[i] : 0;
+      }
+      sum = try_shares();
+    }
+    if (sum <= best) return sum;
+    std::fill(shares.begin(), shares.end(), 0);
+    place(start, move, shares);
+    return sum;
+  }
+
+  /// The sums of squares of what is missing in the cells of a site and its neighbours, by site.
+  [[nodiscard]] std::vector<double> squares_round_sites(const std::vector<double>& missing) const {
+    const auto& mixed = values_.mixed();
+    std::vector<double> own(data_.grid.site_count(), 0), sums(own.size(), 0);
+    for (std::size_t n = 0; n < mixed.size(); ++n) {
+      for (std::uint32_t row = row_of_[n]; row < row_of_[n + 1]; ++row)
+        own[mixed[n]] += missing[row] * missing[row];
+    }
+    parallel_for(mixed.size(), 1024, [&](std::size_t n) {
+      double sum = own[mixed[n]];
+      grid_sites_.for_each_neighbour(mixed[n], [&](std::size_t other, int, int, int) { sum += own[other]; });
+      sums[mixed[n]] = sum;
+    });
+    return sums;
+  }
+
+  /// Puts values where shares of a move lead from a start on, but for sheets that would tear.
+  void place(const std::vector<double>& start, const std::vector<double>& move,
+             const std::vector<double>& shares) {
+    std::vector<double> before;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      double& value = values_.entries()[unknowns_[i]].value;
+      before.push_back(value);
+      value = start[i] + shares[i] * move[i];
+    }
+    values_.hold_layers();
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      if (std::abs(values_.entries()[unknowns_[i]].value - before[i]) > kStill * step_)
+        changed_[site_of_[i]] = 1;
     }
   }
 
@@ -241,12 +308,11 @@ class Correction {
       block.cells_off = 0;
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
-        const std::span<const Entry> own = entries(mixed[n]);
         cell.go_to(mixed[n]);
         const std::vector<double>& volumes = cell.measure(true);
-        block.cells_off += greatest_difference(own, volumes) > kCellOff ? 1 : 0;
-        for (std::size_t m = 0; m < own.size(); ++m)
-          system.missing[row_of_[n] + m] = static_cast<double>(own[m].fraction) - volumes[m];
+        block.cells_off += cell.greatest_difference() > kCellOff ? 1 : 0;
+        for (std::size_t m = 0; m < volumes.size(); ++m)
+          system.missing[row_of_[n] + m] = cell.materials()[m].fraction - volumes[m];
         for (const CellVolumes::Pair& pair : cell.pairs()) add_exchange(cell, pair, row_of_[n], block);
       }
     });
@@ -264,107 +330,9 @@ class Correction {
       if (gains != kNone) block.coefficients.push_back({gains, by});
       if (loses != kNone) block.coefficients.push_back({loses, -by});
     }
-    block.exchanges.push_back({row + static_cast<std::uint32_t>(pair.first),
-                               row + static_cast<std::uint32_t>(pair.second), first,
+    block.exchanges.push_back({row + static_cast<std::uint32_t>(cell.material_of(pair.first)),
+                               row + static_cast<std::uint32_t>(cell.material_of(pair.second)), first,
                                static_cast<std::uint32_t>(block.coefficients.size()) - first});
-  }
-
-  /// One offset per material, the same everywhere: Newton's method for the volumes in the whole domain.
-  void close_totals(Progress& progress) {
-    const auto count = static_cast<Eigen::Index>(data_.materials.size());
-    if (count < 2) return;
-    const auto wanted = data_.volumes();
-    const double domain = data_.grid.domain().volume();
-    for (int round = 0; round < kMostClosings; ++round) {
-      progress.step("closing volumes", static_cast<double>(round) / kMostClosings);
-      Eigen::SparseMatrix<double> growth(count, count);
-      const std::vector<double> totals = measure_totals(growth);
-      Eigen::VectorXd missing(count);
-      for (Eigen::Index m = 0; m < count; ++m)
-        missing[m] =
-            wanted[values_.material(static_cast<std::uint16_t>(m))] - totals[static_cast<std::size_t>(m)];
-      // Adding one number to all offsets changes nothing, and what fractions are beyond 1 cannot be had.
-      missing.array() -= missing.mean();
-      const double scale = Eigen::VectorXd(growth.diagonal()).maxCoeff();
-      if (!(scale > 0) || missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(growth + diagonal(count, 1e-9 * scale));
-      Eigen::VectorXd offsets = solver.solve(missing);
-      offsets.array() -= offsets.mean();
-      for (Entry& entry : values_.entries())
-        shift(entry,
-              std::clamp(offsets[static_cast<Eigen::Index>(entry.material)], -0.1 * step_, 0.1 * step_));
-    }
-  }
-
-  /// Moves a value, which stays on its side where labels are smoothed.
-  void shift(Entry& entry, double by) const {
-    entry.value += by;
-    if (values_.least() == 0) return;
-    entry.value =
-        entry.fraction > 0 ? std::max(entry.value, values_.least()) : std::min(entry.value, -values_.least());
-  }
-  /// Whether an offset moves a value.
-  [[nodiscard]] bool moves(std::uint32_t entry) const {
-    return entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least();
-  }
-
-  static Eigen::SparseMatrix<double> diagonal(Eigen::Index count, double by) {
-    Eigen::SparseMatrix<double> identity(count, count);
-    identity.setIdentity();
-    return by * identity;
-  }
-
-  /// The materials' volumes in the domain, and how they grow with offsets: few of many materials meet.
-  std::vector<double> measure_totals(Eigen::SparseMatrix<double>& growth) const {
-    struct Sum {
-      std::vector<double> volumes;
-      std::vector<std::array<std::uint16_t, 2>> pairs;
-      std::vector<double> growth;
-    };
-    const RectilinearGrid& grid = data_.grid;
-    std::vector<Sum> layers(grid.sites(2));
-    parallel_for(layers.size(), 1, [&](std::size_t k) {
-      Sum& sum = layers[k];
-      sum.volumes.assign(data_.materials.size(), 0);
-      CellVolumes cell(grid, values_, cells_);
-      for (std::size_t j = 0; j < grid.sites(1); ++j) {
-        for (std::size_t i = 0; i < grid.sites(0); ++i) {
-          const std::size_t site = grid.site_index(i, j, k);
-          const double volume = grid.site_volume(i, j, k);
-          const std::span<const Entry> own = entries(site);
-          if (own.empty()) {
-            sum.volumes[values_.sole_material(site)] += volume;
-            continue;
-          }
-          cell.go_to(site);
-          const std::vector<double>& parts = cell.measure(true);
-          for (std::size_t m = 0; m < own.size(); ++m) sum.volumes[own[m].material] += parts[m] * volume;
-          for (const CellVolumes::Pair& pair : cell.pairs()) {
-            sum.pairs.push_back({own[pair.first].material, own[pair.second].material});
-            double by = 0;
-            for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
-              const int movable = static_cast<int>(moves(cell.entry(pair.first, n))) +
-                                  static_cast<int>(moves(cell.entry(pair.second, n)));
-              by += 0.5 * movable * pair.growth[n];
-            }
-            sum.growth.push_back(by * volume);
-          }
-        }
-      }
-    });
-    std::vector<double> totals(data_.materials.size(), 0);
-    std::vector<Eigen::Triplet<double>> sums;
-    for (const Sum& sum : layers) {
-      for (std::size_t m = 0; m < totals.size(); ++m) totals[m] += sum.volumes[m];
-      for (std::size_t p = 0; p < sum.pairs.size(); ++p) {
-        const int a = sum.pairs[p][0], b = sum.pairs[p][1];
-        for (const int m : {a, b}) {
-          for (const int n : {a, b}) sums.emplace_back(m, n, m == n ? sum.growth[p] : -sum.growth[p]);
-        }
-      }
-    }
-    growth.setFromTriplets(sums.begin(), sums.end());
-    return totals;
   }
 
   const MultiMaterialData& data_;

@@ -1,0 +1,233 @@
+#include "interfaces/reconstruction/thin_sheets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/site_values.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+/// Cells where a sheet and what is on its sides are less than this are left out of its fit.
+constexpr double kLeastOfThree = 0.97;
+/// Rings of sites round those with a fit of their own, to which sheets are continued.
+constexpr int kRings = 2;
+/// Layers are continuations of each other where their normals agree at least so well, by the cosine, and
+/// their heights differ by no more cells.
+constexpr double kLeastCosine = 0.7, kMostStep = 0.5;
+/// A sheet has an end where a cell should hold so much of it and has none, or less than this part of it.
+constexpr double kMissing = 0.1, kHalf = 0.5, kAside = 0.4;
+
+class SheetSearch {
+ public:
+  SheetSearch(const MultiMaterialData& data, const SiteValues& values)
+      : data_(data),
+        values_(values),
+        sites_(data.grid),
+        n_{static_cast<std::int64_t>(data.grid.sites(0)), static_cast<std::int64_t>(data.grid.sites(1)),
+           static_cast<std::int64_t>(data.grid.sites(2))} {}
+
+  std::vector<SheetPlace> run() {
+    find_own();
+    if (places_.empty()) return {};
+    for (int ring = 0; ring < kRings; ++ring) add_ring();
+    std::sort(places_.begin(), places_.end(),
+              [](const SheetPlace& a, const SheetPlace& b) { return a.site < b.site; });
+    return std::move(places_);
+  }
+
+ private:
+  [[nodiscard]] double fraction(std::uint16_t number, std::size_t site) const {
+    return static_cast<double>(data_.fractions[values_.material(number)][site]);
+  }
+
+  /// Layers fitted to what is round each mixed site.
+  void find_own() {
+    const auto& mixed = values_.mixed();
+    std::vector<std::optional<SheetPlace>> found(mixed.size());
+    parallel_for(mixed.size(), 64, [&](std::size_t n) {
+      for (const Entry& entry : values_.at(mixed[n])) {
+        if (entry.fraction <= 0) continue;
+        const auto place = fit(mixed[n], entry.material);
+        if (place && (!found[n] || place->slab.thickness < found[n]->slab.thickness)) found[n] = place;
+      }
+    });
+    for (const auto& place : found) {
+      if (place) places_.push_back(*place);
+    }
+  }
+
+  /// The sites of a window round one; those beyond the domain are left out.
+  template <class Visit>
+  bool for_each_in_window(std::size_t site, const Visit& visit) const {
+    const auto s = static_cast<std::int64_t>(site);
+    const std::int64_t x = s % n_[0], y = s / n_[0] % n_[1], z = s / (n_[0] * n_[1]);
+    std::size_t cell = 0;
+    for (int dk = -SheetWindow::kReach; dk <= SheetWindow::kReach; ++dk) {
+      for (int dj = -SheetWindow::kReach; dj <= SheetWindow::kReach; ++dj) {
+        for (int di = -SheetWindow::kReach; di <= SheetWindow::kReach; ++di, ++cell) {
+          const std::int64_t i = x + di, j = y + dj, k = z + dk;
+          if (i < 0 || j < 0 || k < 0 || i >= n_[0] || j >= n_[1] || k >= n_[2]) continue;
+          if (!visit(cell, static_cast<std::size_t>(i + n_[0] * (j + n_[1] * k)))) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::optional<SheetPlace> fit(std::size_t site, std::uint16_t material) const {
+    SheetWindow window;
+    // Where it fills a cell and all round it there is no thin sheet.
+    const bool thin = for_each_in_window(site, [&](std::size_t cell, std::size_t other) {
+      if (values_.at(other).empty() && values_.sole_material(other) == material) return false;
+      window.known[cell] = 1;
+      window.fraction[cell] = static_cast<float>(fraction(material, other));
+      return true;
+    });
+    if (!thin) return {};
+    const auto guess = guess_sheet(window);
+    if (!guess) return {};
+    SheetPlace place{static_cast<std::uint32_t>(site), material, {material, material}, {}, {}, false};
+    place.sides = sides_of(place, *guess);
+    if (place.sides[0] == material) return {};
+    for_each_in_window(site, [&](std::size_t cell, std::size_t other) {
+      double sum = fraction(material, other) + fraction(place.sides[0], other);
+      if (place.sides[0] != place.sides[1]) sum += fraction(place.sides[1], other);
+      if (sum < kLeastOfThree) window.known[cell] = 0;
+      return true;
+    });
+    const auto slab = fit_sheet(window, *guess);
+    if (!slab) return {};
+    place.slab = *slab;
+    place.is_fitted = true;
+    return place;
+  }
+
+  /// What there is most of before and behind a layer; the layer's own where there is nothing else.
+  [[nodiscard]] std::array<std::uint16_t, 2> sides_of(const SheetPlace& place, const Slab& slab) const {
+    std::vector<std::uint16_t> near;
+    for (const Entry& entry : values_.at(place.site)) near.push_back(entry.material);
+    near.insert(near.end(), place.sides.begin(), place.sides.end());
+    std::sort(near.begin(), near.end());
+    std::array<std::uint16_t, 2> sides = place.sides;
+    std::array<double, 2> most{0, 0};
+    for (const std::uint16_t material : near) {
+      if (material == place.material) continue;
+      std::array<double, 2> sums{0, 0};
+      for_each_in_window(place.site, [&](std::size_t cell, std::size_t other) {
+        const double y = slab.height(SheetWindow::place(cell));
+        if (std::abs(y) > 0.5 * slab.thickness && std::abs(y) < 2.2)
+          sums[y > 0 ? 0 : 1] += fraction(material, other);
+        return true;
+      });
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (sums[side] > most[side]) most[side] = sums[side], sides[side] = material;
+      }
+    }
+    if (most[0] == 0 || most[1] == 0) return place.sides;
+    return sides;
+  }
+
+  /// Continues sheets to sites beside the known places.
+  void add_ring() {
+    std::vector<std::uint32_t> place_of(data_.grid.site_count(), kNone);
+    for (std::size_t p = 0; p < places_.size(); ++p)
+      place_of[places_[p].site] = static_cast<std::uint32_t>(p);
+    std::vector<std::uint32_t> beside;
+    for (const SheetPlace& place : places_) {
+      sites_.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
+        if (place_of[other] == kNone && !values_.at(other).empty())
+          beside.push_back(static_cast<std::uint32_t>(other));
+      });
+    }
+    std::sort(beside.begin(), beside.end());
+    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    std::vector<std::optional<SheetPlace>> found(beside.size());
+    parallel_for(beside.size(), 256, [&](std::size_t n) { found[n] = continued_to(beside[n], place_of); });
+    for (const auto& place : found) {
+      if (place) places_.push_back(*place);
+    }
+  }
+
+  [[nodiscard]] std::optional<SheetPlace> continued_to(std::size_t site,
+                                                       const std::vector<std::uint32_t>& place_of) const {
+    // From the nearest place, and what agrees with it.
+    std::optional<SheetPlace> nearest;
+    std::array<double, 2> least{};
+    const auto for_each_place = [&](auto&& visit) {
+      sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+        if (place_of[other] == kNone) return;
+        const Vec3 d{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)};
+        SheetPlace place = places_[place_of[other]];
+        place.slab.offset += dot(place.slab.normal, d);
+        visit(place, squared_norm(d), d);
+      });
+    };
+    for_each_place([&](const SheetPlace& place, double squared, const Vec3&) {
+      const std::array<double, 2> rank{squared, std::abs(place.slab.offset)};
+      if (!nearest || rank < least) nearest = place, least = rank;
+    });
+    if (!nearest) return {};
+    Vec3 normal, middle;
+    double offset = 0, thickness = 0, weights = 0;
+    for_each_place([&](const SheetPlace& place, double squared, const Vec3& d) {
+      const double cosine = dot(place.slab.normal, nearest->slab.normal), sign = cosine < 0 ? -1 : 1;
+      if (place.material != nearest->material || std::abs(cosine) < kLeastCosine ||
+          std::abs(sign * place.slab.offset - nearest->slab.offset) > kMostStep)
+        return;
+      const double w = 1 / squared;
+      normal += w * sign * place.slab.normal;
+      offset += w * sign * place.slab.offset;
+      thickness += w * place.slab.thickness;
+      weights += w;
+      middle += w * d;
+    });
+    SheetPlace place = *nearest;
+    place.site = static_cast<std::uint32_t>(site);
+    place.is_fitted = false;
+    place.slab = {normalized(normal), offset / weights, thickness / weights};
+    middle *= 1 / weights;
+    const double aside = norm(middle - dot(middle, place.slab.normal) * place.slab.normal);
+    const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
+    if (own > 0) {
+      if (aside > kAside && own < kHalf * part) place.slab.thickness *= own / part;
+      place.sides = sides_of(place, place.slab);
+      return place;
+    }
+    if (aside > kAside && part > kMissing) return {};
+    // On its side there is what the cell holds.
+    double most = 0;
+    for (const Entry& entry : values_.at(site)) {
+      if (static_cast<double>(entry.fraction) <= most) continue;
+      most = static_cast<double>(entry.fraction);
+      place.sides[place.slab.offset > 0 ? 1 : 0] = entry.material;
+    }
+    return place;
+  }
+
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  const MultiMaterialData& data_;
+  const SiteValues& values_;
+  GridSites sites_;
+  std::array<std::int64_t, 3> n_;
+  std::vector<SheetPlace> places_;
+};
+
+}  // namespace
+
+ThinSheets find_thin_sheets(const MultiMaterialData& data, const SiteValues& values) {
+  ThinSheets sheets;
+  if (!data.labels.empty()) return sheets;
+  sheets.places = SheetSearch(data, values).run();
+  if (!sheets.places.empty()) join_regions(data, values, sheets);
+  return sheets;
+}
+
+}  // namespace adamas

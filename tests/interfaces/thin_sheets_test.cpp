@@ -1,0 +1,207 @@
+// Sheets thinner than a cell and a half: whole, closed, with their volumes in each cell.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "datasets/random_numbers.h"
+#include "datasets/scene.h"
+#include "datasets/scene_sampling.h"
+#include "interfaces/network/body_topology.h"
+#include "interfaces/reconstruction/reconstruction.h"
+#include "interfaces/reconstruction/sheet_fit.h"
+#include "tests/support/closed_surface.h"
+
+namespace adamas {
+namespace {
+
+/// Fractions of the materials that a function says at points, counted in each cell of the unit cube.
+MultiMaterialData counted(std::size_t n, std::size_t materials,
+                          const std::function<std::size_t(const Vec3&)>& material) {
+  constexpr std::size_t kSide = 10;
+  MultiMaterialData data;
+  data.source = "counted";
+  data.grid.centering = Centering::kCells;
+  const double h = 1.0 / static_cast<double>(n);
+  for (auto& nodes : data.grid.nodes) {
+    for (std::size_t i = 0; i <= n; ++i) nodes.push_back(h * static_cast<double>(i));
+  }
+  for (std::size_t m = 0; m < materials; ++m) {
+    data.materials.push_back(std::string(1, static_cast<char>('a' + m)));
+    data.fractions.emplace_back(n * n * n, 0.0f);
+  }
+  parallel_for(n * n * n, 64, [&](std::size_t site) {
+    const Vec3 low{h * static_cast<double>(site % n), h * static_cast<double>(site / n % n),
+                   h * static_cast<double>(site / (n * n))};
+    for (std::size_t s = 0; s < kSide * kSide * kSide; ++s) {
+      const auto at = [&](std::size_t k) { return h * (static_cast<double>(k) + 0.5) / kSide; };
+      const std::size_t m =
+          material(low + Vec3{at(s % kSide), at(s / kSide % kSide), at(s / (kSide * kSide))});
+      data.fractions[MaterialId(static_cast<std::uint32_t>(m))][site] += 1.0f / (kSide * kSide * kSide);
+    }
+  });
+  data.normalise();
+  return data;
+}
+
+void expect_closed(const Reconstruction& found, const MultiMaterialData& data) {
+  const Box3 box = data.grid.domain();
+  const auto report =
+      test::check_edges(found.mesh().points, test::sided_by_material(found.mesh()), box, 1e-9);
+  EXPECT_EQ(report.open, 0u) << report.first;
+  EXPECT_EQ(report.lonely, 0u) << report.first;
+  for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
+    EXPECT_NEAR(found.volume_reconstructed()[m], found.volume_input()[m], 1e-9 * box.volume());
+}
+
+double part_off(const Reconstruction& found) {
+  return static_cast<double>(found.agreement().cells_off) /
+         static_cast<double>(found.agreement().mixed_cells);
+}
+
+/// The Euler characteristics of the boundaries of a material's bodies, in ascending order.
+std::vector<long> characteristics(const Reconstruction& found, const MultiMaterialData& data,
+                                  std::uint32_t m) {
+  InterfaceMesh mesh = found.mesh();
+  const auto& materials = found.body_materials();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    mesh.triangles[t].front = MaterialId(found.bodies()[t][0].value);
+    mesh.triangles[t].back = MaterialId(found.bodies()[t][1].value);
+  }
+  const auto topology = body_topology(mesh, materials.size(), data.grid.domain());
+  std::vector<long> result;
+  for (BodyId b(0); b.value < materials.size(); ++b.value) {
+    if (materials[b].value == m) result.push_back(static_cast<long>(topology[b].euler));
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// Layers are found from the fractions that they give. Only a thin one that lies within one row of cells may
+/// be anywhere in it; the fractions are right all the same.
+TEST(ThinSheets, LayersAreFittedAsTheyAre) {
+  RandomNumbers random(5);
+  int exact = 0;
+  for (int turn = 0; turn < 200; ++turn) {
+    const Vec3 n = normalized({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+    const Slab layer{n, random.uniform(-0.4, 0.4), random.uniform(0.1, 1.0)};
+    SheetWindow window;
+    window.known.fill(1);
+    for (std::size_t c = 0; c < SheetWindow::kCells; ++c)
+      window.fraction[c] = static_cast<float>(layer.part_of_cell(SheetWindow::place(c)));
+    const auto guess = guess_sheet(window);
+    ASSERT_TRUE(guess);
+    const auto found = fit_sheet(window, *guess);
+    ASSERT_TRUE(found);
+    const double sign = dot(found->normal, n) < 0 ? -1 : 1;
+    exact += sign * dot(found->normal, n) > 0.999 && std::abs(sign * found->offset - layer.offset) < 0.03 &&
+                     std::abs(found->thickness - layer.thickness) < 0.03
+                 ? 1
+                 : 0;
+    for (std::size_t c = 0; c < SheetWindow::kCells; ++c) {
+      const Vec3 p = SheetWindow::place(c);
+      if (squared_norm(p) > 3.5) continue;
+      EXPECT_NEAR(found->part_of_cell(p), layer.part_of_cell(p), 0.1);
+    }
+  }
+  EXPECT_GE(exact, 190);
+}
+
+/// A ball or the half of a cell row is no sheet.
+TEST(ThinSheets, OtherShapesAreNone) {
+  for (const double level : {-1.0, -0.3, 0.0, 0.4, 1.0}) {
+    SheetWindow half, rod;
+    half.known.fill(1), rod.known.fill(1);
+    for (std::size_t c = 0; c < SheetWindow::kCells; ++c) {
+      const Vec3 p = SheetWindow::place(c);
+      half.fraction[c] = static_cast<float>(std::clamp(level - p.z + 0.5, 0.0, 1.0));
+      rod.fraction[c] = p.x == 0 && p.y == 0 ? 0.5f : 0.0f;
+    }
+    for (const SheetWindow& window : {half, rod}) {
+      const auto guess = guess_sheet(window);
+      EXPECT_FALSE(guess && fit_sheet(window, *guess)) << level;
+    }
+  }
+}
+
+/// The same material inside and outside of a shell, or another one: closed, one body, both its sides spheres.
+TEST(ThinSheets, ShellsAreWhole) {
+  for (const char* name : {"shell2", "shell3"}) {
+    for (const std::size_t n : {32, 58}) {
+      if (n == 58 && std::string(name) == "shell3") continue;  // as in VolumeCorrection
+      SCOPED_TRACE(std::string(name) + ' ' + std::to_string(n));
+      const MultiMaterialData data = sample_scene(make_scene(name), {n, n, n}, {3, false});
+      const Reconstruction found(data);
+      EXPECT_EQ(found.body_materials().size(), 3u);
+      std::uint32_t shell = 0;
+      while (data.materials[MaterialId(shell)] != "shell") ++shell;
+      EXPECT_EQ(characteristics(found, data, shell), std::vector<long>{4});
+      expect_closed(found, data);
+      EXPECT_LT(part_off(found), n == 58 ? 0.02 : 0.06);
+    }
+  }
+}
+
+/// Where a sheet ends its two sides meet, and it has no holes.
+TEST(ThinSheets, PlatesEnd) {
+  for (const std::size_t n : {16, 32}) {
+    const MultiMaterialData data = sample_scene(make_scene("plate"), {n, n, n}, {3, false});
+    const Reconstruction found(data);
+    EXPECT_EQ(found.body_materials().size(), 2u) << n;
+    expect_closed(found, data);
+    EXPECT_LT(part_off(found), 0.05) << n;
+    for (std::uint32_t m = 0; m < 2; ++m)
+      EXPECT_EQ(characteristics(found, data, m), std::vector<long>{2}) << n;
+  }
+}
+
+TEST(ThinSheets, HollowTori) {
+  const std::size_t n = 32;
+  for (const double cells : {0.4, 0.7}) {
+    const MultiMaterialData data = counted(n, 2, [&](const Vec3& p) -> std::size_t {
+      const double r = std::hypot(p.x - 0.5, p.y - 0.5) - 0.28, d = std::hypot(r, p.z - 0.5) - 0.15;
+      return std::abs(d) < 0.5 * cells / static_cast<double>(n) ? 1 : 0;
+    });
+    const Reconstruction found(data);
+    EXPECT_EQ(found.body_materials().size(), 3u) << cells;
+    EXPECT_EQ(characteristics(found, data, 1), std::vector<long>{0}) << cells;
+    expect_closed(found, data);
+    EXPECT_LT(part_off(found), 0.1) << cells;
+  }
+}
+
+/// Two sheets three cells apart, across the whole domain.
+TEST(ThinSheets, ParallelSheetsStayApart) {
+  const std::size_t n = 24;
+  const Vec3 normal = normalized({0.3, 0.5, 0.81});
+  const double h = 1.0 / n;
+  const MultiMaterialData data = counted(n, 2, [&](const Vec3& p) -> std::size_t {
+    const double d = dot(normal, p);
+    return std::min(std::abs(d - 0.7), std::abs(d - 0.7 - 3 * h)) < 0.3 * h ? 1 : 0;
+  });
+  const Reconstruction found(data);
+  EXPECT_EQ(found.body_materials().size(), 5u);
+  expect_closed(found, data);
+  EXPECT_LT(part_off(found), 0.05);
+}
+
+/// The order of materials changes nothing.
+TEST(ThinSheets, AnyOrderOfMaterials) {
+  const std::size_t n = 24;
+  const MultiMaterialData data = sample_scene(make_scene("plate"), {n, n, n}, {3, false});
+  MultiMaterialData turned = data;
+  std::swap(turned.materials[MaterialId(0)], turned.materials[MaterialId(1)]);
+  std::swap(turned.fractions[MaterialId(0)], turned.fractions[MaterialId(1)]);
+  const Reconstruction one(data), other(turned);
+  ASSERT_EQ(one.mesh().points.size(), other.mesh().points.size());
+  for (std::size_t p = 0; p < one.mesh().points.size(); ++p)
+    ASSERT_EQ(distance(one.mesh().points[p], other.mesh().points[p]), 0);
+}
+
+}  // namespace
+}  // namespace adamas
