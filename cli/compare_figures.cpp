@@ -52,26 +52,6 @@ std::string short_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "none";
 }
 
-std::vector<std::string> text_row(const ComparedMesh& row, const ResamplingSource& source) {
-  std::vector<std::string> result{mesh_name(row.kind),
-                                  row.interface_error ? short_number(*row.interface_error) : "-"};
-  if (!row.failure.empty()) {
-    result.resize(12, "-");
-    return result;
-  }
-  const MeshFigures& f = row.figures;
-  const RelativeErrors errors = relative_errors(row, source);
-  result.insert(
-      result.end(),
-      {std::to_string(f.tetrahedra), std::to_string(f.vertices), fmt::format("{:.3f}", row.seconds),
-       bytes_text(static_cast<double>(row.peak_memory_bytes)),
-       fmt::format("{:.1f} - {:.1f}", f.dihedral.min, f.dihedral.max), short_number(f.distance.to_input),
-       short_number(f.distance.from_input), percent(errors.max) + " / " + percent(errors.mean),
-       percent(errors.interface_max) + " / " + percent(errors.interface_mean),
-       percent(volume_error(row, source))});
-  return result;
-}
-
 /// A column of the table that grows row by row: its width is that of the widest usual entry.
 struct Column {
   const char* name;
@@ -84,11 +64,32 @@ constexpr Column kTable[] = {{"mesh", 22},
                              {"seconds", 8},
                              {"memory", 9},
                              {"dihedral angles", 15},
+                             {"condition", 9},
                              {"to input", 10},
                              {"from input", 10},
                              {"field error % max / mean", 24},
                              {"at interfaces", 16},
                              {"volume %", 8}};
+
+std::vector<std::string> text_row(const ComparedMesh& row, const ResamplingSource& source) {
+  std::vector<std::string> result{mesh_name(row.kind),
+                                  row.interface_error ? short_number(*row.interface_error) : "-"};
+  if (!row.failure.empty()) {
+    result.resize(std::size(kTable), "-");
+    return result;
+  }
+  const MeshFigures& f = row.figures;
+  const RelativeErrors errors = relative_errors(row, source);
+  result.insert(result.end(),
+                {std::to_string(f.tetrahedra), std::to_string(f.vertices), fmt::format("{:.3f}", row.seconds),
+                 bytes_text(static_cast<double>(row.peak_memory_bytes)),
+                 fmt::format("{:.1f} - {:.1f}", f.dihedral.min, f.dihedral.max),
+                 short_number(f.condition_number), short_number(f.distance.to_input),
+                 short_number(f.distance.from_input), percent(errors.max) + " / " + percent(errors.mean),
+                 percent(errors.interface_max) + " / " + percent(errors.interface_mean),
+                 percent(volume_error(row, source))});
+  return result;
+}
 
 void print_line(const std::vector<std::string>& cells, Console& console) {
   std::string line;
@@ -130,6 +131,7 @@ Figures row_figures(const ComparedMesh& row, const ResamplingSource& source) {
   figures["peak_memory_bytes"] = when_made(row.peak_memory_bytes);
   figures["dihedral_min"] = when_made(f.dihedral.min);
   figures["dihedral_max"] = when_made(f.dihedral.max);
+  figures["condition_number"] = when_made(f.condition_number);
   figures["hausdorff_to_input"] = when_made(f.distance.to_input);
   figures["hausdorff_from_input"] = when_made(f.distance.from_input);
   const RelativeErrors errors = made ? relative_errors(row, source) : RelativeErrors{};
@@ -203,6 +205,7 @@ std::string comparison_csv(const std::vector<ComparedMesh>& rows, const Resampli
                                       "peak_memory_bytes",
                                       "dihedral_min",
                                       "dihedral_max",
+                                      "condition_number",
                                       "hausdorff_to_input",
                                       "hausdorff_from_input",
                                       "field_max_error",

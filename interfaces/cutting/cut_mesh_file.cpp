@@ -128,6 +128,19 @@ std::vector<SolverMesh::FaceGroup> face_groups(const ConformingMesh& cut, const 
 
 }  // namespace
 
+std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& cut, const ResampledMesh& mesh) {
+  const SplitPoints split = split_points(cut);
+  std::vector<Doubles> rows = rows_at(split, Rows(cut, mesh));
+  std::vector<VertexRecord> vertices(cut.points.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    vertices[split.points[i].first].rows.push_back({split.points[i].second, std::move(rows[i])});
+  for (VertexRecord& vertex : vertices) {
+    std::sort(vertex.rows.begin(), vertex.rows.end(),
+              [](const auto& a, const auto& b) { return a.body < b.body; });
+  }
+  return vertices;
+}
+
 UnstructuredMesh to_unstructured_mesh(const ConformingMesh& cut, const ResampledMesh& mesh) {
   UnstructuredMesh result;
   SplitPoints split = split_points(cut);

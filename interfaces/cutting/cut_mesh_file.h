@@ -7,6 +7,11 @@
 
 namespace adamas {
 
+/// The fields at the points of a cut mesh, for each body that has a tetrahedron there: by the linear
+/// functions of the mesh that was cut, and where snapping has moved a point out of its body, by those of the
+/// nearest cell that has it.
+std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& cut, const ResampledMesh& mesh);
+
 /// A cut mesh with `material` and `body` of cells, and the fields of the cell's own material at points: a
 /// point on an interface comes once for each of its bodies.
 UnstructuredMesh to_unstructured_mesh(const ConformingMesh& cut, const ResampledMesh& mesh);

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "interfaces/reference/comparison_run.h"
+#include "interfaces/reference/heat_conduction.h"
 #include "interfaces/simplification/interface_simplification.h"
 
 namespace adamas {
@@ -112,7 +113,8 @@ void Comparison::measure(const ReferenceResult& result, double target, ComparedM
       measure_distance(source_, result.mesh.points, interface_faces(result.mesh), target, progress_);
 }
 
-void Comparison::measure_fields(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row) {
+void Comparison::measure_chosen(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row) {
+  row.figures.condition_number = stiffness_condition_number(result.mesh, source_.box);
   if (!source_.fields) return;
   const auto start = Clock::now();
   const std::vector<VertexRecord> vertices = fields_at_vertices(result.mesh, source_);
@@ -146,7 +148,7 @@ ReferenceResult Comparison::run_tetgen(const PiecewiseLinearComplex& complex, Co
 void Comparison::add_tetgen(const PiecewiseLinearComplex& complex, const OwnMesh& own, ComparedMesh& row) {
   const ReferenceResult result = run_tetgen(complex, row);
   measure(result, *own.row.interface_error, row);
-  if (row.failure.empty()) measure_fields(result, own, row);
+  if (row.failure.empty()) measure_chosen(result, own, row);
 }
 
 void Comparison::add_untouched(const OwnMesh& own) {

@@ -84,7 +84,7 @@ void Comparison::match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match&
     add(fmt::format("the time limit of {:g} s ended the search", options_.mesher.limits.seconds));
   // Each trial begins with a note of its own.
   if (!known.empty() && match.trials > 0) add(known);
-  if (row.failure.empty()) measure_fields(match.result, own, row);
+  if (row.failure.empty()) measure_chosen(match.result, own, row);
   finish(row);
 }
 
@@ -158,7 +158,7 @@ void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match, doub
   const ReferenceResult result = mesh_by_mesh3(*input_, sizes, mesher(), progress_);
   measure(result, *row.interface_error, row);
   row.matched = std::abs(matched_distance(row) / wanted - 1) <= SizingOptions().tolerance;
-  if (row.failure.empty()) measure_fields(result, own, row);
+  if (row.failure.empty()) measure_chosen(result, own, row);
   finish(row);
 }
 

@@ -59,7 +59,8 @@ class Comparison {
   SizingTrial try_mesh3(double wanted, double facet_distance, const Mesher& make, Mesh3Match& match);
   void add_optimised(const OwnMesh& own, const Mesh3Match& match, double wanted);
   void measure(const ReferenceResult& result, double target, ComparedMesh& row);
-  void measure_fields(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row);
+  /// What is not looked at in trials of sizes: what the mesh is worth to a solver, and fields.
+  void measure_chosen(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row);
   [[nodiscard]] std::string lost_materials(const MeshFigures& figures) const;
   [[nodiscard]] Mesh3Criteria criteria(double facet_distance) const;
 

@@ -6,8 +6,8 @@
 
 #include "core/base/progress.h"
 #include "interfaces/errors/field_error.h"
-#include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/mesh/conforming_mesh.h"
+#include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reference/mesh_figures.h"
 
 namespace adamas {

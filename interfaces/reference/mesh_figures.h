@@ -33,6 +33,7 @@ TwoSidedDistance measure_distance(const ResamplingSource& source, std::span<cons
 struct MeshFigures {
   std::size_t tetrahedra = 0, vertices = 0;
   DihedralRange dihedral;
+  double condition_number = 0;  ///< estimated, of heat conduction (stiffness_condition_number)
   TwoSidedDistance distance;
   std::vector<FieldFigures> fields;      ///< by the source's fields
   IdVector<MaterialId, double> volumes;  ///< by material

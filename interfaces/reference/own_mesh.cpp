@@ -3,11 +3,16 @@
 #include <chrono>
 
 #include "interfaces/cutting/cut_mesh.h"
+#include "interfaces/cutting/cut_mesh_file.h"
+#include "interfaces/reference/heat_conduction.h"
 #include "interfaces/reference/peak_memory.h"
 
 namespace adamas {
 
 namespace {
+
+/// How far the cut may be from the mesh, in relation to the interface error wanted.
+constexpr double kCutTolerance = 0.5;
 
 using Clock = std::chrono::steady_clock;
 
@@ -46,16 +51,36 @@ std::vector<char> elements_at_interfaces(const ResampledMesh& mesh, const Elemen
   return result;
 }
 
-void add_cut_figures(const ResampledMesh& mesh, double tolerance, OwnMesh& own, Progress& progress) {
-  own.cut_row = own.row;
-  own.cut_row.kind = MeshKind::kOwnCut;
+/// The cells as they are, of one body.
+ConformingMesh whole_cells(const ResampledMesh& mesh) {
+  ConformingMesh result{mesh.points, {}, std::vector<BodyId>(mesh.cells.size(), BodyId(0))};
+  for (const auto& cell : mesh.cells) result.tetrahedra.push_back(cell.vertices);
+  return result;
+}
+
+void add_cut_row(const ResamplingSource& source, const ResampledMesh& mesh, OwnMesh& own,
+                 Progress& progress) {
+  ComparedMesh& row = own.cut_row;
+  row = own.row;
+  row.kind = MeshKind::kOwnCut;
   const auto start = Clock::now();
-  const ConformingMesh cut = cut_mesh(mesh, tolerance, progress);
-  own.cut_row.seconds += seconds_since(start);
-  MeshFigures& figures = own.cut_row.figures;
+  const ConformingMesh cut = cut_mesh(mesh, kCutTolerance * *row.interface_error, progress);
+  row.seconds += seconds_since(start);
+  MeshFigures& figures = row.figures;
   figures.tetrahedra = cut.tetrahedra.size();
   figures.vertices = cut.points.size();
   figures.dihedral = dihedral_range(cut);
+  figures.condition_number = stiffness_condition_number(cut, source.box);
+  figures.distance =
+      measure_distance(source, cut.points, interface_faces(cut), *row.interface_error, progress);
+  figures.volumes.assign(source.materials.size(), 0.0);
+  const auto volumes = body_volumes(cut, mesh.table.body_count());
+  for (BodyId b(0); b.value < volumes.size(); ++b.value)
+    figures.volumes[mesh.table.material(b)] += volumes[b];
+  if (!source.fields) return;
+  const std::vector<VertexRecord> vertices = fields_at_vertices(cut, mesh);
+  figures.fields = measure_element_errors(source, measured_cells(cut, vertices), own.half_width, progress)
+                       .figures(own.at_interface);
 }
 
 }  // namespace
@@ -82,6 +107,7 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
   figures.tetrahedra = mesh.cells.size();
   figures.vertices = mesh.points.size();
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) figures.dihedral.add(mesh.corners(c));
+  figures.condition_number = stiffness_condition_number(whole_cells(mesh), source.box);
   figures.volumes = material_volumes(mesh.table, mesh.cell_set(), source.materials.size());
   figures.distance =
       measure_distance(source, extracted.mesh.points, triangles, options.interface_error, progress);
@@ -95,7 +121,7 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
     own.at_interface = elements_at_interfaces(mesh, errors, progress);
     figures.fields = errors.figures(own.at_interface);
   }
-  add_cut_figures(mesh, 0.5 * options.interface_error, own, progress);
+  add_cut_row(source, mesh, own, progress);
   return own;
 }
 

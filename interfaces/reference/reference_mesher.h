@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "interfaces/reference/child_program.h"
 #include "interfaces/mesh/conforming_mesh.h"
+#include "interfaces/reference/child_program.h"
 #include "interfaces/reference/mesher_messages.h"
 #include "interfaces/reference/piecewise_linear_complex.h"
 
