@@ -226,17 +226,31 @@ bool BisectedCells::hides_body(const Cell& cell) const {
   return false;
 }
 
+bool BisectedCells::touch(std::uint32_t origin, BodyId a, BodyId b) {
+  const auto [entry, fresh] = contacts_.try_emplace(origin);
+  if (fresh) {
+    std::vector<ContactPolygon> polygons;
+    contact_polygons(problems_.at(origin), polygons);
+    for (const ContactPolygon& polygon : polygons)
+      entry->second.push_back({std::min(polygon.front, polygon.back), std::max(polygon.front, polygon.back)});
+  }
+  const std::array<std::uint32_t, 2> pair{std::min(a, b).value, std::max(a, b).value};
+  return std::find(entry->second.begin(), entry->second.end(), pair) != entry->second.end();
+}
+
 bool BisectedCells::wants_bisection(std::uint32_t c) {
   const Cell cell = cells_[c];
   if (!problems_.contains(cell.origin)) return false;
   examine_edges(cell);
-  if (!may_be_bisected(cell)) return false;
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = a + 1; b < 4; ++b) {
-      const double length = distance(points_[cell.vertices[a]], points_[cell.vertices[b]]);
-      if (edges_.at(edge_key(cell.vertices[a], cell.vertices[b])).hidden >
-          std::max(tolerance_, kSmallPart * length))
-        return true;
+      const std::uint32_t from = cell.vertices[a], to = cell.vertices[b];
+      const double hidden = edges_.at(edge_key(from, to)).hidden;
+      if (hidden <= tolerance_) continue;
+      // A layer between two places is torn where edges pass through it. Where their bodies touch near by, it
+      // is the tip of a third one, which has vertices elsewhere.
+      const bool tip = owners_[from] != owners_[to] && touch(cell.origin, owners_[from], owners_[to]);
+      if (!tip || hidden > kSmallPart * distance(points_[from], points_[to])) return true;
     }
   }
   return hides_body(cell);

@@ -60,6 +60,8 @@ class BisectedCells {
   void examine_edges(const Cell& cell);
   [[nodiscard]] Edge examine_edge(const OwnershipProblem& problem, const Cell& cell, std::size_t i,
                                   std::size_t j) const;
+  /// Whether two bodies touch in a cell of the mesh.
+  [[nodiscard]] bool touch(std::uint32_t origin, BodyId a, BodyId b);
   [[nodiscard]] bool hides_body(const Cell& cell) const;
   [[nodiscard]] bool wants_bisection(std::uint32_t cell);
   [[nodiscard]] std::array<std::size_t, 2> longest_edge(const Cell& cell) const;
@@ -73,9 +75,10 @@ class BisectedCells {
   std::vector<Vec3> points_;
   std::vector<BodyId> owners_;
   std::vector<Cell> cells_;
-  std::vector<char> dead_;                                        ///< by cell: it has been bisected
-  std::vector<std::vector<std::uint32_t>> cells_at_;              ///< by vertex; ascending
-  std::unordered_map<std::uint64_t, Edge> edges_;                 ///< those in cells of several bodies
+  std::vector<char> dead_;                            ///< by cell: it has been bisected
+  std::vector<std::vector<std::uint32_t>> cells_at_;  ///< by vertex; ascending
+  std::unordered_map<std::uint64_t, Edge> edges_;     ///< those in cells of several bodies
+  std::unordered_map<std::uint32_t, std::vector<std::array<std::uint32_t, 2>>> contacts_;
   std::unordered_map<std::uint32_t, OwnershipProblem> problems_;  ///< of the mesh's cells of several bodies
 };
 

@@ -80,10 +80,9 @@ bool is_feature(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v) {
 }
 
 bool collapse_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t a, std::uint32_t b,
-                   LocalChange& change) {
+                   double bound, LocalChange& change) {
   if ((mesh.walls(a) & ~mesh.walls(b)) != 0) return false;
   const auto star = mesh.star(a);
-  const double before = least_quality(mesh, star);
   change.removed.assign(star.begin(), star.end());
   change.added.clear();
   change.quality = std::numeric_limits<double>::infinity();
@@ -92,7 +91,7 @@ bool collapse_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std:
     if (LabelledMesh::has(cell.vertices, b)) continue;
     std::replace(cell.vertices.begin(), cell.vertices.end(), a, b);
     change.quality = std::min(change.quality, mesh.quality_of(cell.vertices));
-    if (!(change.quality > before)) return false;
+    if (!(change.quality > bound)) return false;
     change.added.push_back(cell);
   }
   const auto sides = mesh.sides(a);

@@ -17,11 +17,15 @@ namespace {
 
 /// The angle between faces that cells are improved to, in degrees.
 constexpr double kWantedAngle = 12;
+/// The same, that coarsening keeps to.
+constexpr double kCoarsenedAngle = 15;
 /// Moves that restore volumes leave so much of the least quality.
 constexpr double kKeptQuality = 0.9;
 constexpr int kMostRounds = 10;
 /// Pieces that the mesh has not are left out if they are no larger than so many tolerances.
 constexpr double kSpeck = 4;
+
+double sine_of(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
 
 /// Places where the boundaries of materials, as two meshes of interfaces have them, are farther apart than
 /// wanted.
@@ -53,7 +57,11 @@ ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& p
     cut = divide_cells(cells);
   }
   drop_specks(cut, body_topology(wanted, mesh.table.body_count(), mesh.box), kSpeck * tolerance);
-  const double wanted_quality = std::sin(kWantedAngle * std::numbers::pi / 180);
+  const double wanted_quality = sine_of(kWantedAngle);
+  improve_mesh(cut, target, wanted_quality, progress);
+  // The mesh's own vertices stay, for its fields want them.
+  coarsen_mesh(cut, target, static_cast<std::uint32_t>(mesh.points.size()), sine_of(kCoarsenedAngle),
+               progress);
   improve_mesh(cut, target, wanted_quality, progress);
   double least = wanted_quality;
   for (std::uint32_t c = 0; c < cut.cell_count(); ++c) {

@@ -24,15 +24,15 @@ double least_quality(const LabelledMesh& mesh, std::span<const std::uint32_t> ce
 /// Whether the face of a cell opposite to its vertex v lies on the box or between two bodies.
 bool is_feature(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v);
 
-/// Works out changes that leave the least quality of what they replace greater than it was, that keep the
-/// topology of all bodies, of the interfaces between them, of the lines where these meet, and of all of
-/// them on the box, and that leave the interfaces within the target's tolerance. Each returns whether there
-/// is such a change.
+/// Works out changes that leave the least quality of what they replace greater than it was (or than a bound),
+/// that keep the topology of all bodies, of the interfaces between them, of the lines where these meet, and
+/// of all of them on the box, and that leave the interfaces within the target's tolerance. Each returns
+/// whether there is such a change.
 ///
 /// Moves vertex a into its neighbour b: not from an interface into a body, nor from a line into an interface
 /// (edge contraction with the link conditions of Dey, Edelsbrunner, Guha and Nekhayev 1999).
 bool collapse_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t a, std::uint32_t b,
-                   LocalChange& change);
+                   double bound, LocalChange& change);
 /// Fills the ring round an edge without it, by the best of all triangulations of the ring (Shewchuk 2002,
 /// after Klincsek 1980). An edge of an interface gives way to one that crosses it on the other side of two of
 /// its triangles.

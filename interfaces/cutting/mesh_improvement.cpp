@@ -55,8 +55,9 @@ class Improvement {
     const LabelledMesh::Tetrahedron v = mesh_.cell(c).vertices;
     has_best_ = false;
     for (std::size_t i = 0; i < 4; ++i) {
+      const double before = least_quality(mesh_, mesh_.star(v[i]));
       for (std::size_t j = 0; j < 4; ++j) {
-        if (i != j && collapse_edge(mesh_, target_, v[i], v[j], change_)) keep_if_better();
+        if (i != j && collapse_edge(mesh_, target_, v[i], v[j], before, change_)) keep_if_better();
       }
     }
     for (std::size_t i = 0; i < 4; ++i) {
@@ -116,7 +117,44 @@ class Improvement {
   bool giving_away_ = false;  ///< a cell's body has been changed, to see whether that helps
 };
 
+/// The vertices round one, each once, in ascending order.
+void find_neighbours(const LabelledMesh& mesh, std::uint32_t v, std::vector<std::uint32_t>& result) {
+  result.clear();
+  for (const std::uint32_t c : mesh.star(v)) {
+    for (const std::uint32_t w : mesh.cell(c).vertices) {
+      if (w != v) result.push_back(w);
+    }
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+}
+
 }  // namespace
+
+void coarsen_mesh(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t first,
+                  double least_quality, Progress& progress) {
+  constexpr int kMostCoarsenings = 6;
+  LocalChange change, best;
+  std::vector<std::uint32_t> neighbours;
+  for (int pass = 0; pass < kMostCoarsenings; ++pass) {
+    std::size_t collapsed = 0;
+    for (std::uint32_t v = first; v < mesh.vertex_count(); ++v) {
+      if (v % 1024 == 0) progress.step("coarsening the cut mesh", -1);
+      best.quality = least_quality;
+      find_neighbours(mesh, v, neighbours);
+      bool found = false;
+      for (const std::uint32_t w : neighbours) {
+        if (!collapse_edge(mesh, target, v, w, best.quality, change)) continue;
+        std::swap(change, best);
+        found = true;
+      }
+      if (!found) continue;
+      mesh.replace(best.removed, best.added);
+      ++collapsed;
+    }
+    if (collapsed == 0) return;
+  }
+}
 
 void improve_mesh(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress) {
   Improvement(mesh, target, wanted, progress).run();

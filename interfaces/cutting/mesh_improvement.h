@@ -12,4 +12,9 @@ namespace adamas {
 /// target's tolerance.
 void improve_mesh(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress);
 
+/// Collapses edges at vertices from number `first` on where no cell's least dihedral sine becomes less than
+/// wanted: the same laws hold.
+void coarsen_mesh(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t first,
+                  double least_quality, Progress& progress);
+
 }  // namespace adamas
