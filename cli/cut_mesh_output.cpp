@@ -14,14 +14,11 @@ namespace adamas {
 
 namespace {
 
-/// How far the cut may be from the mesh, in relation to the mesh's interface error.
-constexpr double kDefaultTolerance = 0.5;
-
 double tolerance_of(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error) {
   if (output.error.empty()) {
     // A mesh of planes alone has no error to go by.
     const double least = 1e-4 * mesh.box.diagonal();
-    return std::max(kDefaultTolerance * interface_error, least);
+    return std::max(kCutTolerance * interface_error, least);
   }
   return parse_error_target("--cut-error", output.error).of(mesh.box.diagonal());
 }

@@ -139,7 +139,7 @@ void Experiment::show_meshes() {
   write_unstructured_mesh(folder_.file("mesh.vtu"), to_unstructured_mesh(mesh));
   write_unstructured_mesh(
       folder_.file("cut-mesh.vtu"),
-      to_unstructured_mesh(cut_mesh(mesh, 0.5 * targets_.interface_error, console_), mesh));
+      to_unstructured_mesh(cut_mesh(mesh, kCutTolerance * targets_.interface_error, console_), mesh));
 }
 
 void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name,

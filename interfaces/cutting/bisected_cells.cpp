@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/geometry/convex_polyhedron.h"
+#include "core/geometry/divider.h"
 #include "core/geometry/tetrahedron.h"
 
 namespace adamas {
@@ -18,23 +20,13 @@ constexpr double kSmallPart = 0.8;
 /// zero.
 constexpr double kMargin = 1e-3;
 
-Weights mix(const Weights& a, const Weights& b, double t) {
-  Weights w;
-  for (std::size_t i = 0; i < 4; ++i) w[i] = (1 - t) * a[i] + t * b[i];
-  return w;
-}
-
-double value(const LinearFunction& f, const Weights& w) {
-  return f.values[0] * w[0] + f.values[1] * w[1] + f.values[2] * w[2] + f.values[3] * w[3];
-}
-
 /// The problem of a part of a tetrahedron, given by the weights of its corners.
 void restrict_problem(const OwnershipProblem& whole, const std::array<Weights, 4>& corners,
                       OwnershipProblem& part) {
   part = whole;
   for (LinearFunction& f : part.functions) {
     const LinearFunction original = f;
-    for (std::size_t c = 0; c < 4; ++c) f.values[c] = value(original, corners[c]);
+    for (std::size_t c = 0; c < 4; ++c) f.values[c] = evaluate(original.values, corners[c]);
   }
 }
 
@@ -162,9 +154,11 @@ BisectedCells::Edge BisectedCells::examine_edge(const OwnershipProblem& problem,
   // Owners change only where two functions cross.
   std::vector<double> crossings{0, 1};
   for (std::size_t f = 0; f < problem.functions.size(); ++f) {
-    const double f0 = value(problem.functions[f], from), f1 = value(problem.functions[f], to);
+    const double f0 = evaluate(problem.functions[f].values, from),
+                 f1 = evaluate(problem.functions[f].values, to);
     for (std::size_t g = 0; g < f; ++g) {
-      const double d0 = f0 - value(problem.functions[g], from), d1 = f1 - value(problem.functions[g], to);
+      const double d0 = f0 - evaluate(problem.functions[g].values, from),
+                   d1 = f1 - evaluate(problem.functions[g].values, to);
       if ((d0 < 0) != (d1 < 0)) crossings.push_back(d0 / (d0 - d1));
     }
   }
@@ -173,7 +167,7 @@ BisectedCells::Edge BisectedCells::examine_edge(const OwnershipProblem& problem,
   double first_ends = 0, last_begins = 1;
   std::vector<BodyId> pieces(crossings.size() - 1);
   for (std::size_t k = 0; k < pieces.size(); ++k)
-    pieces[k] = BodyId(problem.owner(mix(from, to, (crossings[k] + crossings[k + 1]) / 2)));
+    pieces[k] = BodyId(problem.owner(between(from, to, (crossings[k] + crossings[k + 1]) / 2)));
   for (std::size_t k = 0; k < pieces.size() && (pieces[k] == first || crossings[k] == crossings[k + 1]); ++k)
     first_ends = crossings[k + 1];
   for (std::size_t k = pieces.size(); k > 0 && (pieces[k - 1] == last || crossings[k - 1] == crossings[k]);
@@ -308,7 +302,7 @@ void BisectedCells::bisect_edge(std::uint32_t a, std::uint32_t b, const std::vec
                                             parent.vertices.begin());
     const auto j = static_cast<std::size_t>(std::find(parent.vertices.begin(), parent.vertices.end(), b) -
                                             parent.vertices.begin());
-    const Weights w = mix(parent.corners[i], parent.corners[j], 0.5);
+    const Weights w = between(parent.corners[i], parent.corners[j], 0.5);
     // In a cell of one body all corners have its owner.
     if (!owner.valid()) {
       const auto found = problems_.find(parent.origin);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/geometry/divider.h"
+
 namespace adamas {
 
 namespace {
@@ -13,10 +15,6 @@ using Tetrahedron = LabelledMesh::Tetrahedron;
 /// A point where bodies meet stays away from the border of what it lies on by this weight.
 constexpr double kMargin = 1e-3;
 
-double value(const LinearFunction& f, const Weights& w) {
-  return f.values[0] * w[0] + f.values[1] * w[1] + f.values[2] * w[2] + f.values[3] * w[3];
-}
-
 /// The least function of a body at a point; null where the body is no candidate.
 const LinearFunction* active_function(const OwnershipProblem& problem, BodyId body, const Weights& w) {
   for (const auto& candidate : problem.candidates) {
@@ -24,7 +22,7 @@ const LinearFunction* active_function(const OwnershipProblem& problem, BodyId bo
     const LinearFunction* best = &problem.functions[candidate.first];
     for (std::uint32_t f = 1; f < candidate.count; ++f) {
       const LinearFunction& other = problem.functions[candidate.first + f];
-      if (value(other, w) < value(*best, w)) best = &other;
+      if (evaluate(other.values, w) < evaluate(best->values, w)) best = &other;
     }
     return best;
   }
@@ -123,7 +121,7 @@ class Division {
       system(0, column) = 1;
       for (std::size_t row = 1; row < n; ++row)
         system(static_cast<Eigen::Index>(row), column) =
-            value(*functions[row], corner) - value(*functions[0], corner);
+            evaluate(functions[row]->values, corner) - evaluate(functions[0]->values, corner);
     }
     right(0) = 1;
     const Eigen::VectorXd solution = system.topLeftCorner(size, size).fullPivLu().solve(right.head(size));

@@ -6,6 +6,9 @@
 
 namespace adamas {
 
+/// How far a cut mesh may be from the mesh, in relation to the mesh's interface error, unless said otherwise.
+inline constexpr double kCutTolerance = 0.5;
+
 /// A resampled mesh cut along its interfaces (docs/method.md, Cut meshes): tetrahedra of one body each,
 /// conforming, without slivers, so that solvers can take it. `tolerance`: how far the faces between bodies
 /// may be from the mesh's interfaces, in units of length; positive. It is what snapping keeps to at the

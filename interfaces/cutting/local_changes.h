@@ -21,6 +21,12 @@ struct LocalChange {
 /// The least quality of cells.
 double least_quality(const LabelledMesh& mesh, std::span<const std::uint32_t> cells);
 
+/// The least quality round a vertex if it were at p; no better than `bound` where it is not above that.
+double quality_at(const LabelledMesh& mesh, std::uint32_t v, const Vec3& p, double bound);
+
+/// Length of the longest edge at a vertex.
+double longest_edge(const LabelledMesh& mesh, std::uint32_t v);
+
 /// Whether the face of a cell opposite to its vertex v lies on the box or between two bodies.
 bool is_feature(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v);
 

@@ -118,7 +118,7 @@ class Improvement {
 };
 
 /// The vertices round one, each once, in ascending order.
-void find_neighbours(const LabelledMesh& mesh, std::uint32_t v, std::vector<std::uint32_t>& result) {
+void find_vertices_round(const LabelledMesh& mesh, std::uint32_t v, std::vector<std::uint32_t>& result) {
   result.clear();
   for (const std::uint32_t c : mesh.star(v)) {
     for (const std::uint32_t w : mesh.cell(c).vertices) {
@@ -141,7 +141,7 @@ void coarsen_mesh(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32
     for (std::uint32_t v = first; v < mesh.vertex_count(); ++v) {
       if (v % 1024 == 0) progress.step("coarsening the cut mesh", -1);
       best.quality = least_quality;
-      find_neighbours(mesh, v, neighbours);
+      find_vertices_round(mesh, v, neighbours);
       bool found = false;
       for (const std::uint32_t w : neighbours) {
         if (!collapse_edge(mesh, target, v, w, best.quality, change)) continue;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interfaces/cutting/local_changes.h"
+
 namespace adamas {
 
 namespace {
@@ -21,8 +23,8 @@ struct Slopes {
 
 class Restoration {
  public:
-  Restoration(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double least_quality, double most)
-      : mesh_(mesh), wanted_(volumes), least_quality_(least_quality), most_(most) {
+  Restoration(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double wanted_quality, double most)
+      : mesh_(mesh), wanted_(volumes), wanted_quality_(wanted_quality), most_(most) {
     for (const double volume : volumes) whole_ += volume;
     for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
       if (mesh.sides(v).bodies() > 1) free_.push_back(v);
@@ -129,7 +131,8 @@ class Restoration {
       const std::uint32_t v = slopes[i].vertex;
       const Vec3 before = mesh_.point(v);
       mesh_.move(v, before + step);
-      if (distance(mesh_.point(v), start_[i]) > most_ || worst(v) < least_quality_) {
+      if (distance(mesh_.point(v), start_[i]) > most_ ||
+          least_quality(mesh_, mesh_.star(v)) < wanted_quality_) {
         mesh_.move(v, before);
       } else {
         still_free.push_back(v);
@@ -141,24 +144,18 @@ class Restoration {
     return true;
   }
 
-  [[nodiscard]] double worst(std::uint32_t v) const {
-    double least = 1;
-    for (const std::uint32_t c : mesh_.star(v)) least = std::min(least, mesh_.quality(c));
-    return least;
-  }
-
   LabelledMesh& mesh_;
   IdVector<BodyId, double> wanted_;
-  double least_quality_, most_, whole_ = 0;
+  double wanted_quality_, most_, whole_ = 0;
   std::vector<std::uint32_t> free_;  ///< vertices that may move
   std::vector<Vec3> start_;          ///< where they were at first
 };
 
 }  // namespace
 
-bool restore_volumes(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double least_quality,
+bool restore_volumes(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double wanted_quality,
                      double most) {
-  return Restoration(mesh, volumes, least_quality, most).run();
+  return Restoration(mesh, volumes, wanted_quality, most).run();
 }
 
 }  // namespace adamas

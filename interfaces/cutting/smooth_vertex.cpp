@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "interfaces/cutting/local_changes.h"
@@ -9,16 +10,19 @@ namespace {
 
 constexpr int kMostSteps = 6;
 
+/// The quality of a cell with one of its vertices at p.
+double quality_if_moved(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v, const Vec3& p) {
+  const auto& corners = mesh.cell(cell).vertices;
+  std::array<Vec3, 4> x;
+  for (std::size_t i = 0; i < 4; ++i) x[i] = corners[i] == v ? p : mesh.point(corners[i]);
+  return least_dihedral_sine(x[0], x[1], x[2], x[3]);
+}
+
 class Smoothing {
  public:
   Smoothing(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t v)
       : mesh_(mesh), target_(target), v_(v), sides_(mesh.sides(v)), bodies_(sides_.bodies()) {
-    double longest = 0;
-    for (const std::uint32_t c : mesh.star(v)) {
-      for (const std::uint32_t w : mesh.cell(c).vertices)
-        longest = std::max(longest, squared_norm(mesh.point(w) - mesh.point(v)));
-    }
-    size_ = std::sqrt(longest);
+    size_ = longest_edge(mesh, v);
     astray_ = !target.allows(sides_, mesh.point(v));
   }
 
@@ -32,21 +36,6 @@ class Smoothing {
   }
 
  private:
-  /// Least quality round the vertex if it were at p; no better than `bound` where it is not above that.
-  double quality_at(const Vec3& p, double bound) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t c : mesh_.star(v_)) {
-      least = std::min(least, quality_at(p, c));
-      if (least <= bound) break;
-    }
-    return least;
-  }
-  double quality_at(const Vec3& p, std::uint32_t c) const {
-    const auto& v = mesh_.cell(c).vertices;
-    std::array<Vec3, 4> x;
-    for (std::size_t i = 0; i < 4; ++i) x[i] = v[i] == v_ ? p : mesh_.point(v[i]);
-    return least_dihedral_sine(x[0], x[1], x[2], x[3]);
-  }
   Vec3 gradient(std::uint32_t c) const {
     const double h = 1e-4 * size_;
     const Vec3& p = mesh_.point(v_);
@@ -55,7 +44,7 @@ class Smoothing {
       Vec3 up = p, down = p;
       up[axis] += h;
       down[axis] -= h;
-      result[axis] = (quality_at(up, c) - quality_at(down, c)) / (2 * h);
+      result[axis] = (quality_if_moved(mesh_, c, v_, up) - quality_if_moved(mesh_, c, v_, down)) / (2 * h);
     }
     return result;
   }
@@ -94,7 +83,8 @@ class Smoothing {
   bool try_move(const Vec3& p, double before) {
     const auto place = placed(p);
     if (!place) return false;
-    if (!(quality_at(*place, before) > before * (1 + 1e-3) + 1e-6) || !allowed(*place)) return false;
+    if (!(quality_at(mesh_, v_, *place, before) > before * (1 + 1e-3) + 1e-6) || !allowed(*place))
+      return false;
     mesh_.move(v_, *place);
     return true;
   }
@@ -148,6 +138,24 @@ class Smoothing {
 };
 
 }  // namespace
+
+double quality_at(const LabelledMesh& mesh, std::uint32_t v, const Vec3& p, double bound) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t c : mesh.star(v)) {
+    least = std::min(least, quality_if_moved(mesh, c, v, p));
+    if (least <= bound) break;
+  }
+  return least;
+}
+
+double longest_edge(const LabelledMesh& mesh, std::uint32_t v) {
+  double longest = 0;
+  for (const std::uint32_t c : mesh.star(v)) {
+    for (const std::uint32_t w : mesh.cell(c).vertices)
+      longest = std::max(longest, squared_norm(mesh.point(w) - mesh.point(v)));
+  }
+  return std::sqrt(longest);
+}
 
 bool smooth_vertex(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t v) {
   return Smoothing(mesh, target, v).run();

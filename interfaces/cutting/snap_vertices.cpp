@@ -15,26 +15,6 @@ constexpr double kNothing = 1e-3;
 /// Cells round a vertex keep so much of the least quality that they had, or this quality.
 constexpr double kKept = 0.3, kGood = 0.1;
 
-double quality_at(const LabelledMesh& mesh, std::uint32_t v, const Vec3& p) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t c : mesh.star(v)) {
-    const auto& corners = mesh.cell(c).vertices;
-    std::array<Vec3, 4> x;
-    for (std::size_t i = 0; i < 4; ++i) x[i] = corners[i] == v ? p : mesh.point(corners[i]);
-    least = std::min(least, least_dihedral_sine(x[0], x[1], x[2], x[3]));
-  }
-  return least;
-}
-
-double longest_edge(const LabelledMesh& mesh, std::uint32_t v) {
-  double longest = 0;
-  for (const std::uint32_t c : mesh.star(v)) {
-    for (const std::uint32_t w : mesh.cell(c).vertices)
-      longest = std::max(longest, squared_norm(mesh.point(w) - mesh.point(v)));
-  }
-  return std::sqrt(longest);
-}
-
 }  // namespace
 
 void snap_vertices(LabelledMesh& mesh, const InterfaceTarget& target) {
@@ -66,7 +46,7 @@ void snap_vertices(LabelledMesh& mesh, const InterfaceTarget& target) {
       const double bound = std::min(kGood, kKept * least_quality(mesh, mesh.star(v)));
       for (const double part : {1.0, 0.6, 0.3}) {
         const Vec3 q = p + part * snap.step;
-        if (quality_at(mesh, v, q) <= bound) continue;
+        if (quality_at(mesh, v, q, bound) <= bound) continue;
         mesh.move(v, q);
         break;
       }

@@ -21,6 +21,20 @@ struct Face {
   }
 };
 
+/// Calls visit(face, corner opposite, tetrahedron, tetrahedron beyond) for each face between two bodies.
+template <class Visit>
+void for_each_interface_face(const ConformingMesh& mesh, Visit&& visit) {
+  const auto neighbours = find_neighbours(mesh.tetrahedra, "mesh");
+  for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::uint32_t other = neighbours[t][i];
+      if (other == kNoNeighbour || other < t || mesh.bodies[other] == mesh.bodies[t]) continue;
+      const auto& v = mesh.tetrahedra[t];
+      visit(ClosestPointTree::Triangle{v[(i + 1) % 4], v[(i + 2) % 4], v[(i + 3) % 4]}, v[i], t, other);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 4>> find_neighbours(
@@ -72,45 +86,32 @@ DihedralRange dihedral_range(const ConformingMesh& mesh) {
 }
 
 std::vector<ClosestPointTree::Triangle> interface_faces(const ConformingMesh& mesh) {
-  const auto neighbours = find_neighbours(mesh.tetrahedra, "mesh");
   std::vector<ClosestPointTree::Triangle> result;
-  for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::uint32_t other = neighbours[t][i];
-      if (other == kNoNeighbour || other < t || mesh.bodies[other] == mesh.bodies[t]) continue;
-      const auto& v = mesh.tetrahedra[t];
-      result.push_back({v[(i + 1) % 4], v[(i + 2) % 4], v[(i + 3) % 4]});
-    }
-  }
+  for_each_interface_face(mesh, [&](const ClosestPointTree::Triangle& face, std::uint32_t, std::uint32_t,
+                                    std::uint32_t) { result.push_back(face); });
   return result;
 }
 
 ExtractedInterfaces interfaces_of(const ConformingMesh& mesh, const InterfaceTable& table) {
   ExtractedInterfaces result;
-  const auto neighbours = find_neighbours(mesh.tetrahedra, "cut mesh");
   std::vector<std::uint32_t> number(mesh.points.size(), kNoNeighbour);
-  for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::uint32_t other = neighbours[t][i];
-      if (other == kNoNeighbour || other < t || mesh.bodies[other] == mesh.bodies[t]) continue;
-      const auto& v = mesh.tetrahedra[t];
-      ClosestPointTree::Triangle face{v[(i + 1) % 4], v[(i + 2) % 4], v[(i + 3) % 4]};
-      // The normal points into the tetrahedron.
-      if (signed_volume(mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]], mesh.points[v[i]]) <
-          0)
-        std::swap(face[1], face[2]);
-      for (std::uint32_t& p : face) {
-        if (number[p] == kNoNeighbour) {
-          number[p] = static_cast<std::uint32_t>(result.mesh.points.size());
-          result.mesh.points.push_back(mesh.points[p]);
-        }
-        p = number[p];
+  for_each_interface_face(mesh, [&](ClosestPointTree::Triangle face, std::uint32_t opposite, std::uint32_t t,
+                                    std::uint32_t other) {
+    // The normal points into the tetrahedron.
+    if (signed_volume(mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]],
+                      mesh.points[opposite]) < 0)
+      std::swap(face[1], face[2]);
+    for (std::uint32_t& p : face) {
+      if (number[p] == kNoNeighbour) {
+        number[p] = static_cast<std::uint32_t>(result.mesh.points.size());
+        result.mesh.points.push_back(mesh.points[p]);
       }
-      const BodyId front = mesh.bodies[t], back = mesh.bodies[other];
-      result.mesh.triangles.push_back({face, table.material(front), table.material(back)});
-      result.bodies.push_back({front, back});
+      p = number[p];
     }
-  }
+    const BodyId front = mesh.bodies[t], back = mesh.bodies[other];
+    result.mesh.triangles.push_back({face, table.material(front), table.material(back)});
+    result.bodies.push_back({front, back});
+  });
   return result;
 }
 

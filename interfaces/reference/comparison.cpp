@@ -97,7 +97,7 @@ void Comparison::measure(const ReferenceResult& result, double target, ComparedM
   figures = {};
   figures.tetrahedra = result.mesh.tetrahedra.size();
   figures.vertices = result.mesh.points.size();
-  for (std::size_t t = 0; t < figures.tetrahedra; ++t) figures.dihedral.add(result.mesh.corners(t));
+  figures.dihedral = dihedral_range(result.mesh);
   figures.volumes.assign(source_.materials.size(), 0.0);
   std::size_t lost = 0;
   const auto volumes = body_volumes(result.mesh, table.body_count());

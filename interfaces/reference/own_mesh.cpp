@@ -11,9 +11,6 @@ namespace adamas {
 
 namespace {
 
-/// How far the cut may be from the mesh, in relation to the interface error wanted.
-constexpr double kCutTolerance = 0.5;
-
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
