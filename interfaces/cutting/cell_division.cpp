@@ -48,7 +48,7 @@ struct Meeting {
 
 class Division {
  public:
-  explicit Division(const BisectedCells& cells) : cells_(cells) {
+  explicit Division(const BisectedCells& cells) : cells_(cells), result_(cells.mesh().box) {
     for (const Vec3& p : cells.points()) result_.add_vertex(p, walls_of(cells.mesh().box, p));
   }
 

@@ -87,12 +87,10 @@ std::vector<Doubles> rows_at(const SplitPoints& split, const Rows& rows) {
 
 /// Which side of the box three points lie on; 6 for none.
 std::size_t side_of_box(const Box3& box, const std::array<Vec3, 3>& face) {
-  const double near = 1e-12 * box.diagonal();
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t end = 0; end < 2; ++end) {
       const double wall = end == 0 ? box.min[axis] : box.max[axis];
-      if (std::all_of(face.begin(), face.end(),
-                      [&](const Vec3& p) { return std::abs(p[axis] - wall) <= near; }))
+      if (std::all_of(face.begin(), face.end(), [&](const Vec3& p) { return p[axis] == wall; }))
         return 2 * static_cast<std::size_t>(axis) + end;
     }
   }

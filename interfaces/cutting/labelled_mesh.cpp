@@ -58,7 +58,11 @@ bool LabelledMesh::Sides::operator==(const Sides& other) const {
 }
 
 std::uint32_t LabelledMesh::add_vertex(const Vec3& position, std::uint8_t walls) {
-  points_.push_back(position);
+  Vec3& p = points_.emplace_back(position);
+  for (int axis = 0; axis < 3; ++axis) {
+    const unsigned ends = walls >> (2 * axis) & 3u;
+    if (ends != 0) p[axis] = ends == 1 ? box_.min[axis] : box_.max[axis];
+  }
   walls_.push_back(walls);
   cells_at_.emplace_back();
   return static_cast<std::uint32_t>(points_.size() - 1);

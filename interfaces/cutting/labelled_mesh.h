@@ -25,7 +25,10 @@ class LabelledMesh {
     BodyId body;
   };
 
+  explicit LabelledMesh(const Box3& box) : box_(box) {}
+
   /// `walls`: bits of the faces of the box that a vertex lies on: 1, 2 for least and greatest x, and so on.
+  /// It is put there exactly.
   std::uint32_t add_vertex(const Vec3& position, std::uint8_t walls);
   void add_cell(const Tetrahedron& vertices, BodyId body);
 
@@ -86,6 +89,7 @@ class LabelledMesh {
  private:
   void link(std::uint32_t cell);
 
+  Box3 box_;
   std::vector<Vec3> points_;
   std::vector<std::uint8_t> walls_;
   std::vector<Cell> cells_;

@@ -169,10 +169,10 @@ using LongIntegrals = Integrals;
 TEST_F(LongIntegrals, OfPublishedDataAgree) {
   const auto data = shared_data("material/pyvista_misc/cth.vtr");
   ADAMAS_SKIP_WITHOUT(data);
-  const std::string region = "--region=-1.5,-0.5,-0.9,0,-0.3,0.3";
+  const std::string region = "--region=-1.3,-0.7,-0.8,-0.3,-0.2,0.1";
   // Values of a mass are of a cell: they are what the region's cells have at most.
   run_quietly({"info", data.string(), region, "--json", "info.json"});
-  resample({data.string(), region}, {"--interface-error", "0.5%"});
+  resample({data.string(), region}, {"--interface-error", "1%"});
   const Json figures = read_json("figures.json"), ranges = read_json("info.json");
   double greatest = 0;
   for (const Json& field : ranges.at("fields")) {

@@ -77,6 +77,7 @@ void CutMeshes::expect_to_conform() const {
   const UnstructuredMesh written = to_unstructured_mesh(cut_, mesh_);
   const std::vector<std::size_t> number = merged(written.points, mesh_.box.diagonal());
   EXPECT_LT(std::set<std::size_t>(number.begin(), number.end()).size(), written.points.size());
+  for (const Vec3& p : written.points) ASSERT_TRUE(mesh_.box.contains(p));
   std::map<std::array<std::size_t, 3>, int> faces;
   for (std::size_t c = 0; c < written.cell_count(); ++c) {
     for (std::size_t i = 0; i < 4; ++i) {
@@ -92,7 +93,7 @@ void CutMeshes::expect_to_conform() const {
     for (int axis = 0; axis < 3; ++axis) {
       for (const double wall : {mesh_.box.min[axis], mesh_.box.max[axis]}) {
         on_box = on_box || std::all_of(face.begin(), face.end(), [&](std::size_t p) {
-                   return std::abs(written.points[p][axis] - wall) < 1e-12;
+                   return written.points[p][axis] == wall;
                  });
       }
     }

@@ -74,6 +74,27 @@ TEST(LabelledMeshes, DividedCellsConform) {
   }
 }
 
+/// Interpolated coordinates, a third of the distance away from any number of few digits, lie on the box.
+TEST(LabelledMeshes, VerticesOnTheBoxLieThereExactly) {
+  ResampledMesh mesh = uniform_mesh(6, [](const Vec3& p) { return distance(p, Vec3{0, 0.4, 0.9}) - 0.7; });
+  const auto place = [](const Vec3& p) { return (1.0 / 3) * p + Vec3{-0.7, 0.1, 1.3}; };
+  for (Vec3& p : mesh.points) p = place(p);
+  mesh.box = {place(mesh.box.min), place(mesh.box.max)};
+  const LabelledMesh cut =
+      divide_cells(BisectedCells(mesh, 0.01 * mesh.box.diagonal(), SilentProgress::instance()));
+  std::size_t on_box = 0;
+  for (std::uint32_t v = 0; v < cut.vertex_count(); ++v) {
+    EXPECT_TRUE(mesh.box.contains(cut.point(v)));
+    for (int axis = 0; axis < 3; ++axis) {
+      const unsigned ends = cut.walls(v) >> (2 * axis) & 3u;
+      if (ends == 0) continue;
+      EXPECT_EQ(cut.point(v)[axis], ends == 1 ? mesh.box.min[axis] : mesh.box.max[axis]);
+      ++on_box;
+    }
+  }
+  EXPECT_GT(on_box, mesh.points.size() / 3);
+}
+
 /// Random changes in random places: all laws hold after each, and what meets where keeps its topology: the
 /// characteristics of all bodies, interfaces, lines and points, on the box and inside.
 TEST(LabelledMeshes, RandomChangesKeepAllLaws) {
