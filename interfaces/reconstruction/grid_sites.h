@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -29,6 +30,18 @@ class GridSites {
         }
       }
     }
+  }
+  /// The site whose cell holds a point, or is nearest to it.
+  [[nodiscard]] std::size_t site_at(const Vec3& p) const {
+    std::array<std::size_t, 3> at{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const auto& x = grid_.nodes[a];
+      const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, p[axis]);
+      at[a] = static_cast<std::size_t>(above - x.begin()) - 1;
+      if (grid_.centering == Centering::kPoints && p[axis] > 0.5 * (x[at[a]] + x[at[a] + 1])) ++at[a];
+    }
+    return at[0] + n_[0] * (at[1] + n_[1] * at[2]);
   }
   [[nodiscard]] Vec3 position(std::size_t site) const {
     const auto [i, j, k] = place(site);

@@ -1,19 +1,31 @@
 #include "interfaces/reconstruction/reconstruction.h"
 
 #include <algorithm>
-#include <numeric>
-#include <unordered_map>
+#include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/geometry/contact_mesh.h"
-#include "interfaces/network/edge_fans.h"
+#include "interfaces/reconstruction/flakes.h"
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/total_closing.h"
+#include "interfaces/reconstruction/volume_correction.h"
 
 namespace adamas {
 
 namespace {
 
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+/// How often totals are closed again where flakes are given to neighbours, and how right they are to be, as a
+/// part of the domain.
+constexpr int kMostClosings = 3;
+constexpr double kTotalTolerance = 1e-10;
+
+/// The greatest difference of volumes, but for one that all have.
+double greatest_difference(const IdVector<MaterialId, double>& a, const IdVector<MaterialId, double>& b) {
+  double mean = 0, greatest = 0;
+  for (MaterialId m(0); m.value < a.size(); ++m.value) mean += (a[m] - b[m]) / static_cast<double>(a.size());
+  for (MaterialId m(0); m.value < a.size(); ++m.value)
+    greatest = std::max(greatest, std::abs(a[m] - b[m] - mean));
+  return greatest;
 }
 
 /// Leaves out points that no triangle has: those on contacts of a material with itself.
@@ -49,11 +61,54 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, const Reconstructi
     : Reconstruction(data, SiteValues(data, options.smooth_labels), progress) {}
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress)
-    : agreement_(correct_volumes(data, values, progress)),
-      lost_bodies_(find_lost_bodies(data, values)),
-      lattice_(data, values) {
-  const std::uint32_t layers = lattice_.points(2) - 1;
+    : lattice_((correct_volumes(data, values, progress), MaterialLattice(data, values))),
+      volume_input_(data.volumes()) {
   mesh_.source = data.source;
+  mesh_.materials = data.materials;
+  extract(data, progress);
+  // Labels that are smoothed have no flakes.
+  std::vector<VolumeMove> moves;
+  if (values.least() == 0) moves = give_flakes_to_neighbours(data, values, progress);
+  agreement_ = volume_agreement(data, values, moves);
+  lost_bodies_ = find_lost_bodies(data, values);
+}
+
+/// Totals are closed again, until they are right with what neighbours get. Returns that.
+std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMaterialData& data,
+                                                                  SiteValues& values, Progress& progress) {
+  const GridSites sites(data.grid);
+  std::vector<Flake> flakes;
+  std::vector<VolumeMove> moves;
+  for (int closings = 0;; ++closings) {
+    flakes = find_flakes(data, values, mesh_, bodies_, body_materials_);
+    moves.clear();
+    IdVector<MaterialId, double> wanted = volume_input_, given = volume_reconstructed_;
+    for (const Flake& flake : flakes) {
+      const MaterialId from = body_materials_[flake.body], to = body_materials_[flake.neighbour];
+      moves.push_back({flake.site, from, to, flake.volume / sites.cell(flake.site).volume()});
+      wanted[from] += flake.volume, given[from] -= flake.volume;
+      wanted[to] -= flake.volume, given[to] += flake.volume;
+    }
+    const bool closed =
+        greatest_difference(given, volume_input_) <= kTotalTolerance * data.grid.domain().volume();
+    if ((closings == 0 && flakes.empty()) || closed || closings == kMostClosings) {
+      volume_reconstructed_ = given;
+      break;
+    }
+    close_totals(data, wanted, values, progress);
+    lattice_ = MaterialLattice(data, values);
+    extract(data, progress);
+  }
+  if (flakes.empty()) return moves;
+  const IdVector<BodyId, BodyId> numbers = drop_flakes(flakes, mesh_, bodies_, body_materials_);
+  for (BodyId& body : body_of_point_) body = numbers[body];
+  for (auto& [part, body] : body_of_pointless_) body = numbers[body];
+  drop_unused_points(mesh_);
+  return moves;
+}
+
+void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) {
+  const std::uint32_t layers = lattice_.points(2) - 1;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);
   // As many as numbers suffice for.
@@ -84,15 +139,13 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   };
   mesh_.points = std::move(extracted.points);
   mesh_.triangles = std::move(extracted.triangles);
-  mesh_.materials = data.materials;
+  bodies_.clear();
   bodies_.reserve(mesh_.triangles.size());
   for (InterfaceTriangle& t : mesh_.triangles) {
     bodies_.push_back({body_of(t.front.value), body_of(t.back.value)});
     t.front = body_materials_[bodies_.back()[0]];
     t.back = body_materials_[bodies_.back()[1]];
   }
-
-  volume_input_ = data.volumes();
 }
 
 void Reconstruction::extract_layer(std::uint32_t k, Layer& layer) const {
@@ -174,202 +227,6 @@ Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell,
   }
   const std::uint32_t tetrahedron = lattice_.point_index(cell) * 6 + static_cast<std::uint32_t>(path);
   return lattice_.point_count() + tetrahedron * slots_ + slot;
-}
-
-void Reconstruction::join_points() {
-  parent_.resize(lattice_.point_count());
-  std::iota(parent_.begin(), parent_.end(), 0u);
-  for (std::uint32_t k = 0; k < lattice_.points(2); ++k) {
-    for (std::uint32_t j = 0; j < lattice_.points(1); ++j) {
-      for (std::uint32_t i = 0; i < lattice_.points(0); ++i) {
-        const std::uint32_t p = lattice_.point_index({i, j, k});
-        for (std::uint32_t d = 1; d < 8; ++d) {
-          const MaterialLattice::Index other{i + (d & 1u), j + (d >> 1 & 1u), k + (d >> 2)};
-          if (other[0] >= lattice_.points(0) || other[1] >= lattice_.points(1) ||
-              other[2] >= lattice_.points(2))
-            continue;
-          const std::uint32_t q = lattice_.point_index(other);
-          if (lattice_.is_one_region(lattice_.owner(p), lattice_.owner(q))) join(p, q);
-        }
-      }
-    }
-  }
-}
-
-/// Parts without a corner that no triangle touches own nothing, and triangles with one material on both sides
-/// are left by the welding of what lay between.
-void Reconstruction::settle_parts(InterfaceMesh& mesh) {
-  std::vector<Part> seen;
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    for (const Part part : {t.front.value, t.back.value}) {
-      if (is_pointless(part)) seen.push_back(part);
-    }
-  }
-  std::sort(seen.begin(), seen.end());
-  std::sort(pointless_.begin(), pointless_.end());
-  pointless_.erase(std::unique(pointless_.begin(), pointless_.end()), pointless_.end());
-  std::erase_if(pointless_, [&](const auto& entry) {
-    return !std::binary_search(seen.begin(), seen.end(), entry.first);
-  });
-  for (const auto& [part, material] : pointless_) pointless_parent_.emplace(part, part);
-  std::erase_if(mesh.triangles, [&](const InterfaceTriangle& t) {
-    if (material_of(t.front.value) != material_of(t.back.value)) return false;
-    join(t.front.value, t.back.value);
-    return true;
-  });
-}
-
-MaterialId Reconstruction::material_of(Part part) const {
-  if (!is_pointless(part)) return lattice_.material(lattice_.owner(part));
-  return std::lower_bound(pointless_.begin(), pointless_.end(), std::pair{part, MaterialId(0)})->second;
-}
-
-/// Edges, by their points, round which parts of one material may meet that are not yet one: where a part has
-/// no corner, or the boundary of one is open.
-std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>>
-      all;  // edges with the triangle, and the side they are of
-  all.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
-    for (std::uint32_t i = 0; i < 3; ++i) all.emplace_back(edge_key(p[i], p[(i + 1) % 3]), 3 * t + i);
-  }
-  std::sort(all.begin(), all.end());
-  std::vector<std::uint64_t> loose;
-  std::vector<std::pair<Part, int>> balance;
-  const auto count = [&](Part part, int times) {
-    const Part root = find(part);
-    const auto found =
-        std::find_if(balance.begin(), balance.end(), [&](const auto& entry) { return entry.first == root; });
-    if (found == balance.end()) {
-      balance.emplace_back(root, times);
-    } else {
-      found->second += times;
-    }
-  };
-  for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
-    balance.clear();
-    bool pointless = false;
-    for (; last < all.size() && all[last].first == all[first].first; ++last) {
-      const InterfaceTriangle& t = mesh.triangles[all[last].second / 3];
-      const std::uint32_t i = all[last].second % 3;
-      const int way = t.points[i] < t.points[(i + 1) % 3] ? 1 : -1;
-      count(t.front.value, way);
-      count(t.back.value, -way);
-      pointless = pointless || is_pointless(t.front.value) || is_pointless(t.back.value);
-    }
-    const bool open =
-        std::any_of(balance.begin(), balance.end(), [](const auto& entry) { return entry.second != 0; });
-    if (pointless || open) loose.push_back(all[first].first);
-  }
-  return loose;
-}
-
-/// Joins parts of one material that meet round an edge, with nothing between them.
-void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& domain) {
-  const std::vector<std::uint64_t> edges = loose_edges(mesh);
-  if (edges.empty()) return;
-  // The triangles at those edges, with points of their own.
-  InterfaceMesh near;
-  std::vector<std::array<Part, 2>> parts;
-  std::vector<std::uint32_t> original;
-  std::unordered_map<std::uint32_t, std::uint32_t> renumbered;
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    bool touches = false;
-    for (std::size_t i = 0; i < 3 && !touches; ++i)
-      touches = std::binary_search(edges.begin(), edges.end(), edge_key(t.points[i], t.points[(i + 1) % 3]));
-    if (!touches) continue;
-    std::array<std::uint32_t, 3> points{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [at, fresh] =
-          renumbered.try_emplace(t.points[i], static_cast<std::uint32_t>(original.size()));
-      if (fresh) {
-        original.push_back(t.points[i]);
-        near.points.push_back(mesh.points[t.points[i]]);
-      }
-      points[i] = at->second;
-    }
-    near.triangles.push_back({points, material_of(t.front.value), material_of(t.back.value)});
-    parts.push_back({t.front.value, t.back.value});
-  }
-  const EdgeFans fans(near, &domain, kWeldTolerance);
-  EdgeFans::Fan fan;
-  for (std::size_t edge = 0; edge < fans.size(); ++edge) {
-    const auto [low, high] = fans.ends(edge);
-    if (!std::binary_search(edges.begin(), edges.end(), edge_key(original[low], original[high]))) continue;
-    fans.fan(edge, fan);
-    const std::size_t count = fan.blades.size();
-    for (std::size_t i = 0; i < count && count > 1; ++i) {
-      if (i == fan.outside_wedge) continue;
-      const Blade &a = fan.blades[i], &b = fan.blades[(i + 1) % count];
-      const auto ahead = static_cast<std::size_t>(EdgeFans::side_ahead(a)),
-                 behind = static_cast<std::size_t>(EdgeFans::side_behind(b));
-      if (fans.material(a.triangle, EdgeFans::side_ahead(a)) ==
-          fans.material(b.triangle, EdgeFans::side_behind(b)))
-        join(parts[a.triangle][ahead], parts[b.triangle][behind]);
-    }
-  }
-}
-
-Reconstruction::Part Reconstruction::find(Part part) {
-  const auto parent = [&](Part p) -> Part& {
-    return p < parent_.size() ? parent_[p] : pointless_parent_.at(p);
-  };
-  while (parent(part) != part) {
-    parent(part) = parent(parent(part));
-    part = parent(part);
-  }
-  return part;
-}
-
-void Reconstruction::join(Part a, Part b) {
-  a = find(a), b = find(b);
-  if (a == b) return;
-  if (b < a) std::swap(a, b);
-  (b < parent_.size() ? parent_[b] : pointless_parent_.at(b)) = a;
-}
-
-void Reconstruction::number_bodies() {
-  body_of_point_.resize(lattice_.point_count());
-  for (Part p = 0; p < lattice_.point_count(); ++p) {
-    const Part root = find(p);
-    if (root == p) {
-      body_of_point_[p] = body_materials_.next_id();
-      body_materials_.push_back(lattice_.material(lattice_.owner(p)));
-    } else {
-      body_of_point_[p] = body_of_point_[root];
-    }
-  }
-  for (const auto& [part, material] : pointless_) {
-    const Part root = find(part);
-    if (root < body_of_point_.size()) {
-      body_of_pointless_[part] = body_of_point_[root];
-    } else if (root == part) {
-      body_of_pointless_[part] = body_materials_.next_id();
-      body_materials_.push_back(material);
-    } else {
-      body_of_pointless_[part] = body_of_pointless_.at(root);
-    }
-  }
-  pointless_ = {};
-  parent_ = {};
-  pointless_parent_ = {};
-}
-
-BodyId Reconstruction::body_at(const Vec3& p) const {
-  const auto location = lattice_.locate(p);
-  const auto corners = lattice_.tetrahedron(location.cell, location.path);
-  std::array<std::uint32_t, 4> points{};
-  for (std::size_t c = 0; c < 4; ++c) points[c] = lattice_.point_index(corners[c]);
-  if (lattice_.have_one_owner(points)) return body_of_point_[points[0]];
-  OwnershipProblem problem;
-  lattice_.ownership(points, problem);
-  const std::uint32_t owner = problem.owner(location.weights);
-  keep_owners(problem);
-  const Part part = part_in(location.cell, location.path, points, problem.candidates, owner);
-  if (part < body_of_point_.size()) return body_of_point_[part];
-  const auto found = body_of_pointless_.find(part);
-  return found != body_of_pointless_.end() ? found->second : body_of_point_[points[0]];
 }
 
 }  // namespace adamas

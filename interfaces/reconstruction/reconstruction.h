@@ -58,6 +58,7 @@ class Reconstruction {
   using Part = std::uint32_t;
   struct Layer;
 
+  void extract(const MultiMaterialData& data, Progress& progress);
   void extract_layer(std::uint32_t k, Layer& layer) const;
   void extract_cell(const MaterialLattice::Index& cell, Layer& layer) const;
   void extract_tetrahedron(const MaterialLattice::Index& cell, std::size_t path, double volume,
@@ -75,6 +76,8 @@ class Reconstruction {
   Part find(Part part);
   void join(Part a, Part b);
   void number_bodies();
+  std::vector<VolumeMove> give_flakes_to_neighbours(const MultiMaterialData& data, SiteValues& values,
+                                                    Progress& progress);
 
   /// For data whose values have been corrected.
   Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress);

@@ -22,14 +22,13 @@ constexpr double kTotalTolerance = 2e-11;
 
 class TotalClosing {
  public:
-  TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
-      : data_(data), values_(values), cells_(cells), step_(data.grid.least_spacing()) {}
+  TotalClosing(const MultiMaterialData& data, SiteValues& values)
+      : data_(data), values_(values), cells_(data.grid), step_(data.grid.least_spacing()) {}
 
   /// One offset per material, the same everywhere: Newton's method for the volumes in the whole domain.
-  void run(Progress& progress) {
+  void run(const IdVector<MaterialId, double>& wanted, Progress& progress) {
     const auto count = static_cast<Eigen::Index>(data_.materials.size());
     if (count < 2) return;
-    const auto wanted = data_.volumes();
     const double domain = data_.grid.domain().volume();
     for (int round = 0; round < kMostClosings; ++round) {
       progress.step("closing volumes", static_cast<double>(round) / kMostClosings);
@@ -128,15 +127,15 @@ class TotalClosing {
 
   const MultiMaterialData& data_;
   SiteValues& values_;
-  const SiteCells& cells_;
+  SiteCells cells_;
   double step_;
 };
 
 }  // namespace
 
-void close_totals(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
-                  Progress& progress) {
-  TotalClosing(data, values, cells).run(progress);
+void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, double>& wanted,
+                  SiteValues& values, Progress& progress) {
+  TotalClosing(data, values).run(wanted, progress);
 }
 
 }  // namespace adamas

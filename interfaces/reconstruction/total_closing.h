@@ -2,14 +2,13 @@
 
 #include "core/base/progress.h"
 #include "core/data/multi_material_data.h"
-#include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas {
 
-/// Adds one offset to all values of each material, so that the materials' volumes in the whole domain are as
-/// the fractions say: Newton's method, for the volumes are the gradient of a convex function of the offsets.
-void close_totals(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
-                  Progress& progress);
+/// Adds one offset to all values of each material, so that the materials have the volumes `wanted` in the
+/// whole domain: Newton's method, for the volumes are the gradient of a convex function of the offsets.
+void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, double>& wanted,
+                  SiteValues& values, Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

@@ -60,28 +60,7 @@ class Correction {
     std::fill(changed_.begin(), changed_.end(), 0);
     find_unknowns();
     correct_all(progress);
-    close_totals(data_, values_, cells_, progress);
-  }
-
-  [[nodiscard]] VolumeAgreement agreement() const {
-    const auto& mixed = values_.mixed();
-    std::vector<double> differences(mixed.size());
-    parallel_chunks(mixed.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-      CellVolumes cell(data_.grid, values_, cells_);
-      for (std::size_t n = begin; n < end; ++n) {
-        cell.go_to(mixed[n]);
-        cell.measure();
-        differences[n] = cell.greatest_difference();
-      }
-    });
-    VolumeAgreement result;
-    result.mixed_cells = mixed.size();
-    for (const double d : differences) {
-      result.cells_off += d > kCellOff ? 1 : 0;
-      result.greatest = std::max(result.greatest, d);
-      result.mean += d / static_cast<double>(mixed.size());
-    }
-    return result;
+    close_totals(data_, data_.volumes(), values_, progress);
   }
 
  private:
@@ -350,10 +329,41 @@ class Correction {
 
 }  // namespace
 
-VolumeAgreement correct_volumes(const MultiMaterialData& data, SiteValues& values, Progress& progress) {
-  Correction correction(data, values);
-  correction.run(progress);
-  return correction.agreement();
+void correct_volumes(const MultiMaterialData& data, SiteValues& values, Progress& progress) {
+  Correction(data, values).run(progress);
+}
+
+VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
+                                 const std::vector<VolumeMove>& moves) {
+  constexpr std::size_t kChunk = 64;
+  const SiteCells cells(data.grid);
+  const auto& mixed = values.mixed();
+  std::vector<double> differences(mixed.size());
+  parallel_chunks(mixed.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    CellVolumes cell(data.grid, values, cells);
+    for (std::size_t n = begin; n < end; ++n) {
+      cell.go_to(mixed[n]);
+      std::vector<double> volumes = cell.measure();
+      for (const VolumeMove& move : moves) {
+        if (move.site != mixed[n]) continue;
+        for (std::size_t m = 0; m < volumes.size(); ++m) {
+          const MaterialId material = values.material(cell.materials()[m].number);
+          if (material == move.from) volumes[m] -= move.volume;
+          if (material == move.to) volumes[m] += move.volume;
+        }
+      }
+      for (std::size_t m = 0; m < volumes.size(); ++m)
+        differences[n] = std::max(differences[n], std::abs(volumes[m] - cell.materials()[m].fraction));
+    }
+  });
+  VolumeAgreement result;
+  result.mixed_cells = mixed.size();
+  for (const double d : differences) {
+    result.cells_off += d > kCellOff ? 1 : 0;
+    result.greatest = std::max(result.greatest, d);
+    result.mean += d / static_cast<double>(mixed.size());
+  }
+  return result;
 }
 
 }  // namespace adamas

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/data/multi_material_data.h"
@@ -17,9 +19,19 @@ struct VolumeAgreement {
 };
 
 /// Changes values until the volume of each material in each mixed cell is that of its fraction, as far as
-/// that can be had (see VolumeAgreement), and then, by one offset per material, until the materials' volumes
-/// in the whole domain agree to round-off.
-VolumeAgreement correct_volumes(const MultiMaterialData& data, SiteValues& values,
-                                Progress& progress = SilentProgress::instance());
+/// that can be had (see VolumeAgreement), and then closes the totals.
+void correct_volumes(const MultiMaterialData& data, SiteValues& values,
+                     Progress& progress = SilentProgress::instance());
+
+/// A part of a site's cell that goes from one material to another.
+struct VolumeMove {
+  std::uint32_t site;
+  MaterialId from, to;
+  double volume;  ///< in cells
+};
+
+/// How well volumes agree, with some moved.
+VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
+                                 const std::vector<VolumeMove>& moves);
 
 }  // namespace adamas

@@ -2,6 +2,8 @@
 
 #include "core/geometry/tetrahedron.h"
 #include "datasets/random_numbers.h"
+#include "interfaces/reconstruction/flakes.h"
+#include "interfaces/reconstruction/site_values.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"
 
@@ -153,6 +155,63 @@ TEST(Reconstruction, IsClosed) {
       const MultiMaterialData data = sample_scene(scene, {n, n, n}, {2, false});
       expect_closed(Reconstruction(data), scene.box());
     }
+  }
+}
+
+/// Where the correction of volumes cuts flakes off, far smaller than a cell, they are given to neighbours,
+/// and volumes stay right: the scenes have one body of each material.
+TEST(Reconstruction, FlakesAreNoBodies) {
+  struct Case {
+    const char* name;
+    std::size_t cells, bodies;
+  };
+  for (const Case& c : {Case{"reflex", 16, 3}, {"reflex", 24, 3}, {"shell3", 16, 3}, {"voronoi10", 24, 10}}) {
+    SCOPED_TRACE(c.name);
+    const Scene scene = make_scene(c.name);
+    const MultiMaterialData data = sample_scene(scene, {c.cells, c.cells, c.cells}, {3, false});
+    const Reconstruction found(data);
+    EXPECT_EQ(found.body_materials().size(), c.bodies);
+    expect_closed(found, scene.box());
+    const double domain = scene.box().volume();
+    for (MaterialId m(0); m.value < found.volume_input().size(); ++m.value)
+      EXPECT_NEAR(found.volume_reconstructed()[m], found.volume_input()[m], 1e-9 * domain);
+  }
+}
+
+/// Of small bodies those are flakes whose cells hold far more.
+TEST(Reconstruction, DropsAreNoFlakes) {
+  MultiMaterialData data = sample_scene(make_scene("plate"), {9, 9, 9}, {1, false});
+  const std::size_t middle = data.grid.site_index(4, 4, 4);
+  const double h = 1.0 / 9;
+  // A tetrahedron of a hundredth of the cell.
+  InterfaceMesh mesh;
+  mesh.points.assign(4, data.grid.site(4, 4, 4));
+  for (int axis = 0; axis < 3; ++axis)
+    mesh.points[static_cast<std::size_t>(axis) + 1][axis] += std::cbrt(0.06) * h;
+  for (const std::array<std::uint32_t, 3>& corners :
+       {std::array<std::uint32_t, 3>{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}})
+    mesh.triangles.push_back({corners, MaterialId(0), MaterialId(1)});
+  const std::vector<std::array<BodyId, 2>> bodies(4, {BodyId(0), BodyId(1)});
+  const IdVector<BodyId, MaterialId> materials{MaterialId(0), MaterialId(1)};
+  for (const bool alone : {true, false}) {
+    for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+      const float part = site == middle ? 0.01f : alone ? 0.0f : 0.1f;
+      data.fractions[MaterialId(0)][site] = 1 - part;
+      data.fractions[MaterialId(1)][site] = part;
+    }
+    const auto flakes = find_flakes(data, SiteValues(data), mesh, bodies, materials);
+    ASSERT_EQ(flakes.size(), alone ? 0u : 1u);
+    if (alone) continue;
+    EXPECT_EQ(flakes[0].body, BodyId(1));
+    EXPECT_EQ(flakes[0].neighbour, BodyId(0));
+    EXPECT_EQ(flakes[0].site, middle);
+    EXPECT_NEAR(flakes[0].volume, 0.01 * h * h * h, 1e-15);
+    InterfaceMesh rest = mesh;
+    auto sides = bodies;
+    auto kept = materials;
+    EXPECT_EQ(drop_flakes(flakes, rest, sides, kept)[BodyId(1)], BodyId(0));
+    EXPECT_TRUE(rest.triangles.empty() && sides.empty());
+    EXPECT_EQ(kept.size(), 1u);
   }
 }
 
