@@ -86,6 +86,12 @@ PreprocessReference::PreprocessReference(const ReferenceVolume& volume) : volume
   }
 }
 
+const ErrorScale& PreprocessReference::scale(int level) const {
+  const auto found = scales_.find(level);
+  if (found != scales_.end()) return found->second;
+  return scales_.emplace(level, level_error_scale(volume_.grid.spacing, level)).first->second;
+}
+
 bool PreprocessReference::in_lattice(LatticePoint p) const {
   return std::min({p.i, p.j, p.k}) >= 0 && std::max({p.i, p.j, p.k}) <= 1 << depth_;
 }
@@ -169,7 +175,7 @@ double PreprocessReference::measure(const Corners& corners, ReferenceValues& res
   if (!is_finite) {
     const auto [a, b] = longest_edge(corners);
     const int level = trailing_zeros(midpoint(corners[a], corners[b]));
-    return level_error_scale(volume_.grid.spacing, level).greatest();
+    return scale(level).greatest();
   }
   if (error == 0) return 0;
   return std::min(diameter, error / norm(barycentric.gradient(values, volume_.grid.spacing)));
@@ -178,21 +184,19 @@ double PreprocessReference::measure(const Corners& corners, ReferenceValues& res
 void PreprocessReference::add(LatticePoint p) {
   ReferenceValues values;
   for (const Corners& corners : tetrahedra(p)) values.own = std::max(values.own, measure(corners, values));
-  const Vec3& spacing = volume_.grid.spacing;
   const int level = trailing_zeros(p);
   double least = values.own * (1 - 1e-9), greatest = values.own * (1 + 2e-6);
   for (const LatticePoint child : children(p)) {
     const auto found = diamonds_.find(child);
     if (found == diamonds_.end()) continue;
-    const ErrorScale scale = level_error_scale(spacing, trailing_zeros(child));
-    least = std::max(least, scale.decode(found->second.least_code));
-    greatest = std::max(greatest, scale.decode(found->second.greatest_code));
+    const ErrorScale& of_child = scale(trailing_zeros(child));
+    least = std::max(least, of_child.decode(found->second.least_code));
+    greatest = std::max(greatest, of_child.decode(found->second.greatest_code));
     values.low = std::min(values.low, found->second.low);
     values.high = std::max(values.high, found->second.high);
   }
-  const ErrorScale scale = level_error_scale(spacing, level);
-  values.least_code = scale.encode(least);
-  values.greatest_code = scale.encode(greatest);
+  values.least_code = scale(level).encode(least);
+  values.greatest_code = scale(level).encode(greatest);
   diamonds_[p] = values;
 }
 
@@ -203,11 +207,11 @@ std::array<std::uint8_t, 2> PreprocessReference::codes(LatticePoint p, int gener
   std::array<double, 2> errors{};
   for (const LatticePoint child : children(p)) {
     const auto of_child = codes(child, generations - 1);
-    const ErrorScale scale = level_error_scale(volume_.grid.spacing, trailing_zeros(child));
-    for (std::size_t n = 0; n < 2; ++n) errors[n] = std::max(errors[n], scale.decode(of_child[n]));
+    const ErrorScale& child_scale = scale(trailing_zeros(child));
+    for (std::size_t n = 0; n < 2; ++n) errors[n] = std::max(errors[n], child_scale.decode(of_child[n]));
   }
-  const ErrorScale scale = level_error_scale(volume_.grid.spacing, trailing_zeros(p));
-  return {scale.encode(errors[0]), scale.encode(errors[1])};
+  const ErrorScale& own_scale = scale(trailing_zeros(p));
+  return {own_scale.encode(errors[0]), own_scale.encode(errors[1])};
 }
 
 double PreprocessReference::error_of_descendants(LatticePoint p, int generations) const {

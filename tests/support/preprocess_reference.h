@@ -8,6 +8,7 @@
 
 #include "core/data/volume.h"
 #include "core/lattice/lattice_point.h"
+#include "isosurface/preprocessing/error_scale.h"
 
 namespace adamas::test {
 
@@ -56,6 +57,8 @@ class PreprocessReference {
   [[nodiscard]] double error_of_descendants(LatticePoint p, int generations) const;
   /// Child diamonds in the lattice.
   [[nodiscard]] std::vector<LatticePoint> children(LatticePoint p) const;
+  /// The volume's scale of errors of a level.
+  [[nodiscard]] const ErrorScale& scale(int level) const;
 
  private:
   using Corners = std::array<LatticePoint, 4>;
@@ -71,6 +74,7 @@ class PreprocessReference {
   const ReferenceVolume& volume_;
   int depth_ = 0;
   std::map<LatticePoint, ReferenceValues> diamonds_;
+  mutable std::map<int, ErrorScale> scales_;  ///< those that were asked for
 };
 
 }  // namespace adamas::test

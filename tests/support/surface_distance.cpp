@@ -8,11 +8,11 @@ namespace adamas::test {
 
 namespace {
 
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double length = squared_norm(along);
-  const double t = length > 0 ? std::clamp(dot(p - a, along) / length, 0.0, 1.0) : 0;
-  return distance(p, a + t * along);
+double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a, from = p - a;
+  const double length = squared_norm(along), at = dot(from, along);
+  if (at <= 0 || length <= 0) return squared_norm(from);
+  return squared_norm(from - std::min(at / length, 1.0) * along);
 }
 
 }  // namespace
@@ -22,7 +22,8 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
   const bool above = dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
                      dot(cross(a - c, p - c), n) >= 0 && squared_norm(n) > 0;
   if (above) return std::abs(dot(p - a, n)) / norm(n);
-  return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+  return std::sqrt(std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
+                             squared_distance_to_segment(p, c, a)}));
 }
 
 SurfaceGrid::SurfaceGrid(const std::vector<Vec3>& points, const std::vector<TriangleIndices>& triangles) {
@@ -71,6 +72,17 @@ std::size_t SurfaceGrid::slot(const Index& i) const {
   return static_cast<std::size_t>(i[0] + count_[0] * (i[1] + count_[1] * i[2]));
 }
 
+double SurfaceGrid::distance_to_box(const Vec3& p, const Index& i) const {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = box_.min[axis] + side_ * i[static_cast<std::size_t>(axis)];
+    // What round-off may do to the boxes.
+    const double outside = std::max(low - p[axis], p[axis] - low - side_) - 1e-9 * side_;
+    if (outside > 0) sum += outside * outside;
+  }
+  return std::sqrt(sum);
+}
+
 double SurfaceGrid::distance(const Vec3& p) const {
   double best = std::numeric_limits<double>::infinity();
   if (corners_.empty()) return best;
@@ -82,7 +94,7 @@ double SurfaceGrid::distance(const Vec3& p) const {
       for (int j = std::max(middle[1] - r, 0); j <= std::min(middle[1] + r, count_[1] - 1); ++j) {
         const bool whole = std::abs(k - middle[2]) == r || std::abs(j - middle[1]) == r;
         for (int i = middle[0] - r; i <= middle[0] + r; i += whole || r == 0 ? 1 : 2 * r) {
-          if (i < 0 || i >= count_[0]) continue;
+          if (i < 0 || i >= count_[0] || distance_to_box(p, {i, j, k}) > best) continue;
           for (const std::uint32_t t : boxes_[slot({i, j, k})]) {
             const auto& c = corners_[t];
             best = std::min(best, distance_to_triangle(p, c[0], c[1], c[2]));
@@ -99,10 +111,12 @@ std::vector<Vec3> sample_surface(const std::vector<Vec3>& points,
                                  std::size_t count, std::uint64_t seed) {
   std::vector<Vec3> result;
   std::vector<double> areas;
+  std::vector<bool> seen(points.size());
   for (const TriangleIndices& t : triangles) {
     areas.push_back(norm(cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]])));
     for (const std::uint32_t p : t) {
-      if (box.contains(points[p])) result.push_back(points[p]);
+      if (!seen[p] && box.contains(points[p])) result.push_back(points[p]);
+      seen[p] = true;
     }
   }
   if (triangles.empty()) return result;

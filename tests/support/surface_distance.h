@@ -24,6 +24,8 @@ class SurfaceGrid {
   using Index = std::array<int, 3>;
   [[nodiscard]] Index index_of(const Vec3& p) const;
   [[nodiscard]] std::size_t slot(const Index& i) const;
+  /// Of a point from one of the grid's boxes, or a little less.
+  [[nodiscard]] double distance_to_box(const Vec3& p, const Index& i) const;
 
   std::vector<std::array<Vec3, 3>> corners_;
   Box3 box_;
