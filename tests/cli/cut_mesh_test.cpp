@@ -11,7 +11,7 @@ namespace {
 
 class CutMesh : public ProgramTest {
  protected:
-  CutMesh() { make_scene("voronoi10", 10); }
+  CutMesh() { make_scene("voronoi10", 7); }
 
   /// Lines of a section of a file of Gmsh.
   [[nodiscard]] std::vector<std::string> section(const std::string& file, const std::string& name) const {

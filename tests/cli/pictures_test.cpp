@@ -37,7 +37,7 @@ double hue(const Pixel& p) {
 
 class Pictures : public ProgramTest {
  protected:
-  Pictures() { make_scene("voronoi10", 8); }
+  Pictures() { make_scene("voronoi10", 7); }
 
   [[nodiscard]] Picture picture(const std::string& name) const {
     vtkNew<vtkPNGReader> reader;
@@ -87,7 +87,7 @@ TEST_F(Pictures, TheCameraAndTheChoiceOfInterfaces) {
     std::vector<std::string> arguments{"reconstruct", "scene.vtr", "-o", "r.vtp", "--picture", name};
     arguments.insert(arguments.end(), more.begin(), more.end());
     if (std::find(more.begin(), more.end(), "--size") == more.end())
-      arguments.insert(arguments.end(), {"--size", "640,480"});
+      arguments.insert(arguments.end(), {"--size", "320,240"});
     run_well(arguments);
     return picture(name);
   };
@@ -99,9 +99,9 @@ TEST_F(Pictures, TheCameraAndTheChoiceOfInterfaces) {
   EXPECT_NE(all.pixels, from_above.pixels);
   const Picture near = draw("near.png", {"--focus", "0.4,0.6,0.4,0.6,0.4,0.6"});
   EXPECT_GT(count(near), count(all));
-  const Picture small = draw("small.png", {"--size", "400,300"});
-  EXPECT_EQ(small.width, 400);
-  EXPECT_EQ(small.height, 300);
+  const Picture small = draw("small.png", {"--size", "280,210"});
+  EXPECT_EQ(small.width, 280);
+  EXPECT_EQ(small.height, 210);
   const Picture one = draw("one.png", {"--show-interface", "cell0"});
   EXPECT_LT(count(one), count(all));
   EXPECT_GT(count(one), 0);

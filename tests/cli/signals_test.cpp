@@ -18,7 +18,7 @@ const std::vector<std::string> kResample{
 
 class Signals : public ProgramTest {
  protected:
-  Signals() { make_scene("voronoi10", 20); }
+  Signals() { make_scene("sphere", 12); }
   ~Signals() override { unsetenv("ADAMAS_REFERENCE_PROGRAM"); }
 
   [[nodiscard]] bool has_partial_files() const {

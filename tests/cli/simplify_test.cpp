@@ -12,7 +12,7 @@ namespace {
 
 class Simplify : public ProgramTest {
  protected:
-  Simplify() { make_scene("voronoi10", 12); }
+  Simplify() { make_scene("voronoi10", 8); }
 };
 
 TEST_F(Simplify, ReconstructsFewerTriangles) {

@@ -73,9 +73,9 @@ class StoreDamage : public StoreTest {
 
 class LongStoreDamage : public StoreDamage {};
 
-TEST_F(StoreDamage, SomeFlipsAndTruncations) { damage(20, 3); }
+TEST_F(StoreDamage, SomeFlipsAndTruncations) { damage(8, 3); }
 
-TEST_F(LongStoreDamage, FlipsAndTruncations) { damage(80, 5); }
+TEST_F(LongStoreDamage, FlipsAndTruncations) { damage(24, 5); }
 
 TEST_F(StoreDamage, AddedBytesAreFound) {
   make_ball("20");

@@ -176,7 +176,7 @@ TEST_F(StoreFailures, DiskFull) {
 }
 
 TEST_F(StoreFailures, InterruptedRuns) {
-  make_ball("150");
+  make_ball("120");
   make_store();
   std::filesystem::create_directory(folder() / "scratch");
   const auto before = files();

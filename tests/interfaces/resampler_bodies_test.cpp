@@ -127,8 +127,9 @@ TEST(ConservedVolumes, AgreeWithTheInput) {
       SceneCase c;
       c.name = name;
       c.seed = 2;
+      c.cells = 5;
       c.meshes = meshes;
-      c.options.interface_error = 0.1;
+      c.options.interface_error = 0.15;
       c.options.conserve = true;
       const ResampledScene scene(c);
       const double whole = scene.source.box.volume();
@@ -158,7 +159,8 @@ TEST(ConservedVolumes, OnOneThreadAndOnTwo) {
     set_thread_limit(threads);
     SceneCase c;
     c.name = "voronoi10";
-    c.options.interface_error = 0.05;
+    c.cells = 5;
+    c.options.interface_error = 0.12;
     c.options.conserve = true;
     points.push_back(ResampledScene(c).extracted().mesh.points);
   }

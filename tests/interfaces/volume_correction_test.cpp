@@ -15,6 +15,7 @@
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/reconstruction/site_cell.h"
 #include "tests/support/half_space_fractions.h"
+#include "tests/support/sheet_fractions.h"
 
 namespace adamas {
 namespace {
@@ -166,7 +167,7 @@ TEST(VolumeCorrection, TotalsAndMostCellsAreRight) {
 /// Also where cells cannot all be right.
 TEST(VolumeCorrection, TotalsOfAllScenesAreRight) {
   for (const std::string& name : scene_names()) {
-    for (const std::size_t n : {5, 12, 21}) {
+    for (const std::size_t n : {5, 8, 13}) {
       SCOPED_TRACE(name + " " + std::to_string(n));
       const MultiMaterialData data = sample_scene(make_scene(name, 4), {n, n + 1, n}, {2, false});
       const Reconstruction found(data);
@@ -177,9 +178,8 @@ TEST(VolumeCorrection, TotalsOfAllScenesAreRight) {
 
 /// A thin shell between two materials is closed, one body, and has its volume.
 TEST(VolumeCorrection, AThinShellIsWhole) {
-  // 0.6 cells thick.
-  const std::size_t n = 58;
-  const MultiMaterialData data = sample_scene(make_scene("shell3"), {n, n, n}, {3, false});
+  const auto shell = [](const Vec3& p) { return distance(p, Vec3{0.51, 0.5, 0.49}) - 0.35; };
+  const MultiMaterialData data = test::sheet_fractions(36, 0.6, shell, test::OtherSide::kThirdMaterial);
   const Reconstruction found(data);
   EXPECT_EQ(found.body_materials().size(), 3u);
   expect_totals(found, data.grid.domain().volume());
@@ -214,7 +214,9 @@ TEST(VolumeCorrection, SpheresAreOfSecondOrder) {
 TEST(VolumeCorrection, PlanesArePlanes) {
   for (const bool stretched : {false, true}) {
     for (const Vec3& way :
-         {Vec3{0.6, 0.64, 0.48}, Vec3{0.1, 0.9, 0.05}, Vec3{-0.3, 0.5, 0.81}, Vec3{1, 1, -1}}) {
+         {Vec3{0.6, 0.64, 0.48}, Vec3{-0.3, 0.5, 0.81}, Vec3{0.1, 0.9, 0.05}, Vec3{1, 1, -1}}) {
+      // Cells of grids in equal steps are alike, and so this takes less time there.
+      if (stretched && way.x > 0.6) continue;
       const Vec3 normal = normalized(way);
       const test::HalfSpace half_space = test::half_space_fractions(normal, 12, stretched);
       const Reconstruction found(half_space.data);

@@ -118,7 +118,7 @@ class DiamondTable {
 
   Values values_in(const PageValues<OrderedWord<Sample>>& page, LatticePoint p, int level, int page_level) {
     const std::size_t at = PageGrid::place(p, page_level);
-    Values values{level_error_scale(spacing(), level).decode(page.errors[at])};
+    Values values{scale(level).decode(page.errors[at])};
     if (page.low[at] <= page.high[at]) {
       values.low = from_ordered<Sample>(page.low[at]);
       values.high = from_ordered<Sample>(page.high[at]);
@@ -127,12 +127,17 @@ class DiamondTable {
     }
     return values;
   }
+  [[nodiscard]] const ErrorScale& scale(int level) const {
+    const auto found = scales_.find(level);
+    if (found != scales_.end()) return found->second;
+    return scales_.emplace(level, level_error_scale(spacing(), level)).first->second;
+  }
   [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, kRootBits - depth_) * domain_.spacing(); }
 
   /// Pages have no place for the points of some diamonds that reach far beyond the data. What their parents
   /// have covers them.
   [[nodiscard]] Values bound(LatticePoint p) const {
-    Values result{level_error_scale(spacing(), trailing_zeros(p)).greatest(), all_.low, all_.high};
+    Values result{scale(trailing_zeros(p)).greatest(), all_.low, all_.high};
     const std::int32_t step = std::int32_t{1} << (kRootBits - depth_);
     for (const LatticePoint parent : Diamond(step * p).parents(domain_)) {
       const LatticePoint q{parent.i / step, parent.j / step, parent.k / step};
@@ -156,6 +161,7 @@ class DiamondTable {
   LatticePoint last_;
   Values all_{};
   std::map<LatticePoint, Values> diamonds_, bounds_;
+  mutable std::map<int, ErrorScale> scales_;  ///< those that were asked for
 };
 
 /// Where the contour's options end the data.
