@@ -76,6 +76,7 @@ TEST_F(CutMesh, FiguresAndFilesAgree) {
 }
 
 TEST_F(CutMesh, ErrorsAndThreads) {
+  make_scene("random", 8);
   const std::vector<std::string> resample{"resample", "scene.vtr", "--interface-error", "5%", "--cut-mesh"};
   const auto with = [&](std::vector<std::string> more) {
     auto arguments = resample;
@@ -83,7 +84,7 @@ TEST_F(CutMesh, ErrorsAndThreads) {
     return arguments;
   };
   run_well(with({"coarse.msh", "--cut-error", "3%", "--threads", "1", "--json", "coarse.json"}));
-  run_well(with({"fine.msh", "--cut-error", "0.5%", "--json", "fine.json"}));
+  run_well(with({"fine.msh", "--cut-error", "1%", "--json", "fine.json"}));
   run_well(with({"again.msh", "--cut-error", "3%", "--threads", "3"}));
   EXPECT_TRUE(read("coarse.msh") == read("again.msh"));
   const auto distance = [&](const std::string& file) {

@@ -129,7 +129,7 @@ TEST(ConservedVolumes, AgreeWithTheInput) {
       c.seed = 2;
       c.cells = 5;
       c.meshes = meshes;
-      c.options.interface_error = 0.15;
+      c.options.interface_error = 0.1;
       c.options.conserve = true;
       const ResampledScene scene(c);
       const double whole = scene.source.box.volume();

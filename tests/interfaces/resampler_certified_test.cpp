@@ -140,7 +140,7 @@ void expect_certified(bool meshes, const std::vector<double>& errors, std::size_
       c.meshes = meshes;
       c.options.interface_error = error;
       // As many as the errors need; more would only be tried for the topology of the shell.
-      if (name == "shell3" && !meshes) c.options.max_tetrahedra = 12000;
+      if (name == "shell3" && !meshes) c.options.max_tetrahedra = error < 0.1 ? 8000 : 5000;
       if (const auto ratio = certified_ratio(c, samples)) {
         ratios.push_back(*ratio);
         EXPECT_LE(*ratio, 1.3);

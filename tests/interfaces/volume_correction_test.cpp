@@ -167,7 +167,7 @@ TEST(VolumeCorrection, TotalsAndMostCellsAreRight) {
 /// Also where cells cannot all be right.
 TEST(VolumeCorrection, TotalsOfAllScenesAreRight) {
   for (const std::string& name : scene_names()) {
-    for (const std::size_t n : {5, 8, 13}) {
+    for (const std::size_t n : {5, 12, 13}) {
       SCOPED_TRACE(name + " " + std::to_string(n));
       const MultiMaterialData data = sample_scene(make_scene(name, 4), {n, n + 1, n}, {2, false});
       const Reconstruction found(data);
@@ -216,7 +216,7 @@ TEST(VolumeCorrection, PlanesArePlanes) {
     for (const Vec3& way :
          {Vec3{0.6, 0.64, 0.48}, Vec3{-0.3, 0.5, 0.81}, Vec3{0.1, 0.9, 0.05}, Vec3{1, 1, -1}}) {
       // Cells of grids in equal steps are alike, and so this takes less time there.
-      if (stretched && way.x > 0.6) continue;
+      if (stretched && (way.x == 0.1 || way.x == 1)) continue;
       const Vec3 normal = normalized(way);
       const test::HalfSpace half_space = test::half_space_fractions(normal, 12, stretched);
       const Reconstruction found(half_space.data);
