@@ -1,9 +1,13 @@
 #include "cli/cut_mesh_output.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/option_values.h"
+#include "cli/resampling_setup.h"
 #include "cli/usage_error.h"
+#include "core/io/input_file.h"
 #include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/cutting/cut_mesh.h"
@@ -14,13 +18,17 @@ namespace adamas {
 
 namespace {
 
+/// Volumes of bodies that differ by more than this part of the domain are told.
+constexpr double kVolumesRestored = 1e-9;
+
 double tolerance_of(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error) {
   if (output.error.empty()) {
     // A mesh of planes alone has no error to go by.
     const double least = 1e-4 * mesh.box.diagonal();
     return std::max(kCutTolerance * interface_error, least);
   }
-  return parse_error_target("--cut-error", output.error).of(mesh.box.diagonal());
+  const InputFacts facts{mesh.source, mesh.box, mesh.fields, 0};
+  return interface_error_of("--cut-error", parse_error_target("--cut-error", output.error), facts);
 }
 
 Figures distance_figures(const InterfaceCertificate& certificate) {
@@ -47,14 +55,16 @@ void note_changed_bodies(const CutMeshReport& report, const ResampledMesh& mesh,
     } else {
       console.note(
           "the cut mesh shows a body of '{}' of volume {} in {} piece{} instead of {}, and its boundary has "
-          "the "
-          "Euler characteristic {} instead of {}",
+          "the Euler characteristic {} instead of {}",
           material, volume_text(volume), of_cut.pieces, of_cut.pieces == 1 ? "" : "s", of_mesh.pieces,
           of_cut.euler, of_mesh.euler);
     }
   }
   if (report.changed.size() > kMost)
     console.note("... and {} more bodies that the cut mesh has lost or torn", report.changed.size() - kMost);
+  if (report.volume_difference > kVolumesRestored * mesh.box.volume())
+    console.note("the cut mesh's bodies have the volumes of the mesh's but for {}, at most",
+                 volume_text(report.volume_difference));
 }
 
 /// Distances from the input's interfaces; none where there are none.
@@ -79,6 +89,7 @@ Figures report_figures(const ConformingMesh& cut, const CutMeshReport& report,
           {"dihedral_max", report.dihedral.max},
           {"to_mesh", distance_figures(report.distance)},
           {"to_input", from_input ? distance_figures(*from_input) : Figures(nullptr)},
+          {"volume_difference", report.volume_difference},
           {"lost_bodies", lost},
           {"changed_bodies", report.changed.size() - lost}};
 }
@@ -134,7 +145,7 @@ Figures write_cut_mesh(const CutMeshOutput& output, const ResampledMesh& mesh, d
   ledgers.push_back({"cut mesh", material_integrals(with_fields, mesh.materials.size())});
   session.outputs.write(output.file, [&](const auto& path) {
     console.step("writing " + output.file, -1);
-    if (path.extension() == ".vtu") {
+    if (file_extension(path) == ".vtu") {
       write_unstructured_mesh(path, with_fields);
     } else {
       write_solver_mesh(path, to_solver_mesh(cut, mesh));

@@ -34,7 +34,9 @@ SelectionTargets targets_of(const Options& options, const SavedHierarchy& hierar
   targets.field_errors.resize(tree.fields.size());
   for (const auto& [name, target] : parse_field_errors(options.field_errors)) {
     const auto found = field_number(tree.fields, name, options.path);
-    targets.field_errors[found] = target.of(tree.fields[found].max - tree.fields[found].min);
+    const double wanted = target.of(tree.fields[found].max - tree.fields[found].min);
+    // A field of one value everywhere is met by any mesh.
+    if (wanted > 0) targets.field_errors[found] = wanted;
   }
   if (!options.max_tetrahedra.empty())
     targets.max_tetrahedra = parse_count("--max-tetrahedra", options.max_tetrahedra);

@@ -21,7 +21,6 @@ class ExodusFile {
     int computed = sizeof(double), stored = sizeof(double);
     id_ = ex_create(file_.temporary().c_str(), EX_CLOBBER | EX_LARGE_MODEL, &computed, &stored);
     if (id_ < 0) refuse();
-    check(ex_set_max_name_length(id_, kLongestName));
   }
   ~ExodusFile() {
     if (id_ >= 0) ex_close(id_);
@@ -162,6 +161,7 @@ void write_exodus(const std::filesystem::path& path, const SolverMesh& mesh) {
   const auto sets = std::count_if(mesh.face_groups.begin(), mesh.face_groups.end(),
                                   [](const auto& group) { return !group.faces.empty(); });
   ExodusFile file(path);
+  file.check(ex_set_max_name_length(file.id(), kLongestName));
   file.check(ex_put_init(file.id(), "adamas", 3, static_cast<std::int64_t>(mesh.points.size()),
                          static_cast<std::int64_t>(mesh.tetrahedra.size()), blocks, 0, sets));
   put_points(mesh, file);

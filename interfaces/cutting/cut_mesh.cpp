@@ -53,13 +53,13 @@ ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& p
     snap_vertices(cut, target);
     const auto places =
         far_places(comparison, wanted.mesh, interfaces_of(cut.finish(), mesh.table).mesh, progress);
-    if (places.empty() || !cells.bisect_at(places, progress)) break;
+    if (round + 1 == kMostRounds || places.empty() || !cells.bisect_at(places, progress)) break;
     cut = divide_cells(cells);
   }
   drop_specks(cut, body_topology(wanted, mesh.table.body_count(), mesh.box), kSpeck * tolerance);
   const double wanted_quality = sine_of(kWantedAngle);
   improve_mesh(cut, target, wanted_quality, progress);
-  // The mesh's own vertices stay, for its fields want them.
+  // Coarsening leaves the mesh's own vertices, for its fields want them.
   coarsen_mesh(cut, target, static_cast<std::uint32_t>(mesh.points.size()), sine_of(kCoarsenedAngle),
                progress);
   improve_mesh(cut, target, wanted_quality, progress);

@@ -1,5 +1,8 @@
 #include "interfaces/cutting/cut_mesh_report.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace adamas {
 
 CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
@@ -12,8 +15,9 @@ CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& m
   const std::size_t bodies = mesh.table.body_count();
   const auto before = body_topology(of_mesh, bodies, mesh.box);
   const auto after = body_topology(of_cut, bodies, mesh.box);
-  const auto volumes = body_volumes(mesh.table, mesh.cell_set());
+  const auto volumes = body_volumes(mesh.table, mesh.cell_set()), cut_volumes = body_volumes(cut, bodies);
   for (BodyId b(0); b.value < bodies; ++b.value) {
+    report.volume_difference = std::max(report.volume_difference, std::abs(cut_volumes[b] - volumes[b]));
     if (before[b] != after[b]) report.changed.push_back({b, before[b], after[b], volumes[b]});
   }
   if (of_mesh.mesh.triangles.empty()) return report;

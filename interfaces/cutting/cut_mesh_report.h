@@ -23,6 +23,7 @@ struct CutMeshReport {
     double volume = 0;  ///< in the mesh that was cut
   };
   std::vector<ChangedBody> changed;
+  double volume_difference = 0;  ///< the greatest of a body, in the cube of the unit of length
 };
 
 /// `target`: a distance that matters.

@@ -28,10 +28,10 @@ std::optional<CellLocator::Location> CellLocator::locate(const Vec3& p) const {
 std::optional<CellLocator::Location> CellLocator::nearest(
     const Vec3& p, const std::function<bool(std::uint32_t)>& accept) const {
   const double diagonal = mesh_.box.diagonal();
-  for (double radius = 0; radius <= diagonal; radius = std::max(4 * radius, 1e-3 * diagonal)) {
+  for (double radius = 0;; radius = std::min(std::max(4 * radius, 1e-3 * diagonal), diagonal)) {
     if (const auto found = best_within(p, radius, accept)) return found;
+    if (radius >= diagonal) return std::nullopt;
   }
-  return std::nullopt;
 }
 
 std::optional<CellLocator::Location> CellLocator::best_within(

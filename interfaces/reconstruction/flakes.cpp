@@ -1,8 +1,10 @@
 #include "interfaces/reconstruction/flakes.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
+#include "interfaces/network/domain_faces.h"
 #include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas {
@@ -40,6 +42,8 @@ class HeldVolumes {
   }
   /// In cells; those that the material fills without others near are left out.
   [[nodiscard]] double held(std::uint32_t group) const { return held_[group]; }
+  /// Whether a cell of a group holds more of the material than of all others, so that it shows there.
+  [[nodiscard]] bool shows(std::uint32_t group) const { return shows_[group] != 0; }
 
  private:
   [[nodiscard]] std::size_t index(const Entry* entry) const {
@@ -59,12 +63,15 @@ class HeldVolumes {
   void collect(std::size_t site, const Entry& first, MaterialId material) {
     const auto group = static_cast<std::uint32_t>(held_.size());
     double held = 0;
+    bool shows = false;
     std::vector<std::size_t> waiting{site};
     group_of_[index(&first)] = group;
     while (!waiting.empty()) {
       const std::size_t cell = waiting.back();
       waiting.pop_back();
-      held += static_cast<double>(find(cell, material)->fraction);
+      const float fraction = find(cell, material)->fraction;
+      held += static_cast<double>(fraction);
+      shows = shows || fraction > 0.5f;
       sites_.for_each_neighbour(cell, [&](std::size_t other, int, int, int) {
         const Entry* entry = find(other, material);
         if (entry == nullptr || group_of_[index(entry)] != kNone) return;
@@ -73,12 +80,14 @@ class HeldVolumes {
       });
     }
     held_.push_back(held);
+    shows_.push_back(shows ? 1 : 0);
   }
 
   GridSites sites_;
   const SiteValues& values_;
   std::vector<std::uint32_t> group_of_;  // by entry
   std::vector<double> held_;             // by group
+  std::vector<char> shows_;              // by group
 };
 
 class FlakeSearch {
@@ -103,7 +112,9 @@ class FlakeSearch {
     }
     std::vector<Flake> kept;
     for (std::size_t n = 0; n < flakes_.size(); ++n) {
-      if (groups[n] == HeldVolumes::kNone || sums[groups[n]] <= kMostOfHeld * held_.held(groups[n]))
+      const std::uint32_t group = groups[n];
+      if (group == HeldVolumes::kNone ||
+          (held_.shows(group) && sums[group] <= kMostOfHeld * held_.held(group)))
         kept.push_back(flakes_[n]);
     }
     return kept;
@@ -136,10 +147,15 @@ class FlakeSearch {
       for (const std::uint32_t p : mesh_.triangles[t].points) box.extend(mesh_.points[p]);
     }
     // Seen from where faces on the domain's boundary, which no triangle has, add nothing.
+    const double near = kOnDomainFace * domain_.diagonal();
     Vec3 origin = box.center();
     for (int axis = 0; axis < 3; ++axis) {
-      if (box.min[axis] == domain_.min[axis]) origin[axis] = domain_.min[axis];
-      if (box.max[axis] == domain_.max[axis]) origin[axis] = domain_.max[axis];
+      const bool at_min = box.min[axis] - domain_.min[axis] <= near,
+                 at_max = domain_.max[axis] - box.max[axis] <= near;
+      // From one side of the domain to the other: no flake.
+      if (at_min && at_max) return {body, {}, 0, std::numeric_limits<double>::infinity()};
+      if (at_min) origin[axis] = domain_.min[axis];
+      if (at_max) origin[axis] = domain_.max[axis];
     }
     double volume = 0;
     for (const std::uint32_t t : triangles) {

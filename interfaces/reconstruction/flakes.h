@@ -13,9 +13,10 @@ namespace adamas {
 /// A body far smaller than a cell that the correction of volumes has cut off from cells which hold far more
 /// of its material.
 struct Flake {
-  BodyId body, neighbour;  ///< which it shares most of its boundary with
+  BodyId body;
+  BodyId neighbour;  ///< with the greatest area between, of those whose material no other neighbour has
   std::uint32_t site;      ///< in whose cell its middle lies
-  double volume;
+  double volume;       ///< in the cube of the unit of length
 };
 
 /// Flakes of reconstructed interfaces; `bodies`: in front of their triangles and behind.

@@ -89,15 +89,18 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
       wanted[from] += flake.volume, given[from] -= flake.volume;
       wanted[to] -= flake.volume, given[to] += flake.volume;
     }
-    const bool closed =
-        greatest_difference(given, volume_input_) <= kTotalTolerance * data.grid.domain().volume();
-    if ((closings == 0 && flakes.empty()) || closed || closings == kMostClosings) {
+    if ((closings == 0 && flakes.empty()) ||
+        greatest_difference(given, volume_input_) <= kTotalTolerance * data.grid.domain().volume()) {
       volume_reconstructed_ = given;
       break;
     }
+    // Flakes that come and go with the offsets stay.
+    const bool give_up = closings == kMostClosings;
+    if (give_up) flakes.clear(), moves.clear(), wanted = volume_input_;
     close_totals(data, wanted, values, progress);
     lattice_ = MaterialLattice(data, values);
     extract(data, progress);
+    if (give_up) break;
   }
   if (flakes.empty()) return moves;
   const IdVector<BodyId, BodyId> numbers = drop_flakes(flakes, mesh_, bodies_, body_materials_);

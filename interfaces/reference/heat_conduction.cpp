@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/error.h"
 #include "core/geometry/tetrahedron.h"
 
 namespace adamas {
@@ -103,6 +104,9 @@ std::vector<double> solve_heat_conduction(const ConformingMesh& mesh, const Heat
   solver.setTolerance(1e-12);
   solver.compute(equations.matrix);
   const Vector solution = solver.solve(equations.right);
+  if (solver.info() != Eigen::Success)
+    fail("heat conduction: expected conjugate gradients to converge, found an error of {:.3g} after {} steps",
+         solver.error(), solver.iterations());
   std::vector<double> temperatures;
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
     const Eigen::Index i = equations.unknown[p];

@@ -34,7 +34,7 @@ void ChangingBoxTree::order(std::span<const Box3> boxes, std::uint32_t leaf, std
   if (leaves < 2 || leaf + 1 >= items_.size()) return;
   const auto begin = items_.begin() + leaf;
   const auto end = items_.begin() + std::min<std::ptrdiff_t>(leaf + leaves, std::ssize(items_));
-  const auto middle = std::min(begin + leaves / 2, end);
+  const auto middle = begin + std::min<std::ptrdiff_t>(leaves / 2, end - begin);
   Box3 centers;
   for (auto i = begin; i != end; ++i) centers.extend(boxes[*i].center());
   const Vec3 size = centers.size();

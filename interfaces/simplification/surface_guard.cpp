@@ -260,12 +260,25 @@ bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
     });
   };
   for (const SurfaceChange::Face& face : change.faces) {
-    const Corners before = corners_now(face.face), after = corners_after(face, change);
+    const Corners after = corners_after(face, change);
+    Corners before = corners_now(face.face);
+    ClosestPointTree::Triangle numbers = faces_[face.face];
+    // Begun at the corner where most of the others are in the same places.
+    const auto kept = [&] {
+      return static_cast<int>(before[0] == after[0]) + static_cast<int>(before[1] == after[1]) +
+             static_cast<int>(before[2] == after[2]);
+    };
+    for (int turn = 0; turn < 3 && kept() < 2; ++turn) {
+      std::rotate(before.begin(), before.begin() + 1, before.end());
+      std::rotate(numbers.begin(), numbers.begin() + 1, numbers.end());
+    }
     std::size_t moved = 0;
     while (moved < 3 && before[moved] == after[moved]) ++moved;
     if (moved == 3) continue;
     // A point that moves has one number: its place before gets none.
     constexpr std::uint32_t kBefore = 0xffffffffu;
+    const bool moves = change.move && change.move->point == numbers[moved];
+    const std::uint32_t number = moves ? kBefore : numbers[moved];
     const std::size_t i = (moved + 1) % 3, j = (moved + 2) % 3;
     Box3 box = box_of(after);
     box.extend(before[moved]);
@@ -274,13 +287,13 @@ bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
       if (changes(other)) return true;
       const PlacedTriangle there{faces_[other], corners_now(other)};
       for (const std::size_t side : {i, j}) {
-        empty = empty && !in_contact({{kBefore, face.corners[moved], face.corners[side]},
+        empty = empty && !in_contact({{number, face.corners[moved], face.corners[side]},
                                       {before[moved], after[moved], after[side]}},
                                      there);
       }
       for (std::size_t c = 0; c < 3 && empty; ++c) {
         const auto& own = face.corners;
-        if (std::find(own.begin(), own.end(), there.points[c]) == own.end())
+        if (there.points[c] != number && std::find(own.begin(), own.end(), there.points[c]) == own.end())
           empty = !holds({before[moved], after[moved], after[i], after[j]}, there.corners[c]);
       }
       return empty;

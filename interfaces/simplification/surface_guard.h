@@ -34,7 +34,7 @@ struct SurfaceChange {
   /// Triangles may have angles below this, in degrees, only where they replace such triangles: with a
   /// smallest angle no less, or fewer of them.
   double least_angle = 0;
-  /// Every angle has to be greater than that, whatever was there; in degrees.
+  /// Every angle has to be at least that, whatever was there; in degrees.
   double angle_above = 0;
 };
 

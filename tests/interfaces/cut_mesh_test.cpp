@@ -92,9 +92,8 @@ void CutMeshes::expect_to_conform() const {
     bool on_box = false;
     for (int axis = 0; axis < 3; ++axis) {
       for (const double wall : {mesh_.box.min[axis], mesh_.box.max[axis]}) {
-        on_box = on_box || std::all_of(face.begin(), face.end(), [&](std::size_t p) {
-                   return written.points[p][axis] == wall;
-                 });
+        on_box = on_box || std::all_of(face.begin(), face.end(),
+                                       [&](std::size_t p) { return written.points[p][axis] == wall; });
       }
     }
     ASSERT_EQ(count, on_box ? 1 : 2);

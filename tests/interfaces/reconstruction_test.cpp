@@ -178,7 +178,7 @@ TEST(Reconstruction, FlakesAreNoBodies) {
   }
 }
 
-/// Of small bodies those are flakes whose cells hold far more.
+/// Of small bodies those are flakes whose cells hold far more, and show it elsewhere.
 TEST(Reconstruction, DropsAreNoFlakes) {
   MultiMaterialData data = sample_scene(make_scene("plate"), {9, 9, 9}, {1, false});
   const std::size_t middle = data.grid.site_index(4, 4, 4);
@@ -195,7 +195,7 @@ TEST(Reconstruction, DropsAreNoFlakes) {
   const IdVector<BodyId, MaterialId> materials{MaterialId(0), MaterialId(1)};
   for (const bool alone : {true, false}) {
     for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
-      const float part = site == middle ? 0.01f : alone ? 0.0f : 0.1f;
+      const float part = site == middle ? 0.01f : alone ? 0.0f : site == 0 ? 0.6f : 0.1f;
       data.fractions[MaterialId(0)][site] = 1 - part;
       data.fractions[MaterialId(1)][site] = part;
     }

@@ -5,6 +5,9 @@
 
 #include "interfaces/simplification/changing_box_tree.h"
 #include "interfaces/simplification/near_field.h"
+#include "interfaces/simplification/openmesh_patches.h"
+#include "interfaces/simplification/patch_improvement.h"
+#include "interfaces/simplification/surface_guard.h"
 #include "interfaces/simplification/triangle_contacts.h"
 #include "tests/interfaces/network_meshes.h"
 
@@ -118,6 +121,43 @@ TEST(NearField, AgreesWithSamples) {
     }
   }
   EXPECT_GT(taken, 100u);
+}
+
+/// A fan round an interior point, with an edge that halves the wide angle of its quadrilateral badly: it is
+/// flipped, and what the guard and OpenMesh then have is the same.
+TEST(FlipEdges, MakesTheSmallestAngleGreater) {
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  mesh.points = {{0.1, 0.5, 0.5}, {0.9, 0.5, 0.5},  {0.5, 0.6, 0.5},
+                 {0.5, 0.4, 0.5}, {0.5, 0.9, 0.52}, {0.5, 0.1, 0.48}};
+  for (const std::array<std::uint32_t, 3>& t :
+       {std::array<std::uint32_t, 3>{0, 1, 2}, {1, 0, 3}, {0, 2, 4}, {2, 1, 4}, {3, 0, 5}, {1, 3, 5}})
+    mesh.triangles.push_back({t, MaterialId(0), MaterialId(1)});
+  const std::vector<std::array<BodyId, 2>> sides(mesh.triangles.size(), {BodyId(0), BodyId(1)});
+  auto patches = to_openmesh(mesh, sides);
+  ASSERT_EQ(patches.size(), 1u);
+  const std::vector<ClosestPointTree::Triangle> triangles = test::triangles_of(mesh);
+  const ClosestPointTree tree(mesh.points, triangles);
+  constexpr double kLimit = 0.1;
+  std::vector<NearField> fields;
+  fields.emplace_back(tree, kLimit);
+  SurfaceGuard guard(mesh.points, triangles, std::vector<std::uint32_t>(6, 0),
+                     std::vector<std::uint32_t>(6, 0), fields, {kLimit, test::unit_box()});
+  const std::array<std::uint32_t, 2> pair{0, 1};
+  const double before = guard.smallest_angle(pair);
+  EXPECT_EQ(flip_edges(patches[0], guard, SilentProgress::instance()), 1u);
+  EXPECT_GT(guard.smallest_angle(pair), 2 * before);
+  const JoinedPatches joined =
+      from_openmesh(patches, IdVector<BodyId, MaterialId>{MaterialId(0), MaterialId(1)}, mesh.materials);
+  const Vec3 up{0, 0, 1};
+  bool has_new_edge = false;
+  for (const InterfaceTriangle& t : joined.mesh.triangles) {
+    const auto& p = joined.mesh.points;
+    EXPECT_NE(dot(cross(p[t.points[1]] - p[t.points[0]], p[t.points[2]] - p[t.points[0]]), up), 0);
+    const auto has = [&](std::uint32_t v) { return std::count(t.points.begin(), t.points.end(), v) == 1; };
+    EXPECT_FALSE(has(0) && has(1));
+    has_new_edge = has_new_edge || (has(2) && has(3));
+  }
+  EXPECT_TRUE(has_new_edge);
 }
 
 }  // namespace
