@@ -17,7 +17,7 @@ namespace {
 /// How often totals are closed again where flakes are given to neighbours, and how right they are to be, as a
 /// part of the domain.
 constexpr int kMostClosings = 3;
-constexpr double kTotalTolerance = 1e-10;
+constexpr double kTotalTolerance = 5e-10;
 
 /// The greatest difference of volumes, but for one that all have.
 double greatest_difference(const IdVector<MaterialId, double>& a, const IdVector<MaterialId, double>& b) {
