@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/contact_mesh.h"
+#include "core/geometry/edge_key.h"
 
 namespace adamas {
 
@@ -78,17 +79,14 @@ void ContactMeshBuilder::close_spikes(std::vector<Loops>& parts) const {
   // Each round makes edges shorter; the bound is for what round-off may do.
   constexpr int kMostRounds = 64;
   using Passed = std::pair<std::uint64_t, std::uint32_t>;  // an edge, and a point that it passes
-  const auto edge = [](std::uint32_t a, std::uint32_t b) {
-    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-  };
   for (int round = 0; round < kMostRounds; ++round) {
     std::vector<std::vector<Passed>> found(parts.size());
     parallel_for(parts.size(), 1, [&](std::size_t part) {
       parts[part].for_each([&](std::size_t, std::span<const std::uint32_t> loop) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
           const std::uint32_t a = loop[i], tip = loop[(i + 1) % loop.size()], b = loop[(i + 2) % loop.size()];
-          if (passes(a, tip, b)) found[part].emplace_back(edge(a, tip), b);
-          if (passes(tip, b, a)) found[part].emplace_back(edge(tip, b), a);
+          if (passes(a, tip, b)) found[part].emplace_back(edge_key(a, tip), b);
+          if (passes(tip, b, a)) found[part].emplace_back(edge_key(tip, b), a);
         }
       });
     });
@@ -103,7 +101,7 @@ void ContactMeshBuilder::close_spikes(std::vector<Loops>& parts) const {
         for (std::size_t i = 0; i < loop.size(); ++i) {
           const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
           longer.push_back(a);
-          if (const auto point = passed.find(edge(a, b)); point != passed.end())
+          if (const auto point = passed.find(edge_key(a, b)); point != passed.end())
             longer.push_back(point->second);
         }
         if (longer.size() != loop.size()) drop_repeated(longer);

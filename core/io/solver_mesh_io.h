@@ -6,10 +6,10 @@
 
 namespace adamas {
 
-/// Writes .msh (Gmsh 2.2, as text: physical groups for blocks and groups of faces, fields as element data) or
-/// .exo (ExodusII: a block for each block that has tetrahedra, side sets, element variables at one time step,
-/// one for each component). Equal meshes give equal bytes. Throws Error where the file cannot be written in
-/// full.
+/// Writes .msh (Gmsh 2.2, as text: physical groups for blocks and groups of faces, fields as element data, of
+/// one, three or nine components: smaller ones are padded, larger ones left out) or .exo (ExodusII: a block
+/// for each block that has tetrahedra, side sets, element variables at one time step, one for each
+/// component). Equal meshes give equal bytes. Throws Error where the file cannot be written in full.
 void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh);
 
 }  // namespace adamas

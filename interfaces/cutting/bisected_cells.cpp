@@ -11,7 +11,7 @@ namespace adamas {
 
 namespace {
 
-/// Cells are not bisected further where their longest edge is shorter than so many tolerances.
+/// Cells are not bisected at given places where their longest edge is shorter than so many tolerances.
 constexpr double kSmallestCell = 2;
 constexpr int kMostRounds = 24;
 /// Parts of a cell count as small whose size is less than so much of the cell's.

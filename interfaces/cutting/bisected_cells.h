@@ -6,15 +6,11 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/geometry/edge_key.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
 
 namespace adamas {
-
-/// An edge of a tetrahedral mesh by its two vertices, the lower one first, as one number.
-constexpr std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-  return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
-}
 
 /// The cells of a resampled mesh, bisected further at their longest edges until each edge changes its owner
 /// once at most and every body in a cell owns one of its corners, but for parts that are small beside the

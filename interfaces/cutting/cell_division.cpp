@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/geometry/divider.h"
+#include "interfaces/network/domain_faces.h"
 
 namespace adamas {
 
@@ -29,15 +30,8 @@ const LinearFunction* active_function(const OwnershipProblem& problem, BodyId bo
   return nullptr;
 }
 
-std::uint8_t walls_of(const Box3& box, const Vec3& p) {
-  const double near = 1e-12 * box.diagonal();
-  unsigned walls = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(p[axis] - box.min[axis]) <= near) walls |= 1u << (2 * axis);
-    if (std::abs(p[axis] - box.max[axis]) <= near) walls |= 2u << (2 * axis);
-  }
-  return static_cast<std::uint8_t>(walls);
-}
+/// How near to a face of the box the mesh's points are that lie on it, in relation to the box's diagonal.
+constexpr double kOnWall = 1e-12;
 
 /// The corners of a face, or of a whole cell, and who owns them.
 struct Meeting {
@@ -49,7 +43,7 @@ struct Meeting {
 class Division {
  public:
   explicit Division(const BisectedCells& cells) : cells_(cells), result_(cells.mesh().box) {
-    for (const Vec3& p : cells.points()) result_.add_vertex(p, walls_of(cells.mesh().box, p));
+    for (const Vec3& p : cells.points()) result_.add_vertex(p, domain_faces_at(cells.mesh().box, p, kOnWall));
   }
 
   LabelledMesh finish() {

@@ -57,7 +57,8 @@ bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Loca
 bool may_change_body(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t cell,
                      BodyId body);
 
-/// Moves a vertex where the least quality round it is greater, along what it lies on; returns whether it did.
+/// Moves a vertex where the least quality round it is greater: along what it lies on or, where that does not
+/// help, off it within the tolerance. Returns whether it did.
 bool smooth_vertex(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t v);
 
 /// Moves vertices where bodies meet to the closest place where they should meet, as far as the cells round

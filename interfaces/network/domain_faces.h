@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "core/geometry/vec3.h"
 
@@ -8,6 +9,17 @@ namespace adamas {
 
 /// How near to a face of the domain points count as on it, in relation to the domain's diagonal.
 constexpr double kOnDomainFace = 1e-9;
+
+/// The faces of a domain that hold a point, as bits: 1, 2 for least and greatest x, 4, 8 for y, and so on.
+inline std::uint8_t domain_faces_at(const Box3& domain, const Vec3& p, double tolerance = kOnDomainFace) {
+  const double length = tolerance * domain.diagonal();
+  unsigned faces = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(p[axis] - domain.min[axis]) <= length) faces |= 1u << (2 * axis);
+    if (std::abs(p[axis] - domain.max[axis]) <= length) faces |= 2u << (2 * axis);
+  }
+  return static_cast<std::uint8_t>(faces);
+}
 
 /// The outward normals, added up, of the faces of a domain that hold both points; zero where there are none
 /// or `domain` is null.

@@ -5,18 +5,11 @@
 #include <unordered_map>
 
 #include "core/geometry/contact_mesh.h"
+#include "core/geometry/edge_key.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
 namespace adamas {
-
-namespace {
-
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
-
-}  // namespace
 
 void Reconstruction::join_points() {
   parent_.resize(lattice_.point_count());

@@ -21,7 +21,7 @@ struct Slab {
   [[nodiscard]] double height(const Vec3& p) const { return dot(normal, p) - offset; }
 };
 
-/// The fractions of a thin material and of all others in the cells round one.
+/// The fractions of a thin material in the cells round one.
 struct SheetWindow {
   static constexpr int kReach = 2, kSide = 2 * kReach + 1;
   static constexpr std::size_t kCells = kSide * kSide * kSide;

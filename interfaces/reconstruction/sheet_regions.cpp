@@ -3,6 +3,7 @@
 #include <numeric>
 #include <utility>
 
+#include "interfaces/network/disjoint_sets.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
@@ -99,28 +100,24 @@ class RegionSearch {
   /// and those with fits for few of their cells: fractions of a simulation that are smeared look like it here
   /// and there.
   void drop_unclear_sheets() {
-    std::vector<std::uint32_t> parent(sheets_.places.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto find = [&](std::uint32_t p) {
-      while (parent[p] != p) p = parent[p] = parent[parent[p]];
-      return p;
-    };
-    std::vector<char> mixed(parent.size(), 0);
-    std::vector<std::size_t> fitted(parent.size(), 0), held(parent.size(), 0);
+    const std::size_t count = sheets_.places.size();
+    DisjointSets sets(count);
+    std::vector<char> mixed(count, 0);
+    std::vector<std::size_t> fitted(count, 0), held(count, 0);
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
-      if (place(p).material == place(q).material) parent[find(q)] = find(p);
+      if (place(p).material == place(q).material) sets.join(p, q);
     });
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
-      if (place(p).material != place(q).material) mixed[find(p)] = mixed[find(q)] = 1;
+      if (place(p).material != place(q).material) mixed[sets.find(p)] = mixed[sets.find(q)] = 1;
     });
-    for (std::uint32_t p = 0; p < parent.size(); ++p) {
-      fitted[find(p)] += place(p).is_fitted ? 1 : 0;
-      held[find(p)] += is_beside(p) ? 0 : 1;
+    for (std::uint32_t p = 0; p < count; ++p) {
+      fitted[sets.find(p)] += place(p).is_fitted ? 1 : 0;
+      held[sets.find(p)] += is_beside(p) ? 0 : 1;
     }
     std::vector<SheetPlace> kept;
     std::fill(place_of_.begin(), place_of_.end(), kNone);
-    for (std::uint32_t p = 0; p < parent.size(); ++p) {
-      const std::uint32_t sheet = find(p);
+    for (std::uint32_t p = 0; p < count; ++p) {
+      const std::uint32_t sheet = sets.find(p);
       const bool is_clear = fitted[sheet] >= kFewest && static_cast<double>(fitted[sheet]) >=
                                                             kLeastFitted * static_cast<double>(held[sheet]);
       if (mixed[sheet] != 0 || !is_clear) continue;

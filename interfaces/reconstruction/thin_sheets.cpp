@@ -21,8 +21,11 @@ constexpr int kRings = 2;
 /// Layers are continuations of each other where their normals agree at least so well, by the cosine, and
 /// their heights differ by no more cells.
 constexpr double kLeastCosine = 0.7, kMostStep = 0.5;
-/// A sheet has an end where a cell should hold so much of it and has none, or less than this part of it.
-constexpr double kMissing = 0.1, kHalf = 0.5, kAside = 0.4;
+/// A sheet may end where the places that continue it to a cell lie to one side, their middle by more cells.
+constexpr double kAside = 0.4;
+/// There it does where the cell should hold so much of it and has none; where it has less than this part of
+/// it the layer is as much thinner.
+constexpr double kMissing = 0.1, kHalf = 0.5;
 
 class SheetSearch {
  public:

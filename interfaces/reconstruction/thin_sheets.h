@@ -33,7 +33,7 @@ struct ThinSheets {
 ThinSheets find_thin_sheets(const MultiMaterialData& data, const SiteValues& values);
 
 /// Joins the sides of places to regions and numbers these. Sides are joined along sheets and, where this
-/// does not make both sides of a sheet one, through cells that hold one material alone.
+/// does not make both sides of a sheet one, through cells that hold nothing of the sheet.
 void join_regions(const MultiMaterialData& data, const SiteValues& values, ThinSheets& sheets);
 
 }  // namespace adamas

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/tetrahedron.h"
+#include "interfaces/network/domain_faces.h"
 
 namespace adamas {
 
@@ -25,18 +26,14 @@ struct Equations {
   Vector right;
 };
 
-bool is_on(const Box3& box, const Vec3& p) {
-  const double near = 1e-12 * box.diagonal();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (p[axis] - box.min[axis] <= near || box.max[axis] - p[axis] <= near) return true;
-  }
-  return false;
-}
+/// How near to a side of the box points are that lie on it, in relation to the box's diagonal.
+constexpr double kOnSide = 1e-12;
 
 Equations assemble(const ConformingMesh& mesh, const HeatProblem& problem) {
   Equations equations;
   Eigen::Index count = 0;
-  for (const Vec3& p : mesh.points) equations.unknown.push_back(is_on(problem.box, p) ? kFixed : count++);
+  for (const Vec3& p : mesh.points)
+    equations.unknown.push_back(domain_faces_at(problem.box, p, kOnSide) != 0 ? kFixed : count++);
   equations.right = Vector::Zero(count);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {

@@ -24,8 +24,8 @@ constexpr double kLimit = 0.995;
 constexpr int kMostTurns = 20;
 /// Another turn is worth it where the last one did that part of all collapses.
 constexpr double kWorthwhile = 0.0005;
-/// Where distances came out too great, what is near is simplified to so many parts of the limit, and in the
-/// end not at all.
+/// Where distances came out too great the limit near there is multiplied by this, and in the last run nothing
+/// is simplified there.
 constexpr double kTighter = 0.5;
 constexpr std::size_t kMostRuns = 8;
 
@@ -153,11 +153,8 @@ void Simplifier::improve(std::vector<InterfacePatch>& patches, SurfaceGuard& gua
   if (!options_.smooth) return;
   progress_.step("smoothing interfaces", -1);
   for (InterfacePatch& patch : patches) {
-    InterfaceId number(0);
-    for (; source_.network->interface(number).a != patch.front ||
-           source_.network->interface(number).b != patch.back;)
-      ++number.value;
-    smooth_points(patch, source_.network->tree(number), guard, progress_);
+    const auto number = source_.network->table().find(patch.front, patch.back);
+    smooth_points(patch, source_.network->tree(number.value()), guard, progress_);
     flip_edges(patch, guard, progress_);
   }
 }

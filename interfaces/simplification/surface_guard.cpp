@@ -33,16 +33,6 @@ Box3 box_of(const std::array<Vec3, 3>& corners) {
 
 Vec3 area_normal(const std::array<Vec3, 3>& c) { return cross(c[1] - c[0], c[2] - c[0]); }
 
-unsigned sides_of(const Vec3& p, const Box3& domain) {
-  const double near = kOnDomainFace * domain.diagonal();
-  unsigned sides = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(p[axis] - domain.min[axis]) <= near) sides |= 1u << (2 * axis);
-    if (std::abs(p[axis] - domain.max[axis]) <= near) sides |= 2u << (2 * axis);
-  }
-  return sides;
-}
-
 }  // namespace
 
 double smallest_angle(const std::array<Vec3, 3>& corners) {
@@ -67,7 +57,7 @@ SurfaceGuard::SurfaceGuard(std::vector<Vec3> points, std::vector<ClosestPointTre
       limit_parts_(points_.size(), 1.0),
       moved_(points_.size(), 0),
       covered_(faces_.size()) {
-  for (const Vec3& p : points_) sides_.push_back(static_cast<unsigned char>(sides_of(p, options.domain)));
+  for (const Vec3& p : points_) sides_.push_back(domain_faces_at(options.domain, p));
   std::vector<Box3> boxes;
   boxes.reserve(faces_.size());
   for (std::uint32_t f = 0; f < faces_.size(); ++f) boxes.push_back(box_of(corners_now(f)));
