@@ -17,14 +17,14 @@ namespace {
 using Entry = SiteValues::Entry;
 
 /// Sweeps over cells that are far off, and rounds of the method for all.
-constexpr int kMostSweeps = 6, kMostRounds = 16;
+constexpr int kMostSweeps = 6, kMostRounds = 40;
 /// A cell is far off where a volume differs by more than this part of the cell's.
 constexpr double kFarOff = 0.03;
 /// Cells that differ by more are counted.
 constexpr double kCellOff = 1e-3;
 /// Rounds end when no more mixed cells, as a part of all, are off, or when both their number and the sum of
 /// squares gain less.
-constexpr double kMostOff = 8e-3, kLeastGain = 0.02;
+constexpr double kMostOff = 8e-3, kLeastGain = 5e-3;
 /// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
 /// would make the surface rough.
 constexpr double kDamping = 1e-4;
