@@ -14,8 +14,8 @@ namespace adamas {
 /// of its material.
 struct Flake {
   BodyId body;
-  BodyId neighbour;  ///< with the greatest area between, of those whose material no other neighbour has
-  std::uint32_t site;      ///< in whose cell its middle lies
+  BodyId neighbour;    ///< with the greatest area between, of those whose material no other neighbour has
+  std::uint32_t site;  ///< in whose cell its middle lies
   double volume;       ///< in the cube of the unit of length
 };
 

@@ -16,11 +16,10 @@ constexpr double kLeastHeld = 1e-3, kNothing = 1e-12;
 
 class LostBodySearch {
  public:
-  LostBodySearch(const MultiMaterialData& data, const SiteValues& values)
+  LostBodySearch(const MultiMaterialData& data, const SiteValues& values, const SiteCells& cells)
       : values_(values),
         sites_(data.grid),
-        cells_(data.grid),
-        cell_(data.grid, values, cells_),
+        cell_(data.grid, values, cells),
         seen_(values.entries().size(), 0) {}
 
   std::vector<LostBody> run() {
@@ -99,7 +98,6 @@ class LostBodySearch {
 
   const SiteValues& values_;
   GridSites sites_;
-  SiteCells cells_;
   CellVolumes cell_;
   std::vector<char> seen_;                             // by entry
   std::vector<std::pair<std::size_t, double>> group_;  // sites with their fractions
@@ -107,8 +105,9 @@ class LostBodySearch {
 
 }  // namespace
 
-std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const SiteValues& values) {
-  return LostBodySearch(data, values).run();
+std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const SiteValues& values,
+                                       const SiteCells& cells) {
+  return LostBodySearch(data, values, cells).run();
 }
 
 }  // namespace adamas

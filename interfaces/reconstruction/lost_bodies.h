@@ -5,6 +5,7 @@
 
 #include "core/data/multi_material_data.h"
 #include "core/geometry/vec3.h"
+#include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas {
@@ -20,6 +21,7 @@ struct LostBody {
 /// The connected groups of cells (by faces, edges and corners) with a fraction of a material above
 /// kFractionTrace that together have more than a thousandth of a cell of it, and in which the material owns
 /// nothing. In the order of their first cells. `values` must be of the same data.
-std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const SiteValues& values);
+std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const SiteValues& values,
+                                       const SiteCells& cells);
 
 }  // namespace adamas

@@ -58,24 +58,26 @@ struct Reconstruction::Layer {
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
                                Progress& progress)
-    : Reconstruction(data, SiteValues(data, options.smooth_labels), progress) {}
+    : Reconstruction(data, SiteValues(data, options.smooth_labels), SiteCells(data.grid), progress) {}
 
-Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress)
-    : lattice_((correct_volumes(data, values, progress), MaterialLattice(data, values))),
+Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
+                               Progress& progress)
+    : lattice_((correct_volumes(data, values, cells, progress), MaterialLattice(data, values))),
       volume_input_(data.volumes()) {
   mesh_.source = data.source;
   mesh_.materials = data.materials;
   extract(data, progress);
   // Labels that are smoothed have no flakes.
   std::vector<VolumeMove> moves;
-  if (values.least() == 0) moves = give_flakes_to_neighbours(data, values, progress);
-  agreement_ = volume_agreement(data, values, moves);
-  lost_bodies_ = find_lost_bodies(data, values);
+  if (values.least() == 0) moves = give_flakes_to_neighbours(data, values, cells, progress);
+  agreement_ = volume_agreement(data, values, cells, moves);
+  lost_bodies_ = find_lost_bodies(data, values, cells);
 }
 
 /// Totals are closed again, until they are right with what neighbours get. Returns that.
 std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMaterialData& data,
-                                                                  SiteValues& values, Progress& progress) {
+                                                                  SiteValues& values, const SiteCells& cells,
+                                                                  Progress& progress) {
   const GridSites sites(data.grid);
   std::vector<Flake> flakes;
   std::vector<VolumeMove> moves;
@@ -97,7 +99,7 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
     // Flakes that come and go with the offsets stay.
     const bool give_up = closings == kMostClosings;
     if (give_up) flakes.clear(), moves.clear(), wanted = volume_input_;
-    close_totals(data, wanted, values, progress);
+    close_totals(data, wanted, values, cells, progress);
     lattice_ = MaterialLattice(data, values);
     extract(data, progress);
     if (give_up) break;

@@ -77,10 +77,11 @@ class Reconstruction {
   void join(Part a, Part b);
   void number_bodies();
   std::vector<VolumeMove> give_flakes_to_neighbours(const MultiMaterialData& data, SiteValues& values,
-                                                    Progress& progress);
+                                                    const SiteCells& cells, Progress& progress);
 
   /// For data whose values have been corrected.
-  Reconstruction(const MultiMaterialData& data, SiteValues&& values, Progress& progress);
+  Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
+                 Progress& progress);
 
   VolumeAgreement agreement_;
   std::vector<LostBody> lost_bodies_;

@@ -22,8 +22,8 @@ constexpr double kTotalTolerance = 2e-11;
 
 class TotalClosing {
  public:
-  TotalClosing(const MultiMaterialData& data, SiteValues& values)
-      : data_(data), values_(values), cells_(data.grid), step_(data.grid.least_spacing()) {}
+  TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
+      : data_(data), values_(values), cells_(cells), step_(data.grid.least_spacing()) {}
 
   /// One offset per material, the same everywhere: Newton's method for the volumes in the whole domain.
   void run(const IdVector<MaterialId, double>& wanted, Progress& progress) {
@@ -127,15 +127,15 @@ class TotalClosing {
 
   const MultiMaterialData& data_;
   SiteValues& values_;
-  SiteCells cells_;
+  const SiteCells& cells_;
   double step_;
 };
 
 }  // namespace
 
 void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, double>& wanted,
-                  SiteValues& values, Progress& progress) {
-  TotalClosing(data, values).run(wanted, progress);
+                  SiteValues& values, const SiteCells& cells, Progress& progress) {
+  TotalClosing(data, values, cells).run(wanted, progress);
 }
 
 }  // namespace adamas

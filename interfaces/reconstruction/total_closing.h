@@ -2,6 +2,7 @@
 
 #include "core/base/progress.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas {
@@ -9,6 +10,6 @@ namespace adamas {
 /// Adds one offset to all values of each material, so that the materials have the volumes `wanted` in the
 /// whole domain: Newton's method, for the volumes are the gradient of a convex function of the offsets.
 void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, double>& wanted,
-                  SiteValues& values, Progress& progress = SilentProgress::instance());
+                  SiteValues& values, const SiteCells& cells, Progress& progress);
 
 }  // namespace adamas

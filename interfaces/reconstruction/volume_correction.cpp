@@ -34,11 +34,11 @@ constexpr int kMostHalvings = 4;
 
 class Correction {
  public:
-  Correction(const MultiMaterialData& data, SiteValues& values)
+  Correction(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
       : data_(data),
         values_(values),
         grid_sites_(data.grid),
-        cells_(data.grid),
+        cells_(cells),
         step_(data.grid.least_spacing()) {
     const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
     row_of_.push_back(0);
@@ -60,7 +60,7 @@ class Correction {
     std::fill(changed_.begin(), changed_.end(), 0);
     find_unknowns();
     correct_all(progress);
-    close_totals(data_, data_.volumes(), values_, progress);
+    close_totals(data_, data_.volumes(), values_, cells_, progress);
   }
 
  private:
@@ -317,7 +317,7 @@ class Correction {
   const MultiMaterialData& data_;
   SiteValues& values_;
   GridSites grid_sites_;
-  SiteCells cells_;
+  const SiteCells& cells_;
   double step_;
   std::vector<int> changed_;                           // by site: when last a sweep did
   std::array<std::vector<std::uint32_t>, 8> colours_;  // mixed sites that do not touch each other
@@ -329,14 +329,14 @@ class Correction {
 
 }  // namespace
 
-void correct_volumes(const MultiMaterialData& data, SiteValues& values, Progress& progress) {
-  Correction(data, values).run(progress);
+void correct_volumes(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
+                     Progress& progress) {
+  Correction(data, values, cells).run(progress);
 }
 
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
-                                 const std::vector<VolumeMove>& moves) {
+                                 const SiteCells& cells, const std::vector<VolumeMove>& moves) {
   constexpr std::size_t kChunk = 64;
-  const SiteCells cells(data.grid);
   const auto& mixed = values.mixed();
   std::vector<double> differences(mixed.size());
   parallel_chunks(mixed.size(), kChunk, [&](std::size_t begin, std::size_t end) {

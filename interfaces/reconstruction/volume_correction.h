@@ -6,6 +6,7 @@
 
 #include "core/base/progress.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas {
@@ -19,9 +20,10 @@ struct VolumeAgreement {
 };
 
 /// Changes values until the volume of each material in each mixed cell is that of its fraction, as far as
-/// that can be had (see VolumeAgreement), and then closes the totals.
-void correct_volumes(const MultiMaterialData& data, SiteValues& values,
-                     Progress& progress = SilentProgress::instance());
+/// that can be had (see VolumeAgreement), and then closes the totals. `cells`: of the data's grid, here and
+/// below.
+void correct_volumes(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
+                     Progress& progress);
 
 /// A part of a site's cell that goes from one material to another.
 struct VolumeMove {
@@ -32,6 +34,6 @@ struct VolumeMove {
 
 /// How well volumes agree, with some moved.
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
-                                 const std::vector<VolumeMove>& moves);
+                                 const SiteCells& cells, const std::vector<VolumeMove>& moves);
 
 }  // namespace adamas

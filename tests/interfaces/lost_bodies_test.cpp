@@ -47,7 +47,7 @@ TEST(LostBodies, AreFoundWhereNothingIsShown) {
   for (const std::size_t site :
        {grid.site_index(2, 2, 2), grid.site_index(3, 3, 3), grid.site_index(5, 2, 6)})
     sink(values, site, water);
-  std::vector<LostBody> lost = find_lost_bodies(data, values);
+  std::vector<LostBody> lost = find_lost_bodies(data, values, SiteCells(data.grid));
   ASSERT_EQ(lost.size(), 2u);
   EXPECT_EQ(lost[0].cells, 2u);
   EXPECT_EQ(data.materials[lost[0].material], "water");
@@ -59,7 +59,7 @@ TEST(LostBodies, AreFoundWhereNothingIsShown) {
   // A part of one of two cells is enough.
   for (SiteValues::Entry& entry : values.at(grid.site_index(2, 2, 2)))
     entry.value = entry.material == water ? 0.01 : -0.01;
-  lost = find_lost_bodies(data, values);
+  lost = find_lost_bodies(data, values, SiteCells(data.grid));
   ASSERT_EQ(lost.size(), 1u);
   EXPECT_EQ(lost[0].cells, 1u);
 }

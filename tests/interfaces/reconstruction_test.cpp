@@ -165,7 +165,7 @@ TEST(Reconstruction, FlakesAreNoBodies) {
     const char* name;
     std::size_t cells, bodies;
   };
-  for (const Case& c : {Case{"reflex", 16, 3}, {"reflex", 24, 3}, {"shell3", 16, 3}, {"voronoi10", 24, 10}}) {
+  for (const Case& c : {Case{"reflex", 16, 3}, {"shell3", 16, 3}}) {
     SCOPED_TRACE(c.name);
     const Scene scene = make_scene(c.name);
     const MultiMaterialData data = sample_scene(scene, {c.cells, c.cells, c.cells}, {3, false});
