@@ -190,7 +190,7 @@ TEST_P(CutMeshes, KeepTheirLaws) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, CutMeshes,
-                         testing::Values(CutCase{"sphere"}, CutCase{"sphere", 0, 16, 0.01}, CutCase{"plate"},
+                         testing::Values(CutCase{"sphere"}, CutCase{"sphere", 0, 16, 0.01}, CutCase{"plate", 0, 16, 0.01},
                                          CutCase{"tjunction"}, CutCase{"reflex"},
                                          CutCase{"voronoi10", 0, 12, 0.03},
                                          CutCase{"random", 1, 8, 0.04, false},

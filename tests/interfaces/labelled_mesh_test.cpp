@@ -106,7 +106,7 @@ TEST(LabelledMeshes, RandomChangesKeepAllLaws) {
     const auto bodies = divided.topology();
     std::mt19937 random(static_cast<unsigned>(seed));
     LocalChange change;
-    for (int step = 0; step < 1000; ++step) {
+    for (int step = 0; step < 2500; ++step) {
       const auto c = static_cast<std::uint32_t>(random() % cut.cell_count());
       if (!cut.is_alive(c)) continue;
       const auto v = cut.cell(c).vertices;
@@ -140,7 +140,7 @@ TEST(LabelledMeshes, ImprovingKeepsTheTopologyOfBodies) {
   for (const auto& [scene, seed] :
        {std::pair<std::string, std::uint64_t>{"tjunction", 0}, {"voronoi10", 0}, {"random", 1}}) {
     SCOPED_TRACE(scene);
-    Divided divided(scene, seed, 6, 0.06);
+    Divided divided(scene, seed, 8, 0.04);
     const auto bodies = divided.topology();
     improve_mesh(divided.cut, divided.target, 0.2, SilentProgress::instance());
     ASSERT_NO_THROW(divided.cut.validate("improved"));
