@@ -84,6 +84,17 @@ double interface_error_of(const std::string& option, const ErrorTarget& error, c
               option, whole, error.text());
 }
 
+std::vector<std::optional<double>> field_errors_of(const FieldErrorTargets& targets,
+                                                   const InputFacts& input) {
+  std::vector<std::optional<double>> result(input.fields.size());
+  for (const auto& [name, target] : targets) {
+    const std::size_t found = field_number(input.fields, name, input.name);
+    const double wanted = target.of(input.fields[found].max - input.fields[found].min);
+    if (wanted > 0) result[found] = wanted;
+  }
+  return result;
+}
+
 void ResamplingWishes::check(const InputFacts& input) const {
   static_cast<void>(interface_error_of("--interface-error", interface_error, input));
   for (const auto& [name, target] : field_errors)
@@ -92,7 +103,6 @@ void ResamplingWishes::check(const InputFacts& input) const {
 
 ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) const {
   const InputFacts input = facts_of(source);
-  const auto& fields = input.fields;
   check(input);
   if (conserve && source.body_volumes.empty() && !source.network->triangles().empty())
     fail("{}: --conserve: expected interfaces that enclose volumes, found open ones", input.name);
@@ -102,13 +112,7 @@ ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) cons
   result.ghost = ghost;
   result.distance = distance;
   result.conserve = conserve;
-  result.field_errors.resize(fields.size());
-  for (const auto& [name, target] : field_errors) {
-    const std::size_t found = field_number(fields, name, input.name);
-    const double wanted = target.of(fields[found].max - fields[found].min);
-    // A field of one value everywhere is met by any mesh.
-    if (wanted > 0) result.field_errors[found] = wanted;
-  }
+  result.field_errors = field_errors_of(field_errors, input);
   return result;
 }
 

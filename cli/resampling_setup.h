@@ -50,6 +50,10 @@ struct ResamplingWishes {
 /// the domain's diagonal, or is in voxels and there are none.
 double interface_error_of(const std::string& option, const ErrorTarget& error, const InputFacts& input);
 
+/// Field errors in the units of the input's fields, by field; none for fields of one value everywhere, which
+/// any mesh meets. Throws Error for fields that the input has not.
+std::vector<std::optional<double>> field_errors_of(const FieldErrorTargets& targets, const InputFacts& input);
+
 /// The names of a source's fields, for messages: "'a', 'b'"; "none" where it has none.
 std::string field_names(const std::vector<FieldInfo>& fields);
 

@@ -26,18 +26,11 @@ struct Options {
 SelectionTargets targets_of(const Options& options, const SavedHierarchy& hierarchy) {
   const ResampledMesh& tree = hierarchy.tree;
   SelectionTargets targets;
-  if (!options.interface_error.empty()) {
-    const InputFacts facts{options.path, tree.box, tree.fields, hierarchy.voxel};
+  const InputFacts facts{options.path, tree.box, tree.fields, hierarchy.voxel};
+  if (!options.interface_error.empty())
     targets.interface_error = interface_error_of(
         "--interface-error", parse_error_target("--interface-error", options.interface_error, true), facts);
-  }
-  targets.field_errors.resize(tree.fields.size());
-  for (const auto& [name, target] : parse_field_errors(options.field_errors)) {
-    const auto found = field_number(tree.fields, name, options.path);
-    const double wanted = target.of(tree.fields[found].max - tree.fields[found].min);
-    // A field of one value everywhere is met by any mesh.
-    if (wanted > 0) targets.field_errors[found] = wanted;
-  }
+  targets.field_errors = field_errors_of(parse_field_errors(options.field_errors), facts);
   if (!options.max_tetrahedra.empty())
     targets.max_tetrahedra = parse_count("--max-tetrahedra", options.max_tetrahedra);
   return targets;

@@ -11,9 +11,8 @@ inline constexpr double kCutTolerance = 0.5;
 
 /// A resampled mesh cut along its interfaces (docs/method.md, Cut meshes): tetrahedra of one body each,
 /// conforming, without slivers, so that solvers can take it. `tolerance`: how far the faces between bodies
-/// may be from the mesh's interfaces, in units of length; positive. Snapping
-/// and improvement keep to it at the points that they look at, and restoring volumes moves points by no more;
-/// CutMeshReport has bounds.
+/// may be from the mesh's interfaces, in units of length; positive. Snapping and improvement keep to it
+/// at the points that they look at, and restoring volumes moves points by no more; CutMeshReport has bounds.
 ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance,
                         Progress& progress = SilentProgress::instance());
 

@@ -6,12 +6,11 @@
 
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/held_cells.h"
 
 namespace adamas {
 
 namespace {
-
-using Entry = SiteValues::Entry;
 
 /// A flake has no more volume, in cells, and no more triangles.
 constexpr double kMostVolume = 0.05;
@@ -19,108 +18,62 @@ constexpr std::size_t kMostTriangles = 200;
 /// Flakes have together no more than this part of what the cells hold that hang together with theirs.
 constexpr double kMostOfHeld = 0.01;
 
-/// Cells that hold a material and hang together, and what they hold.
-class HeldVolumes {
- public:
-  HeldVolumes(const MultiMaterialData& data, const SiteValues& values)
-      : sites_(data.grid), values_(values), group_of_(values.entries().size(), kNone) {}
-
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
-  /// The number of the group of a site's cell, or of one beside it; kNone where none holds the material.
-  std::uint32_t group(std::size_t site, MaterialId material) {
-    std::size_t at = site;
-    const Entry* first = find(at, material);
-    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-      if (first != nullptr) return;
-      at = other;
-      first = find(at, material);
-    });
-    if (first == nullptr) return kNone;
-    if (group_of_[index(first)] == kNone) collect(at, *first, material);
-    return group_of_[index(first)];
-  }
-  /// In cells; those that the material fills without others near are left out.
-  [[nodiscard]] double held(std::uint32_t group) const { return held_[group]; }
-  /// Whether a cell of a group holds more of the material than of all others, so that it shows there.
-  [[nodiscard]] bool shows(std::uint32_t group) const { return shows_[group] != 0; }
-
- private:
-  [[nodiscard]] std::size_t index(const Entry* entry) const {
-    return static_cast<std::size_t>(entry - values_.entries().data());
-  }
-  /// The entry of a material, or that of its regions which has the greatest part.
-  [[nodiscard]] const Entry* find(std::size_t site, MaterialId material) const {
-    const Entry* found = nullptr;
-    for (const Entry& entry : values_.at(site)) {
-      if (values_.material(entry.material) == material && entry.fraction > kFractionTrace &&
-          (found == nullptr || entry.fraction > found->fraction))
-        found = &entry;
-    }
-    return found;
-  }
-
-  void collect(std::size_t site, const Entry& first, MaterialId material) {
-    const auto group = static_cast<std::uint32_t>(held_.size());
-    double held = 0;
-    bool shows = false;
-    std::vector<std::size_t> waiting{site};
-    group_of_[index(&first)] = group;
-    while (!waiting.empty()) {
-      const std::size_t cell = waiting.back();
-      waiting.pop_back();
-      const float fraction = find(cell, material)->fraction;
-      held += static_cast<double>(fraction);
-      shows = shows || fraction > 0.5f;
-      sites_.for_each_neighbour(cell, [&](std::size_t other, int, int, int) {
-        const Entry* entry = find(other, material);
-        if (entry == nullptr || group_of_[index(entry)] != kNone) return;
-        group_of_[index(entry)] = group;
-        waiting.push_back(other);
-      });
-    }
-    held_.push_back(held);
-    shows_.push_back(shows ? 1 : 0);
-  }
-
-  GridSites sites_;
-  const SiteValues& values_;
-  std::vector<std::uint32_t> group_of_;  // by entry
-  std::vector<double> held_;             // by group
-  std::vector<char> shows_;              // by group
-};
-
 class FlakeSearch {
  public:
-  FlakeSearch(const MultiMaterialData& data, const SiteValues& values, const InterfaceMesh& mesh,
+  FlakeSearch(const MultiMaterialData& data, const InterfaceMesh& mesh,
               const std::vector<std::array<BodyId, 2>>& bodies,
               const IdVector<BodyId, MaterialId>& body_materials)
       : domain_(data.grid.domain()),
         sites_(data.grid),
-        held_(data, values),
         mesh_(mesh),
         bodies_(bodies),
         materials_(body_materials) {}
 
-  std::vector<Flake> run() {
+  std::vector<Flake> run(const MultiMaterialData& data, const SiteValues& values) {
     find_small_bodies();
-    std::map<std::uint32_t, double> sums;  // volumes of flakes, in cells, by group
-    std::vector<std::uint32_t> groups;
+    if (flakes_.empty()) return {};
+    HeldCells cells(data, values);
+    std::vector<std::uint32_t> group_of;  // by flake
     for (const Flake& flake : flakes_) {
-      groups.push_back(held_.group(flake.site, materials_[flake.body]));
-      sums[groups.back()] += flake.volume / sites_.cell(flake.site).volume();
+      group_of.push_back(group(flake, cells));
+      if (group_of.back() != HeldCells::kNone)
+        groups_[group_of.back()].in_flakes += flake.volume / sites_.cell(flake.site).volume();
     }
     std::vector<Flake> kept;
     for (std::size_t n = 0; n < flakes_.size(); ++n) {
-      const std::uint32_t group = groups[n];
-      if (group == HeldVolumes::kNone ||
-          (held_.shows(group) && sums[group] <= kMostOfHeld * held_.held(group)))
+      if (group_of[n] == HeldCells::kNone || groups_[group_of[n]].can_spare_flakes())
         kept.push_back(flakes_[n]);
     }
     return kept;
   }
 
  private:
+  /// Cells that hold a material and hang together.
+  struct Group {
+    double held = 0, in_flakes = 0;  ///< in cells
+    bool shows = false;              ///< a cell holds more of the material than of all others
+    [[nodiscard]] bool can_spare_flakes() const { return shows && in_flakes <= kMostOfHeld * held; }
+  };
+
+  /// The group that a flake's cell or one beside it is in; kNone where none holds the material.
+  std::uint32_t group(const Flake& flake, HeldCells& cells) {
+    const MaterialId material = materials_[flake.body];
+    std::size_t site = flake.site;
+    sites_.for_each_neighbour(flake.site, [&](std::size_t other, int, int, int) {
+      if (cells.find(site, material) == nullptr) site = other;
+    });
+    if (cells.find(site, material) != nullptr && cells.group(site, material) == HeldCells::kNone) {
+      std::vector<std::pair<std::size_t, double>> members;
+      cells.collect(site, material, members);
+      Group& group = groups_.emplace_back();
+      for (const auto& [member, fraction] : members) {
+        group.held += fraction;
+        group.shows = group.shows || fraction > 0.5;
+      }
+    }
+    return cells.group(site, material);
+  }
+
   void find_small_bodies() {
     IdVector<BodyId, std::vector<std::uint32_t>> triangles(materials_.size());
     for (std::uint32_t t = 0; t < bodies_.size(); ++t) {
@@ -147,15 +100,13 @@ class FlakeSearch {
       for (const std::uint32_t p : mesh_.triangles[t].points) box.extend(mesh_.points[p]);
     }
     // Seen from where faces on the domain's boundary, which no triangle has, add nothing.
-    const double near = kOnDomainFace * domain_.diagonal();
+    const unsigned faces = domain_faces_at(domain_, box.min) | domain_faces_at(domain_, box.max);
     Vec3 origin = box.center();
     for (int axis = 0; axis < 3; ++axis) {
-      const bool at_min = box.min[axis] - domain_.min[axis] <= near,
-                 at_max = domain_.max[axis] - box.max[axis] <= near;
+      const unsigned ends = faces >> (2 * axis) & 3u;
       // From one side of the domain to the other: no flake.
-      if (at_min && at_max) return {body, {}, 0, std::numeric_limits<double>::infinity()};
-      if (at_min) origin[axis] = domain_.min[axis];
-      if (at_max) origin[axis] = domain_.max[axis];
+      if (ends == 3) return {body, {}, 0, std::numeric_limits<double>::infinity()};
+      if (ends != 0) origin[axis] = ends == 1 ? domain_.min[axis] : domain_.max[axis];
     }
     double volume = 0;
     for (const std::uint32_t t : triangles) {
@@ -189,11 +140,11 @@ class FlakeSearch {
 
   Box3 domain_;
   GridSites sites_;
-  HeldVolumes held_;
   const InterfaceMesh& mesh_;
   const std::vector<std::array<BodyId, 2>>& bodies_;
   const IdVector<BodyId, MaterialId>& materials_;
   std::vector<Flake> flakes_;
+  std::vector<Group> groups_;
 };
 
 }  // namespace
@@ -201,7 +152,7 @@ class FlakeSearch {
 std::vector<Flake> find_flakes(const MultiMaterialData& data, const SiteValues& values,
                                const InterfaceMesh& mesh, const std::vector<std::array<BodyId, 2>>& bodies,
                                const IdVector<BodyId, MaterialId>& body_materials) {
-  return FlakeSearch(data, values, mesh, bodies, body_materials).run();
+  return FlakeSearch(data, mesh, bodies, body_materials).run(data, values);
 }
 
 IdVector<BodyId, BodyId> drop_flakes(const std::vector<Flake>& flakes, InterfaceMesh& mesh,

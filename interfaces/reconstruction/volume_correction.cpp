@@ -335,7 +335,8 @@ void correct_volumes(const MultiMaterialData& data, SiteValues& values, const Si
 }
 
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
-                                 const SiteCells& cells, const std::vector<VolumeMove>& moves) {
+                                 const SiteCells& cells, std::vector<VolumeMove> moves) {
+  std::ranges::stable_sort(moves, {}, &VolumeMove::site);
   constexpr std::size_t kChunk = 64;
   const auto& mixed = values.mixed();
   std::vector<double> differences(mixed.size());
@@ -344,8 +345,7 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
     for (std::size_t n = begin; n < end; ++n) {
       cell.go_to(mixed[n]);
       std::vector<double> volumes = cell.measure();
-      for (const VolumeMove& move : moves) {
-        if (move.site != mixed[n]) continue;
+      for (const VolumeMove& move : std::ranges::equal_range(moves, mixed[n], {}, &VolumeMove::site)) {
         for (std::size_t m = 0; m < volumes.size(); ++m) {
           const MaterialId material = values.material(cell.materials()[m].number);
           if (material == move.from) volumes[m] -= move.volume;

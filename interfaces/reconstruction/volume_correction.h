@@ -34,6 +34,6 @@ struct VolumeMove {
 
 /// How well volumes agree, with some moved.
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
-                                 const SiteCells& cells, const std::vector<VolumeMove>& moves);
+                                 const SiteCells& cells, std::vector<VolumeMove> moves);
 
 }  // namespace adamas

@@ -122,7 +122,7 @@ void expect_certified_per_material(const std::vector<std::string>& names, double
 }
 
 TEST(LongCertifiedInterfaces, PerMaterialAndAlongJunctions) {
-  expect_certified_per_material({"tjunction", "reflex", "random"}, 0.08, 3000);
+  expect_certified_per_material({"tjunction", "reflex", "voronoi10", "random"}, 0.08, 3000);
 }
 TEST(CertifiedInterfaces, PerMaterialAndAlongJunctions) {
   expect_certified_per_material({"tjunction", "voronoi10"}, 0.15, 1000);

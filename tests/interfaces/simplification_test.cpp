@@ -144,7 +144,7 @@ TEST(Simplification, LeavesLinesAloneUnlessAsked) {
 TEST(Simplification, IsTheSameOnAnyNumberOfThreads) {
   const ResamplingSource source = test::reconstructed_scene("random", 7, 6);
   std::vector<SimplifiedInterfaces> found;
-  for (const unsigned threads : {1u, 2u}) {
+  for (const unsigned threads : {1u, 2u, 2u}) {
     set_thread_limit(threads);
     found.push_back(simplify_interfaces(source, simplification(0.02, true, true)));
   }

@@ -215,8 +215,6 @@ TEST(VolumeCorrection, PlanesArePlanes) {
   for (const bool stretched : {false, true}) {
     for (const Vec3& way :
          {Vec3{0.6, 0.64, 0.48}, Vec3{-0.3, 0.5, 0.81}, Vec3{0.1, 0.9, 0.05}, Vec3{1, 1, -1}}) {
-      // Cells of grids in equal steps are alike, and so this takes less time there.
-      if (stretched && (way.x == 0.1 || way.x == 1)) continue;
       const Vec3 normal = normalized(way);
       const test::HalfSpace half_space = test::half_space_fractions(normal, 12, stretched);
       const Reconstruction found(half_space.data);
