@@ -47,10 +47,16 @@ Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
         "most {:.2g}%\n",
         agreement.mixed_cells, agreement.cells_off, 100 * agreement.greatest);
   }
+  if (agreement.full_cells_off > 0) {
+    console.print("  others get more than 0.1% of {} of the cells that one material fills, at most {:.2g}%\n",
+                  agreement.full_cells_off, 100 * agreement.greatest_in_full_cell);
+  }
   return {{"number", agreement.mixed_cells},
           {"off", agreement.cells_off},
           {"greatest_difference", agreement.greatest},
-          {"mean_difference", agreement.mean}};
+          {"mean_difference", agreement.mean},
+          {"full_off", agreement.full_cells_off},
+          {"full_greatest_difference", agreement.greatest_in_full_cell}};
 }
 
 /// Says what the fractions hold and the interfaces do not show.

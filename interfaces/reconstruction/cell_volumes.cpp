@@ -21,11 +21,13 @@ void CellVolumes::go_to(std::size_t site) {
   find_rows(site);
   round_.resize(count_);
   settled_.resize(count_);
+  of_whole_.resize(count_);
   entry_.resize(count_);
   at_nodes_.resize(count_);
   volumes_.resize(count_);
   for (auto& row : round_) row.fill(values_.far());
   for (auto& row : settled_) row.fill(true);
+  for (auto& row : of_whole_) row.fill(false);
   for (auto& row : entry_) row.fill(kNone);
   at_border_ = false;
   for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
@@ -44,6 +46,7 @@ void CellVolumes::go_to(std::size_t site) {
         if (whole == number_of_[m]) continue;
         found = std::find_if(there.begin(), there.end(), [&](const auto& e) { return e.material == whole; });
         if (found == there.end()) continue;
+        of_whole_[m][n] = true;
       }
       round_[m][n] = found->value, settled_[m][n] = found->settled(),
       entry_[m][n] = static_cast<std::uint32_t>(&*found - values_.entries().data());
@@ -215,7 +218,11 @@ void CellVolumes::extend() {
     for (std::size_t m = 0; m < count_; ++m) {
       auto& row = round_[m];
       settled_[m][n] = settled_[m][nearest];
-      row[n] = continued(row[nearest], row[next], step, values_.far(), settled_[m][n]);
+      // A material's own value is not continued from that of one of its regions.
+      of_whole_[m][n] = of_whole_[m][nearest];
+      const bool apart = of_whole_[m][nearest] && !of_whole_[m][next];
+      row[n] =
+          continued(row[nearest], apart ? values_.far() : row[next], step, values_.far(), settled_[m][n]);
     }
   });
 }

@@ -96,6 +96,8 @@ class CellVolumes {
   bool at_border_ = false, with_growth_ = false;
   std::vector<std::array<double, SiteCell::kNeighbours>> round_;  // by material
   std::vector<std::array<bool, SiteCell::kNeighbours>> settled_;  // the same, of the nearest site
+  // Whether a region's value is that of its material, which has no regions at the nearest site.
+  std::vector<std::array<bool, SiteCell::kNeighbours>> of_whole_;
   std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entry_;
   std::vector<std::vector<double>> at_nodes_;  // by material
   std::vector<std::size_t> owner_of_node_;

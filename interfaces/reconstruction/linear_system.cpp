@@ -6,9 +6,9 @@ namespace adamas {
 
 namespace {
 
-constexpr int kMostSteps = 40;
+constexpr int kMostSteps = 80;
 /// The squared gradient falls to this part.
-constexpr double kSolved = 1e-4;
+constexpr double kSolved = 1e-5;
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
@@ -16,20 +17,25 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Sweeps over cells that are far off, and rounds of the method for all.
-constexpr int kMostSweeps = 6, kMostRounds = 40;
+/// Sweeps over cells that are far off, rounds of the method for all, and how often cells join these.
+constexpr int kMostSweeps = 6, kMostRounds = 40, kMostTurns = 3;
 /// A cell is far off where a volume differs by more than this part of the cell's.
 constexpr double kFarOff = 0.03;
 /// Cells that differ by more are counted.
 constexpr double kCellOff = 1e-3;
+/// Cells that one material fills are corrected with the mixed ones where others get more than this of them.
+constexpr double kIntruded = 1e-4;
+/// Cells are corrected again where more than this part of them has joined.
+constexpr double kLeastJoined = 1e-3;
 /// Rounds end when no more mixed cells, as a part of all, are off, or when both their number and the sum of
 /// squares gain less.
-constexpr double kMostOff = 8e-3, kLeastGain = 5e-3;
+constexpr double kMostOff = 6e-3, kLeastGain = 1e-2;
 /// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
 /// would make the surface rough.
 constexpr double kDamping = 1e-4;
-/// Steps are not halved below this, and moves that are smaller, in cells, leave what was measured as it is.
-constexpr double kLeastShare = 0.1, kStill = 1e-6;
+/// Steps are halved as long as they are above this, and moves that are smaller, in cells, leave what was
+/// measured as it is.
+constexpr double kLeastShare = 0.05, kStill = 1e-6;
 constexpr int kMostHalvings = 4;
 
 class Correction {
@@ -41,11 +47,8 @@ class Correction {
         cells_(cells),
         step_(data.grid.least_spacing()) {
     const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
-    row_of_.push_back(0);
-    for (const std::uint32_t site : values.mixed()) {
+    for (const std::uint32_t site : values.mixed())
       colours_[site % nx % 2 + 2 * (site / nx % ny % 2) + 4 * (site / (nx * ny) % 2)].push_back(site);
-      row_of_.push_back(row_of_.back() + static_cast<std::uint32_t>(entries(site).size()));
-    }
   }
 
   void run(Progress& progress) {
@@ -58,8 +61,10 @@ class Correction {
       if (off == 0) break;
     }
     std::fill(changed_.begin(), changed_.end(), 0);
-    find_unknowns();
-    correct_all(progress);
+    for (int turn = 0; turn < kMostTurns && find_cells(); ++turn) {
+      find_unknowns();
+      correct_all(progress);
+    }
     close_totals(data_, data_.volumes(), values_, cells_, progress);
   }
 
@@ -137,10 +142,39 @@ class Correction {
     if (slope * step_ > 0.02) set(std::clamp(missing / slope, -2 * step_, 2 * step_));
   }
 
-  /// The values of materials in mixed cells that have a part of them.
+  /// Finds the cells to correct; returns whether enough have joined them to correct again.
+  bool find_cells() {
+    if (values_.mixed().empty()) return false;
+    std::vector<char> chosen(data_.grid.site_count(), 0);
+    for (const std::vector<std::uint32_t>& sites : {values_.mixed(), cells_to_correct_}) {
+      for (const std::uint32_t site : sites) chosen[site] = 1;
+    }
+    parallel_chunks(chosen.size(), 64 * kChunk, [&](std::size_t begin, std::size_t end) {
+      CellVolumes cell(data_.grid, values_, cells_);
+      for (std::size_t site = begin; site < end; ++site) {
+        if (chosen[site] != 0 || entries(site).empty()) continue;
+        cell.go_to(site);
+        cell.measure();
+        chosen[site] = cell.greatest_difference() > kIntruded ? 1 : 0;
+      }
+    });
+    const std::size_t before = cells_to_correct_.size();
+    cells_to_correct_.clear();
+    row_of_.assign(1, 0);
+    for (std::uint32_t site = 0; site < chosen.size(); ++site) {
+      if (chosen[site] == 0) continue;
+      cells_to_correct_.push_back(site);
+      row_of_.push_back(row_of_.back() + static_cast<std::uint32_t>(entries(site).size()));
+    }
+    return static_cast<double>(cells_to_correct_.size()) > (1 + kLeastJoined) * static_cast<double>(before);
+  }
+
+  /// The values of materials in these cells that have a part of them.
   void find_unknowns() {
+    unknowns_.clear();
+    site_of_.clear();
     unknown_of_.assign(values_.entries().size(), kNone);
-    for (const std::uint32_t site : values_.mixed()) {
+    for (const std::uint32_t site : cells_to_correct_) {
       for (const Entry& entry : entries(site)) {
         if (entry.fraction <= 0) continue;
         unknown_of_[index_of(entry)] = static_cast<std::uint32_t>(unknowns_.size());
@@ -167,10 +201,10 @@ class Correction {
     std::size_t off = system.cells_off();
     for (int round = 0; round < kMostRounds; ++round) {
       progress.step("correcting volumes", static_cast<double>(round) / kMostRounds);
-      if (static_cast<double>(off) <= kMostOff * static_cast<double>(values_.mixed().size())) return;
+      if (static_cast<double>(off) <= kMostOff * static_cast<double>(cells_to_correct_.size())) return;
       std::vector<double> move = system.solve(unknowns_.size(), kDamping / (step_ * step_));
       for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
-      double sum = values_.layers().empty() ? step(system, move, best) : step_layers(system, move, best);
+      const double sum = step(system, move, best);
       if (sum > best) return;
       const std::size_t off_before = off;
       off = system.cells_off();
@@ -181,35 +215,11 @@ class Correction {
     }
   }
 
-  /// Moves values as far along a move as brings volumes nearer to what they should be; returns the sum of
-  /// squares of what is missing then, which is greater than `best` where nothing does: then values stay.
+  /// Moves values as far along a move as brings volumes nearer to what they should be; where no share of the
+  /// whole move does it is shortened only where it leads too far. Returns the sum of squares of what is
+  /// missing then, which is greater than `best` where nothing helps: then values stay.
   double step(LinearSystem& system, const std::vector<double>& move, double best) {
-    double share = 1;
-    apply(move, share);
-    linearise(system);
-    double sum = sum_of_squares(system.missing);
-    while (sum > best && share > kLeastShare) {
-      share *= 0.5;
-      apply(move, -share);
-      linearise(system);
-      sum = sum_of_squares(system.missing);
-    }
-    if (sum > best) apply(move, -share);
-    return sum;
-  }
-
-  void apply(const std::vector<double>& move, double share) {
-    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-      const double by = share * move[i];
-      values_.entries()[unknowns_[i]].value += by;
-      if (std::abs(by) > kStill * step_) changed_[site_of_[i]] = 1;
-    }
-  }
-
-  /// The same where there are sheets to hold. Where no share of the whole move helps it is shortened only
-  /// where it leads too far.
-  double step_layers(LinearSystem& system, const std::vector<double>& move, double best) {
-    std::vector<double> start, shares(unknowns_.size(), 1);
+    std::vector<double> start, shares(unknowns_.size());
     for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
     const std::vector<double> before = squares_round_sites(system.missing);
     const auto try_shares = [&] {
@@ -217,14 +227,12 @@ class Correction {
       linearise(system);
       return sum_of_squares(system.missing);
     };
-    double sum = try_shares();
-    for (double share = 0.5; sum > best && share > 0.5 * kLeastShare; share *= 0.5) {
+    for (double share = 1; share > kLeastShare; share *= 0.5) {
       std::fill(shares.begin(), shares.end(), share);
-      sum = try_shares();
+      if (const double sum = try_shares(); sum <= best) return sum;
     }
-    if (sum <= best) return sum;
     std::fill(shares.begin(), shares.end(), 1);
-    sum = try_shares();
+    double sum = try_shares();
     for (int halving = 1; halving <= kMostHalvings; ++halving) {
       const std::vector<double> after = squares_round_sites(system.missing);
       for (std::size_t i = 0; i < unknowns_.size(); ++i) {
@@ -241,16 +249,16 @@ class Correction {
 
   /// The sums of squares of what is missing in the cells of a site and its neighbours, by site.
   [[nodiscard]] std::vector<double> squares_round_sites(const std::vector<double>& missing) const {
-    const auto& mixed = values_.mixed();
     std::vector<double> own(data_.grid.site_count(), 0), sums(own.size(), 0);
-    for (std::size_t n = 0; n < mixed.size(); ++n) {
+    for (std::size_t n = 0; n < cells_to_correct_.size(); ++n) {
       for (std::uint32_t row = row_of_[n]; row < row_of_[n + 1]; ++row)
-        own[mixed[n]] += missing[row] * missing[row];
+        own[cells_to_correct_[n]] += missing[row] * missing[row];
     }
-    parallel_for(mixed.size(), 1024, [&](std::size_t n) {
-      double sum = own[mixed[n]];
-      grid_sites_.for_each_neighbour(mixed[n], [&](std::size_t other, int, int, int) { sum += own[other]; });
-      sums[mixed[n]] = sum;
+    parallel_for(cells_to_correct_.size(), 1024, [&](std::size_t n) {
+      double sum = own[cells_to_correct_[n]];
+      grid_sites_.for_each_neighbour(cells_to_correct_[n],
+                                     [&](std::size_t other, int, int, int) { sum += own[other]; });
+      sums[cells_to_correct_[n]] = sum;
     });
     return sums;
   }
@@ -273,12 +281,11 @@ class Correction {
 
   /// Brings a system up to date where values have changed.
   void linearise(LinearSystem& system) {
-    const auto& mixed = values_.mixed();
     const bool fresh = system.blocks.empty();
-    system.blocks.resize((mixed.size() + kBlock - 1) / kBlock);
-    parallel_chunks(mixed.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      if (!fresh && std::none_of(mixed.begin() + static_cast<std::ptrdiff_t>(begin),
-                                 mixed.begin() + static_cast<std::ptrdiff_t>(end),
+    system.blocks.resize((cells_to_correct_.size() + kBlock - 1) / kBlock);
+    parallel_chunks(cells_to_correct_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      if (!fresh && std::none_of(cells_to_correct_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 cells_to_correct_.begin() + static_cast<std::ptrdiff_t>(end),
                                  [&](std::uint32_t site) { return has_changed(site, 1); }))
         return;
       LinearSystem::Block& block = system.blocks[begin / kBlock];
@@ -287,7 +294,7 @@ class Correction {
       block.cells_off = 0;
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
-        cell.go_to(mixed[n]);
+        cell.go_to(cells_to_correct_[n]);
         const std::vector<double>& volumes = cell.measure(true);
         block.cells_off += cell.greatest_difference() > kCellOff ? 1 : 0;
         for (std::size_t m = 0; m < volumes.size(); ++m)
@@ -321,10 +328,11 @@ class Correction {
   double step_;
   std::vector<int> changed_;                           // by site: when last a sweep did
   std::array<std::vector<std::uint32_t>, 8> colours_;  // mixed sites that do not touch each other
-  std::vector<std::uint32_t> row_of_;                  // of a mixed cell's volumes
-  std::vector<std::uint32_t> unknowns_;                // entries that are moved
-  std::vector<std::uint32_t> site_of_;                 // of an unknown
-  std::vector<std::uint32_t> unknown_of_;              // by entry
+  std::vector<std::uint32_t> cells_to_correct_;
+  std::vector<std::uint32_t> row_of_;      // of such a cell's volumes
+  std::vector<std::uint32_t> unknowns_;    // entries that are moved
+  std::vector<std::uint32_t> site_of_;     // of an unknown
+  std::vector<std::uint32_t> unknown_of_;  // by entry
 };
 
 }  // namespace
@@ -336,16 +344,16 @@ void correct_volumes(const MultiMaterialData& data, SiteValues& values, const Si
 
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
                                  const SiteCells& cells, std::vector<VolumeMove> moves) {
+  if (values.mixed().empty()) return {};
   std::ranges::stable_sort(moves, {}, &VolumeMove::site);
-  constexpr std::size_t kChunk = 64;
-  const auto& mixed = values.mixed();
-  std::vector<double> differences(mixed.size());
-  parallel_chunks(mixed.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+  std::vector<float> differences(data.grid.site_count());
+  parallel_chunks(differences.size(), 4096, [&](std::size_t begin, std::size_t end) {
     CellVolumes cell(data.grid, values, cells);
-    for (std::size_t n = begin; n < end; ++n) {
-      cell.go_to(mixed[n]);
+    for (std::size_t site = begin; site < end; ++site) {
+      if (values.at(site).empty()) continue;
+      cell.go_to(site);
       std::vector<double> volumes = cell.measure();
-      for (const VolumeMove& move : std::ranges::equal_range(moves, mixed[n], {}, &VolumeMove::site)) {
+      for (const VolumeMove& move : std::ranges::equal_range(moves, site, {}, &VolumeMove::site)) {
         for (std::size_t m = 0; m < volumes.size(); ++m) {
           const MaterialId material = values.material(cell.materials()[m].number);
           if (material == move.from) volumes[m] -= move.volume;
@@ -353,15 +361,22 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
         }
       }
       for (std::size_t m = 0; m < volumes.size(); ++m)
-        differences[n] = std::max(differences[n], std::abs(volumes[m] - cell.materials()[m].fraction));
+        differences[site] = std::max(differences[site],
+                                     static_cast<float>(std::abs(volumes[m] - cell.materials()[m].fraction)));
     }
   });
   VolumeAgreement result;
-  result.mixed_cells = mixed.size();
-  for (const double d : differences) {
+  for (const std::uint32_t site : values.mixed()) {
+    const auto d = static_cast<double>(std::exchange(differences[site], 0.0f));
+    ++result.mixed_cells;
     result.cells_off += d > kCellOff ? 1 : 0;
     result.greatest = std::max(result.greatest, d);
-    result.mean += d / static_cast<double>(mixed.size());
+    result.mean += d / static_cast<double>(values.mixed().size());
+  }
+  for (const float difference : differences) {
+    const auto d = static_cast<double>(difference);
+    result.full_cells_off += d > kCellOff ? 1 : 0;
+    result.greatest_in_full_cell = std::max(result.greatest_in_full_cell, d);
   }
   return result;
 }

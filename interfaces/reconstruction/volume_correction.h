@@ -17,11 +17,14 @@ struct VolumeAgreement {
   /// Mixed cells where a material's volume differs by more than a thousandth of the cell's.
   std::size_t cells_off = 0;
   double greatest = 0, mean = 0;  ///< difference in a mixed cell, as a part of the cell's volume
+  /// Cells that one material fills, of which others get more than a thousandth.
+  std::size_t full_cells_off = 0;
+  double greatest_in_full_cell = 0;  ///< difference, as above
 };
 
-/// Changes values until the volume of each material in each mixed cell is that of its fraction, as far as
-/// that can be had (see VolumeAgreement), and then closes the totals. `cells`: of the data's grid, here and
-/// below.
+/// Changes values until the volume of each material in each mixed cell, and in those beside them that others
+/// would get into, is that of its fraction, as far as that can be had (see VolumeAgreement), and then closes
+/// the totals. `cells`: of the data's grid, here and below.
 void correct_volumes(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
                      Progress& progress);
 
@@ -32,7 +35,7 @@ struct VolumeMove {
   double volume;  ///< in cells
 };
 
-/// How well volumes agree, with some moved.
+/// How well volumes agree, with some moved; nothing to tell where no cell is mixed.
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
                                  const SiteCells& cells, std::vector<VolumeMove> moves);
 

@@ -151,8 +151,11 @@ TEST(VolumeCorrection, TotalsAndMostCellsAreRight) {
     std::size_t cells;
     double off;  // of the mixed cells at most
   };
-  for (const Case& c :
-       {Case{"sphere", 32, 0.01}, {"sphere", 16, 0.03}, {"voronoi10", 33, 0.01}, {"reflex", 16, 0.02}}) {
+  for (const Case& c : {Case{"sphere", 32, 0.01},
+                        {"sphere", 16, 0.01},
+                        {"voronoi10", 33, 0.01},
+                        {"reflex", 16, 0.01},
+                        {"tjunction", 16, 0.01}}) {
     SCOPED_TRACE(c.name);
     const MultiMaterialData data = sample_scene(make_scene(c.name), {c.cells, c.cells, c.cells}, {3, false});
     const Reconstruction found(data);
@@ -161,6 +164,9 @@ TEST(VolumeCorrection, TotalsAndMostCellsAreRight) {
     EXPECT_LE(static_cast<double>(agreement.cells_off), c.off * static_cast<double>(agreement.mixed_cells));
     EXPECT_LT(agreement.mean, 5e-4);
     EXPECT_LT(agreement.greatest, 0.03);
+    EXPECT_LE(static_cast<double>(agreement.full_cells_off),
+              0.01 * static_cast<double>(agreement.mixed_cells));
+    EXPECT_LT(agreement.greatest_in_full_cell, 0.01);
   }
 }
 
@@ -174,6 +180,12 @@ TEST(VolumeCorrection, TotalsOfAllScenesAreRight) {
       expect_totals(found, data.grid.domain().volume());
     }
   }
+}
+
+/// Also where sheets with other materials on their sides end at the domain's boundary.
+TEST(VolumeCorrection, TotalsOfSheetsAtTheBoundaryAreRight) {
+  const MultiMaterialData data = sample_scene(make_scene("random", 2), {24, 24, 24}, {2, false});
+  expect_totals(Reconstruction(data), data.grid.domain().volume());
 }
 
 /// A thin shell between two materials is closed, one body, and has its volume.
