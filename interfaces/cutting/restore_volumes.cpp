@@ -11,7 +11,7 @@ namespace adamas {
 
 namespace {
 
-constexpr int kMostSteps = 12;
+constexpr int kMostSteps = 12, kMostHalvings = 3;
 constexpr double kEnough = 1e-11;  ///< of the whole volume
 
 /// How the volumes of the bodies round a vertex change with its place.
@@ -128,20 +128,26 @@ class Restoration {
     for (std::size_t i = 0; i < slopes.size(); ++i) {
       Vec3 step;
       for (const auto& [body, slope] : slopes[i].of_bodies) step += slopes[i].weight * factors[body] * slope;
-      const std::uint32_t v = slopes[i].vertex;
-      const Vec3 before = mesh_.point(v);
-      mesh_.move(v, before + step);
-      if (distance(mesh_.point(v), start_[i]) > most_ ||
-          least_quality(mesh_, mesh_.star(v)) < wanted_quality_) {
-        mesh_.move(v, before);
-      } else {
-        still_free.push_back(v);
+      if (move_vertex(slopes[i].vertex, start_[i], step)) {
+        still_free.push_back(slopes[i].vertex);
         still_start.push_back(start_[i]);
       }
     }
     free_ = std::move(still_free);
     start_ = std::move(still_start);
     return true;
+  }
+
+  /// Moves a vertex, or a part of the way; false where it stays.
+  bool move_vertex(std::uint32_t v, const Vec3& start, Vec3 step) {
+    const Vec3 before = mesh_.point(v);
+    for (int halving = 0; halving <= kMostHalvings; ++halving, step *= 0.5) {
+      mesh_.move(v, before + step);
+      if (distance(mesh_.point(v), start) <= most_ && least_quality(mesh_, mesh_.star(v)) >= wanted_quality_)
+        return true;
+    }
+    mesh_.move(v, before);
+    return false;
   }
 
   LabelledMesh& mesh_;

@@ -18,25 +18,20 @@ void CellVolumes::go_to(std::size_t site) {
   place_ = {s % sites_[0], s / sites_[0] % sites_[1], s / (sites_[0] * sites_[1])};
   cell_ = &cells_.at(static_cast<std::size_t>(place_[0]), static_cast<std::size_t>(place_[1]),
                      static_cast<std::size_t>(place_[2]), scratch_);
+  find_neighbours();
   find_rows(site);
-  round_.resize(count_);
-  settled_.resize(count_);
-  of_whole_.resize(count_);
-  entry_.resize(count_);
-  at_nodes_.resize(count_);
-  volumes_.resize(count_);
-  for (auto& row : round_) row.fill(values_.far());
-  for (auto& row : settled_) row.fill(true);
-  for (auto& row : of_whole_) row.fill(false);
-  for (auto& row : entry_) row.fill(kNone);
-  at_border_ = false;
+  const auto fill = [&](auto& rows, auto value) {
+    rows.resize(count_);
+    for (auto& row : rows) row.fill(value);
+  };
+  fill(round_, values_.far());
+  fill(settled_, true);
+  fill(of_whole_, false);
+  fill(entry_, kNone);
+  at_nodes_.resize(count_), volumes_.resize(count_);
   for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
-    const auto other = neighbour(n);
-    if (!other) {
-      at_border_ = grid_.centering == Centering::kCells;
-      continue;
-    }
-    const std::span<const SiteValues::Entry> there = values_.at(*other);
+    if (neighbours_[n] == kNoSite) continue;
+    const std::span<const SiteValues::Entry> there = values_.at(neighbours_[n]);
     auto entry = there.begin();
     for (std::size_t m = 0; m < count_; ++m) {
       while (entry != there.end() && entry->material < number_of_[m]) ++entry;
@@ -79,9 +74,8 @@ void CellVolumes::find_rows(std::size_t site) {
                          [&](const Material& m) { return m.number == values_.whole(number); });
     };
     for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
-      const auto other = neighbour(n);
-      if (!other) continue;
-      for (const SiteValues::Entry& entry : values_.at(*other)) {
+      if (neighbours_[n] == kNoSite) continue;
+      for (const SiteValues::Entry& entry : values_.at(neighbours_[n])) {
         if (values_.whole(entry.material) != entry.material && belongs(entry.material))
           number_of_.push_back(entry.material);
       }
@@ -123,11 +117,21 @@ double CellVolumes::greatest_difference() const {
   return greatest;
 }
 
-std::optional<std::size_t> CellVolumes::neighbour(std::size_t n) const {
-  const auto m = static_cast<std::int64_t>(n);
-  const std::int64_t i = place_[0] + m % 3 - 1, j = place_[1] + m / 3 % 3 - 1, k = place_[2] + m / 9 - 1;
-  if (i < 0 || j < 0 || k < 0 || i >= sites_[0] || j >= sites_[1] || k >= sites_[2]) return {};
-  return static_cast<std::size_t>(i + sites_[0] * (j + sites_[1] * k));
+/// The sites round the present one.
+void CellVolumes::find_neighbours() {
+  const auto within = [&](std::size_t axis, std::int64_t i) { return i >= 0 && i < sites_[axis]; };
+  std::size_t n = 0;
+  bool all = true;
+  for (std::int64_t k = place_[2] - 1; k <= place_[2] + 1; ++k) {
+    for (std::int64_t j = place_[1] - 1; j <= place_[1] + 1; ++j) {
+      for (std::int64_t i = place_[0] - 1; i <= place_[0] + 1; ++i) {
+        const bool there = within(0, i) && within(1, j) && within(2, k);
+        neighbours_[n++] = there ? static_cast<std::size_t>(i + sites_[0] * (j + sites_[1] * k)) : kNoSite;
+        all = all && there;
+      }
+    }
+  }
+  at_border_ = !all && grid_.centering == Centering::kCells;
 }
 
 const std::vector<double>& CellVolumes::measure(bool growth) {
@@ -143,27 +147,71 @@ const std::vector<double>& CellVolumes::measure(bool growth) {
 
 void CellVolumes::measure_rows() {
   std::fill(volumes_.begin(), volumes_.end(), 0.0);
-  for (std::size_t m = 0; m < count_; ++m) {
-    if (!is_sole(m)) continue;
-    volumes_[m] = 1;
+  find_contenders();
+  if (contenders_.size() == 1) {
+    volumes_[contenders_[0]] = 1;
     return;
   }
-  find_nodes();
-  for (const SiteCell::Part& part : cell_->parts) measure_part(part);
+  if (contenders_.size() == 2) {
+    measure_two(contenders_[0], contenders_[1]);
+  } else {
+    find_nodes();
+    for (const SiteCell::Part& part : cell_->parts) measure_part(part);
+  }
   if (at_border_) {
     for (Pair& pair : pairs_) fold(pair.growth);
   }
 }
 
-/// Whether no value in the cell is above those of a material.
-bool CellVolumes::is_sole(std::size_t m) const {
-  for (std::size_t l = 0; l < count_; ++l) {
-    if (l == m) continue;
-    for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
-      if (round_[l][n] > round_[m][n]) return false;
+/// Leaves out the rows that nowhere round the cell are above some other; of equal ones the first stays.
+void CellVolumes::find_contenders() {
+  contenders_.clear();
+  for (std::size_t m = 0; m < count_; ++m) {
+    bool out = false;
+    for (std::size_t l = 0; l < count_ && !out; ++l) {
+      if (l == m) continue;
+      bool above = false, below = false;
+      for (std::size_t n = 0; n < SiteCell::kNeighbours && !above; ++n) {
+        above = round_[m][n] > round_[l][n];
+        below = below || round_[m][n] < round_[l][n];
+      }
+      out = !above && (below || l < m);
     }
+    if (!out) contenders_.push_back(m);
   }
-  return true;
+}
+
+/// What two rows own of the cell where no other owns any.
+void CellVolumes::measure_two(std::size_t m, std::size_t n) {
+  std::array<double, SiteCell::kNeighbours> above;
+  for (std::size_t i = 0; i < above.size(); ++i) above[i] = round_[m][i] - round_[n][i];
+  const std::size_t nodes = cell_->nodes.size();
+  above_at_node_.resize(nodes);
+  growth_at_node_.assign(nodes, 0.0);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const auto& [points, weights] = cell_->nodes[i];
+    above_at_node_[i] = weights[0] * above[points[0]] + weights[1] * above[points[1]] +
+                        weights[2] * above[points[2]] + weights[3] * above[points[3]];
+  }
+  double own = 0, all = 0;
+  for (const SiteCell::Part& part : cell_->parts) {
+    const auto& [a, b, c, d] = part.nodes;
+    const PositivePart found =
+        positive_part({above_at_node_[a], above_at_node_[b], above_at_node_[c], above_at_node_[d]});
+    own += part.volume * found.volume;
+    all += part.volume;
+    if (!with_growth_ || found.volume <= 0 || found.volume >= 1) continue;
+    for (std::size_t i = 0; i < 4; ++i) growth_at_node_[part.nodes[i]] += part.volume * found.growth[i];
+  }
+  volumes_[m] = own;
+  volumes_[n] = all - own;
+  if (!with_growth_ || material_of_[m] == material_of_[n]) return;
+  Pair& pair = pairs_.emplace_back(Pair{m, n, {}});
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if (growth_at_node_[i] == 0) continue;
+    const auto& [points, weights] = cell_->nodes[i];
+    for (std::size_t c = 0; c < 4; ++c) pair.growth[points[c]] += growth_at_node_[i] * weights[c];
+  }
 }
 
 /// Values at the corners of parts, and whose is the greatest.
@@ -250,13 +298,8 @@ void CellVolumes::measure_part(const SiteCell::Part& part) {
   const std::size_t owner = owner_of_node_[part.nodes[0]];
   const bool whole = std::all_of(part.nodes.begin() + 1, part.nodes.end(),
                                  [&](std::uint16_t n) { return owner_of_node_[n] == owner; });
-  if (whole) {
-    volumes_[owner] += part.volume;
-  } else if (count_ == 2) {
-    share_between_two(part, 0, 1);
-  } else {
-    share(part);
-  }
+  if (!whole) return share(part);
+  volumes_[owner] += part.volume;
 }
 
 /// A part that is not one material's alone, of many.

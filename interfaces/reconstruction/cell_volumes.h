@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -58,15 +58,16 @@ class CellVolumes {
  private:
   using Values = std::array<double, 4>;
 
-  [[nodiscard]] std::optional<std::size_t> neighbour(std::size_t n) const;
+  void find_neighbours();
   void find_rows(std::size_t site);
   template <class Visit>
   void for_each_border(Visit&& visit) const;
   void extend();
   void fold(std::array<double, SiteCell::kNeighbours>& round) const;
   [[nodiscard]] double border_step(int axis, bool high) const;
-  [[nodiscard]] bool is_sole(std::size_t m) const;
   void measure_rows();
+  void find_contenders();
+  void measure_two(std::size_t m, std::size_t n);
   void find_nodes();
   void measure_part(const SiteCell::Part& part);
   void share(const SiteCell::Part& part);
@@ -89,7 +90,9 @@ class CellVolumes {
   const RectilinearGrid& grid_;
   const SiteValues& values_;
   const SiteCells& cells_;
+  static constexpr std::size_t kNoSite = std::numeric_limits<std::size_t>::max();
   std::array<std::int64_t, 3> sites_, place_{};
+  std::array<std::size_t, SiteCell::kNeighbours> neighbours_;  // of the present site; kNoSite beyond the grid
   const SiteCell* cell_ = nullptr;
   SiteCell scratch_;
   std::size_t count_ = 0;
@@ -101,7 +104,8 @@ class CellVolumes {
   std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entry_;
   std::vector<std::vector<double>> at_nodes_;  // by material
   std::vector<std::size_t> owner_of_node_;
-  std::vector<double> volumes_;           // by row
+  std::vector<double> above_at_node_, growth_at_node_;  // where two rows share the cell
+  std::vector<double> volumes_;                         // by row
   std::vector<double> material_volumes_;  // the same added up, where there are more rows than materials
   std::vector<Material> materials_;
   std::vector<std::uint16_t> number_of_;  // by row, as in SiteValues

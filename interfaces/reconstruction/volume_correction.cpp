@@ -26,10 +26,12 @@ constexpr double kCellOff = 1e-3;
 /// Cells that one material fills are corrected with the mixed ones where others get more than this of them.
 constexpr double kIntruded = 1e-4;
 /// Cells are corrected again where more than this part of them has joined.
-constexpr double kLeastJoined = 1e-3;
-/// Rounds end when no more mixed cells, as a part of all, are off, or when both their number and the sum of
-/// squares gain less.
-constexpr double kMostOff = 6e-3, kLeastGain = 1e-2;
+constexpr double kLeastJoined = 1e-2;
+/// Rounds end when no more cells, as a part of all, are off, or when both their number and the sum of squares
+/// gain less; where many are still off after the first rounds, as where fractions are not those of a sharp
+/// interface, when they gain less than that.
+constexpr double kMostOff = 6e-3, kLeastGain = 1e-2, kManyOff = 0.3, kLeastGainOfMany = 4e-2;
+constexpr int kFirstRounds = 4;
 /// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
 /// would make the surface rough.
 constexpr double kDamping = 1e-4;
@@ -208,8 +210,11 @@ class Correction {
       if (sum > best) return;
       const std::size_t off_before = off;
       off = system.cells_off();
-      const bool settled = sum > (1 - kLeastGain) * best &&
-                           static_cast<double>(off) > (1 - kLeastGain) * static_cast<double>(off_before);
+      const bool many = round >= kFirstRounds &&
+                        static_cast<double>(off) > kManyOff * static_cast<double>(cells_to_correct_.size());
+      const double left = 1 - (many ? kLeastGainOfMany : kLeastGain);
+      const bool settled =
+          sum > left * best && static_cast<double>(off) > left * static_cast<double>(off_before);
       best = sum;
       if (settled) return;
     }

@@ -16,9 +16,10 @@ class Ledgers : public ProgramTest {
   void resample_scene(const std::vector<std::string>& more) {
     ASSERT_EQ(run({"generate", "scene", "voronoi10", "--dimensions", "10,10,10", "-o", "scene.vtr"}).status,
               0);
-    std::vector<std::string> arguments{
-        "resample",   "scene.vtr", "--interface-error", "3%",         "-o",     "mesh.vtu",
-        "--cut-mesh", "cut.vtu",   "--ledger",          "ledger.csv", "--json", "j.json"};
+    std::vector<std::string> arguments{"resample",    "scene.vtr", "--interface-error", "3%",
+                                       "-o",          "mesh.vtu",  "--cut-mesh",        "cut.vtu",
+                                       "--cut-error", "1%",        "--ledger",          "ledger.csv",
+                                       "--json",      "j.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const RunResult result = run(arguments);
     ASSERT_EQ(result.status, 0) << result.err;
