@@ -1,5 +1,7 @@
 #include "interfaces/cutting/cut_mesh.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -17,15 +19,26 @@ namespace {
 
 /// The angle between faces that cells are improved to, in degrees.
 constexpr double kWantedAngle = 12;
+/// Where cells stay below the first of these, more of them are improved, to the others: that makes room.
+constexpr double kLowAngle = 8;
+constexpr std::array<double, 3> kHigherAngles{16, 20, 25};
 /// The same, that coarsening keeps to.
 constexpr double kCoarsenedAngle = 15;
-/// Moves that restore volumes leave so much of the least quality.
-constexpr double kKeptQuality = 0.9;
+/// Moves that restore volumes leave so much of the least quality, and angles above this one as they are.
+constexpr double kKeptQuality = 0.9, kKeptAngle = 5.5;
 constexpr int kMostRounds = 10;
 /// Pieces that the mesh has not are left out if they are no larger than so many tolerances.
 constexpr double kSpeck = 4;
 
 double sine_of(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
+
+double worst_quality(const LabelledMesh& mesh) {
+  double worst = 1;
+  for (std::uint32_t c = 0; c < mesh.cell_count(); ++c) {
+    if (mesh.is_alive(c)) worst = std::min(worst, mesh.quality(c));
+  }
+  return worst;
+}
 
 /// Places where the boundaries of materials, as two meshes of interfaces have them, are farther apart than
 /// wanted.
@@ -63,11 +76,14 @@ ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& p
   coarsen_mesh(cut, target, static_cast<std::uint32_t>(mesh.points.size()), sine_of(kCoarsenedAngle),
                progress);
   improve_mesh(cut, target, wanted_quality, progress);
-  double least = wanted_quality;
-  for (std::uint32_t c = 0; c < cut.cell_count(); ++c) {
-    if (cut.is_alive(c)) least = std::min(least, cut.quality(c));
+  for (const double angle : kHigherAngles) {
+    if (worst_quality(cut) >= sine_of(kLowAngle)) break;
+    improve_mesh(cut, target, sine_of(angle), progress);
+    improve_mesh(cut, target, wanted_quality, progress);
   }
-  restore_volumes(cut, body_volumes(mesh.table, mesh.cell_set()), kKeptQuality * least, tolerance);
+  const double least = std::min(wanted_quality, worst_quality(cut));
+  const double kept = std::max(kKeptQuality * least, std::min(least, sine_of(kKeptAngle)));
+  restore_volumes(cut, body_volumes(mesh.table, mesh.cell_set()), kept, tolerance);
   return cut.finish();
 }
 
