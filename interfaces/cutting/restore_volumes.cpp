@@ -1,9 +1,9 @@
 #include "interfaces/cutting/restore_volumes.h"
 
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "interfaces/cutting/local_changes.h"
 
@@ -11,8 +11,12 @@ namespace adamas {
 
 namespace {
 
-constexpr int kMostSteps = 12, kMostHalvings = 3;
+constexpr int kMostSteps = 40, kMostHalvings = 3;
 constexpr double kEnough = 1e-11;  ///< of the whole volume
+/// What is added to the diagonal of the equations, as a part of the greatest of their terms.
+constexpr double kRegular = 1e-9;
+/// Steps end where as much is missing as this part of what was before.
+constexpr double kStill = 0.999;
 
 /// How the volumes of the bodies round a vertex change with its place.
 struct Slopes {
@@ -35,12 +39,15 @@ class Restoration {
   }
 
   bool run() {
-    for (int step = 0; step < kMostSteps; ++step) {
+    double before = std::numeric_limits<double>::infinity();
+    for (int step = 0; step <= kMostSteps; ++step) {
       const Eigen::VectorXd missing = wanted_volumes() - volumes();
       if (missing.size() == 0 || missing.cwiseAbs().maxCoeff() <= kEnough * whole_) return true;
-      if (!move(missing)) return false;
+      // Bodies whose vertices cannot move any further keep what they have.
+      if (!(missing.lpNorm<1>() < kStill * before) || !move(missing)) return false;
+      before = missing.lpNorm<1>();
     }
-    return (wanted_volumes() - volumes()).cwiseAbs().maxCoeff() <= kEnough * whole_;
+    return false;
   }
 
  private:
@@ -114,15 +121,16 @@ class Restoration {
       }
     }
     if (entries.empty()) return false;
+    // The volumes add up to the whole, so that one equation follows from the others, and a body that no
+    // vertex can change any more has none.
+    double scale = 0;
+    for (const auto& entry : entries) scale = std::max(scale, entry.value());
+    for (Eigen::Index b = 0; b < missing.size(); ++b) entries.emplace_back(b, b, kRegular * scale);
     Eigen::SparseMatrix<double> matrix(missing.size(), missing.size());
     matrix.setFromTriplets(entries.begin(), entries.end());
-    // The volumes add up to the whole, so that one equation follows from the others: conjugate gradients do
-    // not mind.
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
-    solver.setTolerance(1e-10);
-    solver.compute(matrix);
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
     const Eigen::VectorXd factors = solver.solve(missing);
-    if (!factors.allFinite()) return false;
+    if (solver.info() != Eigen::Success || !factors.allFinite()) return false;
     std::vector<std::uint32_t> still_free;
     std::vector<Vec3> still_start;
     for (std::size_t i = 0; i < slopes.size(); ++i) {
