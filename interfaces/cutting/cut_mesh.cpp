@@ -19,11 +19,12 @@ namespace {
 
 /// The angle between faces that cells are improved to, in degrees.
 constexpr double kWantedAngle = 12;
-/// Where cells stay below the first of these, more of them are improved, to the others: that makes room.
-constexpr double kLowAngle = 8;
-constexpr std::array<double, 3> kHigherAngles{16, 20, 25};
 /// The same, that coarsening keeps to.
 constexpr double kCoarsenedAngle = 15;
+/// Where cells stay below the first of these angles, more of them are improved, to the others: that makes
+/// room.
+constexpr double kLowAngle = 8;
+constexpr std::array<double, 3> kHigherAngles{16, 20, 25};
 /// Moves that restore volumes leave so much of the least quality, and angles above this one as they are.
 constexpr double kKeptQuality = 0.9, kKeptAngle = 5.5;
 constexpr int kMostRounds = 10;

@@ -9,7 +9,7 @@
 namespace adamas {
 
 CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells)
-    : grid_(grid), values_(values), cells_(cells) {
+    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {
   for (std::size_t a = 0; a < 3; ++a) sites_[a] = static_cast<std::int64_t>(grid.sites(static_cast<int>(a)));
 }
 
@@ -18,7 +18,7 @@ void CellVolumes::go_to(std::size_t site) {
   place_ = {s % sites_[0], s / sites_[0] % sites_[1], s / (sites_[0] * sites_[1])};
   cell_ = &cells_.at(static_cast<std::size_t>(place_[0]), static_cast<std::size_t>(place_[1]),
                      static_cast<std::size_t>(place_[2]), scratch_);
-  find_neighbours();
+  find_neighbours(site);
   find_rows(site);
   const auto fill = [&](auto& rows, auto value) {
     rows.resize(count_);
@@ -117,21 +117,16 @@ double CellVolumes::greatest_difference() const {
   return greatest;
 }
 
-/// The sites round the present one.
-void CellVolumes::find_neighbours() {
-  const auto within = [&](std::size_t axis, std::int64_t i) { return i >= 0 && i < sites_[axis]; };
-  std::size_t n = 0;
-  bool all = true;
-  for (std::int64_t k = place_[2] - 1; k <= place_[2] + 1; ++k) {
-    for (std::int64_t j = place_[1] - 1; j <= place_[1] + 1; ++j) {
-      for (std::int64_t i = place_[0] - 1; i <= place_[0] + 1; ++i) {
-        const bool there = within(0, i) && within(1, j) && within(2, k);
-        neighbours_[n++] = there ? static_cast<std::size_t>(i + sites_[0] * (j + sites_[1] * k)) : kNoSite;
-        all = all && there;
-      }
-    }
-  }
-  at_border_ = !all && grid_.centering == Centering::kCells;
+/// The present site and those round it.
+void CellVolumes::find_neighbours(std::size_t site) {
+  neighbours_.fill(kNoSite);
+  neighbours_[SiteCell::kSelf] = site;
+  std::size_t count = 1;
+  grid_sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+    neighbours_[static_cast<std::size_t>(di + 1 + 3 * (dj + 1) + 9 * (dk + 1))] = other;
+    ++count;
+  });
+  at_border_ = count < SiteCell::kNeighbours && grid_.centering == Centering::kCells;
 }
 
 const std::vector<double>& CellVolumes::measure(bool growth) {

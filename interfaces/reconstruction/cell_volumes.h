@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/data/rectilinear_grid.h"
+#include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/positive_part.h"
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
@@ -58,7 +59,7 @@ class CellVolumes {
  private:
   using Values = std::array<double, 4>;
 
-  void find_neighbours();
+  void find_neighbours(std::size_t site);
   void find_rows(std::size_t site);
   template <class Visit>
   void for_each_border(Visit&& visit) const;
@@ -88,11 +89,12 @@ class CellVolumes {
   }
 
   const RectilinearGrid& grid_;
+  GridSites grid_sites_;
   const SiteValues& values_;
   const SiteCells& cells_;
   static constexpr std::size_t kNoSite = std::numeric_limits<std::size_t>::max();
   std::array<std::int64_t, 3> sites_, place_{};
-  std::array<std::size_t, SiteCell::kNeighbours> neighbours_;  // of the present site; kNoSite beyond the grid
+  std::array<std::size_t, SiteCell::kNeighbours> neighbours_;  // kNoSite beyond the grid
   const SiteCell* cell_ = nullptr;
   SiteCell scratch_;
   std::size_t count_ = 0;

@@ -148,9 +148,8 @@ class Correction {
   bool find_cells() {
     if (values_.mixed().empty()) return false;
     std::vector<char> chosen(data_.grid.site_count(), 0);
-    for (const std::vector<std::uint32_t>& sites : {values_.mixed(), cells_to_correct_}) {
-      for (const std::uint32_t site : sites) chosen[site] = 1;
-    }
+    for (const std::uint32_t site : values_.mixed()) chosen[site] = 1;
+    for (const std::uint32_t site : cells_to_correct_) chosen[site] = 1;
     parallel_chunks(chosen.size(), 64 * kChunk, [&](std::size_t begin, std::size_t end) {
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t site = begin; site < end; ++site) {
@@ -226,7 +225,7 @@ class Correction {
   double step(LinearSystem& system, const std::vector<double>& move, double best) {
     std::vector<double> start, shares(unknowns_.size());
     for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
-    const std::vector<double> before = squares_round_sites(system.missing);
+    const std::vector<double> missing = system.missing;
     const auto try_shares = [&] {
       place(start, move, shares);
       linearise(system);
@@ -236,6 +235,7 @@ class Correction {
       std::fill(shares.begin(), shares.end(), share);
       if (const double sum = try_shares(); sum <= best) return sum;
     }
+    const std::vector<double> before = squares_round_sites(missing);
     std::fill(shares.begin(), shares.end(), 1);
     double sum = try_shares();
     for (int halving = 1; halving <= kMostHalvings; ++halving) {
