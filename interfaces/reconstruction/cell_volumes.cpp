@@ -182,20 +182,25 @@ void CellVolumes::measure_two(std::size_t m, std::size_t n) {
   for (std::size_t i = 0; i < above.size(); ++i) above[i] = round_[m][i] - round_[n][i];
   const std::size_t nodes = cell_->nodes.size();
   above_at_node_.resize(nodes);
+  is_positive_.resize(nodes);
   growth_at_node_.assign(nodes, 0.0);
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto& [points, weights] = cell_->nodes[i];
     above_at_node_[i] = weights[0] * above[points[0]] + weights[1] * above[points[1]] +
                         weights[2] * above[points[2]] + weights[3] * above[points[3]];
+    is_positive_[i] = above_at_node_[i] > 0 ? 1 : 0;
   }
   double own = 0, all = 0;
   for (const SiteCell::Part& part : cell_->parts) {
     const auto& [a, b, c, d] = part.nodes;
+    all += part.volume;
+    const int positive = is_positive_[a] + is_positive_[b] + is_positive_[c] + is_positive_[d];
+    if (positive == 4) own += part.volume;
+    if (positive == 0 || positive == 4) continue;
     const PositivePart found =
         positive_part({above_at_node_[a], above_at_node_[b], above_at_node_[c], above_at_node_[d]});
     own += part.volume * found.volume;
-    all += part.volume;
-    if (!with_growth_ || found.volume <= 0 || found.volume >= 1) continue;
+    if (!with_growth_) continue;
     for (std::size_t i = 0; i < 4; ++i) growth_at_node_[part.nodes[i]] += part.volume * found.growth[i];
   }
   volumes_[m] = own;

@@ -107,7 +107,8 @@ class CellVolumes {
   std::vector<std::vector<double>> at_nodes_;  // by material
   std::vector<std::size_t> owner_of_node_;
   std::vector<double> above_at_node_, growth_at_node_;  // where two rows share the cell
-  std::vector<double> volumes_;                         // by row
+  std::vector<std::uint8_t> is_positive_;
+  std::vector<double> volumes_;           // by row
   std::vector<double> material_volumes_;  // the same added up, where there are more rows than materials
   std::vector<Material> materials_;
   std::vector<std::uint16_t> number_of_;  // by row, as in SiteValues

@@ -27,15 +27,22 @@ struct LinearSystem {
   std::vector<double> missing;  ///< by row
 
   [[nodiscard]] std::size_t cells_off() const;
+  /// What is to become least: the sum of cost_of() over all rows.
+  [[nodiscard]] double cost() const;
   /// The shortest move of the unknowns that gives what is missing, nearly: conjugate gradients for the normal
-  /// equations, damped and stopped early, so that unknowns do not swing on which volumes hardly depend.
+  /// equations, in which rows that miss much weigh less, as cost() has it; damped and stopped early, so that
+  /// unknowns do not swing on which volumes hardly depend.
   [[nodiscard]] std::vector<double> solve(std::size_t unknowns, double damping) const;
 
  private:
+  [[nodiscard]] std::vector<double> preconditioner(const std::vector<double>& weight, std::size_t unknowns,
+                                                   double damping) const;
   void multiply(const std::vector<double>& x, std::vector<double>& rows) const;
   void multiply_transposed(const std::vector<double>& rows, std::vector<double>& x) const;
 };
 
-double sum_of_squares(const std::vector<double>& v);
+/// The cost of what is missing in a row: its square while that is small, from there on growing less (Huber
+/// 1964), so that a cell whose volumes cannot be had does not spoil those round it.
+double cost_of(double missing);
 
 }  // namespace adamas

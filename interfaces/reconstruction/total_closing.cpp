@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
+#include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas {
 
@@ -16,42 +18,96 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-constexpr int kMostClosings = 12;
+constexpr int kMostRounds = 12;
+/// Derivatives stay as they are where a round leaves less than this part of what was missing.
+constexpr double kFast = 0.01;
 /// Of the domain.
 constexpr double kTotalTolerance = 2e-11;
+/// Cells that differ by more than this part are off.
+constexpr double kCellOff = 1e-3;
+/// An offset's share at sites round which no mixed cell is off; the power of the part of those that are.
+constexpr double kLeastShare = 0.01;
+constexpr int kSharePower = 6;
+/// Values move by at most this part of the grid's spacing in a round.
+constexpr double kMostShift = 0.1;
 
+/// One offset per material, of which a site gets a share: Newton's method for the volumes in the whole
+/// domain. These are the gradient of a convex function of the offsets.
 class TotalClosing {
  public:
   TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
       : data_(data), values_(values), cells_(cells), step_(data.grid.least_spacing()) {}
 
-  /// One offset per material, the same everywhere: Newton's method for the volumes in the whole domain.
   void run(const IdVector<MaterialId, double>& wanted, Progress& progress) {
     const auto count = static_cast<Eigen::Index>(data_.materials.size());
     if (count < 2) return;
+    find_shares();
     const double domain = data_.grid.domain().volume();
-    for (int round = 0; round < kMostClosings; ++round) {
-      progress.step("closing volumes", static_cast<double>(round) / kMostClosings);
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    double before = std::numeric_limits<double>::infinity();  // missing at most
+    bool newton = true;
+    for (int round = 0; round < kMostRounds; ++round) {
+      progress.step("closing volumes", static_cast<double>(round) / kMostRounds);
       Eigen::SparseMatrix<double> growth(count, count);
-      const std::vector<double> totals = measure_totals(growth);
+      const std::vector<double> totals = measure_totals(newton ? &growth : nullptr);
       Eigen::VectorXd missing(count);
       for (Eigen::Index m = 0; m < count; ++m)
         missing[m] =
             wanted[values_.material(static_cast<std::uint16_t>(m))] - totals[static_cast<std::size_t>(m)];
       // Adding one number to all offsets changes nothing, and what fractions are beyond 1 cannot be had.
       missing.array() -= missing.mean();
-      const double scale = Eigen::VectorXd(growth.diagonal()).maxCoeff();
-      if (!(scale > 0) || missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(growth + diagonal(count, 1e-9 * scale));
+      const double most = missing.lpNorm<Eigen::Infinity>();
+      if (most <= kTotalTolerance * domain) return;
+      if (newton) {
+        const double scale = Eigen::VectorXd(growth.diagonal()).maxCoeff();
+        if (!(scale > 0)) return;
+        solver.compute(growth + diagonal(count, 1e-9 * scale));
+      }
+      newton = round == 0 || most > kFast * before;
+      before = most;
       Eigen::VectorXd offsets = solver.solve(missing);
       offsets.array() -= offsets.mean();
-      for (Entry& entry : values_.entries())
-        shift(entry, std::clamp(offsets[static_cast<Eigen::Index>(values_.whole(entry.material))],
-                                -0.1 * step_, 0.1 * step_));
+      for (std::size_t e = 0; e < shares_.size(); ++e) {
+        Entry& entry = values_.entries()[e];
+        const double offset = shares_[e] * offsets[static_cast<Eigen::Index>(values_.whole(entry.material))];
+        shift(entry, std::clamp(offset, -kMostShift * step_, kMostShift * step_));
+      }
     }
   }
 
  private:
+  static constexpr std::size_t kChunk = 256;
+  /// A site's own cell counts as much as so many of its neighbours'.
+  static constexpr int kOwnCount = 3;
+
+  /// Cells whose volumes are right are to stay so: offsets go where cells are off anyway.
+  void find_shares() {
+    std::vector<char> is_mixed(data_.grid.site_count(), 0), is_off(is_mixed);
+    parallel_chunks(values_.mixed().size(), kChunk, [&](std::size_t begin, std::size_t end) {
+      CellVolumes cell(data_.grid, values_, cells_);
+      for (std::size_t n = begin; n < end; ++n) {
+        const std::uint32_t site = values_.mixed()[n];
+        cell.go_to(site);
+        cell.measure();
+        is_mixed[site] = 1;
+        is_off[site] = cell.greatest_difference() > kCellOff ? 1 : 0;
+      }
+    });
+    const GridSites sites(data_.grid);
+    shares_.clear();
+    for (std::size_t site = 0; site < is_mixed.size(); ++site) {
+      const std::span<const Entry> own = static_cast<const SiteValues&>(values_).at(site);
+      if (own.empty()) continue;
+      int mixed = kOwnCount * is_mixed[site], off = kOwnCount * is_off[site];
+      sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+        mixed += is_mixed[other];
+        off += is_off[other];
+      });
+      const double part = mixed == 0 ? 1 : std::pow(static_cast<double>(off) / mixed, kSharePower);
+      shares_.insert(shares_.end(), own.size(), kLeastShare + (1 - kLeastShare) * part);
+    }
+  }
+
   /// Moves a value, which stays on its side where labels are smoothed.
   void shift(Entry& entry, double by) const {
     entry.value += by;
@@ -59,9 +115,11 @@ class TotalClosing {
     entry.value =
         entry.fraction > 0 ? std::max(entry.value, values_.least()) : std::min(entry.value, -values_.least());
   }
-  /// Whether an offset moves a value.
-  [[nodiscard]] bool moves(std::uint32_t entry) const {
-    return entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least();
+  /// How much an offset moves a value.
+  [[nodiscard]] double share(std::uint32_t entry) const {
+    const bool moves =
+        entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least();
+    return moves ? shares_[entry] : 0;
   }
 
   static Eigen::SparseMatrix<double> diagonal(Eigen::Index count, double by) {
@@ -70,8 +128,9 @@ class TotalClosing {
     return by * identity;
   }
 
-  /// The materials' volumes in the domain, and how they grow with offsets: few of many materials meet.
-  std::vector<double> measure_totals(Eigen::SparseMatrix<double>& growth) const {
+  /// The materials' volumes in the domain, and, where that is wanted, how they grow with offsets: few of many
+  /// materials meet.
+  std::vector<double> measure_totals(Eigen::SparseMatrix<double>* growth) const {
     struct Sum {
       std::vector<double> volumes;
       std::vector<std::array<std::uint16_t, 2>> pairs;
@@ -93,7 +152,7 @@ class TotalClosing {
             continue;
           }
           cell.go_to(site);
-          const std::vector<double>& parts = cell.measure(true);
+          const std::vector<double>& parts = cell.measure(growth != nullptr);
           for (std::size_t m = 0; m < parts.size(); ++m)
             sum.volumes[cell.materials()[m].number] += parts[m] * volume;
           for (const CellVolumes::Pair& pair : cell.pairs()) {
@@ -101,9 +160,9 @@ class TotalClosing {
                                  cell.materials()[cell.material_of(pair.second)].number});
             double by = 0;
             for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
-              const int movable = static_cast<int>(moves(cell.entry(pair.first, n))) +
-                                  static_cast<int>(moves(cell.entry(pair.second, n)));
-              by += 0.5 * movable * pair.growth[n];
+              if (pair.growth[n] == 0) continue;
+              by += 0.5 * (share(cell.entry(pair.first, n)) + share(cell.entry(pair.second, n))) *
+                    pair.growth[n];
             }
             sum.growth.push_back(by * volume);
           }
@@ -121,7 +180,7 @@ class TotalClosing {
         }
       }
     }
-    growth.setFromTriplets(sums.begin(), sums.end());
+    if (growth != nullptr) growth->setFromTriplets(sums.begin(), sums.end());
     return totals;
   }
 
@@ -129,6 +188,7 @@ class TotalClosing {
   SiteValues& values_;
   const SiteCells& cells_;
   double step_;
+  std::vector<double> shares_;  // by entry: how much of an offset it gets
 };
 
 }  // namespace

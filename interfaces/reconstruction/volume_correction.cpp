@@ -26,15 +26,15 @@ constexpr double kCellOff = 1e-3;
 /// Cells that one material fills are corrected with the mixed ones where others get more than this of them.
 constexpr double kIntruded = 1e-4;
 /// Cells are corrected again where more than this part of them has joined.
-constexpr double kLeastJoined = 1e-2;
-/// Rounds end when no more cells, as a part of all, are off, or when both their number and the sum of squares
+constexpr double kLeastJoined = 2e-2;
+/// Rounds end when no more cells, as a part of all, are off, or when both their number and the system's cost
 /// gain less; where many are still off after the first rounds, as where fractions are not those of a sharp
 /// interface, when they gain less than that.
-constexpr double kMostOff = 6e-3, kLeastGain = 1e-2, kManyOff = 0.3, kLeastGainOfMany = 4e-2;
+constexpr double kMostOff = 6e-3, kLeastGain = 1e-2, kManyOff = 0.1, kLeastGainOfMany = 4e-2;
 constexpr int kFirstRounds = 4;
 /// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
-/// would make the surface rough.
-constexpr double kDamping = 1e-4;
+/// would make the surface rough. It falls from round to round, to the least.
+constexpr double kDamping = 1e-3, kDampingFalls = 0.6, kLeastDamping = 1e-4;
 /// Steps are halved as long as they are above this, and moves that are smaller, in cells, leave what was
 /// measured as it is.
 constexpr double kLeastShare = 0.05, kStill = 1e-6;
@@ -198,15 +198,15 @@ class Correction {
     LinearSystem system;
     system.missing.resize(row_of_.back());
     linearise(system);
-    double best = sum_of_squares(system.missing);
+    double best = system.cost();
     std::size_t off = system.cells_off();
+    double damping = kDamping;
     for (int round = 0; round < kMostRounds; ++round) {
       progress.step("correcting volumes", static_cast<double>(round) / kMostRounds);
       if (static_cast<double>(off) <= kMostOff * static_cast<double>(cells_to_correct_.size())) return;
-      std::vector<double> move = system.solve(unknowns_.size(), kDamping / (step_ * step_));
+      std::vector<double> move = system.solve(unknowns_.size(), damping / (step_ * step_));
       for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
       const double sum = step(system, move, best);
-      if (sum > best) return;
       const std::size_t off_before = off;
       off = system.cells_off();
       const bool many = round >= kFirstRounds &&
@@ -214,14 +214,15 @@ class Correction {
       const double left = 1 - (many ? kLeastGainOfMany : kLeastGain);
       const bool settled =
           sum > left * best && static_cast<double>(off) > left * static_cast<double>(off_before);
-      best = sum;
+      best = std::min(sum, best);
       if (settled) return;
+      damping = std::max(kDampingFalls * damping, kLeastDamping);
     }
   }
 
   /// Moves values as far along a move as brings volumes nearer to what they should be; where no share of the
-  /// whole move does it is shortened only where it leads too far. Returns the sum of squares of what is
-  /// missing then, which is greater than `best` where nothing helps: then values stay.
+  /// whole move does it is shortened only where it leads too far. Returns the system's cost then, which is
+  /// greater than `best` where nothing helps: then values stay.
   double step(LinearSystem& system, const std::vector<double>& move, double best) {
     std::vector<double> start, shares(unknowns_.size());
     for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
@@ -229,17 +230,17 @@ class Correction {
     const auto try_shares = [&] {
       place(start, move, shares);
       linearise(system);
-      return sum_of_squares(system.missing);
+      return system.cost();
     };
     for (double share = 1; share > kLeastShare; share *= 0.5) {
       std::fill(shares.begin(), shares.end(), share);
       if (const double sum = try_shares(); sum <= best) return sum;
     }
-    const std::vector<double> before = squares_round_sites(missing);
+    const std::vector<double> before = costs_round_sites(missing);
     std::fill(shares.begin(), shares.end(), 1);
     double sum = try_shares();
     for (int halving = 1; halving <= kMostHalvings; ++halving) {
-      const std::vector<double> after = squares_round_sites(system.missing);
+      const std::vector<double> after = costs_round_sites(system.missing);
       for (std::size_t i = 0; i < unknowns_.size(); ++i) {
         if (after[site_of_[i]] > before[site_of_[i]])
           shares[i] = halving < kMostHalvings ? 0.5 * shares[i] : 0;
@@ -248,16 +249,15 @@ class Correction {
     }
     if (sum <= best) return sum;
     std::fill(shares.begin(), shares.end(), 0);
-    place(start, move, shares);
-    return sum;
+    return try_shares();
   }
 
-  /// The sums of squares of what is missing in the cells of a site and its neighbours, by site.
-  [[nodiscard]] std::vector<double> squares_round_sites(const std::vector<double>& missing) const {
+  /// The costs of what is missing in the cells of a site and its neighbours, by site.
+  [[nodiscard]] std::vector<double> costs_round_sites(const std::vector<double>& missing) const {
     std::vector<double> own(data_.grid.site_count(), 0), sums(own.size(), 0);
     for (std::size_t n = 0; n < cells_to_correct_.size(); ++n) {
       for (std::uint32_t row = row_of_[n]; row < row_of_[n + 1]; ++row)
-        own[cells_to_correct_[n]] += missing[row] * missing[row];
+        own[cells_to_correct_[n]] += cost_of(missing[row]);
     }
     parallel_for(cells_to_correct_.size(), 1024, [&](std::size_t n) {
       double sum = own[cells_to_correct_[n]];

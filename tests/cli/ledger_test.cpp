@@ -18,7 +18,7 @@ class Ledgers : public ProgramTest {
               0);
     std::vector<std::string> arguments{"resample",    "scene.vtr", "--interface-error", "3%",
                                        "-o",          "mesh.vtu",  "--cut-mesh",        "cut.vtu",
-                                       "--cut-error", "1%",        "--ledger",          "ledger.csv",
+                                       "--cut-error", "0.5%",      "--ledger",          "ledger.csv",
                                        "--json",      "j.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const RunResult result = run(arguments);

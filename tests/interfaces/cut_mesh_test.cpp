@@ -192,7 +192,7 @@ TEST_P(CutMeshes, KeepTheirLaws) {
 INSTANTIATE_TEST_SUITE_P(Scenes, CutMeshes,
                          testing::Values(CutCase{"sphere"}, CutCase{"sphere", 0, 16, 0.01},
                                          CutCase{"plate", 0, 12, 0.02, false}, CutCase{"plate", 0, 16, 0.01},
-                                         CutCase{"tjunction"}, CutCase{"reflex"},
+                                         CutCase{"tjunction", 0, 16}, CutCase{"reflex"},
                                          CutCase{"voronoi10", 0, 12, 0.03},
                                          CutCase{"random", 1, 8, 0.04, false},
                                          CutCase{"random", 3, 8, 0.04, false}));
