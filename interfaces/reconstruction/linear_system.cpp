@@ -7,7 +7,7 @@ namespace adamas {
 
 namespace {
 
-constexpr int kMostSteps = 30;
+constexpr int kMostSteps = 60;
 /// The squared gradient, scaled, falls to this part.
 constexpr double kSolved = 1e-5;
 /// Rows that miss more than this, as a part of a cell, weigh less than others, down to the least weight.
