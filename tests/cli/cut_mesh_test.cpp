@@ -76,7 +76,7 @@ TEST_F(CutMesh, FiguresAndFilesAgree) {
 }
 
 TEST_F(CutMesh, ErrorsAndThreads) {
-  make_scene("sphere", 8);
+  make_scene("voronoi10", 12);
   const std::vector<std::string> resample{"resample", "scene.vtr", "--interface-error", "5%", "--cut-mesh"};
   const auto with = [&](std::vector<std::string> more) {
     auto arguments = resample;
