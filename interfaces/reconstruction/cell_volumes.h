@@ -15,6 +15,9 @@
 
 namespace adamas {
 
+/// A cell is off where a volume differs from its fraction by more than this part of the cell's.
+inline constexpr double kCellOff = 1e-3;
+
 /// The volumes of materials in the cell of one site after another, exactly, and how they depend on the values
 /// at the sites round it. Materials are those that have a value at the site, in the order of their numbers;
 /// each has a row of values, or several where it has regions near the site.

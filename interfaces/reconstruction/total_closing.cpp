@@ -23,8 +23,6 @@ constexpr int kMostRounds = 12;
 constexpr double kFast = 0.01;
 /// Of the domain.
 constexpr double kTotalTolerance = 2e-11;
-/// Cells that differ by more than this part are off.
-constexpr double kCellOff = 1e-3;
 /// An offset's share at sites round which no mixed cell is off; the power of the part of those that are.
 constexpr double kLeastShare = 0.01;
 constexpr int kSharePower = 6;

@@ -21,8 +21,6 @@ using Entry = SiteValues::Entry;
 constexpr int kMostSweeps = 6, kMostRounds = 40, kMostTurns = 3;
 /// A cell is far off where a volume differs by more than this part of the cell's.
 constexpr double kFarOff = 0.03;
-/// Cells that differ by more are counted.
-constexpr double kCellOff = 1e-3;
 /// Cells that one material fills are corrected with the mixed ones where others get more than this of them.
 constexpr double kIntruded = 1e-4;
 /// Cells are corrected again where more than this part of them has joined.
@@ -221,8 +219,8 @@ class Correction {
   }
 
   /// Moves values as far along a move as brings volumes nearer to what they should be; where no share of the
-  /// whole move does it is shortened only where it leads too far. Returns the system's cost then, which is
-  /// greater than `best` where nothing helps: then values stay.
+  /// whole move does it is shortened only where it leads too far, and where nothing helps values stay.
+  /// Returns the system's cost then.
   double step(LinearSystem& system, const std::vector<double>& move, double best) {
     std::vector<double> start, shares(unknowns_.size());
     for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
