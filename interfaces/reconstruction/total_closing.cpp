@@ -23,9 +23,12 @@ constexpr int kMostRounds = 12;
 constexpr double kFast = 0.01;
 /// Of the domain.
 constexpr double kTotalTolerance = 2e-11;
-/// An offset's share at sites round which no mixed cell is off; the power of the part of those that are.
-constexpr double kLeastShare = 0.01;
-constexpr int kSharePower = 6;
+/// What is missing may go to all mixed cells alike where it is no more than this part of each.
+constexpr double kLittle = 1e-4;
+/// Otherwise, an offset's share at sites round which no mixed cell is off; the power of the part of those
+/// that are.
+constexpr double kLeastShare = 1e-4;
+constexpr int kSharePower = 4;
 /// Values move by at most this part of the grid's spacing in a round.
 constexpr double kMostShift = 0.1;
 
@@ -39,7 +42,7 @@ class TotalClosing {
   void run(const IdVector<MaterialId, double>& wanted, Progress& progress) {
     const auto count = static_cast<Eigen::Index>(data_.materials.size());
     if (count < 2) return;
-    find_shares();
+    find_shares(missing_of(measure_totals(nullptr), wanted).lpNorm<Eigen::Infinity>());
     const double domain = data_.grid.domain().volume();
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     double before = std::numeric_limits<double>::infinity();  // missing at most
@@ -48,12 +51,7 @@ class TotalClosing {
       progress.step("closing volumes", static_cast<double>(round) / kMostRounds);
       Eigen::SparseMatrix<double> growth(count, count);
       const std::vector<double> totals = measure_totals(newton ? &growth : nullptr);
-      Eigen::VectorXd missing(count);
-      for (Eigen::Index m = 0; m < count; ++m)
-        missing[m] =
-            wanted[values_.material(static_cast<std::uint16_t>(m))] - totals[static_cast<std::size_t>(m)];
-      // Adding one number to all offsets changes nothing, and what fractions are beyond 1 cannot be had.
-      missing.array() -= missing.mean();
+      const Eigen::VectorXd missing = missing_of(totals, wanted);
       const double most = missing.lpNorm<Eigen::Infinity>();
       if (most <= kTotalTolerance * domain) return;
       if (newton) {
@@ -78,8 +76,26 @@ class TotalClosing {
   /// A site's own cell counts as much as so many of its neighbours'.
   static constexpr int kOwnCount = 3;
 
-  /// Cells whose volumes are right are to stay so: offsets go where cells are off anyway.
-  void find_shares() {
+  /// What the materials miss, but for one number that all do: adding it to all offsets changes nothing, and
+  /// what fractions are beyond 1 cannot be had.
+  [[nodiscard]] Eigen::VectorXd missing_of(const std::vector<double>& totals,
+                                           const IdVector<MaterialId, double>& wanted) const {
+    Eigen::VectorXd missing(static_cast<Eigen::Index>(totals.size()));
+    for (std::size_t m = 0; m < totals.size(); ++m)
+      missing[static_cast<Eigen::Index>(m)] =
+          wanted[values_.material(static_cast<std::uint16_t>(m))] - totals[m];
+    missing.array() -= missing.mean();
+    return missing;
+  }
+
+  /// Little may go to all mixed cells alike. Of more than that cells whose volumes are right get nearly
+  /// nothing: it goes where cells are off anyway.
+  void find_shares(double missing) {
+    const double volume = data_.grid.domain().volume() / static_cast<double>(data_.grid.site_count());
+    if (missing <= kLittle * volume * static_cast<double>(values_.mixed().size())) {
+      shares_.assign(values_.entries().size(), 1);
+      return;
+    }
     std::vector<char> is_mixed(data_.grid.site_count(), 0), is_off(is_mixed);
     parallel_chunks(values_.mixed().size(), kChunk, [&](std::size_t begin, std::size_t end) {
       CellVolumes cell(data_.grid, values_, cells_);

@@ -8,8 +8,8 @@
 namespace adamas {
 
 /// Adds an offset to the values of each material, so that the materials have the volumes `wanted` in the
-/// whole domain. A site's share of it is the greater, the more of the mixed cells round it are off anyway:
-/// others hardly change. Newton's method, for the volumes are the gradient of a convex function of the
+/// whole domain. Of offsets that would spoil cells a site's share is the greater, the more of the mixed cells
+/// round it are off anyway. Newton's method, for the volumes are the gradient of a convex function of the
 /// offsets.
 void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, double>& wanted,
                   SiteValues& values, const SiteCells& cells, Progress& progress);
