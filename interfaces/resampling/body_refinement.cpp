@@ -14,6 +14,8 @@ constexpr double kFinestForContacts = 0.0625;
 constexpr double kFinestForThickness = 0.25;
 /// How thick a body may be where it is looked at whether it is torn, in relation to the target.
 constexpr double kMostTornThickness = 4;
+/// How far from each other the places are that are looked at, in relation to the target.
+constexpr double kSpacing = 0.5;
 /// Bodies that are lost or joined are split for so often before they are measured again; three halve a cell.
 constexpr int kSplitsForLost = 3;
 /// Of the cells that tear bodies those are split that are at least so large, in relation to the largest.
@@ -42,12 +44,24 @@ std::size_t Resampler::ShownBodies::most_leaves() const {
   return std::max(kHopeForBodies, kMostGrowth * leaves);
 }
 
-/// Leaves that give places within bodies larger than the target, which the mesh does not show as they are, to
-/// other bodies; the largest of them.
-Resampler::TornLeaves Resampler::torn_leaves() const {
+void Resampler::find_thin_places() {
+  const double target = options_.interface_error;
+  if (!thin_places_)
+    thin_places_ = thin_places(*source_.network, source_.box, kMostTornThickness * target, kSpacing * target);
+}
+
+/// Bodies larger than the target that the mesh does not show as they are.
+IdVector<BodyId, char> Resampler::wrong_bodies() const {
   IdVector<BodyId, char> wrong(source_.network->table().body_count(), 0);
   for (BodyId b(0); b.value < wrong.size(); ++b.value)
     wrong[b] = !bodies_->report().kept(b) && bodies_->size(b) > options_.interface_error ? 1 : 0;
+  return wrong;
+}
+
+/// Leaves that give places within bodies larger than the target, which the mesh does not show as they are, to
+/// other bodies; the largest of them.
+Resampler::TornLeaves Resampler::torn_leaves() const {
+  const IdVector<BodyId, char> wrong = wrong_bodies();
   struct Torn {
     TetrahedronId leaf;
     double diameter = 0;  ///< zero: not torn here, or the leaf is small enough
@@ -105,9 +119,7 @@ bool Resampler::refine_for_lost_bodies(const InterfaceMesh& shown) {
 /// Splits where the mesh loses, joins or tears bodies, until so many fewer places are given to others that
 /// they should be measured again. Returns why there is nothing to split, or not worth it; none otherwise.
 std::optional<RefinementEnd> Resampler::refine_for_bodies(const InterfaceMesh& shown, ShownBodies& best) {
-  const double target = options_.interface_error;
-  if (!thin_places_)
-    thin_places_ = thin_places(*source_.network, source_.box, kMostTornThickness * target, target);
+  find_thin_places();
   if (refine_for_lost_bodies(shown)) return {};
   TornLeaves torn = torn_leaves();
   const double few = kTornPart * static_cast<double>(torn.places);

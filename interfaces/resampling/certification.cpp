@@ -17,6 +17,8 @@ namespace {
 constexpr int kMostRounds = 20;
 /// Rounds for the sake of bodies that make nothing better.
 constexpr int kMostPatience = 3;
+/// Torn bodies are mended before cells are split for them where that leaves one fault of so many.
+constexpr std::size_t kMendedPart = 8;
 /// Cells this small, in relation to the target, are not split further: what is wrong there does not go away,
 /// as where the input's interfaces have an open border and the approximation closes the gap.
 constexpr double kFinestForInput = 1e-3;
@@ -127,6 +129,7 @@ RefinementEnd Resampler::refine_what_fails() {
   Record since_best;
   std::optional<ShownBodies> best;
   int rounds_since_best = 0;
+  bool mended = false;
   for (int round = 0;; ++round) {
     ExtractedInterfaces shown = measure_shown();
     const auto end = [&](RefinementEnd reason) {
@@ -136,6 +139,8 @@ RefinementEnd Resampler::refine_what_fails() {
         shown = measure_shown();
       }
       bodies_->measure(shown);
+      if (const std::size_t torn = bodies_->faults(options_.interface_error).torn; torn > 0)
+        mend_bodies(shown, torn - 1);
       certificate_ = comparison_->finish(shown.mesh, progress_);
       return comparison_->within() ? RefinementEnd::kReached : reason;
     };
@@ -145,6 +150,8 @@ RefinementEnd Resampler::refine_what_fails() {
     if (settled && !comparison_->within() && round < kMostRounds && allow_smaller_shifts(shown)) continue;
     if (settled) {
       bodies_->measure(shown);
+      // Once before splitting: twice half the error would leave cells that are never within the target.
+      if (!mended) mended = mend_bodies(shown, bodies_->faults(options_.interface_error).torn / kMendedPart);
       const ShownBodies now{bodies_->faults(options_.interface_error), hierarchy_.leaf_count(), {}};
       if (!best || now.are_better_than(*best)) {
         best = now;

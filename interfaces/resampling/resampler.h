@@ -132,6 +132,18 @@ class Resampler {
     std::size_t places = 0;  ///< within bodies, given to others
   };
 
+  /// Moves an interface at the corners of a leaf, positive towards its first body's gain.
+  struct Raise {
+    TetrahedronId leaf;
+    InterfaceId interface;
+    double by = 0;
+  };
+  struct Moved {
+    VertexId vertex;
+    InterfaceId interface;
+    double distance = 0;
+  };
+
   /// What divides a tetrahedron's children: the plane through the middle of the split edge and the other two
   /// vertices.
   struct SplitPlane {
@@ -180,6 +192,14 @@ class Resampler {
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& leaves) const;
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves(const InterfaceMesh& shown) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_far_from_shown() const;
+  void find_thin_places();
+  [[nodiscard]] IdVector<BodyId, char> wrong_bodies() const;
+  [[nodiscard]] std::optional<Raise> raise_at(const ThinPlace& place) const;
+  std::vector<Moved> raise_torn_bodies();
+  [[nodiscard]] std::vector<VertexId> corners_of(const std::vector<TetrahedronId>& cells) const;
+  [[nodiscard]] std::vector<TetrahedronId> leaves_at(const std::vector<VertexId>& corners) const;
+  void move_back(const std::vector<Moved>& moved, const std::vector<TetrahedronId>& cells, double share);
+  bool mend_bodies(ExtractedInterfaces& shown, std::size_t most_torn);
   [[nodiscard]] TornLeaves torn_leaves() const;
   bool refine_for_lost_bodies(const InterfaceMesh& shown);
   [[nodiscard]] std::optional<RefinementEnd> refine_for_bodies(const InterfaceMesh& shown, ShownBodies& best);
@@ -203,6 +223,7 @@ class Resampler {
   std::optional<InterfaceCertificate> certificate_;
   std::unique_ptr<BodyComparison> bodies_;
   std::optional<std::vector<ThinPlace>> thin_places_;  ///< known once they are needed
+  bool mending_is_hopeless_ = false;                   ///< it has made bodies worse
   Record* recorded_ = nullptr;                         ///< receives what is split, unless null
 };
 

@@ -71,6 +71,20 @@ TEST(ResampledBodies, ThinPlatesDoNotTear) {
   }
 }
 
+/// A plate that distances alone leave torn, given by volume fractions, is whole once it has been mended, and
+/// as near to the input as was wanted.
+TEST(ResampledBodies, TornPlatesAreMended) {
+  SceneCase c;
+  c.name = "plate";
+  c.cells = 20;
+  c.options.interface_error = 0.02 * std::sqrt(3.0);
+  const ResampledScene scene(c);
+  expect_bodies_kept(*scene.resampler);
+  ASSERT_TRUE(scene.resampler->certificate());
+  EXPECT_LE(scene.resampler->certificate()->materials.upper, c.options.interface_error);
+  test::expect_laws(scene);
+}
+
 /// What is known of the shells: two spheres, and what is between them.
 TEST(ResampledBodies, HaveTheTopologyOfTheScene) {
   SceneCase c;
