@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
@@ -93,10 +94,6 @@ double ResampledMesh::plain_value(std::size_t cell, std::size_t component, const
 std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh) {
   using Need = std::pair<std::uint32_t, BodyId>;
   constexpr std::size_t kChunk = 512;
-  const auto sort_unique = [](std::vector<Need>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  };
   std::vector<std::vector<Need>> parts((mesh.cells.size() + kChunk - 1) / kChunk);
   parallel_chunks(mesh.cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
     CellOwnership owners;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/sort_unique.h"
 #include "interfaces/network/domain_faces.h"
 
 namespace adamas {
@@ -9,11 +10,6 @@ namespace adamas {
 namespace {
 
 using Pair = std::array<BodyId, 2>;
-
-void sort_unique(std::vector<Pair>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-}
 
 MaterialId as_material(BodyId body) { return MaterialId(body.value); }
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
@@ -20,13 +20,6 @@ constexpr int kMostReturns = 5, kReturnsAlone = 2;
 /// Raising one place lowers others; what is still torn after so many passes stays so.
 constexpr int kMostPasses = 12;
 
-double value_at(const OwnershipProblem& problem, BodyId body, const Weights& at) {
-  for (const OwnershipProblem::Candidate& candidate : problem.candidates) {
-    if (candidate.owner == body.value) return problem.value(candidate, at);
-  }
-  return -HUGE_VAL;
-}
-
 NearDistance* find_near(VertexDistances& vertex, InterfaceId interface) {
   const auto found = std::ranges::find(vertex.near, interface, &NearDistance::interface);
   return found == vertex.near.end() ? nullptr : &*found;
@@ -43,8 +36,11 @@ std::optional<Resampler::Raise> Resampler::raise_at(const ThinPlace& place) cons
   const Weights at = frame(leaf).weights(place.middle);
   const BodyId owner(owners.problem.owner(at));
   if (owner == place.body) return {};
-  const double below = value_at(owners.problem, owner, at) - value_at(owners.problem, place.body, at);
-  if (!std::isfinite(below)) return {};
+  const auto& candidates = owners.problem.candidates;
+  const std::size_t own = owners.candidate(place.body), other = owners.candidate(owner);
+  if (own == candidates.size()) return {};
+  const double below =
+      owners.problem.value(candidates[other], at) - owners.problem.value(candidates[own], at);
   for (const CellOwnership::Interface& interface : owners.interfaces) {
     const auto& [a, b] = source_.network->table().sides(interface.id);
     // One rises and the other sinks.
@@ -57,11 +53,11 @@ std::optional<Resampler::Raise> Resampler::raise_at(const ThinPlace& place) cons
 
 /// Moves the signed distances at the corners of cells that give places within torn bodies to others, until
 /// they no longer do, within a part of the interface error. Returns the distances that were moved, as they
-/// were without shifts.
-std::vector<Resampler::Moved> Resampler::raise_torn_bodies() {
+/// were.
+Resampler::Distances Resampler::raise_torn_bodies() {
   const double most = kMostRaised * options_.interface_error;
   const IdVector<BodyId, char> wrong = wrong_bodies();
-  std::vector<Moved> all;
+  Distances originals;
   std::vector<std::optional<Raise>> raises(thin_places_->size());
   bool again = false;  // Only places that were torn are looked at again, until none is.
   for (int pass = 0; pass < kMostPasses; ++pass) {
@@ -69,46 +65,32 @@ std::vector<Resampler::Moved> Resampler::raise_torn_bodies() {
       const ThinPlace& place = (*thin_places_)[i];
       if (wrong[place.body] != 0 && (!again || raises[i])) raises[i] = raise_at(place);
     });
-    // The farthest move that any place asks of a distance, which is made once.
-    std::vector<Moved> moves;
+    // Each distance is moved as far as the place that asks for most.
+    Distances moves;
     for (const std::optional<Raise>& raise : raises) {
       if (!raise) continue;
-      for (const VertexId v : hierarchy_.vertices(raise->leaf))
-        moves.push_back({v, raise->interface, raise->by});
+      for (const VertexId v : hierarchy_.vertices(raise->leaf)) {
+        double& by = moves[{v, raise->interface}];
+        const double size = std::abs(raise->by);
+        if (size > std::abs(by) || (size == std::abs(by) && raise->by < by)) by = raise->by;
+      }
     }
-    std::ranges::sort(moves, [](const Moved& x, const Moved& y) {
-      return std::tuple(x.vertex, x.interface, -std::abs(x.distance), x.distance) <
-             std::tuple(y.vertex, y.interface, -std::abs(y.distance), y.distance);
-    });
-    const auto same = [](const Moved& x, const Moved& y) {
-      return x.vertex == y.vertex && x.interface == y.interface;
-    };
-    moves.erase(std::unique(moves.begin(), moves.end(), same), moves.end());
-    const std::size_t known = all.size();
     bool any = false;
-    for (const Moved& move : moves) {
-      NearDistance* near = find_near(hierarchy_.payload(move.vertex).distances, move.interface);
+    for (const auto& [where, by] : moves) {
+      NearDistance* near = find_near(hierarchy_.payload(where.first).distances, where.second);
       if (near == nullptr) continue;
-      const auto end = all.begin() + static_cast<std::ptrdiff_t>(known);
-      const auto found = std::lower_bound(all.begin(), end, move, [](const Moved& x, const Moved& y) {
-        return std::tie(x.vertex, x.interface) < std::tie(y.vertex, y.interface);
-      });
-      const bool first = found == end || !same(*found, move);
-      const double original = first ? near->distance : found->distance + shifts_[move.interface];
-      const double moved = std::clamp(near->distance + move.distance, original - most, original + most);
+      const auto known = originals.find(where);
+      const double original = known == originals.end() ? near->distance : known->second;
+      const double moved = std::clamp(near->distance + by, original - most, original + most);
       if (moved == near->distance) continue;
-      if (first) all.push_back({move.vertex, move.interface, original - shifts_[move.interface]});
+      originals.emplace(where, original);
       near->distance = moved;
       any = true;
     }
-    std::inplace_merge(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(known), all.end(),
-                       [](const Moved& x, const Moved& y) {
-                         return std::tie(x.vertex, x.interface) < std::tie(y.vertex, y.interface);
-                       });
     if (!any && !again) break;
     again = any;
   }
-  return all;
+  return originals;
 }
 
 /// The corners of cells, in order.
@@ -117,8 +99,7 @@ std::vector<VertexId> Resampler::corners_of(const std::vector<TetrahedronId>& ce
   for (const TetrahedronId t : cells) {
     for (const VertexId v : hierarchy_.vertices(t)) corners.push_back(v);
   }
-  std::ranges::sort(corners);
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  sort_unique(corners);
   return corners;
 }
 
@@ -132,50 +113,47 @@ std::vector<TetrahedronId> Resampler::leaves_at(const std::vector<VertexId>& cor
   return result;
 }
 
-/// Moves distances back to a share of what they were moved by, at the corners of the given cells.
-void Resampler::move_back(const std::vector<Moved>& moved, const std::vector<TetrahedronId>& cells,
-                          double share) {
-  const std::vector<VertexId> corners = corners_of(cells);
-  for (const Moved& m : moved) {
-    if (!std::ranges::binary_search(corners, m.vertex)) continue;
-    double& distance = find_near(hierarchy_.payload(m.vertex).distances, m.interface)->distance;
-    const double original = m.distance + shifts_[m.interface];
+/// Moves distances back to a share of what they were moved by; at these corners, which are in order.
+void Resampler::move_back(const Distances& originals, const std::vector<VertexId>& corners, double share) {
+  for (const auto& [where, original] : originals) {
+    if (!std::ranges::binary_search(corners, where.first)) continue;
+    double& distance = find_near(hierarchy_.payload(where.first).distances, where.second)->distance;
     distance = original + share * (distance - original);
   }
 }
 
-/// Mends torn bodies by moving interfaces, where that leaves `most_torn` faults at most and less than half,
+/// Mends torn bodies by moving interfaces, where that leaves no more than one fault of `part`, at least two,
 /// loses and joins no more bodies, and keeps distances as they were wanted; else nothing changes. Returns
 /// whether it did.
-bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t most_torn) {
+bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
   const BodyFaults before = bodies_->faults(options_.interface_error);
   // Interfaces that conservation moves too could be moved so far that no cell is within the target.
   if (before.torn == 0 || options_.conserve || mending_is_hopeless_) return false;
   const bool within = comparison_->within();
   find_thin_places();
-  const std::vector<Moved> moved = raise_torn_bodies();
-  if (moved.empty()) return false;
-  BodyFaults now;
+  const Distances originals = raise_torn_bodies();
+  if (originals.empty()) return false;
   const auto measure = [&] {
     shown = measure_shown();
     bodies_->measure(shown);
-    now = bodies_->faults(options_.interface_error);
+    return bodies_->faults(options_.interface_error);
   };
-  measure();
+  BodyFaults now = measure();
   mending_is_hopeless_ = now.torn >= before.torn || now.lost_or_joined > before.lost_or_joined;
   if (!mending_is_hopeless_ && 2 * now.torn <= before.torn) {
     for (int i = 1; within && !comparison_->within() && i <= kMostReturns; ++i) {
-      std::vector<TetrahedronId> failing = failing_leaves(shown.mesh);
-      if (failing.empty()) break;
-      if (i > kReturnsAlone) failing = leaves_at(corners_of(failing));
-      move_back(moved, failing, i == 1 ? 0.5 : 0);
-      measure();
+      std::vector<VertexId> corners = corners_of(failing_leaves(shown.mesh));
+      if (corners.empty()) break;
+      if (i > kReturnsAlone) corners = corners_of(leaves_at(corners));
+      move_back(originals, corners, i == 1 ? 0.5 : 0);
+      now = measure();
     }
-    if (now.torn <= most_torn && now.lost_or_joined <= before.lost_or_joined &&
+    if (part * now.torn <= before.torn && now.lost_or_joined <= before.lost_or_joined &&
         (comparison_->within() || !within))
       return true;
   }
-  move_back(moved, leaves(), 0);
+  for (const auto& [where, original] : originals)
+    find_near(hierarchy_.payload(where.first).distances, where.second)->distance = original;
   measure();
   return false;
 }

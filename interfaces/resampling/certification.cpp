@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
@@ -17,18 +18,14 @@ namespace {
 constexpr int kMostRounds = 20;
 /// Rounds for the sake of bodies that make nothing better.
 constexpr int kMostPatience = 3;
-/// Torn bodies are mended before cells are split for them where that leaves one fault of so many.
-constexpr std::size_t kMendedPart = 8;
+/// Torn bodies are mended before cells are split for them where that leaves one fault of so many, and
+/// in the end where it leaves one of fewer.
+constexpr std::size_t kMendedPart = 8, kMendedPartAtEnd = 2;
 /// Cells this small, in relation to the target, are not split further: what is wrong there does not go away,
 /// as where the input's interfaces have an open border and the approximation closes the gap.
 constexpr double kFinestForInput = 1e-3;
 constexpr double kFinestForApproximation = 0.25;
 constexpr double kFinestForJunctions = 0.0625;
-void sort_unique(std::vector<TetrahedronId>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 }  // namespace
 
 /// Adds the leaf that holds a point, unless its diameter is no more than `finest`.
@@ -139,8 +136,7 @@ RefinementEnd Resampler::refine_what_fails() {
         shown = measure_shown();
       }
       bodies_->measure(shown);
-      if (const std::size_t torn = bodies_->faults(options_.interface_error).torn; torn > 0)
-        mend_bodies(shown, torn - 1);
+      mend_bodies(shown, kMendedPartAtEnd);
       certificate_ = comparison_->finish(shown.mesh, progress_);
       return comparison_->within() ? RefinementEnd::kReached : reason;
     };
@@ -151,7 +147,7 @@ RefinementEnd Resampler::refine_what_fails() {
     if (settled) {
       bodies_->measure(shown);
       // Once before splitting: twice half the error would leave cells that are never within the target.
-      if (!mended) mended = mend_bodies(shown, bodies_->faults(options_.interface_error).torn / kMendedPart);
+      if (!mended) mended = mend_bodies(shown, kMendedPart);
       const ShownBodies now{bodies_->faults(options_.interface_error), hierarchy_.leaf_count(), {}};
       if (!best || now.are_better_than(*best)) {
         best = now;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -138,11 +139,8 @@ class Resampler {
     InterfaceId interface;
     double by = 0;
   };
-  struct Moved {
-    VertexId vertex;
-    InterfaceId interface;
-    double distance = 0;
-  };
+  /// Signed distances of vertices from interfaces.
+  using Distances = std::map<std::pair<VertexId, InterfaceId>, double>;
 
   /// What divides a tetrahedron's children: the plane through the middle of the split edge and the other two
   /// vertices.
@@ -195,11 +193,11 @@ class Resampler {
   void find_thin_places();
   [[nodiscard]] IdVector<BodyId, char> wrong_bodies() const;
   [[nodiscard]] std::optional<Raise> raise_at(const ThinPlace& place) const;
-  std::vector<Moved> raise_torn_bodies();
+  Distances raise_torn_bodies();
   [[nodiscard]] std::vector<VertexId> corners_of(const std::vector<TetrahedronId>& cells) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_at(const std::vector<VertexId>& corners) const;
-  void move_back(const std::vector<Moved>& moved, const std::vector<TetrahedronId>& cells, double share);
-  bool mend_bodies(ExtractedInterfaces& shown, std::size_t most_torn);
+  void move_back(const Distances& originals, const std::vector<VertexId>& corners, double share);
+  bool mend_bodies(ExtractedInterfaces& shown, std::size_t part);
   [[nodiscard]] TornLeaves torn_leaves() const;
   bool refine_for_lost_bodies(const InterfaceMesh& shown);
   [[nodiscard]] std::optional<RefinementEnd> refine_for_bodies(const InterfaceMesh& shown, ShownBodies& best);
