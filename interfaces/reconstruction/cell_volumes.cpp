@@ -20,31 +20,30 @@ void CellVolumes::go_to(std::size_t site) {
                      static_cast<std::size_t>(place_[2]), scratch_);
   find_neighbours(site);
   find_rows(site);
-  const auto fill = [&](auto& rows, auto value) {
-    rows.resize(count_);
-    for (auto& row : rows) row.fill(value);
-  };
-  fill(round_, values_.far());
-  fill(settled_, true);
-  fill(of_whole_, false);
-  fill(entry_, kNone);
-  at_nodes_.resize(count_), volumes_.resize(count_);
+  round_.resize(count_), entry_.resize(count_), at_nodes_.resize(count_), volumes_.resize(count_);
+  for (auto& row : round_) row.fill(values_.far());
+  for (auto& row : entry_) row.fill(kNone);
+  settled_.assign(count_, NeighbourSet().set());
+  of_whole_.assign(count_, NeighbourSet());
+  const SiteValues::Entry* all = values_.entries().data();
   for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
     if (neighbours_[n] == kNoSite) continue;
     const std::span<const SiteValues::Entry> there = values_.at(neighbours_[n]);
-    auto entry = there.begin();
+    const SiteValues::Entry *entry = there.data(), *end = entry + there.size();
     for (std::size_t m = 0; m < count_; ++m) {
-      while (entry != there.end() && entry->material < number_of_[m]) ++entry;
-      auto found = entry;
-      if (found == there.end() || found->material != number_of_[m]) {
-        const std::uint16_t whole = values_.whole(number_of_[m]);
-        if (whole == number_of_[m]) continue;
-        found = std::find_if(there.begin(), there.end(), [&](const auto& e) { return e.material == whole; });
-        if (found == there.end()) continue;
+      const std::uint16_t number = number_of_[m];
+      while (entry != end && entry->material < number) ++entry;
+      const SiteValues::Entry* found = entry;
+      if (found == end || found->material != number) {
+        const std::uint16_t whole = values_.whole(number);
+        if (whole == number) continue;
+        found = std::find_if(there.data(), end, [&](const auto& e) { return e.material == whole; });
+        if (found == end) continue;
         of_whole_[m][n] = true;
       }
-      round_[m][n] = found->value, settled_[m][n] = found->settled(),
-      entry_[m][n] = static_cast<std::uint32_t>(&*found - values_.entries().data());
+      round_[m][n] = found->value;
+      entry_[m][n] = static_cast<std::uint32_t>(found - all);
+      if (!found->settled()) settled_[m][n] = false;
     }
   }
 }
@@ -59,11 +58,10 @@ void CellVolumes::find_rows(std::size_t site) {
     const auto known = std::find_if(materials_.begin(), materials_.end(),
                                     [&](const Material& m) { return m.number == whole; });
     const auto fraction = static_cast<double>(entry.fraction);
-    if (known == materials_.end()) {
+    if (known == materials_.end())
       materials_.push_back({whole, fraction});
-    } else {
+    else
       known->fraction = std::max(known->fraction, fraction);
-    }
     number_of_.push_back(entry.material);
   }
   if (values_.has_regions()) {
@@ -148,7 +146,8 @@ void CellVolumes::measure_rows() {
     return;
   }
   if (contenders_.size() == 2) {
-    measure_two(contenders_[0], contenders_[1]);
+    with_growth_ ? measure_two<true>(contenders_[0], contenders_[1])
+                 : measure_two<false>(contenders_[0], contenders_[1]);
   } else {
     find_nodes();
     for (const SiteCell::Part& part : cell_->parts) measure_part(part);
@@ -177,17 +176,16 @@ void CellVolumes::find_contenders() {
 }
 
 /// What two rows own of the cell where no other owns any.
+template <bool kGrowth>
 void CellVolumes::measure_two(std::size_t m, std::size_t n) {
   std::array<double, SiteCell::kNeighbours> above;
   for (std::size_t i = 0; i < above.size(); ++i) above[i] = round_[m][i] - round_[n][i];
   const std::size_t nodes = cell_->nodes.size();
   above_at_node_.resize(nodes);
   is_positive_.resize(nodes);
-  growth_at_node_.assign(nodes, 0.0);
+  if constexpr (kGrowth) growth_at_node_.assign(nodes, 0.0);
   for (std::size_t i = 0; i < nodes; ++i) {
-    const auto& [points, weights] = cell_->nodes[i];
-    above_at_node_[i] = weights[0] * above[points[0]] + weights[1] * above[points[1]] +
-                        weights[2] * above[points[2]] + weights[3] * above[points[3]];
+    above_at_node_[i] = cell_->nodes[i].interpolate(above);
     is_positive_[i] = above_at_node_[i] > 0 ? 1 : 0;
   }
   double own = 0, all = 0;
@@ -197,15 +195,16 @@ void CellVolumes::measure_two(std::size_t m, std::size_t n) {
     const int positive = is_positive_[a] + is_positive_[b] + is_positive_[c] + is_positive_[d];
     if (positive == 4) own += part.volume;
     if (positive == 0 || positive == 4) continue;
-    const PositivePart found =
-        positive_part({above_at_node_[a], above_at_node_[b], above_at_node_[c], above_at_node_[d]});
+    const Values corners{above_at_node_[a], above_at_node_[b], above_at_node_[c], above_at_node_[d]};
+    const PositivePart found = positive_part(corners);
     own += part.volume * found.volume;
-    if (!with_growth_) continue;
-    for (std::size_t i = 0; i < 4; ++i) growth_at_node_[part.nodes[i]] += part.volume * found.growth[i];
+    if constexpr (kGrowth) {
+      for (std::size_t i = 0; i < 4; ++i) growth_at_node_[part.nodes[i]] += part.volume * found.growth[i];
+    }
   }
   volumes_[m] = own;
   volumes_[n] = all - own;
-  if (!with_growth_ || material_of_[m] == material_of_[n]) return;
+  if (!kGrowth || material_of_[m] == material_of_[n]) return;
   Pair& pair = pairs_.emplace_back(Pair{m, n, {}});
   for (std::size_t i = 0; i < nodes; ++i) {
     if (growth_at_node_[i] == 0) continue;
@@ -222,10 +221,7 @@ void CellVolumes::find_nodes() {
     auto& row = at_nodes_[m];
     row.resize(nodes);
     for (std::size_t n = 0; n < nodes; ++n) {
-      const SiteCell::Node& node = cell_->nodes[n];
-      double sum = 0;
-      for (std::size_t c = 0; c < 4; ++c) sum += node.weights[c] * round_[m][node.points[c]];
-      row[n] = sum;
+      const double sum = row[n] = cell_->nodes[n].interpolate(round_[m]);
       if (sum > at_nodes_[owner_of_node_[n]][n]) owner_of_node_[n] = m;
     }
   }
@@ -354,7 +350,8 @@ void CellVolumes::share_between_all(const SiteCell::Part& part) {
     double own = 0;
     // Without growth one other is enough.
     for (std::size_t n = with_growth_ ? m + 1 : count - 1; n < count; ++n) {
-      const PositivePart found = first_of_two(part, contenders_[m], contenders_[n]);
+      const PositivePart found = with_growth_ ? first_of_two<true>(part, contenders_[m], contenders_[n])
+                                              : first_of_two<false>(part, contenders_[m], contenders_[n]);
       own = found.volume;
       if (with_growth_) add_growth(part, contenders_[m], contenders_[n], found.growth);
     }
@@ -365,6 +362,7 @@ void CellVolumes::share_between_all(const SiteCell::Part& part) {
 }
 
 /// What the first of two contenders owns of a part.
+template <bool kGrowth>
 PositivePart CellVolumes::first_of_two(const SiteCell::Part& part, std::size_t m, std::size_t n) {
   pieces_.assign(1, kWholeTetrahedron);
   for (const std::size_t l : contenders_) {
@@ -377,7 +375,7 @@ PositivePart CellVolumes::first_of_two(const SiteCell::Part& part, std::size_t m
     const PositivePart found =
         positive_part({evaluate(d, p), evaluate(d, q), evaluate(d, r), evaluate(d, s)});
     result.volume += piece.volume * found.volume;
-    for (std::size_t c = 0; c < 4; ++c) {
+    for (std::size_t c = 0; kGrowth && c < 4; ++c) {
       for (std::size_t i = 0; i < 4; ++i)
         result.growth[i] += piece.volume * found.growth[c] * piece.corners[c][i];
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -61,6 +62,7 @@ class CellVolumes {
 
  private:
   using Values = std::array<double, 4>;
+  using NeighbourSet = std::bitset<SiteCell::kNeighbours>;
 
   void find_neighbours(std::size_t site);
   void find_rows(std::size_t site);
@@ -71,6 +73,7 @@ class CellVolumes {
   [[nodiscard]] double border_step(int axis, bool high) const;
   void measure_rows();
   void find_contenders();
+  template <bool kGrowth>
   void measure_two(std::size_t m, std::size_t n);
   void find_nodes();
   void measure_part(const SiteCell::Part& part);
@@ -78,6 +81,7 @@ class CellVolumes {
   void share_between_two(const SiteCell::Part& part, std::size_t m, std::size_t n);
   void share_between_all(const SiteCell::Part& part);
   void drop_those_without_part(const SiteCell::Part& part);
+  template <bool kGrowth>
   PositivePart first_of_two(const SiteCell::Part& part, std::size_t m, std::size_t n);
   void add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth);
   [[nodiscard]] Values at_corners(const SiteCell::Part& part, std::size_t m) const {
@@ -103,9 +107,9 @@ class CellVolumes {
   std::size_t count_ = 0;
   bool at_border_ = false, with_growth_ = false;
   std::vector<std::array<double, SiteCell::kNeighbours>> round_;  // by material
-  std::vector<std::array<bool, SiteCell::kNeighbours>> settled_;  // the same, of the nearest site
+  std::vector<NeighbourSet> settled_;                             // the same, of the nearest site
   // Whether a region's value is that of its material, which has no regions at the nearest site.
-  std::vector<std::array<bool, SiteCell::kNeighbours>> of_whole_;
+  std::vector<NeighbourSet> of_whole_;
   std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entry_;
   std::vector<std::vector<double>> at_nodes_;  // by material
   std::vector<std::size_t> owner_of_node_;

@@ -19,14 +19,18 @@ class GridSites {
   template <class Visit>
   void for_each_neighbour(std::size_t site, Visit&& visit) const {
     const std::array<std::size_t, 3> p = place(site);
-    for (int dk = -1; dk <= 1; ++dk) {
-      for (int dj = -1; dj <= 1; ++dj) {
-        for (int di = -1; di <= 1; ++di) {
-          // A step below 0 becomes a number beyond all others.
-          const std::size_t i = p[0] + static_cast<std::size_t>(di), j = p[1] + static_cast<std::size_t>(dj),
-                            k = p[2] + static_cast<std::size_t>(dk);
-          if ((di == 0 && dj == 0 && dk == 0) || i >= n_[0] || j >= n_[1] || k >= n_[2]) continue;
-          visit(i + n_[0] * (j + n_[1] * k), di, dj, dk);
+    std::array<int, 3> least{}, most{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      least[a] = p[a] == 0 ? 0 : -1;
+      most[a] = p[a] + 1 == n_[a] ? 0 : 1;
+    }
+    const auto nx = static_cast<std::ptrdiff_t>(n_[0]), ny = static_cast<std::ptrdiff_t>(n_[1]);
+    for (int dk = least[2]; dk <= most[2]; ++dk) {
+      for (int dj = least[1]; dj <= most[1]; ++dj) {
+        const auto row = static_cast<std::ptrdiff_t>(site) + nx * (dj + ny * dk);
+        for (int di = least[0]; di <= most[0]; ++di) {
+          if (di == 0 && dj == 0 && dk == 0) continue;
+          visit(static_cast<std::size_t>(row + di), di, dj, dk);
         }
       }
     }

@@ -40,40 +40,37 @@ std::size_t LinearSystem::cells_off() const {
   return sum;
 }
 
-void LinearSystem::multiply(const std::vector<double>& x, std::vector<double>& rows) const {
-  std::fill(rows.begin(), rows.end(), 0.0);
-  for (const auto& [exchanges, coefficients, off] : blocks) {
-    for (const Exchange& exchange : exchanges) {
-      double sum = 0;
-      for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
-        sum += static_cast<double>(coefficients[c].by) * x[coefficients[c].unknown];
-      rows[exchange.gains] += sum;
-      rows[exchange.loses] -= sum;
-    }
+/// Adds what the volumes of a block's cells gain by a move of the unknowns.
+void LinearSystem::add_gains(const Block& block, const std::vector<double>& move, std::vector<double>& rows) {
+  for (const Exchange& exchange : block.exchanges) {
+    double sum = 0;
+    for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
+      sum += static_cast<double>(block.coefficients[c].by) * move[block.coefficients[c].unknown];
+    rows[exchange.gains] += sum;
+    rows[exchange.loses] -= sum;
   }
 }
 
-void LinearSystem::multiply_transposed(const std::vector<double>& rows, std::vector<double>& x) const {
-  std::fill(x.begin(), x.end(), 0.0);
-  for (const auto& [exchanges, coefficients, off] : blocks) {
-    for (const Exchange& exchange : exchanges) {
-      const double gain = rows[exchange.gains] - rows[exchange.loses];
-      for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
-        x[coefficients[c].unknown] += static_cast<double>(coefficients[c].by) * gain;
-    }
+/// The transposed of that.
+void LinearSystem::add_gradients(const Block& block, const std::vector<double>& rows,
+                                 std::vector<double>& gradient) {
+  for (const Exchange& exchange : block.exchanges) {
+    const double gain = rows[exchange.gains] - rows[exchange.loses];
+    for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
+      gradient[block.coefficients[c].unknown] += static_cast<double>(block.coefficients[c].by) * gain;
   }
 }
 
 /// The inverse of the normal equations' diagonal.
-std::vector<double> LinearSystem::preconditioner(const std::vector<double>& weight, std::size_t unknowns,
-                                                 double damping) const {
-  std::vector<double> scale(unknowns, damping);
-  for (const auto& [exchanges, coefficients, off] : blocks) {
-    for (const Exchange& exchange : exchanges) {
+std::vector<double> LinearSystem::preconditioner(const std::vector<double>& weight,
+                                                 const std::vector<double>& damping) const {
+  std::vector<double> scale = damping;
+  for (const Block& block : blocks) {
+    for (const Exchange& exchange : block.exchanges) {
       const double w = weight[exchange.gains] + weight[exchange.loses];
       for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c) {
-        const auto by = static_cast<double>(coefficients[c].by);
-        scale[coefficients[c].unknown] += w * by * by;
+        const auto by = static_cast<double>(block.coefficients[c].by);
+        scale[block.coefficients[c].unknown] += w * by * by;
       }
     }
   }
@@ -81,36 +78,42 @@ std::vector<double> LinearSystem::preconditioner(const std::vector<double>& weig
   return scale;
 }
 
-std::vector<double> LinearSystem::solve(std::size_t unknowns, double damping) const {
-  const std::size_t rows = missing.size();
-  std::vector<double> weight(rows), residual(rows), image(rows);  // the residual is weighted
-  for (std::size_t i = 0; i < rows; ++i) {
+std::vector<double> LinearSystem::solve(const std::vector<double>& damping) const {
+  const std::size_t unknowns = damping.size();
+  const std::size_t row_count = missing.size();
+  std::vector<double> weight(row_count), rows(row_count), gradient(unknowns, 0);
+  for (std::size_t i = 0; i < row_count; ++i) {
     weight[i] = weight_of(missing[i]);
-    residual[i] = weight[i] * missing[i];
+    rows[i] = weight[i] * missing[i];
   }
-  const std::vector<double> scale = preconditioner(weight, unknowns, damping);
-  std::vector<double> x(unknowns, 0), gradient(unknowns), way(unknowns, 0);
+  for (const Block& block : blocks) add_gradients(block, rows, gradient);
+  const std::vector<double> scale = preconditioner(weight, damping);
+  std::vector<double> x(unknowns, 0), way(unknowns, 0), bend(unknowns);
   double before = 1, enough = 0;
   for (int step = 0; step < kMostSteps; ++step) {
-    multiply_transposed(residual, gradient);
     double now = 0;
-    for (std::size_t i = 0; i < unknowns; ++i) {
-      gradient[i] -= damping * x[i];
-      now += scale[i] * gradient[i] * gradient[i];
-    }
+    for (std::size_t i = 0; i < unknowns; ++i) now += scale[i] * gradient[i] * gradient[i];
     if (step == 0) enough = kSolved * now;
     if (now <= enough) break;
     const double turn = step == 0 ? 0 : now / before;
-    double squares = 0;
     for (std::size_t i = 0; i < unknowns; ++i) {
       way[i] = scale[i] * gradient[i] + turn * way[i];
-      squares += damping * way[i] * way[i];
+      bend[i] = damping[i] * way[i];
     }
-    multiply(way, image);
-    for (std::size_t i = 0; i < rows; ++i) squares += weight[i] * image[i] * image[i];
+    // The rows of a block are no other's, and in the cache: one pass over the coefficients does.
+    std::fill(rows.begin(), rows.end(), 0.0);
+    for (const Block& block : blocks) {
+      add_gains(block, way, rows);
+      for (std::uint32_t i = block.first_row; i < block.last_row; ++i) rows[i] *= weight[i];
+      add_gradients(block, rows, bend);
+    }
+    double squares = 0;
+    for (std::size_t i = 0; i < unknowns; ++i) squares += way[i] * bend[i];
     const double length = now / squares;
-    for (std::size_t i = 0; i < unknowns; ++i) x[i] += length * way[i];
-    for (std::size_t i = 0; i < rows; ++i) residual[i] -= length * weight[i] * image[i];
+    for (std::size_t i = 0; i < unknowns; ++i) {
+      x[i] += length * way[i];
+      gradient[i] -= length * bend[i];
+    }
     before = now;
   }
   return x;

@@ -21,6 +21,7 @@ struct LinearSystem {
   struct Block {
     std::vector<Exchange> exchanges;
     std::vector<Coefficient> coefficients;
+    std::uint32_t first_row = 0, last_row = 0;  ///< its cells' rows, without the last
     std::size_t cells_off = 0;
   };
   std::vector<Block> blocks;
@@ -32,13 +33,14 @@ struct LinearSystem {
   /// The shortest move of the unknowns that gives what is missing, nearly: conjugate gradients for the normal
   /// equations, in which rows that miss much weigh less, as cost() has it; damped and stopped early, so that
   /// unknowns do not swing on which volumes hardly depend.
-  [[nodiscard]] std::vector<double> solve(std::size_t unknowns, double damping) const;
+  [[nodiscard]] std::vector<double> solve(const std::vector<double>& damping) const;
 
  private:
-  [[nodiscard]] std::vector<double> preconditioner(const std::vector<double>& weight, std::size_t unknowns,
-                                                   double damping) const;
-  void multiply(const std::vector<double>& x, std::vector<double>& rows) const;
-  void multiply_transposed(const std::vector<double>& rows, std::vector<double>& x) const;
+  [[nodiscard]] std::vector<double> preconditioner(const std::vector<double>& weight,
+                                                   const std::vector<double>& damping) const;
+  static void add_gains(const Block& block, const std::vector<double>& move, std::vector<double>& rows);
+  static void add_gradients(const Block& block, const std::vector<double>& rows,
+                            std::vector<double>& gradient);
 };
 
 /// The cost of what is missing in a row: its square while that is small, from there on growing less (Huber

@@ -24,7 +24,8 @@ void Reconstruction::join_points() {
               other[2] >= lattice_.points(2))
             continue;
           const std::uint32_t q = lattice_.point_index(other);
-          if (lattice_.is_one_region(lattice_.owner(p), lattice_.owner(q))) join(p, q);
+          if (parent_[p] != parent_[q] && lattice_.is_one_region(lattice_.owner(p), lattice_.owner(q)))
+            join(p, q);
         }
       }
     }

@@ -19,6 +19,10 @@ struct SiteCell {
   struct Node {
     std::array<std::uint8_t, 4> points;
     std::array<double, 4> weights;
+    [[nodiscard]] double interpolate(const std::array<double, kNeighbours>& values) const {
+      return weights[0] * values[points[0]] + weights[1] * values[points[1]] +
+             weights[2] * values[points[2]] + weights[3] * values[points[3]];
+    }
   };
   struct Part {
     std::array<std::uint16_t, 4> nodes;

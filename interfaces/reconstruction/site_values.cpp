@@ -97,6 +97,12 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
   });
   const auto find = [&](std::size_t site, std::vector<std::uint16_t>& found) {
     found.clear();
+    if (sole_[site] < materials) {
+      bool alone = true;
+      sites.for_each_neighbour(
+          site, [&](std::size_t other, int, int, int) { alone = alone && sole_[other] == sole_[site]; });
+      if (alone) return;
+    }
     const auto add = [&](std::size_t m) {
       const auto number = static_cast<std::uint16_t>(m);
       if (std::find(found.begin(), found.end(), number) == found.end()) found.push_back(number);

@@ -24,7 +24,7 @@ constexpr double kFast = 0.01;
 /// Of the domain.
 constexpr double kTotalTolerance = 2e-11;
 /// What is missing may go to all mixed cells alike where it is no more than this part of each.
-constexpr double kLittle = 1e-4;
+constexpr double kLittle = 2e-4;
 /// Otherwise, an offset's share at sites round which no mixed cell is off; the power of the part of those
 /// that are.
 constexpr double kLeastShare = 1e-4;
@@ -37,21 +37,34 @@ constexpr double kMostShift = 0.1;
 class TotalClosing {
  public:
   TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
-      : data_(data), values_(values), cells_(cells), step_(data.grid.least_spacing()) {}
+      : data_(data),
+        values_(values),
+        cells_(cells),
+        step_(data.grid.least_spacing()),
+        is_off_(data.grid.site_count(), 0) {}
 
   void run(const IdVector<MaterialId, double>& wanted, Progress& progress) {
     const auto count = static_cast<Eigen::Index>(data_.materials.size());
     if (count < 2) return;
-    find_shares(missing_of(measure_totals(nullptr), wanted).lpNorm<Eigen::Infinity>());
-    const double domain = data_.grid.domain().volume();
+    Eigen::SparseMatrix<double> growth(count, count);
+    const auto measure_missing = [&](bool newton) {
+      return missing_of(measure_totals(newton ? &growth : nullptr), wanted);
+    };
+    // Little may go to all mixed cells alike. Of more than that cells whose volumes are right get nearly
+    // nothing: it goes where cells are off anyway.
+    shares_.assign(values_.entries().size(), 1);
+    Eigen::VectorXd missing = measure_missing(true);
+    const double domain = data_.grid.domain().volume(),
+                 cell = domain / static_cast<double>(data_.grid.site_count());
+    if (missing.lpNorm<Eigen::Infinity>() > kLittle * cell * static_cast<double>(values_.mixed().size())) {
+      find_shares();
+      missing = measure_missing(true);
+    }
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     double before = std::numeric_limits<double>::infinity();  // missing at most
     bool newton = true;
     for (int round = 0; round < kMostRounds; ++round) {
       progress.step("closing volumes", static_cast<double>(round) / kMostRounds);
-      Eigen::SparseMatrix<double> growth(count, count);
-      const std::vector<double> totals = measure_totals(newton ? &growth : nullptr);
-      const Eigen::VectorXd missing = missing_of(totals, wanted);
       const double most = missing.lpNorm<Eigen::Infinity>();
       if (most <= kTotalTolerance * domain) return;
       if (newton) {
@@ -59,8 +72,6 @@ class TotalClosing {
         if (!(scale > 0)) return;
         solver.compute(growth + diagonal(count, 1e-9 * scale));
       }
-      newton = round == 0 || most > kFast * before;
-      before = most;
       Eigen::VectorXd offsets = solver.solve(missing);
       offsets.array() -= offsets.mean();
       for (std::size_t e = 0; e < shares_.size(); ++e) {
@@ -68,11 +79,13 @@ class TotalClosing {
         const double offset = shares_[e] * offsets[static_cast<Eigen::Index>(values_.whole(entry.material))];
         shift(entry, std::clamp(offset, -kMostShift * step_, kMostShift * step_));
       }
+      newton = round == 0 || most > kFast * before;
+      before = most;
+      missing = measure_missing(newton);
     }
   }
 
  private:
-  static constexpr std::size_t kChunk = 256;
   /// A site's own cell counts as much as so many of its neighbours'.
   static constexpr int kOwnCount = 3;
 
@@ -88,34 +101,19 @@ class TotalClosing {
     return missing;
   }
 
-  /// Little may go to all mixed cells alike. Of more than that cells whose volumes are right get nearly
-  /// nothing: it goes where cells are off anyway.
-  void find_shares(double missing) {
-    const double volume = data_.grid.domain().volume() / static_cast<double>(data_.grid.site_count());
-    if (missing <= kLittle * volume * static_cast<double>(values_.mixed().size())) {
-      shares_.assign(values_.entries().size(), 1);
-      return;
-    }
-    std::vector<char> is_mixed(data_.grid.site_count(), 0), is_off(is_mixed);
-    parallel_chunks(values_.mixed().size(), kChunk, [&](std::size_t begin, std::size_t end) {
-      CellVolumes cell(data_.grid, values_, cells_);
-      for (std::size_t n = begin; n < end; ++n) {
-        const std::uint32_t site = values_.mixed()[n];
-        cell.go_to(site);
-        cell.measure();
-        is_mixed[site] = 1;
-        is_off[site] = cell.greatest_difference() > kCellOff ? 1 : 0;
-      }
-    });
+  /// By how many of the mixed cells round a site are off, as they were measured last.
+  void find_shares() {
+    std::vector<char> is_mixed(is_off_.size(), 0);
+    for (const std::uint32_t site : values_.mixed()) is_mixed[site] = 1;
     const GridSites sites(data_.grid);
     shares_.clear();
     for (std::size_t site = 0; site < is_mixed.size(); ++site) {
       const std::span<const Entry> own = static_cast<const SiteValues&>(values_).at(site);
       if (own.empty()) continue;
-      int mixed = kOwnCount * is_mixed[site], off = kOwnCount * is_off[site];
+      int mixed = kOwnCount * is_mixed[site], off = is_mixed[site] * kOwnCount * is_off_[site];
       sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
         mixed += is_mixed[other];
-        off += is_off[other];
+        off += is_mixed[other] * is_off_[other];
       });
       const double part = mixed == 0 ? 1 : std::pow(static_cast<double>(off) / mixed, kSharePower);
       shares_.insert(shares_.end(), own.size(), kLeastShare + (1 - kLeastShare) * part);
@@ -144,7 +142,7 @@ class TotalClosing {
 
   /// The materials' volumes in the domain, and, where that is wanted, how they grow with offsets: few of many
   /// materials meet.
-  std::vector<double> measure_totals(Eigen::SparseMatrix<double>* growth) const {
+  std::vector<double> measure_totals(Eigen::SparseMatrix<double>* growth) {
     struct Sum {
       std::vector<double> volumes;
       std::vector<std::array<std::uint16_t, 2>> pairs;
@@ -167,6 +165,7 @@ class TotalClosing {
           }
           cell.go_to(site);
           const std::vector<double>& parts = cell.measure(growth != nullptr);
+          is_off_[site] = cell.greatest_difference() > kCellOff ? 1 : 0;
           for (std::size_t m = 0; m < parts.size(); ++m)
             sum.volumes[cell.materials()[m].number] += parts[m] * volume;
           for (const CellVolumes::Pair& pair : cell.pairs()) {
@@ -202,6 +201,7 @@ class TotalClosing {
   SiteValues& values_;
   const SiteCells& cells_;
   double step_;
+  std::vector<char> is_off_;    // by site
   std::vector<double> shares_;  // by entry: how much of an offset it gets
 };
 

@@ -28,15 +28,18 @@ constexpr double kLeastJoined = 2e-2;
 /// Rounds end when no more cells, as a part of all, are off, or when both their number and the system's cost
 /// gain less; where many are still off after the first rounds, as where fractions are not those of a sharp
 /// interface, when they gain less than that.
-constexpr double kMostOff = 6e-3, kLeastGain = 1e-2, kManyOff = 0.1, kLeastGainOfMany = 4e-2;
+constexpr double kMostOff = 6e-3, kLeastGain = 1e-2, kManyOff = 0.1, kLeastGainOfMany = 6e-2;
 constexpr int kFirstRounds = 4;
 /// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
-/// would make the surface rough. It falls from round to round, to the least.
-constexpr double kDamping = 1e-3, kDampingFalls = 0.6, kLeastDamping = 1e-4;
-/// Steps are halved as long as they are above this, and moves that are smaller, in cells, leave what was
-/// measured as it is.
-constexpr double kLeastShare = 0.05, kStill = 1e-6;
+/// would make the surface rough. It falls from round to round, between these limits, but rises where a move
+/// has led too far: where the cost round a site becomes greater than so many times what it was (Levenberg
+/// 1944 and Marquardt 1963, with a damping of its own for each value).
+constexpr double kDamping = 1e-3, kDampingFalls = 0.6, kDampingRises = 4, kTooFar = 1.5;
+constexpr double kLeastDamping = 1e-4, kMostDamping = 1;
+/// How often a move is halved where it makes costs greater.
 constexpr int kMostHalvings = 4;
+/// Moves that are smaller, in cells, leave what was measured as it is.
+constexpr double kStill = 1e-6;
 
 class Correction {
  public:
@@ -106,16 +109,16 @@ class Correction {
 
   bool correct(std::size_t site, CellVolumes& cell) {
     cell.go_to(site);
-    cell.measure();
+    const std::vector<double>& volumes = cell.measure();
     if (cell.greatest_difference() <= kFarOff) return false;
     std::vector<std::size_t> present;
     for (std::size_t m = 0; m < cell.materials().size(); ++m) {
       if (cell.materials()[m].fraction > 0) present.push_back(m);
     }
     if (present.size() == 2) {
-      raise(cell, present[0], present[1]);
+      raise(cell, present[0], present[1], volumes);
     } else {
-      for (const std::size_t m : present) raise(cell, m, m);
+      for (const std::size_t m : present) raise(cell, m, m, m == present[0] ? volumes : cell.measure());
     }
     for (std::size_t row = 0; row < cell.rows(); ++row) {
       const std::uint32_t entry = cell.entry(row, SiteCell::kSelf);
@@ -125,8 +128,9 @@ class Correction {
   }
 
   /// Raises the values of the m-th material, and lowers those of the n-th as much where that is another,
-  /// until the m-th volume is right, by two steps of the secant method: volumes grow with values.
-  void raise(CellVolumes& cell, std::size_t m, std::size_t n) const {
+  /// until the m-th volume is right, by two steps of the secant method: volumes, here as they are before,
+  /// grow with values.
+  void raise(CellVolumes& cell, std::size_t m, std::size_t n, const std::vector<double>& volumes) const {
     const double most = values_.greatest();
     cell.keep();
     const auto set = [&](double shift) {
@@ -134,7 +138,7 @@ class Correction {
       cell.move(m, part, most);
       if (m != n) cell.move(n, -part, most);
     };
-    const double before = cell.measure()[m], missing = cell.materials()[m].fraction - before;
+    const double before = volumes[m], missing = cell.materials()[m].fraction - before;
     const double guess = std::clamp(2.5 * missing * step_, -step_, step_);
     if (guess == 0) return;
     set(guess);
@@ -198,11 +202,11 @@ class Correction {
     linearise(system);
     double best = system.cost();
     std::size_t off = system.cells_off();
-    double damping = kDamping;
+    damping_.assign(unknowns_.size(), kDamping / (step_ * step_));
     for (int round = 0; round < kMostRounds; ++round) {
       progress.step("correcting volumes", static_cast<double>(round) / kMostRounds);
       if (static_cast<double>(off) <= kMostOff * static_cast<double>(cells_to_correct_.size())) return;
-      std::vector<double> move = system.solve(unknowns_.size(), damping / (step_ * step_));
+      std::vector<double> move = system.solve(damping_);
       for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);
       const double sum = step(system, move, best);
       const std::size_t off_before = off;
@@ -214,40 +218,46 @@ class Correction {
           sum > left * best && static_cast<double>(off) > left * static_cast<double>(off_before);
       best = std::min(sum, best);
       if (settled) return;
-      damping = std::max(kDampingFalls * damping, kLeastDamping);
     }
   }
 
-  /// Moves values as far along a move as brings volumes nearer to what they should be; where no share of the
-  /// whole move does it is shortened only where it leads too far, and where nothing helps values stay.
-  /// Returns the system's cost then.
+  /// Moves values along a move. Unless that makes costs less it is shortened, first where it makes them
+  /// greater, then everywhere; where nothing helps values stay. Returns the system's cost then.
   double step(LinearSystem& system, const std::vector<double>& move, double best) {
-    std::vector<double> start, shares(unknowns_.size());
+    std::vector<double> start, shares(unknowns_.size(), 1);
     for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
-    const std::vector<double> missing = system.missing;
+    const std::vector<double> before = costs_round_sites(system.missing);
     const auto try_shares = [&] {
       place(start, move, shares);
       linearise(system);
       return system.cost();
     };
-    for (double share = 1; share > kLeastShare; share *= 0.5) {
-      std::fill(shares.begin(), shares.end(), share);
-      if (const double sum = try_shares(); sum <= best) return sum;
-    }
-    const std::vector<double> before = costs_round_sites(missing);
-    std::fill(shares.begin(), shares.end(), 1);
-    double sum = try_shares();
-    for (int halving = 1; halving <= kMostHalvings; ++halving) {
+    for (int halving = 0; halving <= kMostHalvings; ++halving) {
+      const double sum = try_shares();
       const std::vector<double> after = costs_round_sites(system.missing);
+      if (halving == 0) damp(before, after);
+      if (sum <= best) return sum;
       for (std::size_t i = 0; i < unknowns_.size(); ++i) {
         if (after[site_of_[i]] > before[site_of_[i]])
-          shares[i] = halving < kMostHalvings ? 0.5 * shares[i] : 0;
+          shares[i] = halving + 1 < kMostHalvings ? 0.5 * shares[i] : 0;
       }
-      sum = try_shares();
     }
-    if (sum <= best) return sum;
+    for (int halving = 1; halving <= kMostHalvings; ++halving) {
+      std::fill(shares.begin(), shares.end(), std::ldexp(1.0, -halving));
+      if (const double sum = try_shares(); sum <= best) return sum;
+    }
     std::fill(shares.begin(), shares.end(), 0);
     return try_shares();
+  }
+
+  /// Adapts the damping to what a whole move has done.
+  void damp(const std::vector<double>& before, const std::vector<double>& after) {
+    const double unit = 1 / (step_ * step_);
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+      const bool too_far = after[site_of_[i]] > kTooFar * before[site_of_[i]];
+      damping_[i] = std::clamp(damping_[i] * (too_far ? kDampingRises : kDampingFalls), kLeastDamping * unit,
+                               kMostDamping * unit);
+    }
   }
 
   /// The costs of what is missing in the cells of a site and its neighbours, by site.
@@ -294,6 +304,8 @@ class Correction {
       LinearSystem::Block& block = system.blocks[begin / kBlock];
       block.exchanges.clear();
       block.coefficients.clear();
+      block.first_row = row_of_[begin];
+      block.last_row = row_of_[end];
       block.cells_off = 0;
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
@@ -336,6 +348,7 @@ class Correction {
   std::vector<std::uint32_t> unknowns_;    // entries that are moved
   std::vector<std::uint32_t> site_of_;     // of an unknown
   std::vector<std::uint32_t> unknown_of_;  // by entry
+  std::vector<double> damping_;            // by unknown
 };
 
 }  // namespace
