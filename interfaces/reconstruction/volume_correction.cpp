@@ -26,8 +26,7 @@ constexpr double kIntruded = 1e-4;
 /// Cells are corrected again where more than this part of them has joined.
 constexpr double kLeastJoined = 2e-2;
 /// Rounds end when no more cells, as a part of all, are off, or when both their number and the system's cost
-/// gain less; where many are still off after the first rounds, as where fractions are not those of a sharp
-/// interface, when they gain less than that.
+/// gain less; where many are still off after the first rounds, as of smeared fractions, when less than that.
 constexpr double kMostOff = 6e-3, kLeastGain = 1e-2, kManyOff = 0.1, kLeastGainOfMany = 6e-2;
 constexpr int kFirstRounds = 4;
 /// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
@@ -369,11 +368,12 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
       if (values.at(site).empty()) continue;
       cell.go_to(site);
       std::vector<double> volumes = cell.measure();
-      for (const VolumeMove& move : std::ranges::equal_range(moves, site, {}, &VolumeMove::site)) {
+      auto move = std::ranges::lower_bound(moves, site, {}, &VolumeMove::site);
+      for (; move != moves.end() && move->site == site; ++move) {
         for (std::size_t m = 0; m < volumes.size(); ++m) {
           const MaterialId material = values.material(cell.materials()[m].number);
-          if (material == move.from) volumes[m] -= move.volume;
-          if (material == move.to) volumes[m] += move.volume;
+          if (material == move->from) volumes[m] -= move->volume;
+          if (material == move->to) volumes[m] += move->volume;
         }
       }
       for (std::size_t m = 0; m < volumes.size(); ++m)

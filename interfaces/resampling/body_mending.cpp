@@ -127,8 +127,10 @@ void Resampler::move_back(const Distances& originals, const std::vector<VertexId
 /// whether it did.
 bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
   const BodyFaults before = bodies_->faults(options_.interface_error);
-  // Interfaces that conservation moves too could be moved so far that no cell is within the target.
-  if (before.torn == 0 || options_.conserve || mending_is_hopeless_) return false;
+  // Interfaces that conservation moves too, or that distances to vertices displace, could be moved so far that
+  // no cell is within the target.
+  const bool moved_otherwise = options_.conserve || options_.distance != DistanceMode::kExact;
+  if (before.torn == 0 || moved_otherwise || mending_is_hopeless_) return false;
   const bool within = comparison_->within();
   find_thin_places();
   const Distances originals = raise_torn_bodies();

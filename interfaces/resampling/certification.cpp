@@ -20,7 +20,7 @@ constexpr int kMostRounds = 20;
 constexpr int kMostPatience = 3;
 /// Torn bodies are mended before cells are split for them where that leaves one fault of so many, and
 /// in the end where it leaves one of fewer.
-constexpr std::size_t kMendedPart = 8, kMendedPartAtEnd = 2;
+constexpr std::size_t kMendedPart = 6, kMendedPartAtEnd = 2;
 /// Cells this small, in relation to the target, are not split further: what is wrong there does not go away,
 /// as where the input's interfaces have an open border and the approximation closes the gap.
 constexpr double kFinestForInput = 1e-3;

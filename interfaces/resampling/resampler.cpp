@@ -80,7 +80,11 @@ CellSet Resampler::cells() const {
 
 Resampler::Priority Resampler::priority(TetrahedronId t) const {
   const CellRecord& cell = hierarchy_.payload(t);
-  if (cell.interface.distance > estimate_target()) {
+  // Near a corner of a small cell there need be no vertex of the input's triangles: what distances to vertices
+  // lose there, they would lose in smaller cells too.
+  const bool too_small = options_.distance == DistanceMode::kNearestVertex &&
+                         frame(t).diameter() <= options_.interface_error;
+  if (cell.interface.distance > estimate_target() && !too_small) {
     return {cell.interface.lost ? 2 : 1, cell.interface.distance / estimate_target()};
   }
   Priority result;

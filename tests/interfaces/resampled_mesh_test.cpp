@@ -103,6 +103,29 @@ TEST(Resampler, NearestVertexOnManyRoots) {
   EXPECT_NO_THROW(resampler.hierarchy().validate());
 }
 
+/// Small cells at an interface may have no vertex of it near their corners; they are not split for that.
+TEST(Resampler, NearestVertexSplitsNoCellsBelowTheError) {
+  const ResamplingSource source =
+      make_mesh_source(scene_interfaces(make_scene("voronoi10"), 0.3), {{0, 0, 0}, {1, 1, 1}});
+  ResamplingOptions options;
+  options.interface_error = 0.02;
+  options.distance = DistanceMode::kNearestVertex;
+  options.certify = false;
+  options.max_tetrahedra = 500'000;
+  Resampler resampler(source, options);
+  resampler.refine();
+  const auto& hierarchy = resampler.hierarchy();
+  EXPECT_LT(hierarchy.leaf_count(), *options.max_tetrahedra);
+  double smallest = 1;
+  hierarchy.for_each_leaf([&](TetrahedronId t) {
+    const auto v = hierarchy.vertices(t);
+    const Tetrahedron cell({hierarchy.position(v[0]), hierarchy.position(v[1]), hierarchy.position(v[2]),
+                            hierarchy.position(v[3])});
+    smallest = std::min(smallest, cell.diameter());
+  });
+  EXPECT_GE(smallest, 0.5 * options.interface_error);
+}
+
 /// A layer thinner than the sites still has fields: from sites that hold some of its material.
 TEST(GridFieldSource, ThinLayersHaveMixedFields) {
   MultiMaterialData data;
