@@ -17,24 +17,6 @@ inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
   return values[0] * w[0] + values[1] * w[1] + values[2] * w[2] + values[3] * w[3];
 }
 
-/// A power of two that brings the values of a problem away from those so small that sums of their parts are
-/// rounded to nothing; 1 where they are not.
-inline double growth_of(const OwnershipProblem& problem) {
-  constexpr double kSmall = 0x1p-600, kGrowth = 0x1p600;
-  for (const LinearFunction& f : problem.functions) {
-    for (const double value : f.values) {
-      if (std::abs(value) > kSmall) return 1;
-    }
-  }
-  return kGrowth;
-}
-
-inline void scale(OwnershipProblem& problem, double factor) {
-  for (LinearFunction& f : problem.functions) {
-    for (double& value : f.values) value *= factor;
-  }
-}
-
 /// Divides a convex piece of a tetrahedron by owner: cuts it where two functions are equal, until one
 /// contender is left. Each cut takes a function or a contender away on either side. `Piece` has corners() and
 /// cut(d, positive, above, below). Memory is kept from one piece to the next.
@@ -52,11 +34,6 @@ class Divider {
   template <class Emit>
   void divide(const OwnershipProblem& problem, const Piece& piece, Emit&& emit) {
     problem_ = &problem;
-    if (const double growth = growth_of(problem); growth != 1) {
-      scaled_ = problem;
-      scale(scaled_, growth);
-      problem_ = &scaled_;
-    }
     State& state = at(0);
     state.contenders.clear();
     state.functions.clear();
@@ -365,7 +342,6 @@ class Divider {
   }
 
   const OwnershipProblem* problem_ = nullptr;
-  OwnershipProblem scaled_;
   std::vector<std::unique_ptr<State>> states_;
 };
 

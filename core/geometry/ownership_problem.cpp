@@ -8,6 +8,14 @@
 
 namespace adamas {
 
+void OwnershipProblem::add_function(std::array<double, 4> values, std::uint64_t key) {
+  for (double& value : values) {
+    if (std::abs(value) < kLeastValue) value = 0;
+  }
+  functions.push_back({values, key});
+  ++candidates.back().count;
+}
+
 double OwnershipProblem::value(const Candidate& candidate, const Weights& weights) const {
   double least = evaluate(functions[candidate.first].values, weights);
   for (std::uint32_t f = 1; f < candidate.count; ++f) {
@@ -99,21 +107,10 @@ void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t
   });
 }
 
-bool all_zero(const OwnershipProblem& problem) {
-  return std::all_of(problem.functions.begin(), problem.functions.end(),
-                     [](const LinearFunction& f) { return f.values == std::array<double, 4>{}; });
-}
-
 }  // namespace
 
 void keep_owners(OwnershipProblem& problem) {
   if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
-  if (const double growth = growth_of(problem); growth != 1 && !all_zero(problem)) {
-    scale(problem, growth);
-    keep_owners(problem);
-    scale(problem, 1 / growth);
-    return;
-  }
   drop_hopeless(problem);
   double size = 0;
   for (const LinearFunction& f : problem.functions) {

@@ -17,6 +17,8 @@ struct LinearFunction {
 /// least of its linear functions, and the owner of a point is the candidate with the greatest value there.
 /// Questions need candidates that have a function each.
 struct OwnershipProblem {
+  /// Products of smaller values with the weights of points where functions cross would be rounded to nothing.
+  static constexpr double kLeastValue = 0x1p-300;
   struct Candidate {
     std::uint32_t owner;  ///< a body or material index
     std::uint32_t first;  ///< its functions are functions[first, first + count)
@@ -33,10 +35,8 @@ struct OwnershipProblem {
   void add_candidate(std::uint32_t owner) {
     candidates.push_back({owner, static_cast<std::uint32_t>(functions.size()), 0});
   }
-  void add_function(const std::array<double, 4>& values, std::uint64_t key) {
-    functions.push_back({values, key});
-    ++candidates.back().count;
-  }
+  /// Values below `kLeastValue` count as zero.
+  void add_function(std::array<double, 4> values, std::uint64_t key);
   /// Value of a candidate at a point given by barycentric weights.
   [[nodiscard]] double value(const Candidate& candidate, const std::array<double, 4>& weights) const;
   /// Owner of the point: greatest value, ties by key.

@@ -4,7 +4,7 @@
 namespace adamas {
 namespace {
 
-TEST(FuzzCorpus, OwnerKernel) { EXPECT_EQ(fuzz::replay("owner_kernel", fuzz::owner_kernel), 25u); }
+TEST(FuzzCorpus, OwnerKernel) { EXPECT_EQ(fuzz::replay("owner_kernel", fuzz::owner_kernel), 26u); }
 
 }  // namespace
 }  // namespace adamas
