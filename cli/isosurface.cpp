@@ -19,7 +19,7 @@
 #include "core/io/surface_writer.h"
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_normals.h"
-#include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -11,7 +11,7 @@
 #include "core/geometry/length_limits.h"
 #include "core/io/multi_material_reader.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

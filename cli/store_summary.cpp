@@ -5,8 +5,8 @@
 
 #include "cli/store_input.h"
 #include "cli/volume_places.h"
-#include "isosurface/storage/sample_dispatch.h"
 #include "isosurface/storage/sample_range.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

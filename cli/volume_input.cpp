@@ -14,7 +14,7 @@
 #include "core/io/volume_format.h"
 #include "core/io/volume_stack.h"
 #include "core/io/xml_tags.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas {
 

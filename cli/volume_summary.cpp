@@ -12,7 +12,7 @@
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
-#include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/geometry/contact_mesh.h"
+#include "core/data/contact_mesh.h"
 #include "datasets/local_scene.h"
 #include "datasets/scene_integral.h"
 

@@ -1,7 +1,7 @@
 #include "interfaces/mesh/extraction.h"
 
 #include "core/base/parallel.h"
-#include "core/geometry/contact_mesh.h"
+#include "core/data/contact_mesh.h"
 
 namespace adamas {
 

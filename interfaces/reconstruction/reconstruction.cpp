@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/geometry/contact_mesh.h"
+#include "core/data/contact_mesh.h"
 #include "interfaces/reconstruction/flakes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/total_closing.h"

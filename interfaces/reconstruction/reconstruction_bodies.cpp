@@ -4,7 +4,7 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "core/geometry/contact_mesh.h"
+#include "core/data/contact_mesh.h"
 #include "core/geometry/edge_key.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/reconstruction/reconstruction.h"

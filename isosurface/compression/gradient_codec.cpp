@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "isosurface/storage/byte_stream.h"
+#include "isosurface/compression/byte_stream.h"
 
 namespace adamas {
 namespace {

@@ -10,7 +10,7 @@
 #include "isosurface/compression/interpolation_cells.h"
 #include "isosurface/compression/interpolation_prediction.h"
 #include "isosurface/compression/residual_token.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

@@ -5,7 +5,7 @@
 
 #include "isosurface/compression/wide_lanes.h"
 #include "isosurface/preprocessing/octant_stencils.h"
-#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/volume/error_scale.h"
 
 namespace adamas {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/compression/height_grid.h"
 #include "isosurface/compression/parity_cells.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

@@ -9,8 +9,8 @@
 
 #include "isosurface/compression/bit_stream.h"
 #include "isosurface/compression/split_edge_prediction.h"
-#include "isosurface/storage/page.h"
-#include "isosurface/storage/z_order.h"
+#include "isosurface/volume/page.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas {
 

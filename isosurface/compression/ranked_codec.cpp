@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/base/assert.h"
+#include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/page_order.h"
 #include "isosurface/compression/wide_lanes.h"
-#include "isosurface/storage/byte_stream.h"
 
 namespace adamas {
 namespace {

@@ -10,7 +10,7 @@
 #include "isosurface/compression/bit_stream.h"
 #include "isosurface/compression/range_coder.h"
 #include "isosurface/compression/residual_token.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas {
 

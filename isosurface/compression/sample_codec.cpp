@@ -4,10 +4,10 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/interpolation_codec.h"
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/split_edge_codec.h"
-#include "isosurface/storage/byte_stream.h"
 
 namespace adamas {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "isosurface/compression/sample_ranks.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

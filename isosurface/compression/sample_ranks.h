@@ -8,7 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <type_traits>
 
 #include "core/lattice/diamond_type.h"
 #include "core/lattice/lattice_point.h"
@@ -32,27 +30,6 @@ constexpr std::array<LatticePoint, 2> predictors(LatticePoint p,
 /// The prediction, of samples as `ordered` gives them.
 constexpr std::uint32_t predicted(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint32_t>((std::uint64_t{a} + b) / 2);
-}
-
-/// Samples as unsigned integers in the order of their values, every bit kept: NaN and -0 too.
-constexpr std::uint32_t ordered(std::uint8_t sample) { return sample; }
-constexpr std::uint32_t ordered(std::uint16_t sample) { return sample; }
-constexpr std::uint32_t ordered(std::int16_t sample) { return static_cast<std::uint16_t>(sample) ^ 0x8000u; }
-constexpr std::uint32_t ordered(float sample) {
-  const auto word = std::bit_cast<std::uint32_t>(sample);
-  return (word & 0x80000000u) != 0 ? ~word : word | 0x80000000u;
-}
-
-/// The inverse.
-template <class Sample>
-constexpr Sample from_ordered(std::uint32_t value) {
-  if constexpr (std::is_same_v<Sample, float>) {
-    return std::bit_cast<float>((value & 0x80000000u) != 0 ? value & 0x7fffffffu : ~value);
-  } else if constexpr (std::is_same_v<Sample, std::int16_t>) {
-    return static_cast<std::int16_t>(value ^ 0x8000u);
-  } else {
-    return static_cast<Sample>(value);
-  }
 }
 
 }  // namespace adamas

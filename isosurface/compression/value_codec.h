@@ -9,7 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/compression/context_coder.h"
 #include "isosurface/compression/known_errors.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "isosurface/compression/eight_lanes.h"
-#include "isosurface/compression/split_edge_prediction.h"
 #include "isosurface/compression/wide_lanes.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "isosurface/compression/height_grid.h"
 #include "isosurface/compression/parity_cells.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

@@ -9,7 +9,7 @@
 
 #include "isosurface/compression/parity_cells.h"
 #include "isosurface/compression/row_bytes.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

@@ -12,7 +12,7 @@
 #include "core/lattice/lattice_point.h"
 #include "core/lattice/point_numbers.h"
 #include "isosurface/hierarchy/indexed_hierarchy.h"
-#include "isosurface/storage/z_order.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas {
 

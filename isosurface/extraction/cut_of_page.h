@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "isosurface/extraction/surface_cut.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas {
 

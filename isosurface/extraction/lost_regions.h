@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas {
 

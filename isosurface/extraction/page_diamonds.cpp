@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "isosurface/volume/samples.h"
+
 namespace adamas {
 
 namespace {

@@ -6,6 +6,7 @@
 #include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/extraction/padded_grid.h"
 #include "isosurface/extraction/split_pages.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "isosurface/contour/contour.h"
-#include "isosurface/storage/z_order.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas {
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "isosurface/compression/wide_lanes.h"
-#include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/storage/sample_range.h"
+#include "isosurface/volume/error_scale.h"
 
 namespace adamas {
 

@@ -8,9 +8,9 @@
 
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
-#include "isosurface/compression/split_edge_prediction.h"
-#include "isosurface/preprocessing/error_scale.h"
 #include "isosurface/storage/stored_pages.h"
+#include "isosurface/volume/error_scale.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -10,6 +10,7 @@
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/subtree_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -7,6 +7,7 @@
 #include "isosurface/extraction/split_pages.h"
 #include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/extraction/surface_request.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

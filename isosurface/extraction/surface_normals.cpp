@@ -11,6 +11,7 @@
 #include "core/lattice/lattice_map.h"
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/storage/stored_gradients.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -6,6 +6,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/stored_diamonds.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

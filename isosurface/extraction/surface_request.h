@@ -8,7 +8,7 @@
 #include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas {
 

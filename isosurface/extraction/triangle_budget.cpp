@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "isosurface/storage/z_order.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "isosurface/gradients/plane_gradients.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -5,8 +5,8 @@
 
 #include "core/base/progress.h"
 #include "core/data/volume.h"
-#include "isosurface/preprocessing/preprocess.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

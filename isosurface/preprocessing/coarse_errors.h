@@ -15,7 +15,8 @@
 #include "isosurface/preprocessing/lanes.h"
 #include "isosurface/preprocessing/leaf_points.h"
 #include "isosurface/preprocessing/level_values.h"
-#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/volume/error_scale.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

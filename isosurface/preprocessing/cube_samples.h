@@ -7,10 +7,10 @@
 #include <limits>
 #include <type_traits>
 
-#include "isosurface/compression/split_edge_prediction.h"
 #include "isosurface/preprocessing/level_values.h"
 #include "isosurface/preprocessing/octant_stencils.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -5,7 +5,7 @@
 
 #include "core/geometry/tetrahedron.h"
 #include "core/lattice/diamond.h"
-#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/volume/error_scale.h"
 
 namespace adamas {
 

@@ -8,6 +8,7 @@
 #include "isosurface/preprocessing/coarse_samples.h"
 #include "isosurface/preprocessing/level_values.h"
 #include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -12,6 +12,7 @@
 #include "isosurface/preprocessing/level_values.h"
 #include "isosurface/preprocessing/page_writer.h"
 #include "isosurface/preprocessing/slab_errors.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 
@@ -145,32 +146,6 @@ void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSin
     fail("expected subtrees of depth 0, 1 or 2, found {}", options.subtree_depth);
   ADAMAS_ASSERT(sample_bytes(grid.type) == sizeof(Sample));
   Preprocessing<Sample>(grid, planes, sink, options, progress).run();
-}
-
-double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& spacing) {
-  double greatest = 0;
-  for (std::size_t a = 0; a < 4; ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      const LatticePoint edge = corners[a] - corners[b];
-      // Squares of very small or large spacings might not be numbers.
-      greatest = std::max(greatest, std::hypot(edge.i * spacing.x, edge.j * spacing.y, edge.k * spacing.z));
-    }
-  }
-  return greatest;
-}
-
-ErrorScale level_error_scale(const Vec3& spacing, int level) {
-  double greatest = 0;
-  for (const DiamondType& type : kDiamondTypes) {
-    for (std::size_t slot = 0; slot < static_cast<std::size_t>(type.tetrahedron_count); ++slot) {
-      const std::size_t next = (slot + 1) % static_cast<std::size_t>(type.tetrahedron_count);
-      greatest = std::max(
-          greatest,
-          world_diameter({-type.direction, type.direction, type.ring[slot], type.ring[next]}, spacing));
-    }
-  }
-  // A power of two: codes of the same error differ by four from level to level.
-  return ErrorScale(std::ldexp(greatest, level));
 }
 
 template void preprocess<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint8_t>&,

@@ -1,22 +1,13 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <span>
 
 #include "core/base/progress.h"
 #include "core/data/volume.h"
-#include "core/lattice/lattice_point.h"
-#include "isosurface/preprocessing/error_scale.h"
-#include "isosurface/storage/page.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
-
-/// Fills the samples of plane k, as VolumeReader::read_plane does.
-using PlaneSource = std::function<void(std::uint64_t k, std::span<std::byte> samples)>;
 
 struct PreprocessOptions {
   /// 0, 1 or 2: a tetrahedron stands for those that this many levels more of bisection make of it. Errors and
@@ -46,12 +37,5 @@ using PageSink = std::function<void(const PageId&, const Page<OrderedWord<Sample
 template <class Sample>
 void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSink<Sample>& sink,
                 const PreprocessOptions& options = {}, Progress& progress = SilentProgress::instance());
-
-/// The error scale of a level: its greatest error is the greatest diameter of the tetrahedra of the diamonds
-/// whose scale is 2^level samples.
-ErrorScale level_error_scale(const Vec3& spacing, int level);
-
-/// The greatest distance between two corners of a tetrahedron, where samples lie `spacing` apart.
-double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& spacing);
 
 }  // namespace adamas

@@ -11,6 +11,7 @@
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/level_values.h"
 #include "isosurface/preprocessing/octant_errors.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "isosurface/preprocessing/error_scale.h"
-#include "isosurface/storage/page.h"
 #include "isosurface/storage/store_format.h"
+#include "isosurface/volume/error_scale.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/arena.h"
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "isosurface/compression/split_edge_prediction.h"
-#include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

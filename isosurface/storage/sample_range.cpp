@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

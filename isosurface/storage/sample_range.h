@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "isosurface/storage/stored_pages.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

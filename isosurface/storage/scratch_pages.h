@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "isosurface/storage/page.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 

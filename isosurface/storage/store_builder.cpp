@@ -13,10 +13,10 @@
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/storage/page_summary.h"
 #include "isosurface/storage/page_tree.h"
-#include "isosurface/storage/sample_dispatch.h"
 #include "isosurface/storage/scratch_pages.h"
 #include "isosurface/storage/store_file_writer.h"
 #include "isosurface/storage/stored_pages.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -8,8 +8,8 @@
 
 #include "core/base/progress.h"
 #include "core/data/volume.h"
-#include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/storage/store_format.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

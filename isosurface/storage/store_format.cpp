@@ -7,8 +7,8 @@
 #include "core/base/checksum.h"
 #include "core/base/error.h"
 #include "core/data/anatomical_space.h"
-#include "isosurface/preprocessing/error_scale.h"
-#include "isosurface/storage/byte_stream.h"
+#include "isosurface/compression/byte_stream.h"
+#include "isosurface/volume/error_scale.h"
 
 namespace adamas {
 

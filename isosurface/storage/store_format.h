@@ -12,7 +12,7 @@
 
 #include "core/data/volume.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "isosurface/storage/byte_stream.h"
+#include "isosurface/compression/byte_stream.h"
 
 namespace adamas {
 

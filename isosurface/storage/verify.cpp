@@ -6,9 +6,9 @@
 
 #include "core/lattice/diamond.h"
 #include "isosurface/storage/page_summary.h"
-#include "isosurface/storage/sample_dispatch.h"
 #include "isosurface/storage/stored_gradients.h"
 #include "isosurface/storage/stored_pages.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "isosurface/extraction/stored_diamonds.h"
-#include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/volume/samples.h"
 #include "tests/benchmarks/support/measurement.h"
 
 namespace adamas::bench {

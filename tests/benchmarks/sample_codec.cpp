@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "datasets/buckyball.h"
-#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/volume_pages.h"
 
 namespace adamas {

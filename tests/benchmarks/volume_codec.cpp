@@ -14,8 +14,8 @@
 
 #include "core/base/parallel.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/sample_dispatch.h"
 #include "isosurface/storage/store_builder.h"
+#include "isosurface/volume/samples.h"
 #include "tests/benchmarks/peers/block_coder.h"
 #include "tests/benchmarks/support/measurement.h"
 #include "tests/benchmarks/support/volume_in_memory.h"

@@ -19,7 +19,7 @@
 #include "isosurface/gradients/direction_code.h"
 #include "isosurface/gradients/gradient_smoothing.h"
 #include "isosurface/gradients/plane_gradients.h"
-#include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/volume/samples.h"
 #include "tests/benchmarks/support/volume_in_memory.h"
 #include "tests/support/volume_pages.h"
 

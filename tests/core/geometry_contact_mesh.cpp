@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/geometry/contact_mesh.h"
+#include "core/data/contact_mesh.h"
 #include "core/geometry/tetrahedron.h"
 #include "tests/support/closed_surface.h"
 #include "tests/support/ownership_problems.h"

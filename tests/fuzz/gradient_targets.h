@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/gradient_codec.h"
-#include "isosurface/storage/byte_stream.h"
 #include "tests/fuzz/require.h"
 
 namespace adamas::fuzz {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/geometry/contact_mesh.h"
+#include "core/data/contact_mesh.h"
 #include "core/geometry/partition.h"
 #include "core/geometry/vec3.h"
 #include "tests/fuzz/require.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "isosurface/preprocessing/error_scale.h"
+#include "isosurface/volume/error_scale.h"
 
 namespace adamas {
 namespace {

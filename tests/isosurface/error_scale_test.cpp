@@ -1,4 +1,4 @@
-#include "isosurface/preprocessing/error_scale.h"
+#include "isosurface/volume/error_scale.h"
 
 #include <gtest/gtest.h>
 

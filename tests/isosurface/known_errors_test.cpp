@@ -10,6 +10,7 @@
 
 #include "isosurface/compression/value_fields.h"
 #include "isosurface/compression/value_stage.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/prepared_volume.h"
 
 namespace adamas {

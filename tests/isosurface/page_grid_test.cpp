@@ -1,4 +1,4 @@
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/volume/error_scale.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/preprocess_reference.h"
 
 namespace adamas {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/volume_pages.h"
 
 namespace adamas {

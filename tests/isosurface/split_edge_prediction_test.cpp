@@ -10,7 +10,8 @@
 
 #include "core/lattice/diamond.h"
 #include "isosurface/compression/residual_code.h"
-#include "isosurface/storage/z_order.h"
+#include "isosurface/volume/samples.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas {
 namespace {

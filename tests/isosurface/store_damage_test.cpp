@@ -6,6 +6,7 @@
 #include "core/base/checksum.h"
 #include "core/base/error.h"
 #include "isosurface/storage/verify.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/volume_store.h"
 
 namespace adamas {

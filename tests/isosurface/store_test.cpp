@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/compression/split_edge_prediction.h"
 #include "isosurface/storage/verify.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/volume_store.h"
 
 namespace adamas {

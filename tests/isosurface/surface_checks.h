@@ -11,7 +11,8 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/hierarchy/indexed_hierarchy.h"
-#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/volume/error_scale.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/volume_store.h"
 
 namespace adamas::test {

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "datasets/buckyball.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/prepared_volume.h"
 
 namespace adamas {

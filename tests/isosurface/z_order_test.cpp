@@ -1,4 +1,4 @@
-#include "isosurface/storage/z_order.h"
+#include "isosurface/volume/z_order.h"
 
 #include <gtest/gtest.h>
 

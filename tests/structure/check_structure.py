@@ -16,8 +16,11 @@ MAY_INCLUDE = {
     "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets"],
     "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "cli"],
 }
-# Within core: a folder may include those of its own layer and of lower ones.
-CORE_LAYERS = {"base": 0, "geometry": 1, "data": 1, "lattice": 1, "refinement": 2}
+# Within a module: a folder may include those before it.
+FOLDER_ORDER = {
+    "core": ["base", "geometry", "lattice", "data", "refinement"],
+    "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction"],
+}
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.
 OWNED = {
@@ -74,10 +77,12 @@ def check_project_include(root, path, target):
         yield f"includes \"{target}\" across unknown modules"
     elif there != here and there not in MAY_INCLUDE[here]:
         yield f"includes \"{target}\": {here} may not use {there}"
-    elif here == there == "core":
-        layer, other = path.split("/")[1], target.split("/")[1]
-        if CORE_LAYERS.get(other, 0) > CORE_LAYERS.get(layer, len(CORE_LAYERS)):
-            yield f"includes \"{target}\": core/{layer} lies below core/{other}"
+    elif here == there and here in FOLDER_ORDER:
+        order, folder, other = FOLDER_ORDER[here], path.split("/")[1], target.split("/")[1]
+        if folder not in order:
+            yield f"lies in {here}/{folder}, which has no place in the order of {here}'s folders"
+        elif other not in order[: order.index(folder) + 1]:
+            yield f"includes \"{target}\": {here}/{folder} lies below {here}/{other}"
 
 
 def check_heavy_header(root, path, target):

@@ -8,6 +8,7 @@
 
 #include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/storage/page_tree.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::test {
 

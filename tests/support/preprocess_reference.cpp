@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/lattice/diamond.h"
-#include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/volume/error_scale.h"
 #include "tests/support/bisection_reference.h"
 
 namespace adamas::test {

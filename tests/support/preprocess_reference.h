@@ -8,7 +8,7 @@
 
 #include "core/data/volume.h"
 #include "core/lattice/lattice_point.h"
-#include "isosurface/preprocessing/error_scale.h"
+#include "isosurface/volume/error_scale.h"
 
 namespace adamas::test {
 

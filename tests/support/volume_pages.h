@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/storage/page.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas::test {
 

@@ -13,6 +13,7 @@
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
+#include "isosurface/volume/samples.h"
 #include "tests/support/scratch.h"
 
 namespace adamas::test {

@@ -11,9 +11,8 @@
 #include "core/io/volume_reader.h"
 #include "core/io/volume_stack.h"
 #include "datasets/buckyball.h"
-#include "isosurface/compression/split_edge_prediction.h"
-#include "isosurface/storage/page.h"
-#include "isosurface/storage/sample_dispatch.h"
+#include "isosurface/volume/page.h"
+#include "isosurface/volume/samples.h"
 #include "tests/benchmarks/support/turbulence.h"
 
 namespace adamas::bench {

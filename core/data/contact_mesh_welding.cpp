@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/base/parallel.h"
-#include "core/geometry/contact_mesh.h"
+#include "core/data/contact_mesh.h"
 #include "core/geometry/edge_key.h"
 
 namespace adamas {

@@ -1,4 +1,4 @@
-#include "core/geometry/contact_mesh.h"
+#include "core/data/contact_mesh.h"
 
 #include <algorithm>
 #include <bit>

@@ -3,6 +3,9 @@
 #include <array>
 #include <cstdint>
 
+#include "core/geometry/vec3.h"
+#include "core/lattice/lattice_point.h"
+
 namespace adamas {
 
 /// Errors in six bits on a logarithmic scale (D 4.3), one scale for each level: code 0 is no error, the
@@ -23,5 +26,12 @@ class ErrorScale {
  private:
   std::array<double, kCodes> errors_{};  ///< in ascending order
 };
+
+/// The error scale of a level: its greatest error is the greatest diameter of the tetrahedra of the diamonds
+/// whose scale is 2^level samples.
+ErrorScale level_error_scale(const Vec3& spacing, int level);
+
+/// The greatest distance between two corners of a tetrahedron, where samples lie `spacing` apart.
+double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& spacing);
 
 }  // namespace adamas

@@ -1,10 +1,10 @@
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 #include <algorithm>
 #include <bit>
 
 #include "core/base/error.h"
-#include "isosurface/storage/z_order.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas {
 

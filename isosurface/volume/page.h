@@ -3,18 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
-#include "core/data/volume.h"
-#include "isosurface/storage/page_grid.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas {
-
-/// Samples as unsigned integers in the order of their values (`ordered` in
-/// isosurface/compression/split_edge_prediction.h), in as many bits as they have.
-template <class Sample>
-using OrderedWord = std::conditional_t<sizeof(Sample) == 1, std::uint8_t,
-                                       std::conditional_t<sizeof(Sample) == 2, std::uint16_t, std::uint32_t>>;
 
 /// Something of a page's points: of all 16^3 of its cube, those of coarser levels too, by place (i running
 /// fastest). Places beyond PageGrid::count hold anything.

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <type_traits>
+
+#include "core/base/assert.h"
+#include "core/data/volume.h"
+
+namespace adamas {
+
+/// Fills the samples of plane k, as VolumeReader::read_plane does.
+using PlaneSource = std::function<void(std::uint64_t k, std::span<std::byte> samples)>;
+
+/// Samples as unsigned integers in the order of their values (`ordered`), in as many bits as they have.
+template <class Sample>
+using OrderedWord = std::conditional_t<sizeof(Sample) == 1, std::uint8_t,
+                                       std::conditional_t<sizeof(Sample) == 2, std::uint16_t, std::uint32_t>>;
+
+/// Samples as unsigned integers in the order of their values, every bit kept: NaN and -0 too.
+constexpr std::uint32_t ordered(std::uint8_t sample) { return sample; }
+constexpr std::uint32_t ordered(std::uint16_t sample) { return sample; }
+constexpr std::uint32_t ordered(std::int16_t sample) { return static_cast<std::uint16_t>(sample) ^ 0x8000u; }
+constexpr std::uint32_t ordered(float sample) {
+  const auto word = std::bit_cast<std::uint32_t>(sample);
+  return (word & 0x80000000u) != 0 ? ~word : word | 0x80000000u;
+}
+
+/// The inverse.
+template <class Sample>
+constexpr Sample from_ordered(std::uint32_t value) {
+  if constexpr (std::is_same_v<Sample, float>) {
+    return std::bit_cast<float>((value & 0x80000000u) != 0 ? value & 0x7fffffffu : ~value);
+  } else if constexpr (std::is_same_v<Sample, std::int16_t>) {
+    return static_cast<std::int16_t>(value ^ 0x8000u);
+  } else {
+    return static_cast<Sample>(value);
+  }
+}
+
+/// fn with a sample of that type.
+template <class Fn>
+decltype(auto) with_sample_type(SampleType type, Fn&& fn) {
+  switch (type) {
+    case SampleType::kUint8:
+      return fn(std::uint8_t{});
+    case SampleType::kUint16:
+      return fn(std::uint16_t{});
+    case SampleType::kInt16:
+      return fn(std::int16_t{});
+    case SampleType::kFloat32:
+      break;
+  }
+  ADAMAS_ASSERT(type == SampleType::kFloat32);
+  return fn(float{});
+}
+
+}  // namespace adamas
