@@ -8,7 +8,7 @@
 #include "cli/figures.h"
 #include "cli/ledger.h"
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/errors/nested_errors.h"
+#include "interfaces/resampling/nested_errors.h"
+#include "interfaces/resampling/output.h"
 
 namespace adamas {
 
@@ -55,7 +56,7 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
   run.json["seconds"] = run.seconds;
   if (interfaces != nullptr) *interfaces = approximated_interfaces(resampler, console);
   if (mesh != nullptr) {
-    *mesh = take_mesh(resampler);
+    *mesh = resampled_mesh(resampler);
     for (std::size_t f = 0; f < run.figures.fields.size(); ++f)
       run.nested.push_back(nested_summary(resampler, f));
   }

@@ -16,10 +16,10 @@
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/grid_source.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/closest_point_tree.h"
 #include "interfaces/network/mending.h"
+#include "interfaces/source/grid_source.h"
 
 namespace adamas {
 

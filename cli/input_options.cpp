@@ -10,7 +10,7 @@
 #include "core/io/input_file.h"
 #include "core/io/network_ply.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/grid_source.h"
+#include "interfaces/source/grid_source.h"
 
 namespace adamas {
 

@@ -13,7 +13,7 @@
 #include "core/data/multi_material_data.h"
 #include "core/io/multi_material_reader.h"
 #include "interfaces/reconstruction/reconstruction.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "cli/figures.h"
-#include "interfaces/fields/field_source.h"
 #include "interfaces/probe/material_integrals.h"
+#include "interfaces/source/field_source.h"
 
 namespace adamas {
 

@@ -3,7 +3,7 @@
 #include "cli/console.h"
 #include "cli/figures.h"
 #include "core/data/interface_mesh.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

@@ -13,6 +13,7 @@
 #include "cli/simplification_options.h"
 #include "cli/usage_error.h"
 #include "core/io/array_file.h"
+#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/shortfall.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 
@@ -236,8 +237,9 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
   }
   if (!options.outputs.need_mesh()) return ledgers;
   console.step("completing fields", -1);
-  figures["cut_mesh"] = write_mesh(options.outputs, take_mesh(resampler), resampler.options().interface_error,
-                                   &resampler.source(), ledgers, session);
+  figures["cut_mesh"] =
+      write_mesh(options.outputs, resampled_mesh(resampler), resampler.options().interface_error,
+                 &resampler.source(), ledgers, session);
   return ledgers;
 }
 

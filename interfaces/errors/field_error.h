@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/geometry/tetrahedron.h"
-#include "interfaces/fields/ghost_values.h"
 #include "interfaces/ownership/cell_ownership.h"
-#include "interfaces/source.h"
+#include "interfaces/source/ghost_values.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

@@ -6,14 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "interfaces/fields/field_source.h"
-#include "interfaces/fields/ghost_values.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/ownership/interface_table.h"
+#include "interfaces/source/field_source.h"
+#include "interfaces/source/ghost_values.h"
 
 namespace adamas {
-
-class Resampler;
 
 /// A resampled mesh on its own, without its input: the leaves of the hierarchy, what their vertices know of
 /// interfaces and fields, and the errors that were measured. It answers who owns a point and what a
@@ -53,12 +51,5 @@ struct ResampledMesh {
 /// The rows that fields in the cells of a mesh are interpolated from, by vertex, then by body: those of the
 /// bodies that own a part of a cell round the vertex, and of the vertex's own.
 std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh);
-
-/// The leaves of a resampler that has refined; completes the fields that output needs.
-ResampledMesh take_mesh(Resampler& resampler);
-
-/// The interfaces that the leaves of a resampler show, between materials.
-InterfaceMesh approximated_interfaces(const Resampler& resampler,
-                                      Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

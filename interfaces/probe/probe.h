@@ -6,7 +6,7 @@
 #include "core/base/typed_id.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

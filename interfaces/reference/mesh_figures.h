@@ -11,7 +11,7 @@
 #include "interfaces/errors/field_error.h"
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/network/closest_point_tree.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

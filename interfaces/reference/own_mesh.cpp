@@ -6,6 +6,7 @@
 #include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/reference/heat_conduction.h"
 #include "interfaces/reference/peak_memory.h"
+#include "interfaces/resampling/output.h"
 
 namespace adamas {
 
@@ -90,7 +91,7 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
   const auto start = Clock::now();
   Resampler resampler(source, options, progress);
   resampler.refine();
-  const ResampledMesh mesh = take_mesh(resampler);
+  const ResampledMesh mesh = resampled_mesh(resampler);
   if (source.fields) row.field_seconds = std::max(0.0, seconds_since(start) - row.seconds);
 
   const auto extracted = extract_interfaces(mesh.table, mesh.cell_set(), source.box, progress);

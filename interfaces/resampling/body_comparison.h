@@ -5,7 +5,7 @@
 
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/network/body_topology.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

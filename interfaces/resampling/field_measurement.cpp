@@ -129,12 +129,4 @@ void Resampler::cells_in_box(const Box3& box, MaterialId material,
   }
 }
 
-void Resampler::complete_fields() {
-  if (!source_.fields) return;
-  if (!fields_active_) {
-    fields_active_ = true;
-    measure_fields(leaves(), DisplacedErrors::kLeast);
-  }
-}
-
 }  // namespace adamas

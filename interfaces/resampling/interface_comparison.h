@@ -7,7 +7,7 @@
 #include "core/base/progress.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/network/hausdorff.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

@@ -17,7 +17,7 @@
 #include "interfaces/resampling/body_comparison.h"
 #include "interfaces/resampling/interface_comparison.h"
 #include "interfaces/resampling/thin_places.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 
@@ -101,8 +101,6 @@ class Resampler {
   [[nodiscard]] BodyId owner_at(const Vec3& p) const;
   /// The leaves, and what their vertices know; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells() const;
-  /// Rows of all bodies that own a part of a leaf, at its vertices; for output.
-  void complete_fields();
 
  private:
   struct Priority {

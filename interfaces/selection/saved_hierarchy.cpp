@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "interfaces/errors/nested_errors.h"
-#include "interfaces/errors/tree_errors.h"
+#include "interfaces/resampling/nested_errors.h"
+#include "interfaces/resampling/tree_errors.h"
 
 namespace adamas {
 

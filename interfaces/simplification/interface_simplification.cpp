@@ -7,6 +7,7 @@
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/network/body_topology.h"
 #include "interfaces/network/network_mesh.h"
+#include "interfaces/resampling/output.h"
 #include "interfaces/simplification/line_shortening.h"
 #include "interfaces/simplification/openmesh_patches.h"
 #include "interfaces/simplification/patch_decimater.h"

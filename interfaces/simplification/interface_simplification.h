@@ -6,8 +6,9 @@
 #include "core/base/progress.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/resampling/interface_comparison.h"
+#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

@@ -1,7 +1,6 @@
 // Meshes selected from a saved hierarchy: tetrahedra that splits and merges make and remove in a second, with
 // the list of cells, one thread. Prints a line of JSON.
 
-#include "interfaces/resampling/resampler.h"
 #include "interfaces/selection/selection.h"
 
 #include <chrono>
@@ -11,7 +10,8 @@
 #include "core/base/parallel.h"
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
-#include "interfaces/grid_source.h"
+#include "interfaces/resampling/resampler.h"
+#include "interfaces/source/grid_source.h"
 
 int main(int argc, char** argv) {
   using namespace adamas;

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/geometry/plane_sides.h"
 #include "interfaces/cross_section/cross_section.h"
+#include "interfaces/resampling/output.h"
 #include "tests/interfaces/cross_section_meshes.h"
 #include "tests/interfaces/network_meshes.h"
 
@@ -244,7 +245,7 @@ TEST(CrossSection, APlaneInAnInterfaceShowsOneSide) {
   options.interface_error = 0.1;
   Resampler resampler(source, options);
   resampler.refine();
-  const ResampledMesh resampled = take_mesh(resampler);
+  const ResampledMesh resampled = resampled_mesh(resampler);
   EXPECT_NEAR(
       cross_section(resampled, {{0.3712, 0, 0}, {1, 0, 0}}, std::nullopt).material_area[MaterialId(1)], 1,
       1e-12);

@@ -14,9 +14,10 @@
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
 #include "datasets/scene_sampling.h"
-#include "interfaces/grid_source.h"
 #include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/resampler.h"
+#include "interfaces/source/grid_source.h"
 
 namespace adamas::test {
 
@@ -110,7 +111,7 @@ inline SceneMesh make_scene_mesh(std::string_view name, const SceneMeshOptions& 
   Resampler resampler(result.source, resampling);
   resampler.refine();
   if (resampler.certificate()) result.distance = resampler.certificate()->networks.upper;
-  result.mesh = take_mesh(resampler);
+  result.mesh = resampled_mesh(resampler);
   return result;
 }
 

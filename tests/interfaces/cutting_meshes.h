@@ -6,6 +6,7 @@
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/resampling/output.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas::test {
@@ -19,7 +20,7 @@ inline ResampledMesh resampled_scene(const std::string& name, std::uint64_t seed
   wish.cells = cells;
   wish.options.interface_error = part_of_diagonal * std::sqrt(3.0);
   ResampledScene resampled(wish);
-  ResampledMesh mesh = take_mesh(*resampled.resampler);
+  ResampledMesh mesh = resampled_mesh(*resampled.resampler);
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reference/element_errors.h"
+#include "interfaces/resampling/output.h"
 #include "tests/interfaces/mesh_cells.h"
 #include "tests/interfaces/resampler_scenes.h"
 
@@ -168,7 +169,7 @@ struct Seen {
 void expect_least(const test::SceneCase& c, std::size_t most, Seen& seen) {
   SCOPED_TRACE(c.name + " " + std::to_string(c.seed));
   test::ResampledScene resampled(c);
-  const ResampledMesh mesh = take_mesh(*resampled.resampler);
+  const ResampledMesh mesh = resampled_mesh(*resampled.resampler);
   const FieldSource& fields = *resampled.source.fields;
   const double half_width =
       std::max(c.options.interface_error, resampled.resampler->certificate()->materials.upper);

@@ -2,6 +2,7 @@
 
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reference/element_errors.h"
+#include "interfaces/resampling/output.h"
 #include "tests/interfaces/mesh_cells.h"
 #include "tests/interfaces/resampler_scenes.h"
 
@@ -54,7 +55,7 @@ void expect_honest(const std::string& name, bool meshes, double interface_error,
   c.options.field_errors.resize(6);
   c.options.field_errors[2] = field_error;
   test::ResampledScene resampled(c);
-  const ResampledMesh mesh = take_mesh(*resampled.resampler);
+  const ResampledMesh mesh = resampled_mesh(*resampled.resampler);
   std::vector<double> measured;
   std::vector<std::size_t> displaced;
   Remeasured(resampled, mesh).measure(measured, displaced);

@@ -3,6 +3,7 @@
 
 #include "datasets/random_numbers.h"
 #include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/resampling/output.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
@@ -34,7 +35,7 @@ struct WithField {
     options.ghost = mode;
     Resampler resampler(given.source, options);
     resampler.refine();
-    result = take_mesh(resampler);
+    result = resampled_mesh(resampler);
   }
   WithField(const WithField&) = delete;
 

@@ -1,11 +1,11 @@
-#include "interfaces/errors/nested_errors.h"
+#include "interfaces/resampling/nested_errors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
 
-#include "interfaces/errors/tree_errors.h"
+#include "interfaces/resampling/tree_errors.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/ownership_problems.h"
 
@@ -285,7 +285,6 @@ TEST(NestedErrors, CorrectionsAreNeverTighterAndVanishForLinearFields) {
   c.options.certify = false;
   c.options.ghost = GhostMode::kLinear;
   test::ResampledScene resampled(c);
-  resampled.resampler->complete_fields();
   const auto& hierarchy = resampled.resampler->hierarchy();
   const auto& fields = resampled.source.fields->fields();
   for (std::size_t f = 0; f < fields.size(); ++f) {

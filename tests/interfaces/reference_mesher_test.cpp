@@ -5,6 +5,7 @@
 #include "interfaces/reference/box_stitching.h"
 #include "interfaces/reference/element_errors.h"
 #include "interfaces/reference/region_naming.h"
+#include "interfaces/resampling/output.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"
 
@@ -194,7 +195,7 @@ TEST(ElementErrors, AreThoseOfTheResampler) {
   });
   const double half_width =
       std::max(c.options.interface_error, resampled.resampler->certificate()->networks.upper);
-  const ResampledMesh mesh = take_mesh(*resampled.resampler);
+  const ResampledMesh mesh = resampled_mesh(*resampled.resampler);
   const ElementErrors errors = measure_element_errors(resampled.source, measured_cells(mesh), half_width);
   const auto found = errors.figures(std::vector<char>(errors.cells.size(), 0));
   for (std::size_t f = 0; f < known.size(); ++f) {

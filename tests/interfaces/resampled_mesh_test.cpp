@@ -4,8 +4,9 @@
 #include <map>
 
 #include "core/base/error.h"
-#include "interfaces/fields/grid_field_source.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/resampling/output.h"
+#include "interfaces/source/grid_field_source.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
@@ -17,7 +18,7 @@ ResampledMesh resampled(const std::string& scene) {
   c.fields = true;
   c.options.interface_error = 0.06;
   test::ResampledScene result(c);
-  return take_mesh(*result.resampler);
+  return resampled_mesh(*result.resampler);
 }
 
 template <class Values>

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/shortfall.h"
 #include "tests/interfaces/resampler_scenes.h"
 

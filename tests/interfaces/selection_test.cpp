@@ -7,7 +7,8 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "interfaces/errors/nested_errors.h"
+#include "interfaces/resampling/nested_errors.h"
+#include "interfaces/resampling/output.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "tests/interfaces/resampler_scenes.h"
 
@@ -95,7 +96,7 @@ TEST(SavedHierarchies, HoldTheWholeMesh) {
   for (const char* name : {"tjunction", "shell3"}) {
     const Saved saved(name);
     saved.hierarchy.validate("saved");
-    const ResampledMesh mesh = whole_mesh(saved.hierarchy), expected = take_mesh(*saved.scene.resampler);
+    const ResampledMesh mesh = whole_mesh(saved.hierarchy), expected = resampled_mesh(*saved.scene.resampler);
     EXPECT_EQ(mesh.points, expected.points);
     ASSERT_EQ(mesh.cells.size(), expected.cells.size());
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {

@@ -19,6 +19,8 @@ MAY_INCLUDE = {
 # Within a module: a folder may include those before it.
 FOLDER_ORDER = {
     "core": ["base", "geometry", "lattice", "data", "refinement"],
+    "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
+                   "probe", "cross_section", "cutting", "simplification", "reference"],
     "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp

@@ -48,6 +48,13 @@ class StructureTest(unittest.TestCase):
         self.expect({"core/base/a.h": '#pragma once\n#include "core/data/grid.h"\n'}, "below core/data")
         self.expect({"interfaces/a.h": '#pragma once\n#include "source.h"\n'}, "no file of the project")
 
+    def test_order_of_folders(self):
+        mesh = {"interfaces/mesh/mesh.h": "#pragma once\n"}
+        include = '#pragma once\n#include "interfaces/mesh/mesh.h"\n'
+        self.expect({**mesh, "interfaces/resampling/a.h": include}, None)
+        self.expect({**mesh, "interfaces/network/a.h": include}, "interfaces/network lies below interfaces/mesh")
+        self.expect({**mesh, "interfaces/elsewhere/a.h": include}, "no place in the order of interfaces's folders")
+
     def test_heavy_headers(self):
         heavy = {"core/io/a.h": "#pragma once\n#include <vtkImageData.h>\n", "core/io/a.cpp": '#include "core/io/a.h"\n'}
         self.expect(heavy, None)

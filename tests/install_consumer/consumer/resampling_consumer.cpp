@@ -5,10 +5,11 @@
 
 #include "core/picture/palette.h"
 #include "datasets/scene_sampling.h"
-#include "interfaces/grid_source.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/resampler.h"
+#include "interfaces/source/grid_source.h"
 
 int main() {
   const adamas::Scene scene = adamas::make_scene("sphere");
@@ -18,7 +19,7 @@ int main() {
   options.interface_error = 0.02;
   adamas::Resampler resampler(source, options);
   resampler.refine();
-  const adamas::ResampledMesh mesh = adamas::take_mesh(resampler);
+  const adamas::ResampledMesh mesh = adamas::resampled_mesh(resampler);
   const auto volumes = adamas::body_volumes(mesh.table, mesh.cell_set());
   double worst = 0;
   for (std::size_t m = 0; m < scene.materials().size(); ++m) {

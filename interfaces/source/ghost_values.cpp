@@ -1,4 +1,4 @@
-#include "interfaces/fields/ghost_values.h"
+#include "interfaces/source/ghost_values.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,10 +1,10 @@
-#include "interfaces/errors/nested_errors.h"
+#include "interfaces/resampling/nested_errors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "interfaces/errors/tree_errors.h"
+#include "interfaces/resampling/tree_errors.h"
 
 namespace adamas {
 

@@ -1,4 +1,4 @@
-#include "interfaces/fields/linear_fit.h"
+#include "interfaces/source/linear_fit.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/geometry/vec3.h"
-#include "interfaces/fields/field_source.h"
 #include "interfaces/network/interface_network.h"
+#include "interfaces/source/field_source.h"
 
 namespace adamas {
 

@@ -4,7 +4,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
-#include "interfaces/fields/grid_field_source.h"
+#include "interfaces/source/grid_field_source.h"
 
 namespace adamas {
 

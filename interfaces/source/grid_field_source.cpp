@@ -1,4 +1,4 @@
-#include "interfaces/fields/grid_field_source.h"
+#include "interfaces/source/grid_field_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "core/base/parallel.h"
-#include "interfaces/fields/linear_fit.h"
+#include "interfaces/source/linear_fit.h"
 
 namespace adamas {
 

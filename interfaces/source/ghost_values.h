@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "interfaces/ownership/cell_ownership.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

@@ -4,7 +4,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/reconstruction.h"
-#include "interfaces/source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

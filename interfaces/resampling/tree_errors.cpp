@@ -1,4 +1,4 @@
-#include "interfaces/errors/tree_errors.h"
+#include "interfaces/resampling/tree_errors.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/interface_mesh.h"
+#include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/resampling/resampler.h"
+
+namespace adamas {
+
+/// The leaves of a resampler that has refined.
+ResampledMesh resampled_mesh(const Resampler& resampler);
+
+/// The interfaces that the leaves of a resampler show, between materials.
+InterfaceMesh approximated_interfaces(const Resampler& resampler,
+                                      Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas
