@@ -17,10 +17,10 @@ if(ADAMAS_SANITIZE)
   endif()
 endif()
 
-# adamas_library(name folder... [EXCEPT folder]): the library adamas_<name> (alias adamas::<name>) of all sources in the
-# folders.
+# adamas_library(name folder... [EXCEPT folder] [INTERNAL]): the library adamas_<name> (alias adamas::<name>) of all sources
+# in the folders; INTERNAL: it is not installed.
 function(adamas_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 library "" EXCEPT "")
+  cmake_parse_arguments(PARSE_ARGV 1 library INTERNAL EXCEPT "")
   set(sources)
   foreach(folder IN LISTS library_UNPARSED_ARGUMENTS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp
@@ -36,5 +36,7 @@ function(adamas_library name)
   target_include_directories(adamas_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                    $<INSTALL_INTERFACE:include/adamas>)
   target_link_libraries(adamas_${name} PUBLIC adamas_flags)
-  set_property(GLOBAL APPEND PROPERTY ADAMAS_LIBRARIES adamas_${name})
+  if(NOT library_INTERNAL)
+    set_property(GLOBAL APPEND PROPERTY ADAMAS_LIBRARIES adamas_${name})
+  endif()
 endfunction()

@@ -9,6 +9,8 @@
 
 namespace adamas {
 
+class Resampler;
+
 /// A hierarchy on its own, without its input: every tetrahedron of the tree, leaf or not, what its vertices
 /// know, and the errors that were measured. Any mesh that split and merge can reach from it is a choice of
 /// its cells (Selection).

@@ -11,6 +11,7 @@
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/compression/value_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
+#include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/storage/page_summary.h"
 #include "isosurface/storage/page_tree.h"
 #include "isosurface/storage/scratch_pages.h"

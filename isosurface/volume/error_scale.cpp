@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/assert.h"
+#include "core/lattice/diamond_type.h"
 
 namespace adamas {
 
