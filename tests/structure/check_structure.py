@@ -47,6 +47,7 @@ MOST_LINES = 400
 # Documents that are not part of the repository; what they say stands in docs/.
 UNKNOWN_DOCUMENT = re.compile(r"\b(SPEC|TARGETS|DESIGN)\b")
 ABSOLUTE_PATH = re.compile(r"""(?<![\w.$}/-])/(work|home|root|Users|mnt)/[\w.]""")
+TEST = re.compile(r"^(TEST|TEST_F|TEST_P|TYPED_TEST)\(", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
@@ -103,6 +104,8 @@ def check_code(root, path, text):
     is_header = path.endswith(".h")
     if is_header and not text.startswith("#pragma once\n"):
         yield "does not begin with #pragma once"
+    if path.startswith("tests/") and bool(TEST.search(text)) != path.endswith("_test.cpp"):
+        yield "files with tests, and no others, have names that end in _test.cpp"
     for quote, target in INCLUDE.findall(text):
         for pattern, modules in OWNED.items():
             if not re.fullmatch(pattern, target):

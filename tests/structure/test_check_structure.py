@@ -55,6 +55,12 @@ class StructureTest(unittest.TestCase):
         self.expect({**mesh, "interfaces/network/a.h": include}, "interfaces/network lies below interfaces/mesh")
         self.expect({**mesh, "interfaces/elsewhere/a.h": include}, "no place in the order of interfaces's folders")
 
+    def test_names_of_tests(self):
+        readme = {"tests/README.md": "# tests\n"}
+        self.expect({**readme, "tests/core/a_test.cpp": "TEST(A, B) {}\n", "tests/core/b.cpp": "int b;\n"}, None)
+        self.expect({**readme, "tests/core/a.cpp": "TEST(A, B) {}\n"}, "names that end in _test.cpp")
+        self.expect({**readme, "tests/core/a_test.cpp": "int a;\n"}, "names that end in _test.cpp")
+
     def test_heavy_headers(self):
         heavy = {"core/io/a.h": "#pragma once\n#include <vtkImageData.h>\n", "core/io/a.cpp": '#include "core/io/a.h"\n'}
         self.expect(heavy, None)
