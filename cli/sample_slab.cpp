@@ -20,13 +20,13 @@ namespace {
 /// Samples that are read at most: four for each pixel of a large picture, or a cube of 256^3.
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 24;
 
-/// What of the grid's frame the samples of a level next to the plane span.
-Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int level) {
+/// What of the grid's frame the samples of an LOD next to the plane span.
+Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
   const Box3 box = grid.frame_box();
   Box3 region, cut;
   for (const Vec3& p : clip_plane(plane, box)) cut.extend(p);
   for (int axis = 0; axis < 3; ++axis) {
-    const double step = std::ldexp(grid.spacing[axis], level);
+    const double step = std::ldexp(grid.spacing[axis], lod);
     const double layers = std::floor((box.max[axis] - box.min[axis]) / step);
     // Where it is at right angles to the axis, all of it lies where the plane does.
     const bool across = plane.axis() == axis;
@@ -66,13 +66,12 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
   if (clip_plane(in_frame, volume.frame_box()).empty())
     fail("{}: expected a plane that cuts {}, found {}", name, box_text(volume.box()), to_string(plane));
   RestoredPart part;
-  for (int level = 0; level <= PageGrid(volume.dimensions).top(); ++level) {
-    part = restored_part(volume, level, layers_at(volume, in_frame, level), name);
+  for (int lod = 0; lod <= PageGrid(volume.dimensions).top(); ++lod) {
+    part = restored_part(volume, lod, layers_at(volume, in_frame, lod), name);
     if (part.grid.samples() <= kMostSamples) break;
   }
   check_two_samples(name, part.grid);
-  if (part.level > 0)
-    session.console.note("the section is of one sample in {} along each axis", 1 << part.level);
+  if (part.lod > 0) session.console.note("the section is of one sample in {} along each axis", 1 << part.lod);
   MultiMaterialData data;
   data.source = name;
   data.grid = nodes_of(part, volume);
@@ -102,7 +101,7 @@ void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& 
   std::vector<std::byte> plane(volume.plane_bytes()), some(part.grid.plane_bytes());
   const auto& n = part.grid.dimensions;
   const auto whole = [&part](std::int32_t first, std::uint64_t i) {
-    return (static_cast<std::uint64_t>(first) + i) << part.level;
+    return (static_cast<std::uint64_t>(first) + i) << part.lod;
   };
   for (std::uint64_t k = 0; k < n[2]; ++k) {
     progress.step("reading", static_cast<double>(k) / static_cast<double>(n[2]));

@@ -13,7 +13,7 @@ using Codes = ParityCells<std::uint8_t>;
 constexpr std::uint8_t kMostCode = 63;
 constexpr int kRoomClasses = ErrorStages<std::uint8_t>::kRoomClasses;
 
-/// Centres have children on the page's level along all axes, faces along two, edges none.
+/// Centres have children on the page's LOD along all axes, faces along two, edges none.
 constexpr std::size_t child_count(int parity) {
   return phase_of(parity) == 2 ? 0 : static_cast<std::size_t>(2 * (3 - phase_of(parity)));
 }
@@ -54,8 +54,8 @@ template <int Parity, std::size_t Bytes>
 }  // namespace
 
 template <class Word>
-void ErrorStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, int parity, bool trust,
-                             ValueStage& stage) {
+void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+                             BoundsStage& stage) {
   stage.begin(parity, ParityBox::of(shape.count, parity));
   with_wide_lanes([&](auto bytes) {
     Codes parts;
@@ -63,7 +63,7 @@ void ErrorStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, 
       predict<of(), bytes()>(fields.errors, fields.cube_error_room, fields.predicted[of()], parts);
     });
     // Samples that are not whole numbers are worked with in another precision.
-    const bool is_finest = shape.level == 0, are_exact = is_finest && sizeof(Word) < sizeof(float);
+    const bool is_finest = shape.lod == 0, are_exact = is_finest && sizeof(Word) < sizeof(float);
     // Parts begin with 1, and so do the contexts of points that are not sure.
     const int base = (phase_of(parity) * 2 + (is_finest ? 0 : 1)) * 2 * 2 * kRoomClasses;
     constexpr int kMissing = 2 * kRoomClasses;

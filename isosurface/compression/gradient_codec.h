@@ -36,7 +36,7 @@ class GradientCodec {
   /// `codes` only places that have points count.
   void encode(const PageShape& shape, const GradientCodesAround& around, const GradientCodes& codes,
               std::vector<std::byte>& out) const;
-  /// Fills all places of `codes` that have points, those of coarser levels from `around`. Returns false, and
+  /// Fills all places of `codes` that have points, those of coarser LODs from `around`. Returns false, and
   /// leaves anything in `codes`, where the bytes are not what `encode` of some page gives.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape,
                             const GradientCodesAround& around, GradientCodes& codes) const;

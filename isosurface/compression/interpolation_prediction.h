@@ -8,7 +8,7 @@
 
 namespace adamas {
 
-/// Predicts the samples of a page from those of the next coarser level, in three sets: points on edges by
+/// Predicts the samples of a page from those of the next coarser LOD, in three sets: points on edges by
 /// cubic interpolation along them, then those on faces, then those in centres, from all round them. Loops run
 /// over all cells from the first one that is wanted to the last, those between the rows that are wanted too,
 /// and every step fits in a Value, so that a processor works at many cells at once.

@@ -206,7 +206,7 @@ class RowErrors {
 };
 
 float squared_ratio(const std::array<LatticePoint, 4>& corners, const Vec3& spacing) {
-  const double ratio = world_diameter(corners, spacing) / level_error_scale(spacing, 0).greatest();
+  const double ratio = world_diameter(corners, spacing) / lod_error_scale(spacing, 0).greatest();
   return static_cast<float>(ratio * ratio);
 }
 

@@ -11,7 +11,7 @@
 namespace adamas {
 
 /// What the error of the smallest diamonds depends on beside samples, where these lie `spacing` apart. Alike
-/// on all levels.
+/// on all LODs.
 struct ErrorGeometry {
   explicit ErrorGeometry(const Vec3& spacing);
 
@@ -24,7 +24,7 @@ struct ErrorGeometry {
 };
 
 /// The codes of the greatest errors of the diamonds' own tetrahedra, of all points of a page that it may own,
-/// as far as the heights are known: where those in and on a diamond of the finest level are whole numbers of
+/// as far as the heights are known: where those in and on a diamond of the finest LOD are whole numbers of
 /// 16 bits at most, that which preprocessing finds, bit for bit. Fills whole rows.
 void known_errors(const HeightGrid& heights, const ErrorGeometry& geometry, const PageShape& shape,
                   AllCells<std::uint8_t>& codes);

@@ -41,7 +41,7 @@ void for_each_own_point(const PageShape& shape, F&& f) {
   }
 }
 
-/// Fills the points of coarser levels.
+/// Fills the points of coarser LODs.
 template <class Word>
 void take_coarser(const typename Surroundings<Word>::template Points<Word>& around,
                   PagePoints<Word>& samples) {

@@ -13,7 +13,7 @@
 namespace adamas {
 namespace {
 
-/// Of a point: the samples in and on its diamond that may be known, and the children on the page's level.
+/// Of a point: the samples in and on its diamond that may be known, and the children on the page's LOD.
 struct Neighbours {
   std::size_t sample_count = 0, child_count = 0;
   std::array<CellNeighbour, 11> samples{};
@@ -159,12 +159,12 @@ template <class Word, std::size_t Bytes>
 }  // namespace
 
 template <class Word>
-void RangeStages<Word>::make(ValueFields<Word>& fields, const PageShape& shape, int parity, bool trust,
-                             std::array<ValueStage, 2>& stages) {
+void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+                             std::array<BoundsStage, 2>& stages) {
   const int phase = phase_of(parity);
-  const bool are_known = phase < 2 || shape.level == 0;
-  const int group = phase < 2 ? 2 : shape.level == 0 ? 0 : 1;
-  for (ValueStage& stage : stages) stage.begin(parity, ParityBox::of(shape.count, parity));
+  const bool are_known = phase < 2 || shape.lod == 0;
+  const int group = phase < 2 ? 2 : shape.lod == 0 ? 0 : 1;
+  for (BoundsStage& stage : stages) stage.begin(parity, ParityBox::of(shape.count, parity));
   with_wide_lanes([&](auto bytes) {
     Bits spread, contexts;
     std::array<Bits, 2> room;

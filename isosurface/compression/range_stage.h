@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-#include "isosurface/compression/value_fields.h"
-#include "isosurface/compression/value_stage.h"
+#include "isosurface/compression/bounds_fields.h"
+#include "isosurface/compression/bounds_stage.h"
 
 namespace adamas {
 
@@ -22,8 +22,8 @@ class RangeStages {
 
   /// Fills fields.known and fields.bounds, and the stages of both sides with the points that are coded. All
   /// errors are known. `trust`: whether sure points are not coded.
-  static void make(ValueFields<Word>& fields, const PageShape& shape, int parity, bool trust,
-                   std::array<ValueStage, 2>& stages);
+  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+                   std::array<BoundsStage, 2>& stages);
 };
 
 }  // namespace adamas

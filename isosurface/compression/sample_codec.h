@@ -40,7 +40,7 @@ class SampleCodec {
   /// `samples` only places that have points are read.
   virtual void encode(const PageShape& shape, const Around& around, const Samples& samples,
                       std::vector<std::byte>& out) const = 0;
-  /// Fills all places of `samples` that have points, those of coarser levels from `around`. Returns false,
+  /// Fills all places of `samples` that have points, those of coarser LODs from `around`. Returns false,
   /// and leaves anything in `samples`, where the bytes are not what `encode` of some page gives.
   [[nodiscard]] virtual bool decode(std::span<const std::byte> bytes, const PageShape& shape,
                                     const Around& around, Samples& samples) const = 0;

@@ -9,8 +9,8 @@
 namespace adamas {
 
 /// The samples from whose mean that at p is predicted (D 4.11): the ends of the split edge of its diamond. A
-/// coordinate beyond the data is mirrored at p, where there always is a sample, and a coarser one: a level
-/// depends on coarser levels only. Coordinates count samples; p has one that is not 0, and `dimensions` are
+/// coordinate beyond the data is mirrored at p, where there always is a sample, and a coarser one: an LOD
+/// depends on coarser LODs only. Coordinates count samples; p has one that is not 0, and `dimensions` are
 /// those of the data.
 constexpr std::array<LatticePoint, 2> predictors(LatticePoint p,
                                                  const std::array<std::int32_t, 3>& dimensions) {

@@ -36,29 +36,29 @@ struct RowPhases {
       : odd(2 - (j & 1) - (k & 1)), even((j | k) & 1 ? 3 - (j & 1) - (k & 1) : -1) {}
 };
 
-/// Of the diamonds of a level's page, those that a cut splits.
+/// Of the diamonds of an LOD's page, those that a cut splits.
 class CutOfPage {
  public:
   CutOfPage() = default;
-  /// `order`: the page's in z-order; `generation`: that of the level's cubes.
-  CutOfPage(const SurfaceCut& cut, int level, int generation, std::uint64_t order) {
+  /// `order`: the page's in z-order; `generation`: that of the LOD's cubes.
+  CutOfPage(const SurfaceCut& cut, int lod, int generation, std::uint64_t order) {
     for (int phase = 0; phase < 3; ++phase) {
       int rank = cut.least_rank(generation + phase);
       if (generation + phase == cut.generation && order < cut.page) rank = cut.rank;
       if (generation + phase == cut.generation && order == cut.page) {
         last_phase_ = phase;
-        last_least_ = code(cut.rank, level);
+        last_least_ = code(cut.rank, lod);
         place_ = cut.place;
       }
-      least_[static_cast<std::size_t>(phase)] = code(rank, level);
+      least_[static_cast<std::size_t>(phase)] = code(rank, lod);
     }
   }
 
   bool operator==(const CutOfPage&) const = default;
 
-  /// The least code of a level that has the rank; beyond all codes where none has.
-  static unsigned code(int rank, int level) {
-    return static_cast<unsigned>(std::clamp(rank - 4 * level, 1, 128));
+  /// The least code of an LOD that has the rank; beyond all codes where none has.
+  static unsigned code(int rank, int lod) {
+    return static_cast<unsigned>(std::clamp(rank - 4 * lod, 1, 128));
   }
 
   /// No lesser code is split.

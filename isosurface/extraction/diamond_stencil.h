@@ -40,7 +40,7 @@ struct DiamondStencil {
   std::size_t tetrahedron_count;
   std::array<Members, 8> tetrahedra;  ///< by slot
   std::size_t child_count;
-  /// In phase 2 in units of half the scale: children belong to the next finer level there.
+  /// In phase 2 in units of half the scale: children belong to the next finer LOD there.
   std::array<LatticePoint, 8> children;
   std::array<Half, 16> halves;  ///< two for each child
   /// By the members above a contour: the halves that it crosses, as bits; and how many triangles more it has

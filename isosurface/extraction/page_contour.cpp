@@ -32,13 +32,12 @@ PageContour<Sample>::PageContour(StoredDiamonds<Sample>& diamonds, const SplitPa
                    kNone) {}
 
 template <class Sample>
-typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int level,
-                                                                         LatticePoint block) const {
+typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int lod, LatticePoint block) const {
   Neighbours found{};
   for (std::int32_t dk = -1; dk <= 1; ++dk) {
     for (std::int32_t dj = -1; dj <= 1; ++dj) {
       for (std::int32_t di = -1; di <= 1; ++di) {
-        const PageOfLevel* page = pages_.page(level, block + LatticePoint{di, dj, dk});
+        const PageOfLod* page = pages_.page(lod, block + LatticePoint{di, dj, dk});
         if (page == nullptr) continue;
         found[neighbour(PageGrid::kSide * LatticePoint{di, dj, dk})] = page->split;
       }
@@ -48,13 +47,13 @@ typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int lev
 }
 
 template <class Sample>
-void PageContour<Sample>::add(int level, const PageOfLevel& page) {
+void PageContour<Sample>::add(int lod, const PageOfLod& page) {
   const PageMask& split = *page.split;
-  page_.load(level, page.block, split);
-  same_ = neighbours(level, page.block);
-  // A page's next finer ones are two along each axis; but the coarsest one has all coarser levels too.
-  const bool is_same_page = level > diamonds_.grid().top();
-  finer_ = neighbours(level - 1, (is_same_page ? 1 : 2) * page.block);
+  page_.load(lod, page.block, split);
+  same_ = neighbours(lod, page.block);
+  // A page's next finer ones are two along each axis; but the coarsest one has all coarser LODs too.
+  const bool is_same_page = lod > diamonds_.grid().top();
+  finer_ = neighbours(lod - 1, (is_same_page ? 1 : 2) * page.block);
   split.for_each([&](LatticePoint q) { add_diamond(DiamondStencil::at(q), q); });
   forget_edge_points();
 }
@@ -66,7 +65,7 @@ void PageContour<Sample>::add_diamond(const DiamondStencil& stencil, LatticePoin
   tetrahedra_ +=
       page_.is_inside() ? stencil.tetrahedron_count : static_cast<std::size_t>(std::popcount(slots));
   if (!limits_.lost.empty()) note_lost_children(page_.diamond(q));
-  // Children of phase 2 are points of the next finer level.
+  // Children of phase 2 are points of the next finer LOD.
   const bool finer = stencil.phase == 2;
   const Neighbours& pages = finer ? finer_ : same_;
   for (unsigned crossed = stencil.crossed[above]; crossed != 0; crossed &= crossed - 1) {

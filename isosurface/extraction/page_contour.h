@@ -20,7 +20,7 @@ class PageContour {
 
   /// Adds what lies in the tetrahedra of the mesh that come from splitting a page's diamonds; `page` has
   /// some. Throws PageLost.
-  void add(int level, const typename SplitPages<Sample>::PageOfLevel& page);
+  void add(int lod, const typename SplitPages<Sample>::PageOfLod& page);
 
   /// How many tetrahedra the mesh has more than the diamonds of its root.
   [[nodiscard]] std::uint64_t tetrahedra_added() const { return tetrahedra_; }
@@ -28,12 +28,12 @@ class PageContour {
   [[nodiscard]] int greatest_rank_at_lost() const { return greatest_rank_at_lost_; }
 
  private:
-  using PageOfLevel = typename SplitPages<Sample>::PageOfLevel;
+  using PageOfLod = typename SplitPages<Sample>::PageOfLod;
   using Members = DiamondStencil::Members;
 
   /// What is split of the pages round one, null where nothing is; by steps from -1 to 1 along each axis.
   using Neighbours = std::array<const PageMask*, 27>;
-  [[nodiscard]] Neighbours neighbours(int level, LatticePoint block) const;
+  [[nodiscard]] Neighbours neighbours(int lod, LatticePoint block) const;
 
   void add_diamond(const DiamondStencil& stencil, LatticePoint q);
   void note_lost_children(const Diamond& diamond);
@@ -47,7 +47,7 @@ class PageContour {
   const SplitLimits& limits_;
   ContourBuilder& builder_;
   PageDiamonds<Sample> page_;
-  Neighbours same_{}, finer_{};  ///< of the page's level and the next finer one
+  Neighbours same_{}, finer_{};  ///< of the page's LOD and the next finer one
   /// Numbers of the points on edges, by DiamondStencil::edge_place; `used_` are those that have one.
   std::vector<std::uint32_t> edge_points_;
   std::vector<std::uint32_t> used_;

@@ -53,21 +53,21 @@ std::uint32_t pages_touched(const PageMask& split) {
 }  // namespace
 
 template <class Sample>
-void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& split) {
-  level_ = level;
+void PageDiamonds<Sample>::load(int lod, LatticePoint block, const PageMask& split) {
+  lod_ = lod;
   block_ = block;
   corner_ = PageGrid::kSide * block;
-  lattice_step_ = diamonds_.lattice_step(level);
+  lattice_step_ = diamonds_.lattice_step(lod);
   const LatticePoint last = diamonds_.grid().last();
   inside_ = true;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t end = std::int64_t{corner_[axis] + PageGrid::kSide} << level;
+    const std::int64_t end = std::int64_t{corner_[axis] + PageGrid::kSide} << lod;
     inside_ = inside_ && block[axis] > 0 && end <= last[axis];
   }
   known_ = known_coarser_ = 0;
-  // Of coarser levels than the coarsest page's own no page has the points side by side.
-  if (level <= diamonds_.grid().top()) {
-    const auto& samples = diamonds_.samples({level, block});
+  // Of coarser LODs than the coarsest page's own no page has the points side by side.
+  if (lod <= diamonds_.grid().top()) {
+    const auto& samples = diamonds_.samples({lod, block});
     for (std::int32_t k = 0; k <= kLast; ++k) {
       for (std::int32_t j = 0; j <= kLast; ++j)
         std::copy_n(samples.data() + PageGrid::place({0, j, k}, 0), PageGrid::kSide, words_.at({0, j, k}));
@@ -89,7 +89,7 @@ void PageDiamonds<Sample>::load(int level, LatticePoint block, const PageMask& s
 template <class Sample>
 PageMask PageDiamonds<Sample>::reaching_others(const PageMask& split) const {
   // Where the data end on or before the page, not all of its points and of those round it are there.
-  const LatticePoint end = diamonds_.grid().extent(level_);
+  const LatticePoint end = diamonds_.grid().extent(lod_);
   for (int axis = 0; axis < 3; ++axis) {
     if (corner_[axis] + PageGrid::kSide > end[axis]) return split;
   }
@@ -111,14 +111,14 @@ PageMask PageDiamonds<Sample>::reaching_others(const PageMask& split) const {
 
 template <class Sample>
 void PageDiamonds<Sample>::get_from_neighbours(std::uint32_t pages) {
-  const LatticePoint blocks = diamonds_.grid().blocks(level_);
+  const LatticePoint blocks = diamonds_.grid().blocks(lod_);
   for (pages &= ~kOwnPage; pages != 0; pages &= pages - 1) {
     const int n = std::countr_zero(pages);
     const LatticePoint step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}, block = block_ + step;
     if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
         block.k >= blocks.k)
       continue;
-    const PageSamples<Word>* page = diamonds_.held_samples({level_, block});
+    const PageSamples<Word>* page = diamonds_.held_samples({lod_, block});
     if (page == nullptr) {
       get_coarser(step);
       continue;
@@ -147,10 +147,9 @@ void PageDiamonds<Sample>::get_from_neighbours(std::uint32_t pages) {
 template <class Sample>
 void PageDiamonds<Sample>::get_coarser(LatticePoint step) {
   // Points one before the page are odd ones.
-  if (std::min({step.i, step.j, step.k}) < 0 || level_ == diamonds_.grid().top()) return;
+  if (std::min({step.i, step.j, step.k}) < 0 || lod_ == diamonds_.grid().top()) return;
   const LatticePoint block = block_ + step;
-  const PageSamples<Word>* page =
-      diamonds_.held_samples({level_ + 1, {block.i / 2, block.j / 2, block.k / 2}});
+  const PageSamples<Word>* page = diamonds_.held_samples({lod_ + 1, {block.i / 2, block.j / 2, block.k / 2}});
   if (page == nullptr) return;
   known_coarser_ |= bit_of_page(PageGrid::kSide * step);
   const LatticePoint first = PageGrid::kSide * step;
@@ -172,9 +171,9 @@ bool PageDiamonds<Sample>::is_there(LatticePoint q) const {
     return u.i <= step * extent.i && u.j <= step * extent.j && u.k <= step * extent.k;
   };
   const std::uint32_t page = bit_of_page(q);
-  if ((known_ & page) != 0) return is_within(diamonds_.grid().extent(level_), 1);
+  if ((known_ & page) != 0) return is_within(diamonds_.grid().extent(lod_), 1);
   return (known_coarser_ & page) != 0 && ((q.i | q.j | q.k) & 1) == 0 &&
-         is_within(diamonds_.grid().extent(level_ + 1), 2);
+         is_within(diamonds_.grid().extent(lod_ + 1), 2);
 }
 
 template <class Sample>

@@ -11,7 +11,7 @@
 namespace adamas {
 
 /// The samples of a page's diamonds, which reach to the points one step round the page. Points are in units
-/// of the page's level, and from the page's first one.
+/// of the page's LOD, and from the page's first one.
 template <class Sample>
 class PageDiamonds {
  public:
@@ -20,9 +20,9 @@ class PageDiamonds {
   explicit PageDiamonds(StoredDiamonds<Sample>& diamonds) : diamonds_(diamonds) {}
 
   /// Gets the samples that the diamonds of `split` have. Throws PageLost.
-  void load(int level, LatticePoint block, const PageMask& split);
+  void load(int lod, LatticePoint block, const PageMask& split);
 
-  [[nodiscard]] int level() const { return level_; }
+  [[nodiscard]] int lod() const { return lod_; }
   [[nodiscard]] LatticePoint block() const { return block_; }
   /// Whether all diamonds of the page lie inside the data, and none of them on its border.
   [[nodiscard]] bool is_inside() const { return inside_; }
@@ -30,7 +30,7 @@ class PageDiamonds {
   [[nodiscard]] bool all_finite() const { return finite_; }
 
   /// In the lattice of samples; in that of the domain.
-  [[nodiscard]] LatticePoint in_samples(LatticePoint q) const { return (1 << level_) * (corner_ + q); }
+  [[nodiscard]] LatticePoint in_samples(LatticePoint q) const { return (1 << lod_) * (corner_ + q); }
   [[nodiscard]] LatticePoint in_lattice(LatticePoint q) const { return lattice_step_ * (corner_ + q); }
   [[nodiscard]] Diamond diamond(LatticePoint q) const { return Diamond(in_lattice(q)); }
 
@@ -79,7 +79,7 @@ class PageDiamonds {
   [[nodiscard]] bool is_there(LatticePoint q) const;
 
   StoredDiamonds<Sample>& diamonds_;
-  int level_ = 0;
+  int lod_ = 0;
   LatticePoint block_{}, corner_{};
   std::int32_t lattice_step_ = 1;
   bool inside_ = false, finite_ = true;

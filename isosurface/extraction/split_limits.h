@@ -16,13 +16,13 @@ struct SplitLimits {
 
   [[nodiscard]] bool any() const { return region.has_value() || !lost.empty(); }
 
-  /// For the diamond of this phase and point, in samples, whose scale is 2^level.
-  [[nodiscard]] bool allow(LatticePoint p, int level, int phase) const {
-    return reaches_region(p, level, phase) && (lost.empty() || !lost.blocks(p, level, phase));
+  /// For the diamond of this phase and point, in samples, whose scale is 2^lod.
+  [[nodiscard]] bool allow(LatticePoint p, int lod, int phase) const {
+    return reaches_region(p, lod, phase) && (lost.empty() || !lost.blocks(p, lod, phase));
   }
-  [[nodiscard]] bool reaches_region(LatticePoint p, int level, int phase) const {
+  [[nodiscard]] bool reaches_region(LatticePoint p, int lod, int phase) const {
     if (!region) return true;
-    const double reach = std::ldexp(nested_reach(phase), level);
+    const double reach = std::ldexp(nested_reach(phase), lod);
     for (int axis = 0; axis < 3; ++axis) {
       if (p[axis] + reach < (*region)[0][axis] || p[axis] - reach > (*region)[1][axis]) return false;
     }

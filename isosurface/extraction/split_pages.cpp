@@ -21,11 +21,11 @@ bool is_zero(const std::uint8_t* codes) {
   return (row[0] | row[1]) == 0;
 }
 
-/// Where along an axis the children of a point of phase 2 lie, in pages of the next finer level: from the one
+/// Where along an axis the children of a point of phase 2 lie, in pages of the next finer LOD: from the one
 /// before the point's page to the last one in it, as three bits.
 unsigned pages_of_children(std::int32_t x) { return (x == 0 ? 1 : 0) | (x <= 8 ? 2 : 0) | (x >= 8 ? 4 : 0); }
 
-/// The pages of the next finer level that have children of a page's diamonds, along i as three bits, for
+/// The pages of the next finer LOD that have children of a page's diamonds, along i as three bits, for
 /// three rows along j of three planes along k.
 std::array<unsigned, 9> pages_of_children(const PageMask& split) {
   std::array<unsigned, 9> pages{};
@@ -50,8 +50,8 @@ std::array<unsigned, 9> pages_of_children(const PageMask& split) {
 template <class Sample>
 std::size_t SplitPages<Sample>::count() const {
   std::size_t sum = 0;
-  for (const Level& level : levels_) {
-    for (const PageOfLevel& page : level.pages) sum += page.split == nullptr ? 0 : page.split->count();
+  for (const Lod& lod : lods_) {
+    for (const PageOfLod& page : lod.pages) sum += page.split == nullptr ? 0 : page.split->count();
   }
   return sum;
 }
@@ -59,18 +59,18 @@ std::size_t SplitPages<Sample>::count() const {
 template <class Sample>
 int SplitPages<Sample>::rank(LatticePoint p) {
   if (!diamonds_.is_stored(p)) return 0;
-  if (limits_.any() && !limits_.allow(diamonds_.in_samples(p), diamonds_.level(p), Diamond(p).phase()))
+  if (limits_.any() && !limits_.allow(diamonds_.in_samples(p), diamonds_.lod(p), Diamond(p).phase()))
     return 0;
   return diamonds_.rank_if_crossed(p);
 }
 
 template <class Sample>
 bool SplitPages<Sample>::is_split(LatticePoint p) const {
-  const int level = diamonds_.level(p);
-  if (level < 0 || level >= levels()) return false;
+  const int lod = diamonds_.lod(p);
+  if (lod < 0 || lod >= lods()) return false;
   const LatticePoint s = diamonds_.in_samples(p);
-  const LatticePoint u{s.i >> level, s.j >> level, s.k >> level};
-  const PageOfLevel* found = page(level, {u.i / kSide, u.j / kSide, u.k / kSide});
+  const LatticePoint u{s.i >> lod, s.j >> lod, s.k >> lod};
+  const PageOfLod* found = page(lod, {u.i / kSide, u.j / kSide, u.k / kSide});
   return found != nullptr && found->split != nullptr &&
          found->split->has({u.i % kSide, u.j % kSide, u.k % kSide});
 }
@@ -82,40 +82,40 @@ bool SplitPages<Sample>::is_in_data(LatticePoint p) const {
 
 template <class Sample>
 bool SplitPages<Sample>::is_lost(LatticePoint p) const {
-  const int level = diamonds_.level(p);
-  return !limits_.lost.empty() && level >= 0 &&
-         limits_.lost.blocks(diamonds_.in_samples(p), level, Diamond(p).phase());
+  const int lod = diamonds_.lod(p);
+  return !limits_.lost.empty() && lod >= 0 &&
+         limits_.lost.blocks(diamonds_.in_samples(p), lod, Diamond(p).phase());
 }
 
 template <class Sample>
-std::vector<LatticePoint> SplitPages<Sample>::candidates(int level) {
+std::vector<LatticePoint> SplitPages<Sample>::candidates(int lod) {
   const PageGrid& grid = diamonds_.grid();
-  if (level >= grid.top()) return {{0, 0, 0}};
-  const LatticePoint blocks = grid.blocks(level);
+  if (lod >= grid.top()) return {{0, 0, 0}};
+  const LatticePoint blocks = grid.blocks(lod);
   LatticeMap<std::uint8_t> met;
   std::vector<std::pair<std::uint64_t, LatticePoint>> found;
   const auto add = [&](LatticePoint block) {
     if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
-        block.k >= blocks.k || !met.insert(block).second || !grid.contains({level, block}))
+        block.k >= blocks.k || !met.insert(block).second || !grid.contains({lod, block}))
       return;
     found.emplace_back(ZOrder::interleave(block), block);
   };
-  for (const PageOfLevel& parent : pages(level + 1)) {
+  for (const PageOfLod& parent : pages(lod + 1)) {
     if (parent.split == nullptr) continue;
     const std::array<unsigned, 9> rows =
-        limits_.any() ? allowed_children(level + 1, parent) : pages_of_children(*parent.split);
+        limits_.any() ? allowed_children(lod + 1, parent) : pages_of_children(*parent.split);
     for (std::int32_t n = 0; n < 27; ++n) {
       if ((rows[static_cast<std::size_t>(n / 3)] >> n % 3 & 1) != 0)
         add(2 * parent.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
     }
   }
-  // Where the level's last points lie in a page's first plane nothing comes from coarser diamonds but by way
+  // Where the LOD's last points lie in a page's first plane nothing comes from coarser diamonds but by way
   // of the page before.
-  const LatticePoint last = grid.extent(level);
+  const LatticePoint last = grid.extent(lod);
   for (std::size_t n = 0; n < found.size(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
       LatticePoint next = found[n].second;
-      if (kSide * ++next[axis] == last[axis] && may_split(level, next)) add(next);
+      if (kSide * ++next[axis] == last[axis] && may_split(lod, next)) add(next);
     }
   }
   std::sort(found.begin(), found.end());
@@ -126,14 +126,14 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int level) {
 }
 
 template <class Sample>
-std::array<unsigned, 9> SplitPages<Sample>::allowed_children(int level, const PageOfLevel& parent) const {
+std::array<unsigned, 9> SplitPages<Sample>::allowed_children(int lod, const PageOfLod& parent) const {
   std::array<unsigned, 9> found{};
   parent.split->for_each([&](LatticePoint q) {
     const DiamondStencil& stencil = DiamondStencil::at(q);
     if (stencil.phase != 2) return;
     for (const LatticePoint offset : stencil.children) {
       const LatticePoint child = 2 * q + offset;
-      if (!limits_.allow((1 << (level - 1)) * (2 * kSide * parent.block + child), level - 1, 0)) continue;
+      if (!limits_.allow((1 << (lod - 1)) * (2 * kSide * parent.block + child), lod - 1, 0)) continue;
       const LatticePoint page{(child.i >> 4) + 1, (child.j >> 4) + 1, (child.k >> 4) + 1};
       found[static_cast<std::size_t>(page.j + 3 * page.k)] |= 1u << page.i;
     }
@@ -142,24 +142,24 @@ std::array<unsigned, 9> SplitPages<Sample>::allowed_children(int level, const Pa
 }
 
 template <class Sample>
-bool SplitPages<Sample>::may_split(int level, LatticePoint block) const {
+bool SplitPages<Sample>::may_split(int lod, LatticePoint block) const {
   if (!limits_.any()) return true;
   PageMask all;
   all.rows.fill(kOddPoints | kEvenPoints);
-  limit(level, block, all);
+  limit(lod, block, all);
   return all.any();
 }
 
 template <class Sample>
-const typename StoredDiamonds<Sample>::Codes& SplitPages<Sample>::codes(int level, LatticePoint block) {
-  const PageId asked{level, block};
+const typename StoredDiamonds<Sample>::Codes& SplitPages<Sample>::codes(int lod, LatticePoint block) {
+  const PageId asked{lod, block};
   if (codes_of_ != asked) {
     codes_of_ = {-1, {}};
-    if (level == 0) {
+    if (lod == 0) {
       find_finest_codes(asked);
     } else {
-      diamonds_.find_crossed(id(level, block), codes_);
-      if (levels_below(level) > 0) gather_codes(level);
+      diamonds_.find_crossed(id(lod, block), codes_);
+      if (lods_below(lod) > 0) gather_codes(lod);
     }
     codes_of_ = asked;
   }
@@ -167,10 +167,10 @@ const typename StoredDiamonds<Sample>::Codes& SplitPages<Sample>::codes(int leve
 }
 
 template <class Sample>
-void SplitPages<Sample>::gather_codes(int level) {
+void SplitPages<Sample>::gather_codes(int lod) {
   const auto all = codes_;
   codes_.fill(0);
-  const std::int32_t step = 1 << levels_below(level), count = (kSide + step - 1) / step;
+  const std::int32_t step = 1 << lods_below(lod), count = (kSide + step - 1) / step;
   for (LatticePoint q{}; q.k < count; ++q.k) {
     for (q.j = 0; q.j < count; ++q.j) {
       for (q.i = 0; q.i < count; ++q.i) codes_[PageGrid::place(q, 0)] = all[PageGrid::place(step * q, 0)];
@@ -189,7 +189,7 @@ void SplitPages<Sample>::find_finest_codes(const PageId& page) {
     return;
   }
   diamonds_.find_crossed(page, codes_);
-  diamonds_.drop_values(page);
+  diamonds_.drop_bounds(page);
   if (!several_cuts_) return;
   *finest_.indices.insert(page.block).first = static_cast<std::uint32_t>(finest_.pages.size());
   CrossedCodes& found = finest_.pages.emplace_back();
@@ -204,30 +204,29 @@ void SplitPages<Sample>::find_finest_codes(const PageId& page) {
 }
 
 template <class Sample>
-std::vector<LatticePoint> SplitPages<Sample>::blocks_of(const Level& level) {
+std::vector<LatticePoint> SplitPages<Sample>::blocks_of(const Lod& lod) {
   std::vector<LatticePoint> blocks;
-  blocks.reserve(level.pages.size());
-  for (const PageOfLevel& page : level.pages) blocks.push_back(page.block);
+  blocks.reserve(lod.pages.size());
+  for (const PageOfLod& page : lod.pages) blocks.push_back(page.block);
   return blocks;
 }
 
 template <class Sample>
-bool SplitPages<Sample>::look_into(int level, LatticePoint block, const SurfaceCut& cut,
-                                   const Level& before) {
-  Level& of = levels_[static_cast<std::size_t>(level)];
+bool SplitPages<Sample>::look_into(int lod, LatticePoint block, const SurfaceCut& cut, const Lod& before) {
+  Lod& of = lods_[static_cast<std::size_t>(lod)];
   *of.indices.insert(block).first = static_cast<std::uint32_t>(of.pages.size());
-  const int generation = 3 * (levels() - 1 - level);
-  PageOfLevel page{.block = block, .cut = {cut, level, generation, ZOrder::interleave(block)}};
+  const int generation = 3 * (lods() - 1 - lod);
+  PageOfLod page{.block = block, .cut = {cut, lod, generation, ZOrder::interleave(block)}};
   // What is not split has no greater rank than this, and mostly just that.
   const bool look_at_left = greatest_left_ < (cut.generation < generation + 3 ? cut.rank : cut.rank - 1);
   const std::uint32_t* index = before.indices.find(block);
-  const PageOfLevel* last = index == nullptr ? nullptr : &before.pages[*index];
+  const PageOfLod* last = index == nullptr ? nullptr : &before.pages[*index];
   const bool is_as_before =
       last != nullptr && last->cut == page.cut && (last->greatest_left != kUnknown || !look_at_left);
   if (is_as_before) {
     page = *last;
   } else {
-    const PageMask split = split_of(level, look_at_left, page);
+    const PageMask split = split_of(lod, look_at_left, page);
     if (split.any()) {
       PageMask* const kept = masks_.add();
       *kept = split;
@@ -240,20 +239,20 @@ bool SplitPages<Sample>::look_into(int level, LatticePoint block, const SurfaceC
 }
 
 template <class Sample>
-PageMask SplitPages<Sample>::split_of(int level, bool look_at_left, PageOfLevel& page) {
-  if (level < diamonds_.grid().top()) {
-    const int greatest = diamonds_.greatest_rank(id(level, page.block));
-    if (greatest < static_cast<int>(page.cut.least()) + 4 * level) {
+PageMask SplitPages<Sample>::split_of(int lod, bool look_at_left, PageOfLod& page) {
+  if (lod < diamonds_.grid().top()) {
+    const int greatest = diamonds_.greatest_rank(id(lod, page.block));
+    if (greatest < static_cast<int>(page.cut.least()) + 4 * lod) {
       page.greatest_left = greatest;
       return {};
     }
   }
-  const LatticePoint reach = diamonds_.grid().reach(level);
+  const LatticePoint reach = diamonds_.grid().reach(lod);
   LatticePoint count;
   for (int axis = 0; axis < 3; ++axis)
     count[axis] = std::min(reach[axis] - kSide * page.block[axis] + 1, kSide);
   const auto in_row = static_cast<std::uint16_t>((1u << count.i) - 1);
-  const auto& all = codes(level, page.block);
+  const auto& all = codes(lod, page.block);
   PageMask mask, left;
   for (std::int32_t k = 0; k < count.k; ++k) {
     for (std::int32_t j = 0; j < count.j; ++j) {
@@ -268,25 +267,25 @@ PageMask SplitPages<Sample>::split_of(int level, bool look_at_left, PageOfLevel&
     }
   }
   if (limits_.any()) {
-    limit(level, page.block, mask);
-    limit(level, page.block, left);
+    limit(lod, page.block, mask);
+    limit(lod, page.block, left);
   }
   if (look_at_left) {
     page.greatest_left = 0;
     left.for_each([&](LatticePoint q) {
-      page.greatest_left = std::max(page.greatest_left, all[PageGrid::place(q, 0)] + 4 * level);
+      page.greatest_left = std::max(page.greatest_left, all[PageGrid::place(q, 0)] + 4 * lod);
     });
   }
   return mask;
 }
 
 template <class Sample>
-void SplitPages<Sample>::limit(int level, LatticePoint block, PageMask& mask) const {
+void SplitPages<Sample>::limit(int lod, LatticePoint block, PageMask& mask) const {
   const PageMask before = mask;
   before.for_each([&](LatticePoint q) {
-    const LatticePoint p = (1 << level) * (kSide * block + q);
+    const LatticePoint p = (1 << lod) * (kSide * block + q);
     const int phase = 3 - (q.i & 1) - (q.j & 1) - (q.k & 1);
-    if (!limits_.allow(p, level, phase))
+    if (!limits_.allow(p, lod, phase))
       mask.rows[static_cast<std::size_t>(q.j + kSide * q.k)] &= static_cast<std::uint16_t>(~(1u << q.i));
   });
 }

@@ -53,14 +53,14 @@ struct PageMask {
   }
 };
 
-/// The diamonds that a cut splits, page by page. Points are in units of their level here. The coarsest page
-/// of a store counts as one page for each of its levels.
+/// The diamonds that a cut splits, page by page. Points are in units of their LOD here. The coarsest page
+/// of a store counts as one page for each of its LODs.
 template <class Sample>
 class SplitPages {
  public:
   using Word = typename StoredDiamonds<Sample>::Word;
 
-  struct PageOfLevel {
+  struct PageOfLod {
     LatticePoint block;
     const PageMask* split = nullptr;  ///< null where nothing is
     CutOfPage cut;                    ///< which the mask is of
@@ -69,30 +69,30 @@ class SplitPages {
 
   /// Both must outlive this.
   SplitPages(StoredDiamonds<Sample>& diamonds, const SplitLimits& limits)
-      : diamonds_(diamonds), limits_(limits), levels_(static_cast<std::size_t>(diamonds.levels())) {}
+      : diamonds_(diamonds), limits_(limits), lods_(static_cast<std::size_t>(diamonds.lods())) {}
 
-  /// Finds the split diamonds, from the coarsest level on, and calls visit(level, page) for each page that
+  /// Finds the split diamonds, from the coarsest LOD on, and calls visit(lod, page) for each page that
   /// has some. The cut may rise meanwhile: it is looked at again for each page. Pages of which it splits
   /// what the cut before did are not looked into again. Throws PageLost.
   template <class Visit>
   void find(const SurfaceCut& cut, Visit&& visit) {
     greatest_left_ = 0;
     bool is_as_before = false;
-    for (int level = diamonds_.levels() - 1; level >= 0; --level) {
-      Level& of = levels_[static_cast<std::size_t>(level)];
-      const Level before = std::exchange(of, {});
-      const std::vector<LatticePoint> blocks = is_as_before ? blocks_of(before) : candidates(level);
+    for (int lod = diamonds_.lods() - 1; lod >= 0; --lod) {
+      Lod& of = lods_[static_cast<std::size_t>(lod)];
+      const Lod before = std::exchange(of, {});
+      const std::vector<LatticePoint> blocks = is_as_before ? blocks_of(before) : candidates(lod);
       is_as_before = blocks.size() == before.pages.size();
       for (const LatticePoint block : blocks) {
-        is_as_before = look_into(level, block, cut, before) && is_as_before;
-        if (of.pages.back().split != nullptr) visit(level, of.pages.back());
+        is_as_before = look_into(lod, block, cut, before) && is_as_before;
+        if (of.pages.back().split != nullptr) visit(lod, of.pages.back());
       }
     }
   }
   /// Forgets what was found: before the contour or the limits change. `several_cuts`: `find` will be called
   /// more than once.
   void forget(bool several_cuts) {
-    levels_.assign(levels_.size(), {});
+    lods_.assign(lods_.size(), {});
     masks_ = {};
     codes_of_ = {-1, {}};
     several_cuts_ = several_cuts;
@@ -101,38 +101,38 @@ class SplitPages {
 
   /// The error codes of a page's crossed diamonds, 0 of others: that of q at PageGrid::place(q, 0). Valid
   /// until the next call of anything. Throws PageLost.
-  const typename StoredDiamonds<Sample>::Codes& codes(int level, LatticePoint block);
+  const typename StoredDiamonds<Sample>::Codes& codes(int lod, LatticePoint block);
 
-  [[nodiscard]] int levels() const { return diamonds_.levels(); }
-  /// Pages of a level that were met, in z-order.
-  [[nodiscard]] const std::vector<PageOfLevel>& pages(int level) const {
-    return levels_[static_cast<std::size_t>(level)].pages;
+  [[nodiscard]] int lods() const { return diamonds_.lods(); }
+  /// Pages of an LOD that were met, in z-order.
+  [[nodiscard]] const std::vector<PageOfLod>& pages(int lod) const {
+    return lods_[static_cast<std::size_t>(lod)].pages;
   }
   /// Null where the page was not met.
-  [[nodiscard]] const PageOfLevel* page(int level, LatticePoint block) const {
-    if (level < 0) return nullptr;
-    const Level& of = levels_[static_cast<std::size_t>(level)];
+  [[nodiscard]] const PageOfLod* page(int lod, LatticePoint block) const {
+    if (lod < 0) return nullptr;
+    const Lod& of = lods_[static_cast<std::size_t>(lod)];
     const std::uint32_t* index = of.indices.find(block);
     return index == nullptr ? nullptr : &of.pages[*index];
   }
   /// How many diamonds are split.
   [[nodiscard]] std::size_t count() const;
-  /// Calls visit(level, page, part) for each page that has split diamonds, from the coarsest level on, in
+  /// Calls visit(lod, page, part) for each page that has split diamonds, from the coarsest LOD on, in
   /// z-order; part: of the way to the end.
   template <class Visit>
   void for_each_page(Visit&& visit) const {
-    for (int level = levels() - 1; level >= 0; --level) {
-      const auto& all = pages(level);
+    for (int lod = lods() - 1; lod >= 0; --lod) {
+      const auto& all = pages(lod);
       for (std::size_t n = 0; n < all.size(); ++n) {
         if (all[n].split == nullptr) continue;
-        const double in_level = static_cast<double>(n) / static_cast<double>(all.size());
-        visit(level, all[n], (levels() - 1 - level + in_level) / levels());
+        const double in_lod = static_cast<double>(n) / static_cast<double>(all.size());
+        visit(lod, all[n], (lods() - 1 - lod + in_lod) / lods());
       }
     }
   }
   /// The lattice point of a page's point.
-  [[nodiscard]] LatticePoint in_lattice(int level, LatticePoint block, LatticePoint q) const {
-    return diamonds_.lattice_step(level) * (PageGrid::kSide * block + q);
+  [[nodiscard]] LatticePoint in_lattice(int lod, LatticePoint block, LatticePoint q) const {
+    return diamonds_.lattice_step(lod) * (PageGrid::kSide * block + q);
   }
 
   /// Of the diamond of any lattice point: its rank where it may be split, else 0. Throws PageLost.
@@ -151,8 +151,8 @@ class SplitPages {
  private:
   static constexpr int kUnknown = -1;
 
-  struct Level {
-    std::vector<PageOfLevel> pages;
+  struct Lod {
+    std::vector<PageOfLod> pages;
     LatticeMap<std::uint32_t> indices;  ///< into pages, by block
   };
 
@@ -161,45 +161,43 @@ class SplitPages {
     PageMask crossed;
     std::vector<std::uint8_t> codes;  ///< of these, i running fastest
   };
-  /// Of pages of the finest level, whose values nothing is predicted from and which are not kept.
+  /// Of pages of the finest LOD, whose values nothing is predicted from and which are not kept.
   struct FinestCodes {
     std::vector<CrossedCodes> pages;
     LatticeMap<std::uint32_t> indices;  ///< into pages, by block
   };
 
-  /// How many levels a level is coarser than that of the page that has it.
-  [[nodiscard]] int levels_below(int level) const {
-    return level > diamonds_.grid().top() ? level - diamonds_.grid().top() : 0;
+  /// How many LODs an LOD is coarser than that of the page that has it.
+  [[nodiscard]] int lods_below(int lod) const {
+    return lod > diamonds_.grid().top() ? lod - diamonds_.grid().top() : 0;
   }
-  [[nodiscard]] PageId id(int level, LatticePoint block) const {
-    return {level - levels_below(level), block};
-  }
+  [[nodiscard]] PageId id(int lod, LatticePoint block) const { return {lod - lods_below(lod), block}; }
 
   /// Where diamonds may be split, since coarser ones are.
-  std::vector<LatticePoint> candidates(int level);
-  /// The pages of the next finer level that have children of a page's diamonds which the limits allow: along
+  std::vector<LatticePoint> candidates(int lod);
+  /// The pages of the next finer LOD that have children of a page's diamonds which the limits allow: along
   /// i as three bits, for three rows along j of three planes along k, from one page before.
-  [[nodiscard]] std::array<unsigned, 9> allowed_children(int level, const PageOfLevel& parent) const;
+  [[nodiscard]] std::array<unsigned, 9> allowed_children(int lod, const PageOfLod& parent) const;
   /// Whether the limits allow any diamond of the page.
-  [[nodiscard]] bool may_split(int level, LatticePoint block) const;
-  static std::vector<LatticePoint> blocks_of(const Level& level);
+  [[nodiscard]] bool may_split(int lod, LatticePoint block) const;
+  static std::vector<LatticePoint> blocks_of(const Lod& lod);
   void find_finest_codes(const PageId& page);
-  /// Brings the codes of a coarser level than the coarsest page's own side by side.
-  void gather_codes(int level);
-  /// Adds a page to its level. Whether it is as it was before.
-  bool look_into(int level, LatticePoint block, const SurfaceCut& cut, const Level& before);
+  /// Brings the codes of a coarser LOD than the coarsest page's own side by side.
+  void gather_codes(int lod);
+  /// Adds a page to its LOD. Whether it is as it was before.
+  bool look_into(int lod, LatticePoint block, const SurfaceCut& cut, const Lod& before);
   /// The diamonds of a page that its cut splits; and, where it is to be looked at, the greatest rank that is
   /// left.
-  PageMask split_of(int level, bool look_at_left, PageOfLevel& page);
+  PageMask split_of(int lod, bool look_at_left, PageOfLod& page);
   /// Takes out what the limits keep from being split.
-  void limit(int level, LatticePoint block, PageMask& mask) const;
+  void limit(int lod, LatticePoint block, PageMask& mask) const;
 
   StoredDiamonds<Sample>& diamonds_;
   const SplitLimits& limits_;
-  std::vector<Level> levels_;
+  std::vector<Lod> lods_;
   Arena<PageMask> masks_;
   typename StoredDiamonds<Sample>::Codes codes_;  ///< of the page that was looked into last
-  PageId codes_of_{-1, {}};  ///< by the level that was asked for, not by that of its page
+  PageId codes_of_{-1, {}};                       ///< by the LOD that was asked for, not by that of its page
   bool several_cuts_ = false;
   FinestCodes finest_;  ///< where there are several cuts
   int greatest_left_ = 0;

@@ -21,7 +21,7 @@ Domain domain_of(const VolumeGrid& volume, int depth) {
 
 /// Makes `codes` those of the diamonds with a range that is not all on one side of `least`, and 0 of others.
 template <class Word>
-void select_crossed(const PageValues<Word>& page, Word least, PagePoints<std::uint8_t>& codes) {
+void select_crossed(const PageBounds<Word>& page, Word least, PagePoints<std::uint8_t>& codes) {
   with_wide_lanes([&](auto bytes) {
     using Lanes = WideLanes<Word, bytes()>;
     using Codes [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
@@ -45,16 +45,16 @@ StoredDiamonds<Sample>::StoredDiamonds(StoredPages<Word>& pages)
       shift_(kRootBits - grid_.depth()),
       domain_(domain_of(pages.file().header().grid, grid_.depth())),
       recent_(static_cast<std::size_t>(grid_.top() + 1)) {
-  for (int level = 0; level < static_cast<int>(ends_.size()); ++level)
-    ends_[static_cast<std::size_t>(level)] =
-        (1 << std::min(level, grid_.top())) * grid_.extent(std::min(level, grid_.top()));
-  for (int level = 0; level < grid_.depth(); ++level)
-    reaches_[static_cast<std::size_t>(level)] = (1 << level) * grid_.reach(level);
+  for (int lod = 0; lod < static_cast<int>(ends_.size()); ++lod)
+    ends_[static_cast<std::size_t>(lod)] =
+        (1 << std::min(lod, grid_.top())) * grid_.extent(std::min(lod, grid_.top()));
+  for (int lod = 0; lod < grid_.depth(); ++lod)
+    reaches_[static_cast<std::size_t>(lod)] = (1 << lod) * grid_.reach(lod);
   const Vec3 spacing = pages.file().header().grid.spacing;
-  for (int level = 0; level < std::max(1, grid_.depth()); ++level) {
-    const ErrorScale scale = level_error_scale(spacing, level);
+  for (int lod = 0; lod < std::max(1, grid_.depth()); ++lod) {
+    const ErrorScale scale = lod_error_scale(spacing, lod);
     for (int code = 0; code < ErrorScale::kCodes; ++code)
-      errors_[static_cast<std::size_t>(code == 0 ? 0 : code + 4 * level)] =
+      errors_[static_cast<std::size_t>(code == 0 ? 0 : code + 4 * lod)] =
           scale.decode(static_cast<std::uint8_t>(code));
   }
 }
@@ -67,7 +67,7 @@ int StoredDiamonds<Sample>::rank_within(double error) const {
 
 template <class Sample>
 const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
-  RecentEntry& recent = recent_[static_cast<std::size_t>(id.level)];
+  RecentEntry& recent = recent_[static_cast<std::size_t>(id.lod)];
   if (recent.id != id) {
     const std::optional<PageEntry> found = pages_.entry(id);
     if (!found) throw PageLost{id, id};
@@ -80,16 +80,16 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
 template <class Sample>
 bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step, std::array<Word, 27>& samples) {
   constexpr std::int32_t kSide = PageGrid::kSide;
-  const int level = std::countr_zero(static_cast<std::uint32_t>(step)) - shift_;
-  if (level < 0 || level > grid_.top()) return false;
+  const int lod = std::countr_zero(static_cast<std::uint32_t>(step)) - shift_;
+  if (lod < 0 || lod > grid_.top()) return false;
   const LatticePoint at = in_samples(p), last = grid_.last();
-  const LatticePoint first{(at.i >> level) - 1, (at.j >> level) - 1, (at.k >> level) - 1};
+  const LatticePoint first{(at.i >> lod) - 1, (at.j >> lod) - 1, (at.k >> lod) - 1};
   for (int axis = 0; axis < 3; ++axis) {
-    if (first[axis] < 0 || first[axis] + 2 > last[axis] >> level) return false;
+    if (first[axis] < 0 || first[axis] + 2 > last[axis] >> lod) return false;
   }
   const LatticePoint block{first.i / kSide, first.j / kSide, first.k / kSide};
   if (std::max({first.i % kSide, first.j % kSide, first.k % kSide}) <= kSide - 3) {
-    const PageSamples<Word>* page = pages_.held({level, block});
+    const PageSamples<Word>* page = pages_.held({lod, block});
     if (page == nullptr) return false;
     const Word* from = page->samples.data() + PageGrid::place(first, 0);
     Word* to = samples.data();
@@ -120,7 +120,7 @@ bool StoredDiamonds<Sample>::samples_round(LatticePoint p, std::int32_t step, st
       is_used = is_used && in_first[axis] < 3;
     }
     if (!is_used) continue;
-    const PageSamples<Word>* from = pages_.held({level, of});
+    const PageSamples<Word>* from = pages_.held({lod, of});
     if (from == nullptr) return false;
     pages[static_cast<std::size_t>(second)] = from->samples.data();
   }
@@ -155,7 +155,7 @@ void StoredDiamonds<Sample>::set_contour(double isovalue) {
 
 template <class Sample>
 void StoredDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
-  const PageValues<Word>& found = values(id);
+  const PageBounds<Word>& found = values(id);
   if (greatest_rank(id) == 0) {
     codes.fill(0);
   } else {
@@ -168,18 +168,18 @@ int StoredDiamonds<Sample>::greatest_rank(const PageId& id) {
   const PageEntry& known = entry(id);
   if (known.part_count() == 0 || !crosses(known.low, known.high)) return 0;
   const int code = known.part_errors[known.part(static_cast<std::uint32_t>(least_above_))];
-  return code == 0 ? 0 : code + 4 * id.level;
+  return code == 0 ? 0 : code + 4 * id.lod;
 }
 
 template <class Sample>
 int StoredDiamonds<Sample>::rank_if_crossed(LatticePoint p) {
   const LatticePoint at = in_samples(p);
   const PageId id = grid_.page(at);
-  if (pages_.held(id) == nullptr && id.level < grid_.top() && greatest_rank(id) == 0) return 0;
-  const PageValues<Word>& found = values(id);
-  const std::size_t place = PageGrid::place(at, id.level);
+  if (pages_.held(id) == nullptr && id.lod < grid_.top() && greatest_rank(id) == 0) return 0;
+  const PageBounds<Word>& found = values(id);
+  const std::size_t place = PageGrid::place(at, id.lod);
   const int code = crosses(found.low[place], found.high[place]) ? found.errors[place] : 0;
-  return code == 0 ? 0 : code + 4 * level(p);
+  return code == 0 ? 0 : code + 4 * lod(p);
 }
 
 template <class Sample>

@@ -34,20 +34,20 @@ class StoredDiamonds {
   [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, -grid_.depth()) * domain_.box().size(); }
   /// The lattice point of the last sample.
   [[nodiscard]] LatticePoint last_sample() const { return (1 << shift_) * grid_.last(); }
-  /// Levels of samples; diamonds of levels below this have errors.
-  [[nodiscard]] int levels() const { return grid_.depth(); }
-  /// The level of a lattice point in the store: coordinates in samples are multiples of 2^level.
-  [[nodiscard]] int level(LatticePoint p) const { return trailing_zeros(p) - shift_; }
-  /// How many lattice units there are between points of a level.
-  [[nodiscard]] std::int32_t lattice_step(int level) const { return std::int32_t{1} << (level + shift_); }
+  /// Lods of samples; diamonds of LODs below this have errors.
+  [[nodiscard]] int lods() const { return grid_.depth(); }
+  /// The LOD of a lattice point in the store: coordinates in samples are multiples of 2^lod.
+  [[nodiscard]] int lod(LatticePoint p) const { return trailing_zeros(p) - shift_; }
+  /// How many lattice units there are between points of an LOD.
+  [[nodiscard]] std::int32_t lattice_step(int lod) const { return std::int32_t{1} << (lod + shift_); }
   [[nodiscard]] LatticePoint in_samples(LatticePoint p) const {
     return {p.i >> shift_, p.j >> shift_, p.k >> shift_};
   }
   /// Whether pages know of the diamond: its point is no corner of the cube, and it reaches into the data.
   [[nodiscard]] bool is_stored(LatticePoint p) const {
-    const int l = level(p);
+    const int l = lod(p);
     if (l < 0 || l >= grid_.depth()) return false;
-    // The coarsest page has points of its level whose diamonds lie wholly outside.
+    // The coarsest page has points of its LOD whose diamonds lie wholly outside.
     const LatticePoint e = reaches_[static_cast<std::size_t>(l)], s = in_samples(p);
     return s.i <= e.i && s.j <= e.j && s.k <= e.k;
   }
@@ -65,13 +65,13 @@ class StoredDiamonds {
   double sample(LatticePoint p) { return value(word(in_samples(p))); }
   /// The same at a point in samples.
   Word word(LatticePoint at) {
-    // Points farther out than the virtual ones of their level have the values of those: no finer page than
+    // Points farther out than the virtual ones of their LOD have the values of those: no finer page than
     // theirs is needed.
     const int l = std::min(trailing_zeros(at), PageGrid::kMaxDepth + 1);
     const LatticePoint end = ends_[static_cast<std::size_t>(l)];
     for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], end[axis]);
     const PageId id = grid_.page(at);
-    return samples(id)[PageGrid::place(at, id.level)];
+    return samples(id)[PageGrid::place(at, id.lod)];
   }
 
   /// The samples, as words, at a lattice point and its 26 neighbours `step` lattice units away, i running
@@ -93,15 +93,15 @@ class StoredDiamonds {
   /// PageLost.
   int rank_if_crossed(LatticePoint p);
   /// No diamond of the page that the contour crosses has a greater rank; 0 where it crosses none. Not for the
-  /// coarsest page, which has diamonds of several levels. Throws PageLost.
+  /// coarsest page, which has diamonds of several LODs. Throws PageLost.
   int greatest_rank(const PageId& id);
   /// Of a page's diamonds: the error codes of those that the contour crosses, 0 of the others.
   using Codes = PagePoints<std::uint8_t>;
   /// Throws PageLost.
   void find_crossed(const PageId& id, Codes& codes);
   /// The page, or all, will hardly be asked again for what diamonds are like.
-  void drop_values(const PageId& id) { pages_.drop_values(id); }
-  void drop_values() { pages_.drop_values(); }
+  void drop_bounds(const PageId& id) { pages_.drop_bounds(id); }
+  void drop_bounds() { pages_.drop_bounds(); }
 
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
 
@@ -110,8 +110,8 @@ class StoredDiamonds {
 
  private:
   const PageEntry& entry(const PageId& id);
-  const PageValues<Word>& values(const PageId& id) {
-    const PageValues<Word>* found = pages_.values(id);
+  const PageBounds<Word>& values(const PageId& id) {
+    const PageBounds<Word>* found = pages_.values(id);
     if (found == nullptr) throw PageLost{id, pages_.last_damaged()};
     return *found;
   }
@@ -120,7 +120,7 @@ class StoredDiamonds {
     return low <= high && low < least_above_ && least_above_ <= high;
   }
 
-  /// The entry of a level that was asked for last.
+  /// The entry of an LOD that was asked for last.
   struct RecentEntry {
     PageId id{-1, {}};
     PageEntry entry;
@@ -130,10 +130,10 @@ class StoredDiamonds {
   PageGrid grid_;
   int shift_;
   Domain domain_;
-  std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by level: the last point, in samples
+  std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by LOD: the last point, in samples
   /// The same of those whose diamonds reach into the data.
   std::array<LatticePoint, PageGrid::kMaxDepth + 2> reaches_{};
-  std::vector<RecentEntry> recent_;  ///< by level
+  std::vector<RecentEntry> recent_;  ///< by LOD
   std::uint64_t least_above_ = 0;    ///< the least ordered word of a value not below the isovalue
   std::array<double, kRanks> errors_{};
 };

@@ -13,8 +13,8 @@ struct SurfaceCut {
   static constexpr int kAll = std::numeric_limits<int>::max();
 
   int rank = 0;
-  int generation = kAll;   ///< 3 for each level that a diamond is finer than the root's, and its phase
-  std::uint64_t page = 0;  ///< z-order of its cube among those of the level
+  int generation = kAll;   ///< 3 for each LOD that a diamond is finer than the root's, and its phase
+  std::uint64_t page = 0;  ///< z-order of its cube among those of the LOD
   std::size_t place = 0;
 
   /// The least rank of diamonds of a generation that are split; in the cut's own generation but for places.

@@ -25,14 +25,13 @@ SurfaceExtractor<Sample>::SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pag
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Progress& progress) {
-  pages_.find(cut,
-              [&](int level, const auto&) { progress.step("reading", 1 - (level + 1.0) / pages_.levels()); });
+  pages_.find(cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / pages_.lods()); });
   ExtractedSurface surface;
   if (subtree_bisections_ > 0) {
     surface = contour_of_subtrees(diamonds_, pages_, request_, subtree_bisections_, progress);
   } else {
     // What is split is known, and no more is asked of them.
-    if (!request_.others_follow) diamonds_.drop_values();
+    if (!request_.others_follow) diamonds_.drop_bounds();
     surface = pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   }
   const Vec3 spacing = contour_options(diamonds_, request_).spacing;
@@ -62,9 +61,9 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
   const std::uint64_t about = std::uint64_t{pages_.count()} * 3 / 2;
   builder.expect(static_cast<std::size_t>(std::min(about, request_.max_triangles.value_or(about))));
   PageContour<Sample> contour(diamonds_, pages_, limits_, builder);
-  pages_.for_each_page([&](int level, const auto& page, double part) {
+  pages_.for_each_page([&](int lod, const auto& page, double part) {
     progress.step("extracting", part);
-    contour.add(level, page);
+    contour.add(lod, page);
   });
   ExtractedSurface surface;
   surface.diamonds = pages_.count();
@@ -131,7 +130,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
       };
       const PageId page = is_known(missing.damaged) ? missing.page : missing.damaged;
       if (request.strict) fail("{} is damaged", page_name(page));
-      if (page.level == diamonds_.grid().top() || is_known(page))
+      if (page.lod == diamonds_.grid().top() || is_known(page))
         fail("{} is damaged, without which there is no surface", page_name(page));
       lost.push_back(page);
       limits_.lost.add(page);

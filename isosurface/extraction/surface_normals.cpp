@@ -69,7 +69,7 @@ class VertexGradients {
   [[nodiscard]] std::int32_t step_inside(LatticePoint p, std::int32_t step) const {
     const LatticePoint last = diamonds_.last_sample();
     for (int axis = 0; axis < 3; ++axis) {
-      while (diamonds_.level({step, step, step}) > 0 && p[axis] - step < 0 && p[axis] + step > last[axis])
+      while (diamonds_.lod({step, step, step}) > 0 && p[axis] - step < 0 && p[axis] + step > last[axis])
         step /= 2;
     }
     return step;

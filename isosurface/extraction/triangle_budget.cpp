@@ -30,11 +30,11 @@ TriangleBudget<Sample>::TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPa
       page_(diamonds) {}
 
 template <class Sample>
-PageMask TriangleBudget<Sample>::of_ranks(int level, const PageOfLevel& page, int low, int high) {
+PageMask TriangleBudget<Sample>::of_ranks(int lod, const PageOfLod& page, int low, int high) {
   PageMask found = *page.split;
-  const unsigned least = CutOfPage::code(low, level), end = CutOfPage::code(high, level);
+  const unsigned least = CutOfPage::code(low, lod), end = CutOfPage::code(high, lod);
   if (page.cut.least() >= end) return {};
-  const auto& codes = pages_.codes(level, page.block);
+  const auto& codes = pages_.codes(lod, page.block);
   for (std::size_t row = 0; row < found.rows.size(); ++row) {
     if (found.rows[row] == 0) continue;
     const std::uint8_t* of_row = codes.data() + PageGrid::kSide * row;
@@ -46,12 +46,11 @@ PageMask TriangleBudget<Sample>::of_ranks(int level, const PageOfLevel& page, in
 
 template <class Sample>
 template <class Visit>
-void TriangleBudget<Sample>::visit_page(int level, const PageOfLevel& page, int low, int high,
-                                        Visit&& visit) {
-  const PageMask wanted = of_ranks(level, page, low, high);
+void TriangleBudget<Sample>::visit_page(int lod, const PageOfLod& page, int low, int high, Visit&& visit) {
+  const PageMask wanted = of_ranks(lod, page, low, high);
   if (!wanted.any()) return;
-  page_.load(level, page.block, wanted);
-  const auto& codes = pages_.codes(level, page.block);
+  page_.load(lod, page.block, wanted);
+  const auto& codes = pages_.codes(lod, page.block);
   const bool simple = bisections_ == 0 && page_.all_finite();
   wanted.for_each([&](LatticePoint q) {
     const DiamondStencil& stencil = DiamondStencil::at(q);
@@ -60,8 +59,7 @@ void TriangleBudget<Sample>::visit_page(int level, const PageOfLevel& page, int 
         simple && ((page_.is_inside() && !request_.region) || counter_.is_inside(page_.diamond(q)));
     const std::int64_t more =
         whole ? page_.triangles_added(stencil, q) : counter_.added_by_split(page_.diamond(q));
-    visit(q, codes[PageGrid::place(q, 0)] + 4 * level, 3 * (pages_.levels() - 1 - level) + stencil.phase,
-          more);
+    visit(q, codes[PageGrid::place(q, 0)] + 4 * lod, 3 * (pages_.lods() - 1 - lod) + stencil.phase, more);
   });
 }
 
@@ -93,9 +91,9 @@ SurfaceCut TriangleBudget<Sample>::count(int low, int high, std::int64_t room, P
   added_.assign(static_cast<std::size_t>(StoredDiamonds<Sample>::kRanks * generations()), 0);
   SurfaceCut cut{.rank = low};
   std::int64_t sum = 0;
-  pages_.find(cut, [&](int level, const PageOfLevel& page) {
-    progress.step("choosing", 1 - (level + 1.0) / pages_.levels());
-    visit_page(level, page, low, high, [&](LatticePoint, int rank, int generation, std::int64_t more) {
+  pages_.find(cut, [&](int lod, const PageOfLod& page) {
+    progress.step("choosing", 1 - (lod + 1.0) / pages_.lods());
+    visit_page(lod, page, low, high, [&](LatticePoint, int rank, int generation, std::int64_t more) {
       added(rank, generation) += more;
       sum += more;
     });
@@ -114,9 +112,9 @@ SurfaceCut TriangleBudget<Sample>::find_place(SurfaceCut cut, std::int64_t room)
   };
   const int generation = cut.generation - 1;
   std::vector<Added> all;
-  pages_.find(cut, [&](int level, const PageOfLevel& page) {
-    if (level != pages_.levels() - 1 - generation / 3) return;
-    visit_page(level, page, cut.rank, cut.rank + 1,
+  pages_.find(cut, [&](int lod, const PageOfLod& page) {
+    if (lod != pages_.lods() - 1 - generation / 3) return;
+    visit_page(lod, page, cut.rank, cut.rank + 1,
                [&](LatticePoint q, int, int of_generation, std::int64_t more) {
                  if (of_generation == generation)
                    all.push_back({ZOrder::interleave(page.block), PageGrid::place(q, 0), more});

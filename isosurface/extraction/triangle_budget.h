@@ -24,10 +24,10 @@ class TriangleBudget {
   SurfaceCut find(std::uint64_t triangles, int least_rank, const Diamond& root, Progress& progress);
 
  private:
-  using PageOfLevel = typename SplitPages<Sample>::PageOfLevel;
+  using PageOfLod = typename SplitPages<Sample>::PageOfLod;
   using Counts = std::vector<std::int64_t>;
 
-  [[nodiscard]] int generations() const { return 3 * pages_.levels(); }
+  [[nodiscard]] int generations() const { return 3 * pages_.lods(); }
   [[nodiscard]] std::int64_t& added(int rank, int generation) {
     return added_[static_cast<std::size_t>(rank * generations() + generation)];
   }
@@ -41,10 +41,10 @@ class TriangleBudget {
   /// Where in its generation the room of a cut ends.
   SurfaceCut find_place(SurfaceCut cut, std::int64_t room);
   /// The split diamonds of a page of ranks from low to high - 1.
-  PageMask of_ranks(int level, const PageOfLevel& page, int low, int high);
+  PageMask of_ranks(int lod, const PageOfLod& page, int low, int high);
   /// Calls visit(q, rank, generation, added) for each of them.
   template <class Visit>
-  void visit_page(int level, const PageOfLevel& page, int low, int high, Visit&& visit);
+  void visit_page(int lod, const PageOfLod& page, int low, int high, Visit&& visit);
 
   SplitPages<Sample>& pages_;
   const SurfaceRequest& request_;

@@ -12,22 +12,22 @@ namespace adamas {
 
 namespace {
 
-/// Planes of codes of one level, until they are as many as pages are thick.
-class LevelCodes {
+/// Planes of codes of one LOD, until they are as many as pages are thick.
+class LodCodes {
  public:
-  LevelCodes(const PageGrid& grid, int level)
+  LodCodes(const PageGrid& grid, int lod)
       : grid_(grid),
-        level_(level),
-        extent_(grid.extent(level)),
+        lod_(lod),
+        extent_(grid.extent(lod)),
         row_(static_cast<std::size_t>(extent_.i) + 1),
         plane_(row_ * (static_cast<std::size_t>(extent_.j) + 1)),
         codes_(plane_ * static_cast<std::size_t>(std::min(extent_.k + 1, PageGrid::kSide))) {}
 
-  /// Takes what the level has of plane k of the samples, and hands over the pages that are whole then. The
+  /// Takes what the LOD has of plane k of the samples, and hands over the pages that are whole then. The
   /// last plane stands for all behind it.
   void add(std::int32_t k, const std::vector<OctahedralCode>& codes, Page<std::uint16_t>& page,
            const GradientPageSink& sink) {
-    for (; next_ <= extent_.k && std::min(next_ << level_, grid_.last().k) == k; ++next_) {
+    for (; next_ <= extent_.k && std::min(next_ << lod_, grid_.last().k) == k; ++next_) {
       take(codes);
       if (next_ % PageGrid::kSide == PageGrid::kSide - 1 || next_ == extent_.k) {
         for_each_page([&](const PageId& id) {
@@ -43,10 +43,10 @@ class LevelCodes {
     const auto width = static_cast<std::size_t>(grid_.last().i) + 1;
     std::uint16_t* to = codes_.data() + plane_ * static_cast<std::size_t>(next_ % PageGrid::kSide);
     for (std::int32_t j = 0; j <= extent_.j; ++j) {
-      const auto y = static_cast<std::size_t>(std::min(j << level_, grid_.last().j));
+      const auto y = static_cast<std::size_t>(std::min(j << lod_, grid_.last().j));
       for (std::int32_t i = 0; i <= extent_.i; ++i) {
         const auto [first, second] =
-            codes[y * width + static_cast<std::size_t>(std::min(i << level_, grid_.last().i))];
+            codes[y * width + static_cast<std::size_t>(std::min(i << lod_, grid_.last().i))];
         *to++ = static_cast<std::uint16_t>(first | second << 8);
       }
     }
@@ -54,10 +54,10 @@ class LevelCodes {
 
   template <class Fn>
   void for_each_page(Fn&& fn) const {
-    const LatticePoint blocks = grid_.blocks(level_);
+    const LatticePoint blocks = grid_.blocks(lod_);
     for (std::int32_t j = 0; j < blocks.j; ++j) {
       for (std::int32_t i = 0; i < blocks.i; ++i) {
-        const PageId id{level_, {i, j, next_ / PageGrid::kSide}};
+        const PageId id{lod_, {i, j, next_ / PageGrid::kSide}};
         if (grid_.contains(id)) fn(id);
       }
     }
@@ -76,11 +76,11 @@ class LevelCodes {
   }
 
   const PageGrid& grid_;
-  int level_;
+  int lod_;
   LatticePoint extent_;
   std::size_t row_, plane_;
   std::vector<std::uint16_t> codes_;
-  std::int32_t next_ = 0;  ///< the level's plane that is taken next
+  std::int32_t next_ = 0;  ///< the LOD's plane that is taken next
 };
 
 }  // namespace
@@ -91,8 +91,8 @@ void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const Gra
   const PageGrid pages(grid.dimensions);
   const auto [nx, ny, nz] = grid.dimensions;
   const PlaneGradients gradients(grid.spacing, nx, ny);
-  std::vector<LevelCodes> levels;
-  for (int level = 0; level <= pages.top(); ++level) levels.emplace_back(pages, level);
+  std::vector<LodCodes> lods;
+  for (int lod = 0; lod <= pages.top(); ++lod) lods.emplace_back(pages, lod);
   // Plane k lies at k % 3.
   std::array<std::vector<Sample>, 3> samples;
   for (auto& plane : samples) plane.resize(grid.plane_samples());
@@ -106,7 +106,7 @@ void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const Gra
     const Sample* below = k > 0 ? samples[(k + 2) % 3].data() : nullptr;
     const Sample* above = k + 1 < nz ? samples[(k + 1) % 3].data() : nullptr;
     gradients(std::array<const Sample*, 3>{below, samples[k % 3].data(), above}, std::span(codes));
-    for (LevelCodes& level : levels) level.add(static_cast<std::int32_t>(k), codes, *page, sink);
+    for (LodCodes& lod : lods) lod.add(static_cast<std::int32_t>(k), codes, *page, sink);
   }
 }
 

@@ -14,8 +14,8 @@ namespace adamas {
 using GradientPageSink = std::function<void(const PageId&, const Page<std::uint16_t>&)>;
 
 /// Gives every page of the volume's PageGrid once, with the directions of the gradients of the samples at the
-/// points of the page, those of coarser levels too: PlaneGradients of the finest samples (D 4.3.2), on every
-/// level. Points beyond the data have those of the nearest sample. The order of pages depends on the
+/// points of the page, those of coarser LODs too: PlaneGradients of the finest samples (D 4.3.2), on every
+/// LOD. Points beyond the data have those of the nearest sample. The order of pages depends on the
 /// volume's dimensions alone.
 ///
 /// Planes are read once, in ascending order. Memory: 50 bytes and three samples for each sample of a plane of

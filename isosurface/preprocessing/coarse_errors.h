@@ -14,7 +14,7 @@
 #include "isosurface/preprocessing/error_code.h"
 #include "isosurface/preprocessing/lanes.h"
 #include "isosurface/preprocessing/leaf_points.h"
-#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
@@ -31,12 +31,12 @@ class CoarseErrors {
   CoarseErrors(int depth, LatticePoint last, const Vec3& spacing, const CoarseSamples<Word>& coarse)
       : depth_(depth),
         last_(last),
-        unit_((1 / level_error_scale(spacing, 0).greatest()) * spacing),
+        unit_((1 / lod_error_scale(spacing, 0).greatest()) * spacing),
         coarse_(coarse),
         factors_(slope_factors(spacing)) {}
 
-  /// Raises the own codes of `levels`, the first of which has the samples round the cube.
-  void measure(const CubeSamples<Sample>& cube, std::vector<LevelValues<Word>>& levels) const {
+  /// Raises the own codes of `lods`, the first of which has the samples round the cube.
+  void measure(const CubeSamples<Sample>& cube, std::vector<LodValues<Word>>& lods) const {
     int mirrored = 0;
     for (int axis = 0; axis < 3; ++axis) mirrored |= (cube.base[axis] >> 4 & 1) << axis;
     for (const LeafPoints::Leaf& leaf : leaf_points_.leaves()) {
@@ -46,11 +46,11 @@ class CoarseErrors {
       Ancestor cell(corners, place(cube.base, leaf.split_vertex, mirrored), depth_);
       do {
         const int bits = cell.scale_bits();
-        LevelValues<Word>& level = levels[static_cast<std::size_t>(bits)];
+        LodValues<Word>& lod = lods[static_cast<std::size_t>(bits)];
         const LatticePoint at = cell.split_vertex();
-        const LatticePoint p{at.i >> bits, at.j >> bits, at.k >> bits}, size = level.size();
+        const LatticePoint p{at.i >> bits, at.j >> bits, at.k >> bits}, size = lod.size();
         if (p.i >= size.i || p.j >= size.j || p.k >= size.k) continue;
-        level.raise(p, code(cell, part, levels.front(), level.own(p)));
+        lod.raise(p, code(cell, part, lods.front(), lod.own(p)));
       } while (cell.ascend());
     }
   }
@@ -111,7 +111,7 @@ class CoarseErrors {
 
   /// Of the tetrahedron's error, as far as it comes from the part; anything less where that is at most
   /// `known`.
-  [[nodiscard]] std::uint8_t code(const Ancestor& cell, const Part& part, const LevelValues<Word>& samples,
+  [[nodiscard]] std::uint8_t code(const Ancestor& cell, const Part& part, const LodValues<Word>& samples,
                                   std::uint8_t known) const {
     const double scale = std::ldexp(1.0, cell.scale_bits());
     const double diameter = squared_diameter(cell.corners()) / (scale * scale);
@@ -140,7 +140,7 @@ class CoarseErrors {
     return error > 0 ? code_of(error + slack) : std::uint8_t{0};
   }
 
-  /// In units of the greatest error of level 0.
+  /// In units of the greatest error of LOD 0.
   [[nodiscard]] double squared_diameter(const std::array<LatticePoint, 4>& corners) const {
     double greatest = 0;
     for (std::size_t a = 0; a < 4; ++a) {
@@ -169,7 +169,7 @@ class CoarseErrors {
     return difference(linear, part.samples.data(), part);
   }
 
-  [[nodiscard]] double value(LatticePoint p, const LevelValues<Word>& samples) const {
+  [[nodiscard]] double value(LatticePoint p, const LodValues<Word>& samples) const {
     const Word word =
         ((p.i | p.j | p.k) & 15) == 0
             ? coarse_.at(p)
@@ -226,7 +226,7 @@ class CoarseErrors {
 
   int depth_;
   LatticePoint last_;
-  Vec3 unit_;  ///< spacing over the greatest error of level 0
+  Vec3 unit_;  ///< spacing over the greatest error of LOD 0
   const CoarseSamples<Word>& coarse_;
   std::array<double, 3> factors_;
   LeafPoints leaf_points_;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/preprocessing/octant_stencils.h"
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
@@ -41,7 +41,7 @@ struct CubeSamples {
     return all_count && std::all_of(whole.begin(), whole.end(), [this](Real s) { return s == whole[0]; });
   }
 
-  void load(const LevelValues<Word>& samples, LatticePoint last, LatticePoint first) {
+  void load(const LodValues<Word>& samples, LatticePoint last, LatticePoint first) {
     base = first;
     all_count =
         std::is_integral_v<Sample> && base.i + 16 <= last.i && base.j + 16 <= last.j && base.k + 16 <= last.k;

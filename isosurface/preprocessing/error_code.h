@@ -6,7 +6,7 @@
 
 namespace adamas {
 
-/// The code on the ErrorScale of a level, from the square of the error's ratio to the scale's greatest error.
+/// The code on the ErrorScale of an LOD, from the square of the error's ratio to the scale's greatest error.
 /// Rounds up, also what rounding may have taken off `squared`: by 2^-20 at most. 0 for 0 alone.
 inline std::uint8_t error_code(float squared) {
   if (!(squared > 0)) return 0;
@@ -22,10 +22,10 @@ inline std::uint8_t error_code(double squared) {
   return error_code(static_cast<float>(std::clamp(squared, 1e-30, 1.0)));
 }
 
-/// The code, on the scale of a level this many levels coarser, of the same error: a scale's greatest error
-/// doubles with each level.
-constexpr std::uint8_t coarser_code(std::uint8_t code, int levels) {
-  const int moved = code - 4 * levels;
+/// The code, on the scale of an LOD this many LODs coarser, of the same error: a scale's greatest error
+/// doubles with each LOD.
+constexpr std::uint8_t coarser_code(std::uint8_t code, int lods) {
+  const int moved = code - 4 * lods;
   return static_cast<std::uint8_t>(code == 0 ? 0 : moved < 1 ? 1 : moved);
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/lod_values.h"
 
 namespace adamas {
 
@@ -24,8 +24,8 @@ constexpr bool is_finite_word(Word word) {
 template <class Word>
 class LeafRanges {
  public:
-  /// The level of all samples; `last` of them.
-  LeafRanges(LevelValues<Word>& values, LatticePoint last)
+  /// The LOD of all samples; `last` of them.
+  LeafRanges(LodValues<Word>& values, LatticePoint last)
       : values_(values), last_(last), is_flat_(last.i == 0 || last.j == 0 || last.k == 0) {}
 
   /// Fills in row (j, z); needs the samples of the planes next to it.
@@ -68,7 +68,7 @@ class LeafRanges {
     for (std::int32_t i = first; i <= last_.i; i += 2) {
       Word least = row[i], greatest = row[i];
       if constexpr (sizeof(Word) == 4) {
-        if (!is_finite_word(row[i])) least = LevelValues<Word>::kGreatest, greatest = 0;
+        if (!is_finite_word(row[i])) least = LodValues<Word>::kGreatest, greatest = 0;
       }
       if constexpr (Width == 3) {
         for (const std::int32_t at : {std::max(i - 1, 0), std::min(i + 1, last_.i)}) {
@@ -98,7 +98,7 @@ class LeafRanges {
     }
   }
 
-  LevelValues<Word>& values_;
+  LodValues<Word>& values_;
   LatticePoint last_;
   bool is_flat_;
 };

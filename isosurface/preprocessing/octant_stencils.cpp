@@ -49,7 +49,7 @@ std::array<std::int32_t, 3> step_axes(const Corners& c, int phase) {
 }  // namespace
 
 std::array<double, 3> slope_factors(const Vec3& spacing) {
-  const double greatest = level_error_scale(spacing, 0).greatest();
+  const double greatest = lod_error_scale(spacing, 0).greatest();
   std::array<double, 3> factors{};
   // No greater ones: their squares have to fit in a float. Errors come out too large rather than too small.
   for (int axis = 0; axis < 3; ++axis) {
@@ -67,7 +67,7 @@ OctantStencils::OctantStencils(int depth, const Vec3& spacing)
 }
 
 void OctantStencils::add_shapes(int scale_bits, const Vec3& spacing) {
-  const double greatest = level_error_scale(spacing, scale_bits).greatest();
+  const double greatest = lod_error_scale(spacing, scale_bits).greatest();
   for (const DiamondType& type : kDiamondTypes) {
     for (int slot = 0; slot < 8; ++slot) {
       Shape shape{};

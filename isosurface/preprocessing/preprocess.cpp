@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/lattice/diamond_type.h"
 #include "isosurface/preprocessing/coarse_samples.h"
-#include "isosurface/preprocessing/level_sweep.h"
-#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/lod_sweep.h"
+#include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/preprocessing/page_writer.h"
 #include "isosurface/preprocessing/slab_errors.h"
 #include "isosurface/volume/samples.h"
@@ -18,8 +18,8 @@ namespace adamas {
 
 namespace {
 
-/// Levels finer than this one are held in part, in as many planes as are at work.
-constexpr int kWholeLevel = CoarseSamples<std::uint8_t>::kBits;
+/// Lods finer than this one are held in part, in as many planes as are at work.
+constexpr int kWholeLod = CoarseSamples<std::uint8_t>::kBits;
 constexpr std::int32_t kSlab = 16;
 
 template <class Sample>
@@ -36,10 +36,10 @@ class Preprocessing {
         samples_(volume.plane_samples()),
         words_(volume.plane_samples()),
         coarse_(last_),
-        levels_(make_levels(grid_, 3 * options.subtree_depth)),
+        lods_(make_lods(grid_, 3 * options.subtree_depth)),
         errors_(grid_, volume.spacing, coarse_),
-        sweep_(levels_, last_),
-        writer_(grid_, options.subtree_depth, levels_, coarse_, sink) {}
+        sweep_(lods_, last_),
+        writer_(grid_, options.subtree_depth, lods_, coarse_, sink) {}
 
   void run() {
     read_coarse();
@@ -47,7 +47,7 @@ class Preprocessing {
       progress_.step("preprocessing", static_cast<double>(slab) / errors_.slabs());
       read_slab(slab);
       if (grid_.depth() == 0) break;
-      errors_.measure(slab, levels_);
+      errors_.measure(slab, lods_);
       finish(slab);
     }
     writer_.write_coarsest();
@@ -55,20 +55,20 @@ class Preprocessing {
   }
 
  private:
-  using Levels = std::vector<LevelValues<Word>>;
+  using Lods = std::vector<LodValues<Word>>;
 
-  static Levels make_levels(const PageGrid& grid, int generations) {
-    Levels levels;
-    for (int level = 0; level < std::max(1, grid.depth()); ++level) {
-      LatticePoint size = grid.reach(level) + LatticePoint{1, 1, 1};
+  static Lods make_lods(const PageGrid& grid, int generations) {
+    Lods lods;
+    for (int lod = 0; lod < std::max(1, grid.depth()); ++lod) {
+      LatticePoint size = grid.reach(lod) + LatticePoint{1, 1, 1};
       // Where an axis is but one sample the diamonds beside it stand between those on it.
       for (int axis = 0; axis < 3; ++axis) size[axis] = std::max(size[axis], 2);
-      const bool is_whole = level >= kWholeLevel;
+      const bool is_whole = lod >= kWholeLod;
       // A slab; a row of pages that it does not finish; and that its last two planes are not final.
-      const int planes = is_whole ? size.k : 18 + (kSlab >> level);
-      levels.emplace_back(size, planes, generations, !is_whole);
+      const int planes = is_whole ? size.k : 18 + (kSlab >> lod);
+      lods.emplace_back(size, planes, generations, !is_whole);
     }
-    return levels;
+    return lods;
   }
 
   void read(std::int32_t k) {
@@ -91,35 +91,35 @@ class Preprocessing {
     const std::int32_t first = slab == 0 ? 0 : kSlab * slab + 1, end = kSlab * (slab + 1);
     for (std::int32_t k = first; k <= end; ++k) {
       if (k <= last_.k) read(k);
-      for (int level = 0; level < std::min(kWholeLevel, static_cast<int>(levels_.size())); ++level) {
-        if ((k & ((1 << level) - 1)) != 0 || k >> level >= levels_[static_cast<std::size_t>(level)].size().k)
+      for (int lod = 0; lod < std::min(kWholeLod, static_cast<int>(lods_.size())); ++lod) {
+        if ((k & ((1 << lod) - 1)) != 0 || k >> lod >= lods_[static_cast<std::size_t>(lod)].size().k)
           continue;
-        levels_[static_cast<std::size_t>(level)].open(k >> level);
+        lods_[static_cast<std::size_t>(lod)].open(k >> lod);
         // Beyond the data lie the samples of the last plane, which are still there.
-        keep_samples(level, k >> level);
+        keep_samples(lod, k >> lod);
       }
     }
   }
 
-  void keep_samples(int level, std::int32_t z) {
-    LevelValues<Word>& values = levels_[static_cast<std::size_t>(level)];
+  void keep_samples(int lod, std::int32_t z) {
+    LodValues<Word>& values = lods_[static_cast<std::size_t>(lod)];
     const LatticePoint size = values.size();
     const std::size_t row = static_cast<std::size_t>(last_.i) + 1;
     for (std::int32_t j = 0; j < size.j; ++j) {
-      const Word* from = words_.data() + row * static_cast<std::size_t>(std::min(j << level, last_.j));
+      const Word* from = words_.data() + row * static_cast<std::size_t>(std::min(j << lod, last_.j));
       Word* to = values.samples(j, z);
-      for (std::int32_t i = 0; i < size.i; ++i) to[i] = from[std::min(i << level, last_.i)];
+      for (std::int32_t i = 0; i < size.i; ++i) to[i] = from[std::min(i << lod, last_.i)];
     }
   }
 
   void finish(std::int32_t slab) {
     const bool is_last = slab + 1 == errors_.slabs();
-    for (int level = 0; level < grid_.depth(); ++level) {
-      const std::int32_t all = levels_[static_cast<std::size_t>(level)].size().k - 1;
+    for (int lod = 0; lod < grid_.depth(); ++lod) {
+      const std::int32_t all = lods_[static_cast<std::size_t>(lod)].size().k - 1;
       std::int32_t measured = all;
-      if (!is_last) measured = level < kWholeLevel ? std::min(all, (kSlab * (slab + 1) >> level) - 1) : -1;
-      sweep_.advance(level, measured);
-      writer_.write(level, sweep_.done(level));
+      if (!is_last) measured = lod < kWholeLod ? std::min(all, (kSlab * (slab + 1) >> lod) - 1) : -1;
+      sweep_.advance(lod, measured);
+      writer_.write(lod, sweep_.done(lod));
     }
   }
 
@@ -130,9 +130,9 @@ class Preprocessing {
   std::vector<Sample> samples_;  ///< of the plane that was read
   std::vector<Word> words_;      ///< the same
   CoarseSamples<Word> coarse_;
-  Levels levels_;
+  Lods lods_;
   SlabErrors<Sample> errors_;
-  LevelSweep<Word> sweep_;
+  LodSweep<Word> sweep_;
   PageWriter<Sample> writer_;
 };
 

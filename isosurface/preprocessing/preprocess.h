@@ -10,8 +10,8 @@
 namespace adamas {
 
 struct PreprocessOptions {
-  /// 0, 1 or 2: a tetrahedron stands for those that this many levels more of bisection make of it. Errors and
-  /// ranges exist for that many levels less.
+  /// 0, 1 or 2: a tetrahedron stands for those that this many LODs more of bisection make of it. Errors and
+  /// ranges exist for that many LODs less.
   int subtree_depth = 0;
 };
 
@@ -24,12 +24,12 @@ using PageSink = std::function<void(const PageId&, const Page<OrderedWord<Sample
 ///
 /// A diamond's error is at least that of each of its tetrahedra: the greatest difference between the samples
 /// in and on it and the linear interpolation of its corners over the length of that interpolation's gradient,
-/// or the tetrahedron's diameter if that is less; 0 where there is no difference; the greatest of the level
+/// or the tetrahedron's diameter if that is less; 0 where there is no difference; the greatest of the LOD
 /// where a sample in or on it is not finite, for no interpolation stands for that. Its range covers the
 /// finite samples in and on its tetrahedra. Both cover those of its child diamonds. Corners beyond the data
-/// have the nearest sample's value. With subtrees the error is that of the diamonds that many levels further,
-/// and finer levels have error 0 and low > high, as have the corners of the lattice. Errors are codes of
-/// level_error_scale.
+/// have the nearest sample's value. With subtrees the error is that of the diamonds that many LODs further,
+/// and finer LODs have error 0 and low > high, as have the corners of the lattice. Errors are codes of
+/// lod_error_scale.
 ///
 /// Planes are read in ascending order, every 16th one twice. Memory does not grow with the number of planes,
 /// but for 1/4096 of the samples. Sample: uint8, uint16, int16 or float, as grid.type says. Throws Error for

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/preprocessing/coarse_errors.h"
 #include "isosurface/preprocessing/cube_samples.h"
-#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/preprocessing/octant_errors.h"
 #include "isosurface/volume/samples.h"
 
@@ -20,7 +20,7 @@ template <class Sample>
 class SlabErrors {
  public:
   using Word = OrderedWord<Sample>;
-  using Levels = std::vector<LevelValues<Word>>;
+  using Lods = std::vector<LodValues<Word>>;
 
   SlabErrors(const PageGrid& grid, const Vec3& spacing, const CoarseSamples<Word>& coarse)
       : depth_(grid.depth()),
@@ -35,8 +35,8 @@ class SlabErrors {
 
   [[nodiscard]] std::int32_t slabs() const { return cubes_.k; }
 
-  /// Raises own codes by what slab `k` has; its samples are in levels.front(), up to the plane 16 k + 16.
-  void measure(std::int32_t k, Levels& levels) const {
+  /// Raises own codes by what slab `k` has; its samples are in LODs.front(), up to the plane 16 k + 16.
+  void measure(std::int32_t k, Lods& lods) const {
     // Cubes that are worked on at the same time have no point in common.
     for (const LatticePoint first : {LatticePoint{0, 0, k}, {1, 0, k}, {0, 1, k}, {1, 1, k}}) {
       const auto columns = static_cast<std::size_t>((cubes_.i - first.i + 1) / 2);
@@ -45,7 +45,7 @@ class SlabErrors {
         const auto work = std::make_unique_for_overwrite<Work>();
         for (std::size_t n = begin; n < end; ++n) {
           const auto i = static_cast<std::int32_t>(n % columns), j = static_cast<std::int32_t>(n / columns);
-          measure_cube({16 * (first.i + 2 * i), 16 * (first.j + 2 * j), 16 * k}, levels, *work);
+          measure_cube({16 * (first.i + 2 * i), 16 * (first.j + 2 * j), 16 * k}, lods, *work);
         }
       });
     }
@@ -57,26 +57,26 @@ class SlabErrors {
     typename OctantErrors<Sample>::Codes codes;
   };
 
-  void measure_cube(LatticePoint base, Levels& levels, Work& work) const {
-    work.samples.load(levels.front(), last_, base);
+  void measure_cube(LatticePoint base, Lods& lods, Work& work) const {
+    work.samples.load(lods.front(), last_, base);
     if (!work.samples.is_constant()) {
       small_.measure(work.samples, work.codes);
-      for (int level = 0; level < std::min(depth_, 3); ++level)
-        raise(levels[static_cast<std::size_t>(level)], level, base, work.codes.data());
+      for (int lod = 0; lod < std::min(depth_, 3); ++lod)
+        raise(lods[static_cast<std::size_t>(lod)], lod, base, work.codes.data());
     }
-    if (depth_ > 3) large_.measure(work.samples, levels);
+    if (depth_ > 3) large_.measure(work.samples, lods);
   }
 
-  static void raise(LevelValues<Word>& values, int level, LatticePoint base, const std::uint8_t* codes) {
+  static void raise(LodValues<Word>& values, int lod, LatticePoint base, const std::uint8_t* codes) {
     constexpr std::int32_t kCube = OctantStencils::kCube;
-    const LatticePoint size = values.size(), first{base.i >> level, base.j >> level, base.k >> level};
-    const std::int32_t side = 16 >> level;
+    const LatticePoint size = values.size(), first{base.i >> lod, base.j >> lod, base.k >> lod};
+    const std::int32_t side = 16 >> lod;
     for (std::int32_t k = 0; k <= std::min(side, size.k - 1 - first.k); ++k) {
       for (std::int32_t j = 0; j <= std::min(side, size.j - 1 - first.j); ++j) {
         std::uint8_t* row = values.codes(0, first.j + j, first.k + k) + first.i;
-        const std::uint8_t* from = codes + kCube * ((j << level) + kCube * (k << level));
+        const std::uint8_t* from = codes + kCube * ((j << lod) + kCube * (k << lod));
         const std::int32_t end = std::min(side, size.i - 1 - first.i);
-        for (std::int32_t i = 0; i <= end; ++i) row[i] = std::max(row[i], from[i << level]);
+        for (std::int32_t i = 0; i <= end; ++i) row[i] = std::max(row[i], from[i << lod]);
       }
     }
   }

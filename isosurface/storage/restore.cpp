@@ -13,7 +13,7 @@ namespace adamas {
 
 namespace {
 
-/// The coordinates from `begin` to `end`, both included, that a block of a level has.
+/// The coordinates from `begin` to `end`, both included, that a block of an LOD has.
 struct BlockSpan {
   std::int32_t begin, end;
   BlockSpan(std::int32_t block, std::int32_t first, std::int32_t last)
@@ -21,17 +21,17 @@ struct BlockSpan {
         end(std::min(last, PageGrid::kSide * block + PageGrid::kSide - 1)) {}
 };
 
-/// Bytes of the pages of a part that are worked with at a time: of those of its level each is needed once, of
+/// Bytes of the pages of a part that are worked with at a time: of those of its LOD each is needed once, of
 /// coarser ones those of a few rows; and as many again, since pages leave in no strict order.
 template <class Word>
 std::size_t working_set(const PageGrid& grid, const RestoredPart& part) {
   std::size_t pages = 0;
-  for (int level = part.level; level <= grid.top(); ++level) {
+  for (int lod = part.lod; lod <= grid.top(); ++lod) {
     const auto along = [&](int axis) {
-      const std::int32_t span = (part.last[axis] - part.first[axis]) >> (level - part.level);
+      const std::int32_t span = (part.last[axis] - part.first[axis]) >> (lod - part.lod);
       return static_cast<std::size_t>(span / PageGrid::kSide + 3);
     };
-    pages += level == part.level ? along(0) : 3 * along(0) * along(1);
+    pages += lod == part.lod ? along(0) : 3 * along(0) * along(1);
   }
   return 2 * pages * sizeof(PageSamples<Word>);
 }
@@ -56,7 +56,7 @@ class Restorer {
       for (std::int32_t y = part_.first.j / kSide; y <= part_.last.j / kSide; ++y) {
         progress.step("restoring", planes_done / (part_.last.k - part_.first.k + 1));
         for (std::int32_t x = part_.first.i / kSide; x <= part_.last.i / kSide; ++x)
-          copy({part_.level, {x, y, block}}, z.begin, planes);
+          copy({part_.lod, {x, y, block}}, z.begin, planes);
       }
       for (std::int32_t k = z.begin; k <= z.end; ++k) {
         const auto at = static_cast<std::size_t>(k - z.begin) * plane;
@@ -93,18 +93,18 @@ class Restorer {
 
 }  // namespace
 
-RestoredPart restored_part(const VolumeGrid& volume, int level, const std::optional<Box3>& region,
+RestoredPart restored_part(const VolumeGrid& volume, int lod, const std::optional<Box3>& region,
                            const std::string& name) {
   const PageGrid pages(volume.dimensions);
-  if (level < 0 || level > pages.top())
-    fail("{}: expected a level from 0 to {}, found {}", name, pages.top(), level);
+  if (lod < 0 || lod > pages.top())
+    fail("{}: expected a level from 0 to {}, found {}", name, pages.top(), lod);
   RestoredPart part;
-  part.level = level;
+  part.lod = lod;
   part.grid = volume;
   Vec3 first = volume.origin;
   for (int axis = 0; axis < 3; ++axis) {
-    const double step = std::ldexp(volume.spacing[axis], level);
-    part.last[axis] = pages.last()[axis] >> level;
+    const double step = std::ldexp(volume.spacing[axis], lod);
+    part.last[axis] = pages.last()[axis] >> lod;
     if (region) {
       // A sample on the region's border counts, whatever its place was rounded to.
       constexpr double kSlack = 1e-9;
@@ -114,7 +114,7 @@ RestoredPart restored_part(const VolumeGrid& volume, int level, const std::optio
       part.first[axis] = static_cast<std::int32_t>(std::clamp(std::ceil(low), 0.0, end + 1));
       part.last[axis] = static_cast<std::int32_t>(std::clamp(std::floor(high), -1.0, end));
       if (part.first[axis] > part.last[axis])
-        fail("{}: expected a region with samples of level {}, found none along {}", name, level, "xyz"[axis]);
+        fail("{}: expected a region with samples of level {}, found none along {}", name, lod, "xyz"[axis]);
     }
     const auto a = static_cast<std::size_t>(axis);
     part.grid.dimensions[a] = static_cast<std::uint64_t>(part.last[axis] - part.first[axis] + 1);

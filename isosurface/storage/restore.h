@@ -13,17 +13,17 @@
 
 namespace adamas {
 
-/// Samples of a level in a box: those whose coordinates are multiples of 2^level.
+/// Samples of an LOD in a box: those whose coordinates are multiples of 2^lod.
 struct RestoredPart {
-  int level = 0;
-  /// The first and the last sample along each axis, in units of 2^level.
+  int lod = 0;
+  /// The first and the last sample along each axis, in units of 2^lod.
   LatticePoint first{}, last{};
   VolumeGrid grid;
 };
 
-/// The part of a volume at a level, whole or what of it lies in a region of the volume's frame. Throws Error,
-/// which begins with `name`, where there is no such level or no sample in the region.
-RestoredPart restored_part(const VolumeGrid& volume, int level, const std::optional<Box3>& region,
+/// The part of a volume at an LOD, whole or what of it lies in a region of the volume's frame. Throws Error,
+/// which begins with `name`, where there is no such LOD or no sample in the region.
+RestoredPart restored_part(const VolumeGrid& volume, int lod, const std::optional<Box3>& region,
                            const std::string& name);
 
 /// Gives the part's planes of equal k in ascending order to `sink`, as samples of the volume's type. Only

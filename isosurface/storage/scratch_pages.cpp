@@ -41,8 +41,8 @@ int scratch_file(const std::filesystem::path& folder) {
 template <class Word>
 ScratchPages<Word>::ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, PageParts parts)
     : grid_(grid), parts_(parts), folder_(folder), file_(scratch_file(folder)) {
-  for (int level = 0; level <= grid_.top(); ++level) {
-    const LatticePoint n = grid_.blocks(level);
+  for (int lod = 0; lod <= grid_.top(); ++lod) {
+    const LatticePoint n = grid_.blocks(lod);
     offsets_.emplace_back(static_cast<std::size_t>(n.i) * static_cast<std::size_t>(n.j) *
                           static_cast<std::size_t>(n.k));
   }
@@ -55,9 +55,9 @@ ScratchPages<Word>::~ScratchPages() {
 
 template <class Word>
 std::uint64_t& ScratchPages<Word>::offset(const PageId& id) {
-  const LatticePoint n = grid_.blocks(id.level), b = id.block;
+  const LatticePoint n = grid_.blocks(id.lod), b = id.block;
   const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
-  return offsets_[at(id.level)][at(b.i) + at(n.i) * (at(b.j) + at(n.j) * at(b.k))];
+  return offsets_[at(id.lod)][at(b.i) + at(n.i) * (at(b.j) + at(n.j) * at(b.k))];
 }
 
 template <class Word>
@@ -74,7 +74,7 @@ void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
     });
   };
   append(page.samples);
-  if (has_part(parts_, PageParts::kValues)) {
+  if (has_part(parts_, PageParts::kBounds)) {
     append(page.low);
     append(page.high);
     append(page.errors);
@@ -94,7 +94,7 @@ void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
 
 template <class Word>
 void ScratchPages<Word>::get(const PageId& id, PageParts parts, PageSamples<Word>& samples,
-                             PageValues<Word>* values) {
+                             PageBounds<Word>* values) {
   const PageShape shape = page_shape(grid_, id);
   std::size_t points = 0;
   for_each_own_row(shape, [&](std::size_t, std::size_t count, std::size_t) { points += count; });

@@ -22,13 +22,13 @@ class ScratchPages {
   /// Each page once. Throws Error where the disk is full.
   void put(const PageId& id, const Page<Word>& page);
   /// Fills parts of the own points of a page that was put; `values` is null where they are not wanted.
-  void get(const PageId& id, PageParts parts, PageSamples<Word>& samples, PageValues<Word>* values);
+  void get(const PageId& id, PageParts parts, PageSamples<Word>& samples, PageBounds<Word>* values);
 
  private:
   std::uint64_t& offset(const PageId& id);
 
   [[nodiscard]] std::size_t point_bytes() const {
-    return has_part(parts_, PageParts::kValues) ? 3 * sizeof(Word) + 1 : sizeof(Word);
+    return has_part(parts_, PageParts::kBounds) ? 3 * sizeof(Word) + 1 : sizeof(Word);
   }
 
   PageGrid grid_;
@@ -36,7 +36,7 @@ class ScratchPages {
   std::filesystem::path folder_;
   int file_ = -1;
   std::uint64_t size_ = 0;
-  std::vector<std::vector<std::uint64_t>> offsets_;  ///< by level and block
+  std::vector<std::vector<std::uint64_t>> offsets_;  ///< by LOD and block
   std::vector<std::byte> buffer_;
 };
 

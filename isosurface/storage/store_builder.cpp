@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "isosurface/compression/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/compression/value_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/storage/page_cache.h"
 #include "isosurface/storage/page_summary.h"
-#include "isosurface/storage/page_tree.h"
 #include "isosurface/storage/scratch_pages.h"
 #include "isosurface/storage/store_file_writer.h"
 #include "isosurface/storage/stored_pages.h"
@@ -36,12 +36,12 @@ constexpr std::uint64_t kSurveyed = 4096;
 std::vector<std::uint64_t> page_numbers(const PageGrid& grid) {
   std::vector<std::uint64_t> numbers;
   numbers.reserve(grid.page_count());
-  for (int level = grid.top(); level >= 0; --level) {
-    const LatticePoint n = grid.blocks(level);
+  for (int lod = grid.top(); lod >= 0; --lod) {
+    const LatticePoint n = grid.blocks(lod);
     for (std::int32_t k = 0; k < n.k; ++k) {
       for (std::int32_t j = 0; j < n.j; ++j) {
         for (std::int32_t i = 0; i < n.i; ++i) {
-          const PageId id{level, {i, j, k}};
+          const PageId id{lod, {i, j, k}};
           if (grid.contains(id)) numbers.push_back(grid.number(id));
         }
       }
@@ -66,7 +66,7 @@ struct Job {
 template <class Word>
 struct Surveys {
   std::unique_ptr<SampleSurvey<Word>> samples;
-  ValueSurvey<Word> values;
+  BoundsSurvey<Word> values;
   std::optional<GradientSurvey> gradients;
 
   /// `ranks`: see sample_survey.
@@ -97,7 +97,7 @@ struct CodedPage {
 template <class Word>
 struct Codecs {
   std::unique_ptr<SampleCodec<Word>> samples;
-  ValueCodec<Word> values;
+  BoundsCodec<Word> values;
   std::optional<GradientCodec> gradients;
 
   explicit Codecs(const Surveys<Word>& surveys) : samples(surveys.samples->codec()), values(surveys.values) {
@@ -122,7 +122,7 @@ class GradientScratch {
       : scratch_(folder, grid, PageParts::kSamples),
         tree_(grid, kMemory,
               [this](const PageId& id, const PageShape&, const Surroundings<std::uint16_t>&, PageParts parts,
-                     PageSamples<std::uint16_t>& samples, PageValues<std::uint16_t>* values) {
+                     PageSamples<std::uint16_t>& samples, PageBounds<std::uint16_t>* values) {
                 scratch_.get(id, parts, samples, values);
                 return true;
               }) {}
@@ -136,7 +136,7 @@ class GradientScratch {
 
  private:
   ScratchPages<std::uint16_t> scratch_;
-  PageTree<std::uint16_t> tree_;
+  PageCache<std::uint16_t> tree_;
   Surroundings<std::uint16_t> around_;
 };
 
@@ -153,7 +153,7 @@ class StoreBuilder {
         scratch_(options.scratch, grid_),
         tree_(grid_, kMemory,
               [this](const PageId& id, const PageShape&, const Surroundings<Word>&, PageParts parts,
-                     PageSamples<Word>& samples, PageValues<Word>* values) {
+                     PageSamples<Word>& samples, PageBounds<Word>* values) {
                 scratch_.get(id, parts, samples, values);
                 return true;
               }) {
@@ -210,7 +210,7 @@ class StoreBuilder {
     std::vector<std::uint64_t> some;
     std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(some), [&](std::uint64_t number) {
       constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15ull;
-      return numbers.size() <= kSurveyed || grid_.page(number).level > 0 || number * kScatter >> 61 == 0;
+      return numbers.size() <= kSurveyed || grid_.page(number).lod > 0 || number * kScatter >> 61 == 0;
     });
     const auto empty = [this] {
       return std::make_unique<Surveys<Word>>(coding(), ranks_, options_.gradients, volume_.spacing);
@@ -250,10 +250,10 @@ class StoreBuilder {
       }
     });
     header.sample_tables = codecs.samples->tables();
-    header.value_tables = codecs.values.tables();
+    header.bounds_tables = codecs.values.tables();
     if (codecs.gradients) header.gradient_tables = codecs.gradients->tables();
     header.bytes.samples += header.sample_tables.size();
-    header.bytes.values += header.value_tables.size();
+    header.bytes.values += header.bounds_tables.size();
     header.bytes.gradients += header.gradient_tables.size();
     const StoreBytes bytes = header.bytes;
     return {bytes, writer.finish(std::move(header)), numbers.size()};
@@ -264,7 +264,7 @@ class StoreBuilder {
   StoreOptions options_;
   Progress& progress_;
   ScratchPages<Word> scratch_;
-  PageTree<Word> tree_;
+  PageCache<Word> tree_;
   std::unique_ptr<GradientScratch> gradients_;  ///< null where none are kept
   std::vector<Job<Word>> jobs_;
   SampleCensus<Word> census_;

@@ -50,7 +50,7 @@ void StoreFileWriter::add_page(std::uint32_t step, std::uint64_t number, std::sp
   entry.size = static_cast<std::uint32_t>(payload.size());
   entry.checksum = crc32c(payload);
   entries_.push_back(entry);
-  if (grid_.page(number).level >= kCopiedLevel) copies_.insert(copies_.end(), payload.begin(), payload.end());
+  if (grid_.page(number).lod >= kCopiedLod) copies_.insert(copies_.end(), payload.begin(), payload.end());
   write(payload);
 }
 

@@ -55,7 +55,7 @@ void write_header(ByteWriter& out, const StoreHeader& header) {
   out.number(header.steps);
   for (const std::uint64_t n : {header.bytes.samples, header.bytes.values, header.bytes.gradients})
     out.number(n);
-  for (const auto* tables : {&header.sample_tables, &header.value_tables, &header.gradient_tables})
+  for (const auto* tables : {&header.sample_tables, &header.bounds_tables, &header.gradient_tables})
     out.sized_bytes(*tables);
 }
 
@@ -73,7 +73,7 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
   header.steps = in.number<std::uint32_t>();
   for (std::uint64_t* n : {&header.bytes.samples, &header.bytes.values, &header.bytes.gradients})
     *n = in.number<std::uint64_t>();
-  for (auto* tables : {&header.sample_tables, &header.value_tables, &header.gradient_tables}) {
+  for (auto* tables : {&header.sample_tables, &header.bounds_tables, &header.gradient_tables}) {
     const auto bytes = in.sized_bytes();
     tables->assign(bytes.begin(), bytes.end());
   }
@@ -214,7 +214,7 @@ StoreRoot StoreRoot::parse(std::span<const std::byte> bytes, std::uint64_t root_
 std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first) {
   std::vector<std::uint64_t> numbers;
   for (std::uint64_t number = first; number < first + DirectoryChunk::kPages; ++number) {
-    // Numbers between those of two levels are nobody's.
+    // Numbers between those of two LODs are nobody's.
     if (number == 0 || (std::bit_width(number) - 1) % 3 != 0) continue;
     if (grid.contains(grid.page(number))) numbers.push_back(number);
   }
@@ -259,7 +259,7 @@ std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const 
     if (entry.error >= ErrorScale::kCodes || !read_part_errors(in, entry)) return {};
     entry.offset = offset;
     offset += size;
-    if (grid.page(number).level >= kCopiedLevel) {
+    if (grid.page(number).lod >= kCopiedLod) {
       entry.copy = copy;
       copy += size;
     }

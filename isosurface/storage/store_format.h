@@ -27,19 +27,19 @@ struct StoreBytes {
 struct StoreHeader {
   VolumeGrid grid;
   SampleCoding coding = SampleCoding::kInterpolation;
-  std::uint8_t subtree_depth = 0;  ///< pages of levels from this on hold errors and ranges; 0 to 2
+  std::uint8_t subtree_depth = 0;  ///< pages of LODs from this on hold errors and ranges; 0 to 2
   bool gradients = false;          ///< whether pages hold directions of gradients
   std::uint32_t steps = 1;
   StoreBytes bytes;
-  std::vector<std::byte> sample_tables, value_tables, gradient_tables;
+  std::vector<std::byte> sample_tables, bounds_tables, gradient_tables;
 };
 
 /// What is known of a page without reading it.
 struct PageSummary {
   /// The union of the ranges of its points' diamonds, as ordered words; low > high where nothing is in them.
   std::uint32_t low = 0, high = 0;
-  /// The greatest of their error codes, which are those of the page's level; of the coarsest page, which has
-  /// diamonds of several levels, the greatest code there is.
+  /// The greatest of their error codes, which are those of the page's LOD; of the coarsest page, which has
+  /// diamonds of several LODs, the greatest code there is.
   std::uint8_t error = 0;
   /// The same by isovalue. The words from low + 1 to high, each the least that is not below some isovalue,
   /// lie in parts of 2^part_bits() words; no diamond that a contour for a part's isovalues crosses has a
@@ -83,8 +83,8 @@ struct DirectoryChunk {
   std::uint64_t copies = 0;            ///< offset of the first copy
 };
 
-/// Levels from this on, the coarsest 1/64 of the samples, are in the file twice.
-inline constexpr int kCopiedLevel = 2;
+/// Lods from this on, the coarsest 1/64 of the samples, are in the file twice.
+inline constexpr int kCopiedLod = 2;
 
 /// What a file begins with; everything else is found from here.
 struct StorePrologue {

@@ -25,7 +25,7 @@ StoredGradients::StoredGradients(StoreFile& file, std::uint32_t step, std::size_
       tree_(file.grid(), memory,
             [this](const PageId& id, const PageShape& shape, const Surroundings<std::uint16_t>& around,
                    PageParts, PageSamples<std::uint16_t>& page,
-                   PageValues<std::uint16_t>*) { return load(id, shape, around.samples, page.samples); }) {}
+                   PageBounds<std::uint16_t>*) { return load(id, shape, around.samples, page.samples); }) {}
 
 bool StoredGradients::load(const PageId& id, const PageShape& shape, const GradientCodesAround& around,
                            GradientCodes& codes) {
@@ -45,7 +45,7 @@ std::optional<Vec3> StoredGradients::direction(LatticePoint p) {
   const PageId id = grid.page(p);
   const PageSamples<std::uint16_t>* found = tree_.samples(id);
   if (found == nullptr) return {};
-  const unsigned code = found->samples[PageGrid::place(p, id.level)];
+  const unsigned code = found->samples[PageGrid::place(p, id.lod)];
   return decode_direction(DirectionCode::kOctahedral,
                           {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), 0});
 }

@@ -6,7 +6,7 @@
 
 #include "core/geometry/vec3.h"
 #include "isosurface/compression/gradient_codec.h"
-#include "isosurface/storage/page_tree.h"
+#include "isosurface/storage/page_cache.h"
 #include "isosurface/storage/store_file.h"
 
 namespace adamas {
@@ -34,7 +34,7 @@ class StoredGradients {
   StoreFile& file_;
   std::uint32_t step_;
   GradientCodec codec_;
-  PageTree<std::uint16_t> tree_;
+  PageCache<std::uint16_t> tree_;
   PageId last_damaged_;
 };
 

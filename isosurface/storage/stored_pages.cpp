@@ -32,11 +32,11 @@ StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t 
       tree_(file.grid(), memory,
             [this](const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
                    PageParts parts, PageSamples<Word>& samples,
-                   PageValues<Word>* values) { return load(id, shape, around, parts, samples, values); }) {}
+                   PageBounds<Word>* values) { return load(id, shape, around, parts, samples, values); }) {}
 
 template <class Word>
 bool StoredPages<Word>::load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
-                             PageParts parts, PageSamples<Word>& samples, PageValues<Word>* values) {
+                             PageParts parts, PageSamples<Word>& samples, PageBounds<Word>* values) {
   last_damaged_ = id;
   if (std::find(damaged_.begin(), damaged_.end(), id) != damaged_.end()) return false;
   const StoreFile::Payload payload = file_.read(step_, id);
@@ -51,18 +51,18 @@ bool StoredPages<Word>::load(const PageId& id, const PageShape& shape, const Sur
 template <class Word>
 bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageShape& shape,
                                const Surroundings<Word>& around, PageParts wanted, PageSamples<Word>& samples,
-                               PageValues<Word>* values) {
+                               PageBounds<Word>* values) {
   PagePayload parts;
   if (!split_payload(payload, parts)) return false;
   if (has_part(wanted, PageParts::kSamples) &&
       !sample_codec_->decode(parts.samples, shape, around.samples, samples.samples))
     return false;
   if (values == nullptr) return true;
-  if (!value_codec_) {
+  if (!bounds_codec_) {
     const StoreHeader& header = file_.header();
-    value_codec_ = ValueCodec<Word>::parse(header.value_tables, header.grid.spacing, file_.name());
+    bounds_codec_ = BoundsCodec<Word>::parse(header.bounds_tables, header.grid.spacing, file_.name());
   }
-  return value_codec_->decode(parts.values, shape, around, samples, *values);
+  return bounds_codec_->decode(parts.values, shape, around, samples, *values);
 }
 
 template <class Word>

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "isosurface/compression/bounds_codec.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/compression/value_codec.h"
-#include "isosurface/storage/page_tree.h"
+#include "isosurface/storage/page_cache.h"
 #include "isosurface/storage/store_file.h"
 
 namespace adamas {
@@ -47,14 +47,14 @@ class StoredPages {
 
   /// A part of a page, or null where it is damaged or predicted from one that is. Valid until the next call.
   const PageSamples<Word>* samples(const PageId& id) { return tree_.samples(id); }
-  const PageValues<Word>* values(const PageId& id) { return tree_.values(id); }
+  const PageBounds<Word>* values(const PageId& id) { return tree_.values(id); }
   /// The samples of a page that is in memory; null for others.
   const PageSamples<Word>* held(const PageId& id) { return tree_.find(id); }
   /// All of a page; false where it cannot be had.
   bool copy(const PageId& id, Page<Word>& page) { return tree_.copy(id, page); }
   /// The values of the page, or of all, will hardly be asked for again.
-  void drop_values(const PageId& id) { tree_.drop_values(id); }
-  void drop_values() { tree_.drop_values(); }
+  void drop_bounds(const PageId& id) { tree_.drop_bounds(id); }
+  void drop_bounds() { tree_.drop_bounds(); }
   /// What is known round a page; false where something cannot be had.
   bool surroundings(const PageId& id, Surroundings<Word>& around) { return tree_.surroundings(id, around); }
   /// What the directory says of it; nothing where that is damaged.
@@ -67,15 +67,15 @@ class StoredPages {
 
  private:
   bool load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
-            PageSamples<Word>& samples, PageValues<Word>* values);
+            PageSamples<Word>& samples, PageBounds<Word>* values);
   bool decode(std::span<const std::byte> payload, const PageShape& shape, const Surroundings<Word>& around,
-              PageParts parts, PageSamples<Word>& samples, PageValues<Word>* values);
+              PageParts parts, PageSamples<Word>& samples, PageBounds<Word>* values);
 
   StoreFile& file_;
   std::uint32_t step_;
   std::unique_ptr<SampleCodec<Word>> sample_codec_;
-  std::optional<ValueCodec<Word>> value_codec_;  ///< none before values are asked for
-  PageTree<Word> tree_;
+  std::optional<BoundsCodec<Word>> bounds_codec_;  ///< none before values are asked for
+  PageCache<Word> tree_;
   std::vector<PageId> damaged_;
   PageId last_damaged_;
   std::uint64_t copies_ = 0;

@@ -29,13 +29,13 @@ class Verifier {
   void run(Progress& progress) {
     const PageGrid& grid = pages_.grid();
     std::uint64_t done = 0;
-    for (int level = grid.top(); level >= 0; --level) {
-      const LatticePoint n = grid.blocks(level);
+    for (int lod = grid.top(); lod >= 0; --lod) {
+      const LatticePoint n = grid.blocks(lod);
       for (std::int32_t k = 0; k < n.k; ++k) {
         for (std::int32_t j = 0; j < n.j; ++j) {
           progress.step("verifying", static_cast<double>(done) / static_cast<double>(grid.page_count()));
           for (std::int32_t i = 0; i < n.i; ++i) {
-            const PageId id{level, {i, j, k}};
+            const PageId id{lod, {i, j, k}};
             if (!grid.contains(id)) continue;
             ++done;
             check(id);
@@ -90,11 +90,11 @@ class Verifier {
         for (q.i = 0; q.i < shape.count.i; ++q.i) {
           const LatticePoint at = PageGrid::kSide * id.block + q;
           const int zeros = trailing_zeros(at);
-          if (id.level + zeros + 1 >= grid.depth() || (!shape.complete && zeros > 0)) continue;
+          if (id.lod + zeros + 1 >= grid.depth() || (!shape.complete && zeros > 0)) continue;
           const DiamondType& type = kDiamondTypes[static_cast<std::size_t>(diamond_type(at, zeros))];
           for (int c = 0; c < type.parent_count; ++c) {
             const LatticePoint parent = q + (1 << zeros) * type.parent_offsets[static_cast<std::size_t>(c)];
-            if (is_in(parent, shape) && reaches_data(PageGrid::kSide * id.block + parent, id.level) &&
+            if (is_in(parent, shape) && reaches_data(PageGrid::kSide * id.block + parent, id.lod) &&
                 !is_within(page, q, parent, zeros, id))
               return false;
           }
@@ -104,11 +104,11 @@ class Verifier {
     return true;
   }
 
-  /// Whether the diamond of a point of a level, in units of the level, reaches into the data: those of the
+  /// Whether the diamond of a point of an LOD, in units of the LOD, reaches into the data: those of the
   /// coarsest page that do not have no values that could cover others.
-  [[nodiscard]] bool reaches_data(LatticePoint at, int level) const {
+  [[nodiscard]] bool reaches_data(LatticePoint at, int lod) const {
     const int zeros = trailing_zeros(at);
-    const LatticePoint end = pages_.grid().reach(level + zeros);
+    const LatticePoint end = pages_.grid().reach(lod + zeros);
     return at.i >> zeros <= end.i && at.j >> zeros <= end.j && at.k >> zeros <= end.k;
   }
 
@@ -120,7 +120,7 @@ class Verifier {
   static bool is_within(const Page<Word>& page, LatticePoint child, LatticePoint parent, int child_zeros,
                         const PageId& id) {
     const std::size_t c = PageGrid::place(child, 0), p = PageGrid::place(parent, 0);
-    // A code of the next coarser level is twice the error, four codes more.
+    // A code of the next coarser LOD is twice the error, four codes more.
     const int coarser = 4 * (trailing_zeros(PageGrid::kSide * id.block + parent) - child_zeros);
     const int parent_rank = page.errors[p] == 0 ? 0 : page.errors[p] + coarser;
     if (page.errors[c] != 0 && parent_rank < page.errors[c]) return false;

@@ -37,7 +37,7 @@ double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& sp
   return greatest;
 }
 
-ErrorScale level_error_scale(const Vec3& spacing, int level) {
+ErrorScale lod_error_scale(const Vec3& spacing, int lod) {
   double greatest = 0;
   for (const DiamondType& type : kDiamondTypes) {
     for (std::size_t slot = 0; slot < static_cast<std::size_t>(type.tetrahedron_count); ++slot) {
@@ -47,8 +47,8 @@ ErrorScale level_error_scale(const Vec3& spacing, int level) {
           world_diameter({-type.direction, type.direction, type.ring[slot], type.ring[next]}, spacing));
     }
   }
-  // A power of two: codes of the same error differ by four from level to level.
-  return ErrorScale(std::ldexp(greatest, level));
+  // A power of two: codes of the same error differ by four from LOD to LOD.
+  return ErrorScale(std::ldexp(greatest, lod));
 }
 
 }  // namespace adamas

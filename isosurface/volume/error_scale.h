@@ -8,14 +8,14 @@
 
 namespace adamas {
 
-/// Errors in six bits on a logarithmic scale (D 4.3), one scale for each level: code 0 is no error, the
+/// Errors in six bits on a logarithmic scale (D 4.3), one scale for each LOD: code 0 is no error, the
 /// greatest code the greatest error, and each code is 2^(1/4) times the one before. Codes are never smaller
 /// than the error.
 class ErrorScale {
  public:
   static constexpr int kCodes = 64;
 
-  /// `greatest`: of the level's errors; finite, not negative.
+  /// `greatest`: of the LOD's errors; finite, not negative.
   explicit ErrorScale(double greatest);
 
   /// The least code whose error is not less; the greatest one for errors beyond the scale and for NaN.
@@ -27,9 +27,9 @@ class ErrorScale {
   std::array<double, kCodes> errors_{};  ///< in ascending order
 };
 
-/// The error scale of a level: its greatest error is the greatest diameter of the tetrahedra of the diamonds
-/// whose scale is 2^level samples.
-ErrorScale level_error_scale(const Vec3& spacing, int level);
+/// The error scale of an LOD: its greatest error is the greatest diameter of the tetrahedra of the diamonds
+/// whose scale is 2^lod samples.
+ErrorScale lod_error_scale(const Vec3& spacing, int lod);
 
 /// The greatest distance between two corners of a tetrahedron, where samples lie `spacing` apart.
 double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& spacing);

@@ -8,7 +8,7 @@
 
 namespace adamas {
 
-/// Something of a page's points: of all 16^3 of its cube, those of coarser levels too, by place (i running
+/// Something of a page's points: of all 16^3 of its cube, those of coarser LODs too, by place (i running
 /// fastest). Places beyond PageGrid::count hold anything.
 template <class T>
 using PagePoints = std::array<T, PageGrid::kPoints>;
@@ -21,25 +21,25 @@ struct PageSamples {
 
 /// What is known of the points' diamonds.
 template <class Word>
-struct PageValues {
+struct PageBounds {
   /// The least and the greatest sample in and on it, NaN and infinities left out; low > high where nothing is
   /// left.
   PagePoints<Word> low, high;
-  /// Its isosurface error, as a code of its level's ErrorScale.
+  /// Its isosurface error, as a code of its LOD's ErrorScale.
   PagePoints<std::uint8_t> errors;
 };
 
 template <class Word>
-struct Page : PageSamples<Word>, PageValues<Word> {};
+struct Page : PageSamples<Word>, PageBounds<Word> {};
 
-enum class PageParts : std::uint8_t { kSamples = 1, kValues = 2, kAll = 3 };
+enum class PageParts : std::uint8_t { kSamples = 1, kBounds = 2, kAll = 3 };
 
 constexpr bool has_part(PageParts parts, PageParts part) {
   return (static_cast<int>(parts) & static_cast<int>(part)) != 0;
 }
 
-/// What the points of a page are predicted from: those of the next coarser level, round the page. Along each
-/// axis the place c from 0 to kSide - 1 is the point 16 block + 2 (c - 1) of the page's level: one before the
+/// What the points of a page are predicted from: those of the next coarser LOD, round the page. Along each
+/// axis the place c from 0 to kSide - 1 is the point 16 block + 2 (c - 1) of the page's LOD: one before the
 /// page to two behind its last even point. Points beyond the data's extent repeat the last one before them.
 /// i runs fastest. Of errors and ranges those of the places from 1 to 9 are known, as far as one page has all
 /// of them, that with the page's own points; elsewhere stands what bounds nothing.
@@ -52,7 +52,7 @@ struct Surroundings {
   using Points = std::array<T, kPoints>;
 
   Points<Word> samples, low, high;
-  Points<std::uint8_t> errors;  ///< codes, of the level that the diamond of each point has
+  Points<std::uint8_t> errors;  ///< codes, of the LOD that the diamond of each point has
 };
 
 /// Place in Surroundings of the point that lies at `q` of the page, whose coordinates are even.
@@ -64,7 +64,7 @@ constexpr std::size_t surrounding_place(LatticePoint q) {
 struct PageShape {
   LatticePoint count;  ///< PageGrid::count
   bool complete;       ///< PageGrid::is_complete
-  int level;           ///< PageId::level
+  int lod;             ///< PageId::lod
 
   /// Whether a place has a point that is the page's own: whose values the page keeps.
   [[nodiscard]] bool owns(LatticePoint q) const {
@@ -73,7 +73,7 @@ struct PageShape {
 };
 
 inline PageShape page_shape(const PageGrid& grid, const PageId& page) {
-  return {grid.count(page), grid.is_complete(page), page.level};
+  return {grid.count(page), grid.is_complete(page), page.lod};
 }
 
 /// f(place) for the page's own points, i running fastest.

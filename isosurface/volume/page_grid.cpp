@@ -9,7 +9,7 @@
 namespace adamas {
 
 std::string page_name(const PageId& page) {
-  return fmt::format("the page of level {} at {}, {}, {}", page.level, page.block.i, page.block.j,
+  return fmt::format("the page of level {} at {}, {}, {}", page.lod, page.block.i, page.block.j,
                      page.block.k);
 }
 
@@ -25,7 +25,7 @@ PageGrid::PageGrid(const std::array<std::uint64_t, 3>& dimensions) {
 }
 
 std::uint64_t PageGrid::number(const PageId& page) const {
-  return std::uint64_t{1} << (3 * (top() - page.level)) | ZOrder::interleave(page.block);
+  return std::uint64_t{1} << (3 * (top() - page.lod)) | ZOrder::interleave(page.block);
 }
 
 PageId PageGrid::page(std::uint64_t number) const {
@@ -34,22 +34,22 @@ PageId PageGrid::page(std::uint64_t number) const {
 }
 
 bool PageGrid::contains(const PageId& page) const {
-  if (page.level < 0 || page.level > top()) return false;
-  const LatticePoint n = blocks(page.level);
+  if (page.lod < 0 || page.lod > top()) return false;
+  const LatticePoint n = blocks(page.lod);
   for (int axis = 0; axis < 3; ++axis) {
     if (page.block[axis] < 0 || page.block[axis] >= n[axis]) return false;
   }
-  // A single point, whose coordinates are all even, belongs to a coarser level.
+  // A single point, whose coordinates are all even, belongs to a coarser LOD.
   return is_complete(page) || count(page) != LatticePoint{1, 1, 1};
 }
 
 std::uint64_t PageGrid::page_count() const {
   std::uint64_t total = 0;
-  for (int level = 0; level <= top(); ++level) {
-    const LatticePoint n = blocks(level);
+  for (int lod = 0; lod <= top(); ++lod) {
+    const LatticePoint n = blocks(lod);
     total +=
         static_cast<std::uint64_t>(n.i) * static_cast<std::uint64_t>(n.j) * static_cast<std::uint64_t>(n.k);
-    const PageId corner{level, {n.i - 1, n.j - 1, n.k - 1}};
+    const PageId corner{lod, {n.i - 1, n.j - 1, n.k - 1}};
     if (!contains(corner)) --total;
   }
   return total;

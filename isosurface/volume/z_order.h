@@ -9,7 +9,7 @@ namespace adamas {
 
 /// Hierarchical z-order (D A): the lattice points of a cube in one sequence, coarse lattices before finer
 /// ones and the points that a finer one adds in z-order. Neighbours in space are mostly neighbours in the
-/// sequence, and any level is a prefix.
+/// sequence, and any LOD is a prefix.
 class ZOrder {
  public:
   static constexpr int kMaxBits = 21;  ///< per coordinate, so that an index has 63 bits
@@ -20,9 +20,9 @@ class ZOrder {
   [[nodiscard]] constexpr int bits() const { return bits_; }
   /// Number of points: indices are below this.
   [[nodiscard]] constexpr std::uint64_t size() const { return std::uint64_t{1} << (3 * bits_); }
-  /// Number of points whose coordinates are all multiples of 2^level: the first ones.
-  [[nodiscard]] constexpr std::uint64_t size(int level) const {
-    return std::uint64_t{1} << (3 * (bits_ - level));
+  /// Number of points whose coordinates are all multiples of 2^lod: the first ones.
+  [[nodiscard]] constexpr std::uint64_t size(int lod) const {
+    return std::uint64_t{1} << (3 * (bits_ - lod));
   }
 
   /// Plain z-order: bit b of i, j and k at the bits 3 b, 3 b + 1 and 3 b + 2.

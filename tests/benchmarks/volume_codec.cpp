@@ -74,7 +74,7 @@ void count_bytes(StoreFile& file, const std::vector<PageId>& pages, Figures& fig
   }
   const StoreHeader& header = file.header();
   figures.file_bytes = file.size();
-  figures.bytes = header.bytes.samples + rest - header.value_tables.size() - header.gradient_tables.size();
+  figures.bytes = header.bytes.samples + rest - header.bounds_tables.size() - header.gradient_tables.size();
 }
 
 template <class Word>

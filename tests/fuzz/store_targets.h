@@ -37,7 +37,7 @@ inline void store_directory(const StoreRoot& root, std::span<const std::byte> by
     std::uint64_t offset = chunk.pages, copy = chunk.copies;
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       const PageEntry& entry = (*entries)[n];
-      const bool is_copied = grid.page(numbers[n]).level >= kCopiedLevel;
+      const bool is_copied = grid.page(numbers[n]).lod >= kCopiedLod;
       require(entry.offset == offset && entry.copy == (is_copied ? copy : 0), "pages with gaps");
       require(entry.error < 64, "an error without a code");
       offset += entry.size;

@@ -35,13 +35,13 @@ TEST(ErrorCode, OfExtremes) {
   EXPECT_EQ(error_code(std::numeric_limits<double>::infinity()), 63);
 }
 
-TEST(ErrorCode, OfACoarserLevelIsThatOfTheSameError) {
+TEST(ErrorCode, OfACoarserLodIsThatOfTheSameError) {
   const ErrorScale fine(0.7);
-  for (int levels = 0; levels < 4; ++levels) {
-    const ErrorScale coarse(std::ldexp(0.7, levels));
+  for (int lods = 0; lods < 4; ++lods) {
+    const ErrorScale coarse(std::ldexp(0.7, lods));
     for (int code = 0; code < ErrorScale::kCodes; ++code) {
       const auto c = static_cast<std::uint8_t>(code);
-      EXPECT_EQ(coarser_code(c, levels), coarse.encode(fine.decode(c)));
+      EXPECT_EQ(coarser_code(c, lods), coarse.encode(fine.decode(c)));
     }
   }
 }

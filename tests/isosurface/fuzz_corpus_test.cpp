@@ -1,9 +1,9 @@
+#include "tests/fuzz/bounds_targets.h"
 #include "tests/fuzz/gradient_targets.h"
 #include "tests/fuzz/replay.h"
 #include "tests/fuzz/residual_targets.h"
 #include "tests/fuzz/sample_targets.h"
 #include "tests/fuzz/store_targets.h"
-#include "tests/fuzz/value_targets.h"
 
 namespace adamas {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::residual_code), 4u); }
 
 TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sample_codec), 11u); }
-TEST(FuzzCorpus, ValueCodec) { EXPECT_EQ(fuzz::replay("value_codec", fuzz::value_codec), 6u); }
+TEST(FuzzCorpus, BoundsCodec) { EXPECT_EQ(fuzz::replay("bounds_codec", fuzz::bounds_codec), 6u); }
 TEST(FuzzCorpus, GradientCodec) { EXPECT_EQ(fuzz::replay("gradient_codec", fuzz::gradient_codec), 5u); }
 TEST(FuzzCorpus, StoreFormat) { EXPECT_EQ(fuzz::replay("store_format", fuzz::store_format), 4u); }
 

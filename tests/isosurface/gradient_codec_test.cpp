@@ -85,7 +85,7 @@ std::size_t expect_there_and_back(const GradientCodec& codec, const Volume& volu
           const std::size_t place = PageGrid::place({i, j, k}, 0);
           wrong += content.samples[place] != found[place] ? 1 : 0;
         }
-    EXPECT_EQ(wrong, 0u) << "level " << page.level;
+    EXPECT_EQ(wrong, 0u) << "level " << page.lod;
     // Raw at worst: a byte of kind for each component, and the size of the first.
     EXPECT_LE(bytes.size(), 4 + 2 * PageGrid::kPoints);
     total += bytes.size();
@@ -106,7 +106,7 @@ std::size_t expect_there_and_back(SampleCoding coding, const Dimensions& dimensi
 TEST(GradientCodec, TakesPagesOfAllCounts) {
   for (const SampleCoding coding : kCodings) {
     for (std::uint64_t n = 1; n <= 16; ++n) {
-      // The pages of a level behind the first have n points along an axis, those in the corner along all.
+      // The pages of an LOD behind the first have n points along an axis, those in the corner along all.
       for (const Dimensions& dimensions :
            {Dimensions{16 + n, 17, 18}, {17, 16 + n, 1}, {16 + n, 16 + n, 16 + n}}) {
         expect_there_and_back(coding, dimensions,

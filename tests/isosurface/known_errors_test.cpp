@@ -8,8 +8,8 @@
 #include <memory>
 #include <random>
 
-#include "isosurface/compression/value_fields.h"
-#include "isosurface/compression/value_stage.h"
+#include "isosurface/compression/bounds_fields.h"
+#include "isosurface/compression/bounds_stage.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/prepared_volume.h"
 
@@ -38,7 +38,7 @@ void for_each_sure(const PageShape& shape, int parity, Check check) {
   }
 }
 
-/// Of the finest level: own errors, raised by the children that preprocessing found, are what it found.
+/// Of the finest LOD: own errors, raised by the children that preprocessing found, are what it found.
 template <class Sample>
 void expect_known(const Dimensions& dimensions, const std::function<Sample(std::size_t)>& sample,
                   const Vec3& spacing) {
@@ -48,7 +48,7 @@ void expect_known(const Dimensions& dimensions, const std::function<Sample(std::
     samples.push_back(sample(n));
   const test::PreparedVolume<Sample> volume(dimensions, samples, spacing);
   const ErrorGeometry geometry(spacing);
-  const auto fields = std::make_unique<ValueFields<Word>>();
+  const auto fields = std::make_unique<BoundsFields<Word>>();
   const LatticePoint blocks = volume.grid().blocks(0);
   for (int n = 0; n < blocks.i * blocks.j * blocks.k; ++n) {
     const PageId id{0, {n % blocks.i, n / blocks.i % blocks.j, n / blocks.i / blocks.j}};

@@ -13,12 +13,12 @@ namespace {
 
 std::vector<PageId> all_pages(const PageGrid& grid) {
   std::vector<PageId> pages;
-  for (int level = grid.top(); level >= 0; --level) {
-    const LatticePoint n = grid.blocks(level);
+  for (int lod = grid.top(); lod >= 0; --lod) {
+    const LatticePoint n = grid.blocks(lod);
     for (std::int32_t k = 0; k < n.k; ++k)
       for (std::int32_t j = 0; j < n.j; ++j)
         for (std::int32_t i = 0; i < n.i; ++i) {
-          const PageId page{level, {i, j, k}};
+          const PageId page{lod, {i, j, k}};
           if (grid.contains(page)) pages.push_back(page);
         }
   }
@@ -50,7 +50,7 @@ TEST_P(PageGridOf, EverySampleIsInOnePage) {
         const LatticePoint p{i, j, k};
         const PageId page = grid.page(p);
         ASSERT_TRUE(grid.contains(page));
-        const std::size_t place = PageGrid::place(p, page.level);
+        const std::size_t place = PageGrid::place(p, page.lod);
         ASSERT_TRUE(grid.is_complete(page) || !PageGrid::is_coarser(place));
         ASSERT_TRUE(places[grid.number(page)].insert(place).second) << "two samples in one place";
       }
@@ -61,12 +61,12 @@ TEST_P(PageGridOf, EverySampleIsInOnePage) {
   }
 }
 
-TEST_P(PageGridOf, LevelsReachAsFarAsTheDiamondsThatReachTheData) {
+TEST_P(PageGridOf, LodsReachAsFarAsTheDiamondsThatReachTheData) {
   const PageGrid grid(GetParam());
-  for (int level = 0; level < grid.depth(); ++level) {
-    const std::int32_t s = 1 << level;
+  for (int lod = 0; lod < grid.depth(); ++lod) {
+    const std::int32_t s = 1 << lod;
     for (int axis = 0; axis < 3; ++axis) {
-      const std::int32_t last = grid.last()[axis], end = grid.reach(level)[axis];
+      const std::int32_t last = grid.last()[axis], end = grid.reach(lod)[axis];
       if (last == 0) continue;
       EXPECT_LT((end - 1) * s, last);      // the diamond of the last point begins before the data end,
       EXPECT_GE((end + 1 - 1) * s, last);  // that of the next one does not
@@ -76,10 +76,10 @@ TEST_P(PageGridOf, LevelsReachAsFarAsTheDiamondsThatReachTheData) {
 
 TEST_P(PageGridOf, PagesHaveThePointsWhoseDiamondsReachTheData) {
   const PageGrid grid(GetParam());
-  for (int level = 0; level < grid.depth(); ++level) {
-    const int in_pages = std::min(level, grid.top());
+  for (int lod = 0; lod < grid.depth(); ++lod) {
+    const int in_pages = std::min(lod, grid.top());
     for (int axis = 0; axis < 3; ++axis)
-      EXPECT_LE(grid.reach(level)[axis] << (level - in_pages), grid.extent(in_pages)[axis]) << level;
+      EXPECT_LE(grid.reach(lod)[axis] << (lod - in_pages), grid.extent(in_pages)[axis]) << lod;
   }
 }
 
@@ -95,7 +95,7 @@ TEST(PageGrid, NumbersPutCoarsePagesFirst) {
   const std::vector<PageId> pages = all_pages(grid);
   for (const PageId& page : pages)
     for (const PageId& other : {pages.front(), pages.back()}) {
-      if (page.level > other.level) {
+      if (page.lod > other.lod) {
         EXPECT_LT(grid.number(page), grid.number(other));
       }
     }

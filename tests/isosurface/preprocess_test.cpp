@@ -117,13 +117,13 @@ std::map<LatticePoint, Stored> points_of(const TestVolume<Sample>& volume, const
   for (const auto& [id, page] : pages) {
     EXPECT_TRUE(grid.contains(id));
     EXPECT_TRUE(numbers.insert(grid.number(id)).second);
-    const PageShape shape{grid.count(id), grid.is_complete(id), id.level};
+    const PageShape shape{grid.count(id), grid.is_complete(id), id.lod};
     for (std::int32_t n = 0; n < 4096; ++n) {
       const LatticePoint q{n % 16, n / 16 % 16, n / 256};
       if (!shape.owns(q)) continue;
       const auto at = static_cast<std::size_t>(n);
       const Stored stored{page.samples[at], page.low[at], page.high[at], page.errors[at]};
-      EXPECT_TRUE(points.emplace((1 << id.level) * (16 * id.block + q), stored).second);
+      EXPECT_TRUE(points.emplace((1 << id.lod) * (16 * id.block + q), stored).second);
     }
   }
   return points;
@@ -131,8 +131,8 @@ std::map<LatticePoint, Stored> points_of(const TestVolume<Sample>& volume, const
 
 /// Whether the diamond lies wholly beyond the data: the coarsest page has such points.
 bool is_outside(LatticePoint p, const PageGrid& grid) {
-  const int level = trailing_zeros(p);
-  const LatticePoint end = (1 << level) * grid.reach(level);
+  const int lod = trailing_zeros(p);
+  const LatticePoint end = (1 << lod) * grid.reach(lod);
   return p.i > end.i || p.j > end.j || p.k > end.k;
 }
 
@@ -212,7 +212,7 @@ TEST(Preprocess, AgreesWithTheDefinitionOnBoxes) {
   }
 }
 
-TEST(Preprocess, AgreesWithTheDefinitionWhereLevelsAreCutIntoPages) {
+TEST(Preprocess, AgreesWithTheDefinitionWhereLodsAreCutIntoPages) {
   check(TestVolume<std::uint8_t>({66, 34, 20}, Kind::kSmooth));
   check(TestVolume<std::uint16_t>({18, 17, 65}, Kind::kRandom, {1, 1, 0.4}));
   check(TestVolume<float>({19, 36, 33}, Kind::kHoles));
@@ -301,9 +301,9 @@ TEST(Preprocess, EveryPlaneIsReadInOrderAndCanBeTheLast) {
       Error);
 }
 
-TEST(Preprocess, ScaleOfALevelIsTheGreatestDiameter) {
-  EXPECT_DOUBLE_EQ(level_error_scale({1, 1, 1}, 0).greatest(), 2 * std::sqrt(3));
-  EXPECT_DOUBLE_EQ(level_error_scale({1, 2, 0.5}, 3).greatest(), 16 * std::sqrt(5.25));
+TEST(Preprocess, ScaleOfALodIsTheGreatestDiameter) {
+  EXPECT_DOUBLE_EQ(lod_error_scale({1, 1, 1}, 0).greatest(), 2 * std::sqrt(3));
+  EXPECT_DOUBLE_EQ(lod_error_scale({1, 2, 0.5}, 3).greatest(), 16 * std::sqrt(5.25));
 }
 
 }  // namespace

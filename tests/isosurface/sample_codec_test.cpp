@@ -94,7 +94,7 @@ std::size_t expect_there_and_back(const SampleCodec<Word>& codec, const test::Vo
     found.fill(77);
     const bool taken = codec.decode(bytes, content.shape, content.around, found);
     EXPECT_TRUE(taken);
-    EXPECT_TRUE(same_points(content, found)) << "level " << page.level;
+    EXPECT_TRUE(same_points(content, found)) << "level " << page.lod;
     EXPECT_LE(bytes.size(), 1 + PageGrid::kPoints * sizeof(Word));
     total += bytes.size();
   }
@@ -162,7 +162,7 @@ TYPED_TEST(SampleCodecOf, TakesVolumesOfAllShapes) {
   }
 }
 
-TYPED_TEST(SampleCodecOf, TakesVolumesOfSeveralLevels) {
+TYPED_TEST(SampleCodecOf, TakesVolumesOfSeveralLods) {
   using Word = TypeParam;
   for (const SampleCoding coding : codings<Word>()) {
     for (const Dimensions& dimensions :

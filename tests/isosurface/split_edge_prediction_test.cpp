@@ -51,7 +51,7 @@ void for_all_dimensions(std::int32_t most, Visit&& visit) {
   }
 }
 
-TEST(SplitEdgePrediction, IsFromSamplesOfCoarserLevels) {
+TEST(SplitEdgePrediction, IsFromSamplesOfCoarserLods) {
   for_all_dimensions(9, [](const Dimensions& n) {
     for (const LatticePoint p : points_of(n)) {
       if (p == LatticePoint{0, 0, 0}) continue;
@@ -86,7 +86,7 @@ TEST(SplitEdgePrediction, IsTheDiamondsSplitEdgeInside) {
   }
 }
 
-/// To residuals and code, level after level, and back.
+/// To residuals and code, LOD after LOD, and back.
 template <class Sample>
 void expect_lossless(const Dimensions& n, const std::vector<Sample>& samples) {
   const auto points = points_of(n);

@@ -31,9 +31,9 @@ Found found_by(SplitPages<Word>& pages, const SurfaceCut& cut) {
   Found found;
   std::size_t visited = 0;
   pages.find(cut, [&](int, const auto& page) { visited += page.split->count(); });
-  pages.for_each_page([&](int level, const auto& page, double) {
+  pages.for_each_page([&](int lod, const auto& page, double) {
     page.split->for_each(
-        [&](LatticePoint q) { found.split.push_back(pages.in_lattice(level, page.block, q)); });
+        [&](LatticePoint q) { found.split.push_back(pages.in_lattice(lod, page.block, q)); });
   });
   EXPECT_EQ(visited, pages.count());
   EXPECT_EQ(found.split.size(), pages.count());
@@ -41,11 +41,11 @@ Found found_by(SplitPages<Word>& pages, const SurfaceCut& cut) {
   return found;
 }
 
-SurfaceCut any_cut(std::mt19937& random, int levels) {
+SurfaceCut any_cut(std::mt19937& random, int lods) {
   SurfaceCut cut;
-  cut.rank = static_cast<int>(1 + random() % static_cast<unsigned>(4 * levels + 24));
+  cut.rank = static_cast<int>(1 + random() % static_cast<unsigned>(4 * lods + 24));
   if (random() % 3 == 0) return cut;
-  cut.generation = static_cast<int>(random() % static_cast<unsigned>(3 * levels + 1));
+  cut.generation = static_cast<int>(random() % static_cast<unsigned>(3 * lods + 1));
   if (random() % 2 == 0) return cut;
   cut.page = random() % 64;
   cut.place = random() % PageGrid::kPoints;
@@ -64,7 +64,7 @@ TEST(SplitPages, OneCutAfterAnotherFindsWhatEachDoesAlone) {
       SplitPages<Word> in_turn(diamonds, limits);
       in_turn.forget(true);
       for (int step = 0; step < 60; ++step) {
-        const SurfaceCut cut = any_cut(random, diamonds.levels());
+        const SurfaceCut cut = any_cut(random, diamonds.lods());
         SplitPages<Word> alone(diamonds, limits);
         const Found expected = found_by(alone, cut);
         const Found found = found_by(in_turn, cut);

@@ -105,9 +105,9 @@ TEST(StoreDamage, PagesThatAreThereTwiceAreRepaired) {
     if ((std::bit_width(number) - 1) % 3 != 0 || !grid.contains(grid.page(number))) continue;
     const PageId id = grid.page(number);
     const PageEntry entry = file.entry(0, id).value();
-    ASSERT_EQ(entry.copy != 0, id.level >= kCopiedLevel);
+    ASSERT_EQ(entry.copy != 0, id.lod >= kCopiedLod);
     if (entry.size == 0) continue;
-    if (id.level < kCopiedLevel && number % 7 != 0) continue;
+    if (id.lod < kCopiedLod && number % 7 != 0) continue;
     for (const std::uint64_t offset : {entry.offset, entry.copy}) {
       if (offset == 0) continue;
       store.flip(offset + entry.size / 2, 0x10);
@@ -117,7 +117,7 @@ TEST(StoreDamage, PagesThatAreThereTwiceAreRepaired) {
       EXPECT_EQ(found.bad_copies, entry.copy != 0 ? 1u : 0u);
       EXPECT_EQ(found.bad_pages > 0, entry.copy == 0);
       EXPECT_NE(found.problems.front().find(
-                    fmt::format("level {} at {}, {}, {}", id.level, id.block.i, id.block.j, id.block.k)),
+                    fmt::format("level {} at {}, {}, {}", id.lod, id.block.i, id.block.j, id.block.k)),
                 std::string::npos);
       repaired += entry.copy != 0 ? 1 : 0;
     }

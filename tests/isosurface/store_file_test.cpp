@@ -70,7 +70,7 @@ class StoreOfRandomPages : public testing::Test {
     header_.subtree_depth = 1;
     header_.steps = 2;
     header_.sample_tables = random_bytes(random_, 100);
-    header_.value_tables = random_bytes(random_, 3);
+    header_.bounds_tables = random_bytes(random_, 3);
     header_.bytes = {10, 20, 30};
     write();
   }
@@ -127,14 +127,14 @@ TEST_F(StoreOfRandomPages, GivesThemBack) {
     EXPECT_EQ(file.header().subtree_depth, 1);
     EXPECT_EQ(file.header().steps, 2u);
     EXPECT_EQ(file.header().sample_tables, header_.sample_tables);
-    EXPECT_EQ(file.header().value_tables, header_.value_tables);
+    EXPECT_EQ(file.header().bounds_tables, header_.bounds_tables);
     EXPECT_EQ(file.header().bytes.gradients, 30u);
     file.check_directory();
     for (const Written& page : pages_) {
       const auto entry = file.entry(page.step, page.id);
       ASSERT_TRUE(entry);
       EXPECT_EQ(static_cast<const PageSummary&>(*entry), page.summary);
-      EXPECT_EQ(entry->copy != 0, page.id.level >= kCopiedLevel);
+      EXPECT_EQ(entry->copy != 0, page.id.lod >= kCopiedLod);
       EXPECT_TRUE(file.copy_is_whole(*entry));
       const StoreFile::Payload payload = file.read(page.step, page.id);
       EXPECT_EQ(payload.state, PageState::kWhole);

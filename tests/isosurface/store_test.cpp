@@ -97,7 +97,7 @@ TYPED_TEST(StoreOf, SmallVolumesComeBack) {
       expect_back_all_ways(volume_of<TypeParam>(box, kind));
 }
 
-TYPED_TEST(StoreOf, SeveralPagesAndLevelsComeBack) {
+TYPED_TEST(StoreOf, SeveralPagesAndLodsComeBack) {
   expect_back_all_ways(volume_of<TypeParam>({70, 33, 40}, Kind::kSmooth));
   expect_back(volume_of<TypeParam>({40, 35, 34}, Kind::kRandom), SampleCoding::kInterpolation, 1);
   expect_back(volume_of<TypeParam>({40, 35, 34}, Kind::kExtremes), SampleCoding::kSplitEdge, 2);
@@ -139,17 +139,17 @@ TYPED_TEST(StoreOf, FewDifferentSamplesAreCodedByTheirRanks) {
   EXPECT_EQ(file.header().coding, sizeof(Sample) > 1 ? SampleCoding::kRanks : SampleCoding::kInterpolation);
 }
 
-TYPED_TEST(StoreOf, LevelsAreEverySoManyOfTheSamples) {
+TYPED_TEST(StoreOf, LodsAreEverySoManyOfTheSamples) {
   for (const Dimensions& box : std::vector<Dimensions>{{70, 33, 40}, {17, 18, 1}, {33, 1, 64}, {16, 65, 2}}) {
     const auto volume = volume_of<TypeParam>(box, Kind::kRandom);
     const test::Scratch folder;
     test::build(folder / "a.adm", volume);
     StoreFile file(folder / "a.adm");
-    for (int level = 0; level <= file.grid().top(); ++level) {
-      const auto part_of = [&](std::uint64_t n) { return ((n - 1) >> level) + 1; };
+    for (int lod = 0; lod <= file.grid().top(); ++lod) {
+      const auto part_of = [&](std::uint64_t n) { return ((n - 1) >> lod) + 1; };
       const MemoryVolume<TypeParam> part({part_of(box[0]), part_of(box[1]), part_of(box[2])},
-                                         [&](LatticePoint p) { return volume.at((1 << level) * p); });
-      ASSERT_EQ(test::restored<TypeParam>(file, level), test::bits_of(part.samples)) << level;
+                                         [&](LatticePoint p) { return volume.at((1 << lod) * p); });
+      ASSERT_EQ(test::restored<TypeParam>(file, lod), test::bits_of(part.samples)) << lod;
     }
     EXPECT_THROW(test::restored<TypeParam>(file, file.grid().top() + 1), Error);
     EXPECT_THROW(test::restored<TypeParam>(file, -1), Error);
@@ -169,27 +169,26 @@ TYPED_TEST(StoreOf, RegionsAreTheSamplesInThem) {
   };
   std::mt19937 random(3);
   for (int turn = 0; turn < 30; ++turn) {
-    const int level = turn % 3;
+    const int lod = turn % 3;
     LatticePoint low{}, high{}, first{}, count{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto n = static_cast<std::int32_t>(volume.grid.dimensions[static_cast<std::size_t>(axis)]);
       low[axis] = static_cast<std::int32_t>(random() % static_cast<unsigned>(n));
       high[axis] = low[axis] + static_cast<std::int32_t>(random() % static_cast<unsigned>(n));
-      first[axis] = (low[axis] + (1 << level) - 1) >> level;
-      count[axis] = (std::min(high[axis], n - 1) >> level) - first[axis] + 1;
+      first[axis] = (low[axis] + (1 << lod) - 1) >> lod;
+      count[axis] = (std::min(high[axis], n - 1) >> lod) - first[axis] + 1;
     }
     const Box3 region{place(low), place(high)};
     if (std::min({count.i, count.j, count.k}) <= 0) {
-      EXPECT_THROW(test::restored<TypeParam>(file, level, region), Error);
+      EXPECT_THROW(test::restored<TypeParam>(file, lod, region), Error);
       continue;
     }
-    const RestoredPart part = restored_part(volume.grid, level, region, "a.adm");
-    EXPECT_LT(distance(part.grid.origin, place((1 << level) * first)), 1e-12);
+    const RestoredPart part = restored_part(volume.grid, lod, region, "a.adm");
+    EXPECT_LT(distance(part.grid.origin, place((1 << lod) * first)), 1e-12);
     const auto size = [](std::int32_t n) { return static_cast<std::uint64_t>(n); };
-    const MemoryVolume<TypeParam> wanted({size(count.i), size(count.j), size(count.k)}, [&](LatticePoint p) {
-      return volume.at((1 << level) * (first + p));
-    });
-    ASSERT_EQ(test::restored<TypeParam>(file, level, region), test::bits_of(wanted.samples));
+    const MemoryVolume<TypeParam> wanted({size(count.i), size(count.j), size(count.k)},
+                                         [&](LatticePoint p) { return volume.at((1 << lod) * (first + p)); });
+    ASSERT_EQ(test::restored<TypeParam>(file, lod, region), test::bits_of(wanted.samples));
   }
 }
 

@@ -84,7 +84,7 @@ Stored<Sample> rough(const std::array<std::uint64_t, 3>& dimensions) {
           }};
 }
 
-/// Every point of every page, of coarser levels and virtual ones too.
+/// Every point of every page, of coarser LODs and virtual ones too.
 template <class Sample>
 void expect_stored(const Stored<Sample>& volume) {
   StoreFile file(volume.path());
@@ -99,21 +99,21 @@ void expect_stored(const Stored<Sample>& volume) {
     return codes[at(0) + nx * (at(1) + ny * at(2))];
   };
   std::size_t wrong = 0;
-  for (int level = 0; level <= grid.top(); ++level) {
-    const LatticePoint n = grid.extent(level);
+  for (int lod = 0; lod <= grid.top(); ++lod) {
+    const LatticePoint n = grid.extent(lod);
     LatticePoint q{};
     for (q.k = 0; q.k <= n.k; ++q.k)
       for (q.j = 0; q.j <= n.j; ++q.j)
         for (q.i = 0; q.i <= n.i; ++q.i) {
-          const PageId id{level, {q.i / 16, q.j / 16, q.k / 16}};
+          const PageId id{lod, {q.i / 16, q.j / 16, q.k / 16}};
           if (!grid.contains(id)) continue;
           const PageSamples<std::uint16_t>* page = gradients.page(id);
           ASSERT_NE(page, nullptr);
-          const auto [first, second] = code_at((1 << level) * q);
+          const auto [first, second] = code_at((1 << lod) * q);
           wrong += page->samples[PageGrid::place(q, 0)] != (first | second << 8) ? 1 : 0;
           if ((q.i + q.j + q.k) % 7 != 0) continue;
           const Vec3 expected = decode_direction(DirectionCode::kOctahedral, {first, second, 0});
-          const auto found = gradients.direction((1 << level) * q);
+          const auto found = gradients.direction((1 << lod) * q);
           ASSERT_TRUE(found && norm(*found - expected) == 0);
         }
   }
@@ -188,7 +188,7 @@ void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
       PagePayload parts;
       ASSERT_TRUE(split_payload(file.read(0, id).bytes, parts));
       std::vector<std::byte> gradients(parts.gradients.begin(), parts.gradients.end());
-      if (id.level == 0) change(header, gradients);
+      if (id.lod == 0) change(header, gradients);
       writer.add_page(0, number, join_payload({parts.samples, parts.values, gradients}), *file.entry(0, id));
     }
   }

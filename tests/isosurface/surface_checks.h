@@ -64,18 +64,18 @@ class DiamondTable {
     StoredPages<OrderedWord<Sample>>& pages = store.pages();
     const PageGrid& grid = pages.grid();
     std::vector<LatticePoint> beyond;
-    for (int level = 0; level < depth_; ++level) {
-      const LatticePoint end = grid.extent(level);
+    for (int lod = 0; lod < depth_; ++lod) {
+      const LatticePoint end = grid.extent(lod);
       for (std::int32_t k = 0; k <= end.k; ++k)
         for (std::int32_t j = 0; j <= end.j; ++j)
           for (std::int32_t i = 0; i <= end.i; ++i) {
             if (((i | j | k) & 1) == 0) continue;
-            const LatticePoint p = (1 << level) * LatticePoint{i, j, k};
+            const LatticePoint p = (1 << lod) * LatticePoint{i, j, k};
             if (!reaches_data(p)) continue;
             const PageId id = grid.page(p);
-            const LatticePoint q{p.i >> id.level, p.j >> id.level, p.k >> id.level};
-            if (PageShape{grid.count(id), true, id.level}.owns(q - PageGrid::kSide * id.block)) {
-              diamonds_[p] = values_in(*pages.values(id), p, level, id.level);
+            const LatticePoint q{p.i >> id.lod, p.j >> id.lod, p.k >> id.lod};
+            if (PageShape{grid.count(id), true, id.lod}.owns(q - PageGrid::kSide * id.block)) {
+              diamonds_[p] = values_in(*pages.values(id), p, lod, id.lod);
             } else {
               beyond.push_back(p);
             }
@@ -117,9 +117,9 @@ class DiamondTable {
     return result;
   }
 
-  Values values_in(const PageValues<OrderedWord<Sample>>& page, LatticePoint p, int level, int page_level) {
-    const std::size_t at = PageGrid::place(p, page_level);
-    Values values{scale(level).decode(page.errors[at])};
+  Values values_in(const PageBounds<OrderedWord<Sample>>& page, LatticePoint p, int lod, int page_lod) {
+    const std::size_t at = PageGrid::place(p, page_lod);
+    Values values{scale(lod).decode(page.errors[at])};
     if (page.low[at] <= page.high[at]) {
       values.low = from_ordered<Sample>(page.low[at]);
       values.high = from_ordered<Sample>(page.high[at]);
@@ -128,10 +128,10 @@ class DiamondTable {
     }
     return values;
   }
-  [[nodiscard]] const ErrorScale& scale(int level) const {
-    const auto found = scales_.find(level);
+  [[nodiscard]] const ErrorScale& scale(int lod) const {
+    const auto found = scales_.find(lod);
     if (found != scales_.end()) return found->second;
-    return scales_.emplace(level, level_error_scale(spacing(), level)).first->second;
+    return scales_.emplace(lod, lod_error_scale(spacing(), lod)).first->second;
   }
   [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, kRootBits - depth_) * domain_.spacing(); }
 

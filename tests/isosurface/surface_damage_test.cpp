@@ -24,7 +24,7 @@ SurfaceRequest request_of(bool strict) {
 }
 
 std::string name_of(const PageId& id) {
-  return fmt::format("the page of level {} at {}, {}, {}", id.level, id.block.i, id.block.j, id.block.k);
+  return fmt::format("the page of level {} at {}, {}, {}", id.lod, id.block.i, id.block.j, id.block.k);
 }
 
 /// A store of hills whose surface crosses every page, to be damaged.
@@ -85,20 +85,20 @@ class DamagedSurface : public testing::TestWithParam<int> {
   std::vector<PageEntry> entries_;
 };
 
-/// Of the finest level some.
+/// Of the finest LOD some.
 TEST_P(DamagedSurface, EveryPageInTurn) {
   std::size_t named = 0, tried = 0;
   for (std::size_t n = 0; n < pages_.size(); ++n) {
-    if (pages_[n].level == 0 && n % 7 != 0) continue;
+    if (pages_[n].lod == 0 && n % 7 != 0) continue;
     SCOPED_TRACE(name_of(pages_[n]));
     ++tried;
     damage({n});
-    if (pages_[n].level == store_.pages().grid().top()) {
+    if (pages_[n].lod == store_.pages().grid().top()) {
       EXPECT_TRUE(test::says(test::error_of([&] { store_.extract(request_of(false)); }), name_of(pages_[n])));
       continue;
     }
     const ExtractedSurface surface = store_.extract(request_of(false));
-    for (const PageId& lost : surface.lost) EXPECT_LE(lost.level, pages_[n].level);
+    for (const PageId& lost : surface.lost) EXPECT_LE(lost.lod, pages_[n].lod);
     if (std::find(surface.lost.begin(), surface.lost.end(), pages_[n]) != surface.lost.end()) ++named;
     store_.open();
     expect_coarser();

@@ -120,11 +120,11 @@ TEST(SurfaceExtractor, WithoutErrorIsTheContourOfTheFullMesh) {
     for (const double isovalue : {0.1, 0.5, 0.9}) {
       for (int depth = 0; depth <= 2; ++depth) {
         OpenStore<float> store(volume, depth);
-        const int levels = store.pages().grid().depth();
+        const int lods = store.pages().grid().depth();
         const Contour found = store.extract(isovalue).contour;
         const Contour wanted =
-            extract_contour(test::DiamondTable(store).full_mesh(), test::field_of(volume, levels), isovalue,
-                            test::options_of(volume, levels, 1.0 / 1024));
+            extract_contour(test::DiamondTable(store).full_mesh(), test::field_of(volume, lods), isovalue,
+                            test::options_of(volume, lods, 1.0 / 1024));
         ASSERT_EQ(test::triangle_set(found), test::triangle_set(wanted));
         test::expect_sound(found, volume.grid.box());
       }
@@ -142,15 +142,15 @@ TEST(SurfaceExtractor, WithoutErrorHasThePointsOfTheFullMesh) {
         spacing);
     for (int depth = 0; depth <= 2; ++depth) {
       OpenStore<std::uint8_t> store(volume, depth);
-      const int levels = store.pages().grid().depth();
+      const int lods = store.pages().grid().depth();
       const IndexedHierarchy full = test::DiamondTable(store).full_mesh();
-      const auto field = test::field_of(volume, levels);
+      const auto field = test::field_of(volume, lods);
       for (const double isovalue : {30.5, 66.25}) {
         SurfaceRequest request;
         request.isovalue = isovalue;
         request.least_parameter = 0;
         const ExtractedSurface surface = store.extract(request);
-        const Contour wanted = extract_contour(full, field, isovalue, test::options_of(volume, levels, 0));
+        const Contour wanted = extract_contour(full, field, isovalue, test::options_of(volume, lods, 0));
         test::expect_near(test::measure(surface.contour), test::measure(wanted),
                           1e-8 * (1 + test::measure(wanted).area));
         if (depth == 0) {
@@ -178,7 +178,7 @@ TEST(SurfaceExtractor, WithoutErrorHasTheHolesOfTheFullMesh) {
       });
       for (int depth = 0; depth <= 2; ++depth) {
         OpenStore<float> store(volume, depth);
-        const int levels = store.pages().grid().depth();
+        const int lods = store.pages().grid().depth();
         const IndexedHierarchy full = test::DiamondTable(store).full_mesh();
         for (const double isovalue : {15.5, 31.0, 40.25, 47.25}) {
           SCOPED_TRACE(testing::Message() << box[0] << " x " << box[1] << " x " << box[2] << ", isovalue "
@@ -187,8 +187,8 @@ TEST(SurfaceExtractor, WithoutErrorHasTheHolesOfTheFullMesh) {
           request.isovalue = isovalue;
           request.least_parameter = 0;
           const Contour found = store.extract(request).contour;
-          const Contour wanted = extract_contour(full, test::field_of(volume, levels), isovalue,
-                                                 test::options_of(volume, levels, 0));
+          const Contour wanted = extract_contour(full, test::field_of(volume, lods), isovalue,
+                                                 test::options_of(volume, lods, 0));
           ASSERT_GT(wanted.triangles.size(), 0u);
           test::expect_near(test::measure(found), test::measure(wanted),
                             1e-8 * (1 + test::measure(wanted).area));

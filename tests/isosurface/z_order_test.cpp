@@ -29,7 +29,7 @@ std::vector<LatticePoint> all_points(int bits) {
   return points;
 }
 
-TEST(ZOrder, SortsByLevelThenByInterleavedBits) {
+TEST(ZOrder, SortsByLodThenByInterleavedBits) {
   for (int bits = 1; bits <= 5; ++bits) {
     std::vector<LatticePoint> points = all_points(bits);
     const auto place = [bits](LatticePoint p) {
@@ -46,11 +46,11 @@ TEST(ZOrder, SortsByLevelThenByInterleavedBits) {
   }
 }
 
-TEST(ZOrder, HasEveryLevelAsAPrefix) {
+TEST(ZOrder, HasEveryLodAsAPrefix) {
   const ZOrder order(4);
   for (const LatticePoint p : all_points(4)) {
-    for (int level = 0; level <= 4; ++level)
-      EXPECT_EQ(order.index(p) < order.size(level), trailing_zeros(p) >= level) << p.i << p.j << p.k << level;
+    for (int lod = 0; lod <= 4; ++lod)
+      EXPECT_EQ(order.index(p) < order.size(lod), trailing_zeros(p) >= lod) << p.i << p.j << p.k << lod;
   }
 }
 

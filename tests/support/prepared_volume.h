@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "isosurface/preprocessing/preprocess.h"
-#include "isosurface/storage/page_tree.h"
+#include "isosurface/storage/page_cache.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas::test {
@@ -18,12 +18,12 @@ class PreparedVolume {
  public:
   using Word = OrderedWord<Sample>;
 
-  /// `samples`: i running fastest. Levels below `depth` have no values, as with subtrees.
+  /// `samples`: i running fastest. Lods below `depth` have no values, as with subtrees.
   PreparedVolume(const std::array<std::uint64_t, 3>& dimensions, const std::vector<Sample>& samples,
                  Vec3 spacing = {1, 1, 1}, int depth = 0)
       : tree_(PageGrid(dimensions), std::size_t{1} << 40,
               [this](const PageId& id, const PageShape& shape, const Surroundings<Word>&, PageParts parts,
-                     PageSamples<Word>& found, PageValues<Word>* values) {
+                     PageSamples<Word>& found, PageBounds<Word>* values) {
                 const Page<Word>& own = pages_.at(tree_.grid().number(id));
                 for (std::size_t at = 0; at < PageGrid::kPoints; ++at) {
                   if (!shape.owns(point_at(at))) continue;
@@ -50,9 +50,9 @@ class PreparedVolume {
 
   [[nodiscard]] const PageGrid& grid() const { return tree_.grid(); }
   [[nodiscard]] PageShape shape(const PageId& id) const {
-    return {grid().count(id), grid().is_complete(id), id.level};
+    return {grid().count(id), grid().is_complete(id), id.lod};
   }
-  /// With the points of coarser levels.
+  /// With the points of coarser LODs.
   [[nodiscard]] Page<Word> page(const PageId& id) const {
     Page<Word> found{};
     tree_.copy(id, found);
@@ -76,7 +76,7 @@ class PreparedVolume {
   }
 
   std::map<std::uint64_t, Page<Word>> pages_;
-  mutable PageTree<Word> tree_;
+  mutable PageCache<Word> tree_;
 };
 
 }  // namespace adamas::test

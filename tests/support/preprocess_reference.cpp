@@ -86,10 +86,10 @@ PreprocessReference::PreprocessReference(const ReferenceVolume& volume) : volume
   }
 }
 
-const ErrorScale& PreprocessReference::scale(int level) const {
-  const auto found = scales_.find(level);
+const ErrorScale& PreprocessReference::scale(int lod) const {
+  const auto found = scales_.find(lod);
   if (found != scales_.end()) return found->second;
-  return scales_.emplace(level, level_error_scale(volume_.grid.spacing, level)).first->second;
+  return scales_.emplace(lod, lod_error_scale(volume_.grid.spacing, lod)).first->second;
 }
 
 bool PreprocessReference::in_lattice(LatticePoint p) const {
@@ -174,8 +174,8 @@ double PreprocessReference::measure(const Corners& corners, ReferenceValues& res
     }
   if (!is_finite) {
     const auto [a, b] = longest_edge(corners);
-    const int level = trailing_zeros(midpoint(corners[a], corners[b]));
-    return scale(level).greatest();
+    const int lod = trailing_zeros(midpoint(corners[a], corners[b]));
+    return scale(lod).greatest();
   }
   if (error == 0) return 0;
   return std::min(diameter, error / norm(barycentric.gradient(values, volume_.grid.spacing)));
@@ -184,7 +184,7 @@ double PreprocessReference::measure(const Corners& corners, ReferenceValues& res
 void PreprocessReference::add(LatticePoint p) {
   ReferenceValues values;
   for (const Corners& corners : tetrahedra(p)) values.own = std::max(values.own, measure(corners, values));
-  const int level = trailing_zeros(p);
+  const int lod = trailing_zeros(p);
   double least = values.own * (1 - 1e-9), greatest = values.own * (1 + 2e-6);
   for (const LatticePoint child : children(p)) {
     const auto found = diamonds_.find(child);
@@ -195,8 +195,8 @@ void PreprocessReference::add(LatticePoint p) {
     values.low = std::min(values.low, found->second.low);
     values.high = std::max(values.high, found->second.high);
   }
-  values.least_code = scale(level).encode(least);
-  values.greatest_code = scale(level).encode(greatest);
+  values.least_code = scale(lod).encode(least);
+  values.greatest_code = scale(lod).encode(greatest);
   diamonds_[p] = values;
 }
 

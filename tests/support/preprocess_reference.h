@@ -57,8 +57,8 @@ class PreprocessReference {
   [[nodiscard]] double error_of_descendants(LatticePoint p, int generations) const;
   /// Child diamonds in the lattice.
   [[nodiscard]] std::vector<LatticePoint> children(LatticePoint p) const;
-  /// The volume's scale of errors of a level.
-  [[nodiscard]] const ErrorScale& scale(int level) const;
+  /// The volume's scale of errors of an LOD.
+  [[nodiscard]] const ErrorScale& scale(int lod) const;
 
  private:
   using Corners = std::array<LatticePoint, 4>;

@@ -31,12 +31,12 @@ class VolumePages {
   /// One sample per point, i running fastest.
   VolumePages(const std::array<std::uint64_t, 3>& dimensions, std::vector<Word> samples)
       : grid_(dimensions), dimensions_(dimensions), samples_(std::move(samples)) {
-    for (int level = grid_.top(); level >= 0; --level) {
-      const LatticePoint n = grid_.blocks(level);
+    for (int lod = grid_.top(); lod >= 0; --lod) {
+      const LatticePoint n = grid_.blocks(lod);
       for (std::int32_t k = 0; k < n.k; ++k)
         for (std::int32_t j = 0; j < n.j; ++j)
           for (std::int32_t i = 0; i < n.i; ++i) {
-            const PageId page{level, {i, j, k}};
+            const PageId page{lod, {i, j, k}};
             if (grid_.contains(page)) pages_.push_back(page);
           }
     }
@@ -57,18 +57,18 @@ class VolumePages {
 
   /// Fills a page's content; samples are `unused` where there is no point.
   void content(const PageId& page, Content& result, Word unused = 0) const {
-    const LatticePoint end = grid_.extent(page.level);
+    const LatticePoint end = grid_.extent(page.lod);
     const auto point = [&](LatticePoint q) {
       LatticePoint p{};
       for (int axis = 0; axis < 3; ++axis) {
         const std::int32_t at = PageGrid::kSide * page.block[axis] + q[axis];
-        // Those of the surroundings are of the next coarser level, and end where it does.
+        // Those of the surroundings are of the next coarser LOD, and end where it does.
         const std::int32_t greatest = (q[axis] & 1) == 0 ? (end[axis] + 1) / 2 * 2 : end[axis];
-        p[axis] = std::clamp(at, 0, greatest) * (1 << page.level);
+        p[axis] = std::clamp(at, 0, greatest) * (1 << page.lod);
       }
       return p;
     };
-    result.shape = {grid_.count(page), grid_.is_complete(page), page.level};
+    result.shape = {grid_.count(page), grid_.is_complete(page), page.lod};
     const LatticePoint n = result.shape.count;
     for (std::int32_t k = 0; k < PageGrid::kSide; ++k)
       for (std::int32_t j = 0; j < PageGrid::kSide; ++j)

@@ -83,10 +83,10 @@ std::vector<OrderedWord<Sample>> bits_of(const std::vector<Sample>& samples) {
 
 /// The bits of what restore gives.
 template <class Sample>
-std::vector<OrderedWord<Sample>> restored(StoreFile& file, int level = 0,
+std::vector<OrderedWord<Sample>> restored(StoreFile& file, int lod = 0,
                                           const std::optional<Box3>& region = {},
                                           std::size_t memory = std::size_t{1} << 24) {
-  const RestoredPart part = restored_part(file.header().grid, level, region, file.name());
+  const RestoredPart part = restored_part(file.header().grid, lod, region, file.name());
   std::vector<OrderedWord<Sample>> bits;
   restore(
       file, 0, part, memory,

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "core/base/checksum.h"
+#include "isosurface/compression/bounds_walk.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/compression/value_walk.h"
 #include "isosurface/storage/store_format.h"
-#include "tests/fuzz/value_targets.h"
+#include "tests/fuzz/bounds_targets.h"
 
 namespace adamas::fuzz {
 namespace {
@@ -112,18 +112,18 @@ void make_gradients(const std::filesystem::path& folder, const Seed& seed) {
 /// Makes a page's values those that are expected, but for some of those that are coded.
 template <class Word>
 struct Expectations {
-  ValueFields<Word>& fields;
+  BoundsFields<Word>& fields;
   std::size_t met = 0;
 
   [[nodiscard]] static bool needs_errors() { return true; }
   [[nodiscard]] static bool needs_ranges() { return true; }
-  void errors(const ValueStage& stage) {
+  void errors(const BoundsStage& stage) {
     const auto parity = static_cast<std::size_t>(stage.parity);
     for_each(stage, [&](std::size_t cell, bool other) {
       fields.errors[parity][cell] = static_cast<std::uint8_t>((fields.predicted[parity][cell] + other) & 63);
     });
   }
-  void range(std::size_t side, const ValueStage& stage) {
+  void range(std::size_t side, const BoundsStage& stage) {
     for_each(stage, [&](std::size_t cell, bool other) {
       const Word known = fields.known[side][cell];
       fields.values[side][static_cast<std::size_t>(stage.parity)][cell] =
@@ -133,7 +133,7 @@ struct Expectations {
 
  private:
   template <class Visit>
-  void for_each(const ValueStage& stage, Visit visit) {
+  void for_each(const BoundsStage& stage, Visit visit) {
     const RowBytes* coded = stage.coded.data();
     stage.box.for_each_row([&](std::size_t first, std::size_t, int count) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
@@ -151,7 +151,7 @@ void make_values(const std::filesystem::path& folder, const std::string& name, c
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
   seeded_page(seed, *page, *around);
-  const auto fields = std::make_unique<ValueFields<Word>>();
+  const auto fields = std::make_unique<BoundsFields<Word>>();
   fields->load(shape, *around, *page);
   Expectations<Word> expected{*fields};
   if (shape.complete) {
@@ -160,17 +160,17 @@ void make_values(const std::filesystem::path& folder, const std::string& name, c
     walk_values<Word>(*fields, geometry, shape, {trust, trust}, expected);
   }
   fields->store_values(shape, *page);
-  ValueSurvey<Word> survey({1, 1, 1});
+  BoundsSurvey<Word> survey({1, 1, 1});
   survey.add(shape, *around, *page);
-  const ValueCodec<Word> codec(survey);
+  const BoundsCodec<Word> codec(survey);
   Bytes coded, bytes;
   codec.encode(shape, *around, *page, coded);
   put(bytes, 8 * sizeof(Word));
   put_points(bytes, shape.count);
-  put(bytes, static_cast<std::size_t>(shape.level) | (shape.complete ? 128 : 0));
+  put(bytes, static_cast<std::size_t>(shape.lod) | (shape.complete ? 128 : 0));
   put(bytes, seed);
   put_tables(bytes, codec.tables(), coded);
-  write(folder / "value_codec", name, bytes);
+  write(folder / "bounds_codec", name, bytes);
 }
 
 /// All of a store but its pages, which are of a few bytes each.
@@ -179,7 +179,7 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
   StoreRoot root;
   root.header.grid = grid;
   root.header.steps = steps;
-  root.header.sample_tables = root.header.value_tables = {std::byte{1}, std::byte{2}};
+  root.header.sample_tables = root.header.bounds_tables = {std::byte{1}, std::byte{2}};
   const PageGrid pages(grid.dimensions);
   Bytes directory, bytes;
   StorePrologue prologue{StorePrologue::kBytes, 0};

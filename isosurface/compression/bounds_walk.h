@@ -6,19 +6,19 @@
 #include <cstdint>
 #include <utility>
 
+#include "isosurface/compression/bounds_fields.h"
+#include "isosurface/compression/bounds_stage.h"
 #include "isosurface/compression/error_stage.h"
 #include "isosurface/compression/known_errors.h"
 #include "isosurface/compression/range_stage.h"
 #include "isosurface/compression/range_token.h"
-#include "isosurface/compression/value_fields.h"
-#include "isosurface/compression/value_stage.h"
 
 namespace adamas {
 
 /// All contexts of a page's symbols: those of errors, those of ranges, then of complete pages one for the
 /// errors and one for each side of the ranges.
 template <class Word>
-struct ValueContexts {
+struct BoundsContexts {
   static constexpr std::size_t kRanges = ErrorStages<Word>::kContexts;
   static constexpr std::size_t kComplete = kRanges + RangeStages<Word>::kContexts;
   static constexpr std::size_t kCount = kComplete + 3;
@@ -27,7 +27,7 @@ struct ValueContexts {
 };
 
 /// Whether points of which nothing is expected but what is predicted are not coded.
-struct ValueTrust {
+struct BoundsTrust {
   bool errors, ranges;
 };
 
@@ -36,14 +36,14 @@ struct ValueTrust {
 /// and a decoder fills those of the stage's parity, as predicted where they are not coded. The fields are
 /// loaded.
 template <class Word, class Port>
-void walk_values(ValueFields<Word>& fields, const ErrorGeometry& geometry, const PageShape& shape,
-                 ValueTrust trust, Port& port) {
-  std::array<ValueStage, 2> stages;
+void walk_values(BoundsFields<Word>& fields, const ErrorGeometry& geometry, const PageShape& shape,
+                 BoundsTrust trust, Port& port) {
+  std::array<BoundsStage, 2> stages;
   if (port.needs_errors()) {
-    if (shape.level == 0) {
+    if (shape.lod == 0) {
       known_errors(fields.heights, geometry, shape, fields.predicted);
     } else {
-      // What the samples of a coarse level tell of its errors is not worth working out.
+      // What the samples of a coarse LOD tell of its errors is not worth working out.
       for (auto& cells : fields.predicted) cells.fill(0);
     }
     for (const int parity : kCodedParities) {
@@ -52,7 +52,7 @@ void walk_values(ValueFields<Word>& fields, const ErrorGeometry& geometry, const
     }
   }
   if (!port.needs_ranges()) return;
-  for (ValueStage& stage : stages) stage.base = ValueContexts<Word>::kRanges;
+  for (BoundsStage& stage : stages) stage.base = BoundsContexts<Word>::kRanges;
   for (const int parity : kCodedParities) {
     RangeStages<Word>::make(fields, shape, parity, trust.ranges, stages);
     for (std::size_t side = 0; side < 2; ++side) port.range(side, stages[side]);
@@ -62,15 +62,15 @@ void walk_values(ValueFields<Word>& fields, const ErrorGeometry& geometry, const
 /// The same of a complete page, of which nothing but the samples is known: errors predicted as 0 and ranges
 /// as the samples.
 template <class Word, class Port>
-void walk_complete_values(ValueFields<Word>& fields, const PageShape& shape, Port& port) {
+void walk_complete_values(BoundsFields<Word>& fields, const PageShape& shape, Port& port) {
   for (auto& cells : fields.predicted) cells.fill(0);
   for (auto& cells : fields.bounds) cells.fill(0);
-  ValueStage stage;
+  BoundsStage stage;
   for (int parity = 0; parity < 8; ++parity) {
     stage.begin(parity, ParityBox::of(shape.count, parity));
     // Nothing is sure, as it would be in the context 0.
     stage.add_rows<false>({}, [](std::size_t, RowBytes) { return std::pair(kEachByte, ~RowBytes{0}); });
-    stage.base = ValueContexts<Word>::kComplete - 1;
+    stage.base = BoundsContexts<Word>::kComplete - 1;
     if (port.needs_errors()) port.errors(stage);
     for (std::size_t side = 0; port.needs_ranges() && side < 2; ++side) {
       ++stage.base;

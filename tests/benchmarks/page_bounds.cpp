@@ -1,6 +1,6 @@
-// What the errors and ranges of a store's pages cost, by level, in microseconds a page: pages that a contour
-// may cross are decoded again, and the diamonds that it crosses found. Prints a line of JSON for each level.
-//   bench_page_values STORE ISOVALUE [PAGES [LEVELS]]
+// What the errors and ranges of a store's pages cost, by LOD, in microseconds a page: pages that a contour
+// may cross are decoded again, and the diamonds that it crosses found. Prints a line of JSON for each LOD.
+//   bench_page_bounds STORE ISOVALUE [PAGES [LEVELS]]
 
 #include <algorithm>
 #include <cstdio>
@@ -29,15 +29,15 @@ struct Figures {
   double decode = 0, around = 0, crossed = 0;  ///< seconds of this thread
 };
 
-/// Of a level: some pages with one bound of their samples on each side of the isovalue.
+/// Of an LOD: some pages with one bound of their samples on each side of the isovalue.
 template <class Sample>
-std::vector<PageId> crossed(StoreFile& file, int level, double isovalue, std::size_t most) {
+std::vector<PageId> crossed(StoreFile& file, int lod, double isovalue, std::size_t most) {
   std::vector<PageId> found;
-  const LatticePoint n = file.grid().blocks(level);
+  const LatticePoint n = file.grid().blocks(lod);
   for (std::int32_t k = 0; k < n.k; ++k) {
     for (std::int32_t j = 0; j < n.j; ++j) {
       for (std::int32_t i = 0; i < n.i; ++i) {
-        const PageId id{level, {i, j, k}};
+        const PageId id{lod, {i, j, k}};
         if (!file.grid().contains(id)) continue;
         const PageEntry entry = file.entry(0, id).value();
         if (entry.low > entry.high) continue;
@@ -53,17 +53,17 @@ std::vector<PageId> crossed(StoreFile& file, int level, double isovalue, std::si
 }
 
 template <class Sample>
-Figures measure(StoreFile& file, int level, double isovalue, std::size_t most) {
+Figures measure(StoreFile& file, int lod, double isovalue, std::size_t most) {
   using Word = OrderedWord<Sample>;
   StoredPages<Word> pages(file, 0, std::size_t{512} << 20);
   const auto codec =
-      ValueCodec<Word>::parse(file.header().value_tables, file.header().grid.spacing, file.name());
+      BoundsCodec<Word>::parse(file.header().bounds_tables, file.header().grid.spacing, file.name());
   StoredDiamonds<Sample> diamonds(pages);
   diamonds.set_contour(isovalue);
   typename StoredDiamonds<Sample>::Codes codes;
   [[maybe_unused]] volatile std::size_t sum = 0;
   std::vector<Coded<Word>> all;
-  for (const PageId& id : crossed<Sample>(file, level, isovalue, most)) {
+  for (const PageId& id : crossed<Sample>(file, lod, isovalue, most)) {
     Coded<Word>& coded = all.emplace_back();
     coded.id = id;
     coded.shape = page_shape(file.grid(), id);
@@ -107,17 +107,17 @@ Figures measure(StoreFile& file, int level, double isovalue, std::size_t most) {
   return figures;
 }
 
-void run(const char* path, double isovalue, std::size_t most, int levels) {
+void run(const char* path, double isovalue, std::size_t most, int lods) {
   StoreFile file(path);
-  for (int level = 0; level < std::min(levels, file.grid().top()); ++level) {
+  for (int lod = 0; lod < std::min(lods, file.grid().top()); ++lod) {
     const Figures f = with_sample_type(file.header().grid.type, [&](auto sample) {
-      return measure<decltype(sample)>(file, level, isovalue, most);
+      return measure<decltype(sample)>(file, lod, isovalue, most);
     });
     const double pages = static_cast<double>(std::max<std::size_t>(f.pages, 1)) * 1e-6;
     std::printf(
         "{\"level\": %d, \"pages\": %zu, \"bytes\": %.0f, \"decode\": %.1f, \"around\": %.1f, \"crossed\": "
         "%.1f}\n",
-        level, f.pages, static_cast<double>(f.bytes) / pages * 1e-6, f.decode / pages, f.around / pages,
+        lod, f.pages, static_cast<double>(f.bytes) / pages * 1e-6, f.decode / pages, f.around / pages,
         f.crossed / pages);
   }
 }
@@ -127,7 +127,7 @@ void run(const char* path, double isovalue, std::size_t most, int levels) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: bench_page_values STORE ISOVALUE [PAGES [LEVELS]]\n");
+    std::fprintf(stderr, "usage: bench_page_bounds STORE ISOVALUE [PAGES [LEVELS]]\n");
     return 2;
   }
   adamas::bench::run(argv[1], std::atof(argv[2]), argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 1000,

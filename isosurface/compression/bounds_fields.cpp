@@ -1,4 +1,4 @@
-#include "isosurface/compression/value_fields.h"
+#include "isosurface/compression/bounds_fields.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,10 +39,10 @@ constexpr std::uint8_t kMostCode = 63;
 using Codes = EightLanes<std::uint8_t>;
 
 /// 63 less the greatest code that a child of diamonds with these codes may have, which are on the scale of
-/// the next coarser level.
+/// the next coarser LOD.
 Codes error_room_of(const Codes& parents) {
-  constexpr std::uint8_t kLevel = 4;
-  const Codes::Part codes = parents.parts[0], most = Codes::Part{} + (kMostCode - kLevel);
+  constexpr std::uint8_t kLod = 4;
+  const Codes::Part codes = parents.parts[0], most = Codes::Part{} + (kMostCode - kLod);
   const Codes::Part room = codes < most ? most - codes : Codes::Part{};
   return {{codes == 0 ? Codes::Part{} + kMostCode : room}};
 }
@@ -109,8 +109,8 @@ void for_each_row(const PageShape& shape, int parity, Visit visit) {
 }  // namespace
 
 template <class Word>
-void ValueFields<Word>::load(const PageShape& shape, const Surroundings<Word>& around,
-                             const PageSamples<Word>& page) {
+void BoundsFields<Word>::load(const PageShape& shape, const Surroundings<Word>& around,
+                              const PageSamples<Word>& page) {
   with_wide_lanes([&](auto) {
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t parity = 0; parity < 8; ++parity) {
@@ -123,12 +123,12 @@ void ValueFields<Word>::load(const PageShape& shape, const Surroundings<Word>& a
     if (shape.complete) return;
     load_coarser(around);
     load_parents(shape, around);
-    if (shape.level == 0) load_heights(shape, around, page);
+    if (shape.lod == 0) load_heights(shape, around, page);
   });
 }
 
 template <class Word>
-void ValueFields<Word>::load_points(const PageShape& shape, const PageSamples<Word>& page) {
+void BoundsFields<Word>::load_points(const PageShape& shape, const PageSamples<Word>& page) {
   if (sizeof(Word) < sizeof(float) && !shape.complete && shape.count == LatticePoint{16, 16, 16})
     return load_whole(page);
   for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
@@ -149,7 +149,7 @@ void ValueFields<Word>::load_points(const PageShape& shape, const PageSamples<Wo
 
 /// The same of a page with all points, whose samples are all finite.
 template <class Word>
-void ValueFields<Word>::load_whole(const PageSamples<Word>& page) {
+void BoundsFields<Word>::load_whole(const PageSamples<Word>& page) {
   using Lanes = EightLanes<Word>;
   for (std::int32_t k = 0; k < PageGrid::kSide; ++k) {
     for (std::int32_t j = 0; j < PageGrid::kSide; ++j) {
@@ -167,7 +167,7 @@ void ValueFields<Word>::load_whole(const PageSamples<Word>& page) {
 
 /// What is known of the points whose coordinates are all even.
 template <class Word>
-void ValueFields<Word>::load_coarser(const Surroundings<Word>& around) {
+void BoundsFields<Word>::load_coarser(const Surroundings<Word>& around) {
   Word* const least = samples[0][0].data();
   Word* const greatest = samples[1][0].data();
   Word* const high = values[1][0].data();
@@ -183,8 +183,8 @@ void ValueFields<Word>::load_coarser(const Surroundings<Word>& around) {
 }
 
 template <class Word>
-void ValueFields<Word>::load_heights(const PageShape& shape, const Surroundings<Word>& around,
-                                     const PageSamples<Word>& page) {
+void BoundsFields<Word>::load_heights(const PageShape& shape, const Surroundings<Word>& around,
+                                      const PageSamples<Word>& page) {
   const LatticePoint count = shape.count;
   if (count != LatticePoint{16, 16, 16}) heights.fill(0);
   for (std::int32_t k = 0; k < count.k; ++k) {
@@ -199,7 +199,7 @@ void ValueFields<Word>::load_heights(const PageShape& shape, const Surroundings<
       for (std::int32_t i = 0; i < count.i; ++i) *heights.at({i, j, k}) = height(row[i]);
     }
   }
-  // Behind the page, where the samples of coarser levels are known.
+  // Behind the page, where the samples of coarser LODs are known.
   const LatticePoint last{last_even(count.i), last_even(count.j), last_even(count.k)};
   for (std::int32_t k = 0; k <= last.k; k += 2) {
     for (std::int32_t j = 0; j <= last.j; j += 2) {
@@ -219,7 +219,7 @@ void ValueFields<Word>::load_heights(const PageShape& shape, const Surroundings<
 /// neighbour; between two points that are known behind the page, their mean.
 template <class Word>
 template <int Axis>
-void ValueFields<Word>::mirror(const PageShape& shape) {
+void BoundsFields<Word>::mirror(const PageShape& shape) {
   constexpr int kA = Axis == 0 ? 1 : 0, kB = Axis == 2 ? 1 : 2;
   LatticePoint step{};
   step[Axis] = 1;
@@ -246,7 +246,7 @@ void ValueFields<Word>::mirror(const PageShape& shape) {
 }
 
 template <class Word>
-void ValueFields<Word>::load_parents(const PageShape& shape, const Surroundings<Word>& around) {
+void BoundsFields<Word>::load_parents(const PageShape& shape, const Surroundings<Word>& around) {
   using Words = EightLanes<Word>;
   for (auto& cells : cube_bounds) cells.fill(0);
   cube_error_room.fill(0);
@@ -268,7 +268,7 @@ void ValueFields<Word>::load_parents(const PageShape& shape, const Surroundings<
 }
 
 template <class Word>
-void ValueFields<Word>::load_values(const PageShape& shape, const PageValues<Word>& page) {
+void BoundsFields<Word>::load_values(const PageShape& shape, const PageBounds<Word>& page) {
   for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
     const auto p = static_cast<std::size_t>(parity);
     for_each_row(shape, parity, [&](std::size_t cell, std::size_t place, int count) {
@@ -282,7 +282,7 @@ void ValueFields<Word>::load_values(const PageShape& shape, const PageValues<Wor
 }
 
 template <class Word>
-void ValueFields<Word>::fill_errors(const PageShape& shape, std::uint8_t code) {
+void BoundsFields<Word>::fill_errors(const PageShape& shape, std::uint8_t code) {
   for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
     for_each_row(shape, parity, [&](std::size_t cell, std::size_t, int count) {
       std::fill_n(errors[static_cast<std::size_t>(parity)].begin() + static_cast<std::ptrdiff_t>(cell), count,
@@ -292,7 +292,7 @@ void ValueFields<Word>::fill_errors(const PageShape& shape, std::uint8_t code) {
 }
 
 template <class Word>
-void ValueFields<Word>::store_values(const PageShape& shape, PageValues<Word>& page) const {
+void BoundsFields<Word>::store_values(const PageShape& shape, PageBounds<Word>& page) const {
   with_wide_lanes([&](auto) {
     for (std::int32_t k = 0; k < shape.count.k; ++k) {
       for (std::int32_t j = 0; j < shape.count.j; ++j) {
@@ -312,8 +312,8 @@ void ValueFields<Word>::store_values(const PageShape& shape, PageValues<Word>& p
   });
 }
 
-template struct ValueFields<std::uint8_t>;
-template struct ValueFields<std::uint16_t>;
-template struct ValueFields<std::uint32_t>;
+template struct BoundsFields<std::uint8_t>;
+template struct BoundsFields<std::uint16_t>;
+template struct BoundsFields<std::uint32_t>;
 
 }  // namespace adamas

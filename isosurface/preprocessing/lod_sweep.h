@@ -7,74 +7,74 @@
 #include "core/base/parallel.h"
 #include "isosurface/preprocessing/error_code.h"
 #include "isosurface/preprocessing/leaf_ranges.h"
-#include "isosurface/preprocessing/level_values.h"
+#include "isosurface/preprocessing/lod_values.h"
 
 namespace adamas {
 
-/// Makes errors and ranges monotone, from the finest level up, plane by plane: a diamond takes what its
-/// children have. With a point's coordinates in units of its level the children are its two neighbours along
+/// Makes errors and ranges monotone, from the finest LOD up, plane by plane: a diamond takes what its
+/// children have. With a point's coordinates in units of its LOD the children are its two neighbours along
 /// each odd axis, but in phase 2, where there is one odd coordinate: there they are the eight points of the
-/// next finer level round it.
+/// next finer LOD round it.
 template <class Word>
-class LevelSweep {
+class LodSweep {
  public:
   /// `last`: sample of the volume.
-  LevelSweep(std::vector<LevelValues<Word>>& levels, LatticePoint last)
-      : levels_(levels), last_(last), next_(levels.size(), 0) {}
+  LodSweep(std::vector<LodValues<Word>>& lods, LatticePoint last)
+      : lods_(lods), last_(last), next_(lods.size(), 0) {}
 
-  /// All tetrahedra have been measured that touch the diamonds in planes of the level up to `measured`.
-  /// Sweeps what can be swept, in this level alone; to be called from the finest one up.
-  void advance(int level, std::int32_t measured) {
+  /// All tetrahedra have been measured that touch the diamonds in planes of the LOD up to `measured`.
+  /// Sweeps what can be swept, in this LOD alone; to be called from the finest one up.
+  void advance(int lod, std::int32_t measured) {
     std::int32_t complete = measured;
-    if (level > 0 && done(level - 1) < levels_[index(level - 1)].size().k - 1)
-      complete = std::min(complete, (done(level - 1) - 1) >> 1);
-    for (; next_[index(level)] <= complete; ++next_[index(level)]) {
-      const std::int32_t z = next_[index(level)];
-      if (level == 0) find_leaf_ranges(z);
-      const bool is_end = z + 1 == levels_[index(level)].size().k;
+    if (lod > 0 && done(lod - 1) < lods_[index(lod - 1)].size().k - 1)
+      complete = std::min(complete, (done(lod - 1) - 1) >> 1);
+    for (; next_[index(lod)] <= complete; ++next_[index(lod)]) {
+      const std::int32_t z = next_[index(lod)];
+      if (lod == 0) find_leaf_ranges(z);
+      const bool is_end = z + 1 == lods_[index(lod)].size().k;
       if (z % 2 == 0) {
-        sweep_plane(level, z);
-        if (z > 0) finish_odd_plane(level, z - 1);
+        sweep_plane(lod, z);
+        if (z > 0) finish_odd_plane(lod, z - 1);
       } else if (is_end) {
-        finish_odd_plane(level, z);
+        finish_odd_plane(lod, z);
       }
     }
   }
 
   /// The last plane whose points, and those of all planes before it, have their final values.
-  [[nodiscard]] std::int32_t done(int level) const {
-    const std::int32_t next = next_[index(level)];
+  [[nodiscard]] std::int32_t done(int lod) const {
+    const std::int32_t next = next_[index(lod)];
     // An odd plane still needs the one behind it.
-    return next % 2 == 1 || next == levels_[index(level)].size().k ? next - 1 : next - 2;
+    return next % 2 == 1 || next == lods_[index(lod)].size().k ? next - 1 : next - 2;
   }
 
  private:
-  using Values = LevelValues<Word>;
-  static std::size_t index(int level) { return static_cast<std::size_t>(level); }
+  using Values = LodValues<Word>;
+  static std::size_t index(int lod) { return static_cast<std::size_t>(lod); }
   static constexpr std::size_t kGrain = 16;
 
   void find_leaf_ranges(std::int32_t z) {
-    Values& values = levels_.front();
+    Values& values = lods_.front();
     const LeafRanges<Word> ranges(values, last_);
     parallel_for(static_cast<std::size_t>(values.size().j), kGrain,
                  [&](std::size_t j) { ranges.find(static_cast<std::int32_t>(j), z); });
   }
 
-  void finish_odd_plane(int level, std::int32_t z) {
-    sweep_plane(level, z);
-    if (index(level) + 1 == levels_.size()) return;
-    Values& parents = levels_[index(level) + 1];
+  void finish_odd_plane(int lod, std::int32_t z) {
+    sweep_plane(lod, z);
+    if (index(lod) + 1 == lods_.size()) return;
+    Values& parents = lods_[index(lod) + 1];
     for (const std::int32_t parent : {(z - 1) / 2, (z + 1) / 2}) {
       if (parent >= parents.size().k) continue;
       parallel_for(static_cast<std::size_t>(parents.size().j), kGrain, [&](std::size_t j) {
-        pull(levels_[index(level)], parents, static_cast<std::int32_t>(j), parent, z);
+        pull(lods_[index(lod)], parents, static_cast<std::int32_t>(j), parent, z);
       });
     }
   }
 
   /// Phase 1, and in odd planes phase 0 after it.
-  void sweep_plane(int level, std::int32_t z) {
-    Values& values = levels_[index(level)];
+  void sweep_plane(int lod, std::int32_t z) {
+    Values& values = lods_[index(lod)];
     for (const int odd_axes : {2, 3}) {
       parallel_for(static_cast<std::size_t>(values.size().j), kGrain, [&](std::size_t row) {
         const auto j = static_cast<std::int32_t>(row);
@@ -118,7 +118,7 @@ class LevelSweep {
     }
   }
 
-  /// Phase 2 of row (j, z) of the coarser level, from the plane `fine_z` of the finer one.
+  /// Phase 2 of row (j, z) of the coarser LOD, from the plane `fine_z` of the finer one.
   static void pull(Values& fine, Values& coarse, std::int32_t j, std::int32_t z, std::int32_t fine_z) {
     if (j % 2 == 1 && z % 2 == 1) return;
     const std::int32_t first = (j + z) % 2 == 0 ? 1 : 0;
@@ -146,7 +146,7 @@ class LevelSweep {
     }
   }
 
-  std::vector<Values>& levels_;
+  std::vector<Values>& lods_;
   LatticePoint last_;
   std::vector<std::int32_t> next_;
 };

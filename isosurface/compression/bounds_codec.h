@@ -16,15 +16,15 @@ namespace adamas {
 /// Counts what errors and ranges pages hold, for the tables of the codec that will code them. Codecs code any
 /// page, also one that was not counted, only less well.
 template <class Word>
-class ValueSurvey {
+class BoundsSurvey {
  public:
   /// `spacing`: of the volume's samples.
-  explicit ValueSurvey(const Vec3& spacing);
+  explicit BoundsSurvey(const Vec3& spacing);
 
   /// `around` is not read where the page is complete; of `page` only places that have points are read.
   void add(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
   /// Adds what another survey has counted. The order of pages and of merging does not matter.
-  void merge(const ValueSurvey& other) { counts_.merge(other.counts_); }
+  void merge(const BoundsSurvey& other) { counts_.merge(other.counts_); }
 
   [[nodiscard]] const ErrorGeometry& geometry() const { return geometry_; }
   [[nodiscard]] const ContextCounts& counts() const { return counts_; }
@@ -35,34 +35,34 @@ class ValueSurvey {
 };
 
 /// Makes the error codes (below 64) and the ranges (any words) of a page's own points into bytes and back,
-/// lossless. What is known of coarser levels and of the page's samples is made use of. May be used by several
+/// lossless. What is known of coarser LODs and of the page's samples is made use of. May be used by several
 /// threads at once. Word: see Page.
 template <class Word>
-class ValueCodec {
+class BoundsCodec {
  public:
-  explicit ValueCodec(const ValueSurvey<Word>& survey)
+  explicit BoundsCodec(const BoundsSurvey<Word>& survey)
       : geometry_(survey.geometry()), coder_(survey.counts()) {}
 
   /// From which `parse` makes the codec again; the same bytes for equal surveys.
   [[nodiscard]] std::vector<std::byte> tables() const;
   /// Throws Error, which begins with `name`, unless some codec's `tables` could have given just these bytes.
   /// `spacing`: that of the survey.
-  [[nodiscard]] static ValueCodec parse(std::span<const std::byte> tables, const Vec3& spacing,
-                                        std::string_view name);
+  [[nodiscard]] static BoundsCodec parse(std::span<const std::byte> tables, const Vec3& spacing,
+                                         std::string_view name);
 
   /// Appends the values of the page's own points, in whole bytes. `around` is not read where the page is
   /// complete; of `page` only places that have points are read.
   void encode(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page,
               std::vector<std::byte>& out) const;
-  /// Fills the errors and ranges of all places that have points, those of coarser levels from `around`; the
+  /// Fills the errors and ranges of all places that have points, those of coarser LODs from `around`; the
   /// samples are those with which the page was encoded. Returns false, and leaves anything in `values`, where
   /// the bytes are not what `encode` of some page gives.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape,
                             const Surroundings<Word>& around, const PageSamples<Word>& samples,
-                            PageValues<Word>& values) const;
+                            PageBounds<Word>& values) const;
 
  private:
-  ValueCodec(const ErrorGeometry& geometry, ContextCoder coder)
+  BoundsCodec(const ErrorGeometry& geometry, ContextCoder coder)
       : geometry_(geometry), coder_(std::move(coder)) {}
 
   ErrorGeometry geometry_;

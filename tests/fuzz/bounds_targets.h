@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "isosurface/compression/value_codec.h"
+#include "isosurface/compression/bounds_codec.h"
 #include "tests/fuzz/require.h"
 
 namespace adamas::fuzz {
@@ -44,9 +44,9 @@ void seeded_page(std::uint8_t seed, Page<Word>& page, Surroundings<Word>& around
 /// Tables and a page of it, whose samples and surroundings the seed tells. What is taken is written as it was
 /// read.
 template <class Word>
-void value_page(std::span<const std::byte> tables, std::span<const std::byte> bytes, const PageShape& shape,
-                std::uint8_t seed) {
-  const auto codec = ValueCodec<Word>::parse(tables, {1, 1, 1}, "fuzz");
+void bounds_page(std::span<const std::byte> tables, std::span<const std::byte> bytes, const PageShape& shape,
+                 std::uint8_t seed) {
+  const auto codec = BoundsCodec<Word>::parse(tables, {1, 1, 1}, "fuzz");
   require(std::ranges::equal(codec.tables(), tables), "other tables");
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
@@ -57,9 +57,9 @@ void value_page(std::span<const std::byte> tables, std::span<const std::byte> by
   require(std::ranges::equal(again, bytes), "another page");
 }
 
-/// A number of bits, the page's count per axis, its level with 128 where it is complete, a seed, the size of
+/// A number of bits, the page's count per axis, its LOD with 128 where it is complete, a seed, the size of
 /// the tables in 2 bytes, the tables, and the page.
-inline void value_codec(std::string_view bytes) {
+inline void bounds_codec(std::string_view bytes) {
   constexpr std::size_t kHeader = 8;
   const auto given = std::as_bytes(std::span(bytes));
   if (given.size() < kHeader) fail("expected a header, found {} bytes", given.size());
@@ -71,9 +71,9 @@ inline void value_codec(std::string_view bytes) {
   const std::size_t size =
       std::min<std::size_t>(static_cast<std::size_t>(number(6) | number(7) << 8), given.size() - kHeader);
   const auto tables = given.subspan(kHeader, size), page = given.subspan(kHeader + size);
-  if (bits == 8) return value_page<std::uint8_t>(tables, page, shape, seed);
-  if (bits == 16) return value_page<std::uint16_t>(tables, page, shape, seed);
-  if (bits == 32) return value_page<std::uint32_t>(tables, page, shape, seed);
+  if (bits == 8) return bounds_page<std::uint8_t>(tables, page, shape, seed);
+  if (bits == 16) return bounds_page<std::uint16_t>(tables, page, shape, seed);
+  if (bits == 32) return bounds_page<std::uint32_t>(tables, page, shape, seed);
   fail("expected 8, 16 or 32 bits, found {}", bits);
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "isosurface/compression/value_walk.h"
+#include "isosurface/compression/bounds_walk.h"
 
 namespace adamas {
 
@@ -27,7 +27,7 @@ constexpr bool is_coded(ErrorMode mode) { return mode >= ErrorMode::kCodedButSur
 constexpr bool is_coded(RangeMode mode) { return mode >= RangeMode::kCodedButSure; }
 
 /// What is to be found of a page's errors and ranges to know their modes.
-struct ValueSummary {
+struct BoundsSummary {
   std::uint8_t any_error = 0;                                       ///< the bits that any of the codes has
   std::uint8_t all_errors = 63;                                     ///< the bits that all have
   bool any_word = false;                                            ///< a range that is not empty
@@ -36,10 +36,10 @@ struct ValueSummary {
 
   /// Takes in the page's own errors.
   template <class Word>
-  void add_errors(const PageShape& shape, const ValueFields<Word>& fields);
+  void add_errors(const PageShape& shape, const BoundsFields<Word>& fields);
   /// Takes in whether its ranges are empty.
   template <class Word>
-  void add_ranges(const PageShape& shape, const ValueFields<Word>& fields);
+  void add_ranges(const PageShape& shape, const BoundsFields<Word>& fields);
 
   [[nodiscard]] ErrorMode error_mode() const {
     if (any_error == 0) return ErrorMode::kZero;
@@ -55,10 +55,10 @@ struct ValueSummary {
 
 /// What a page's errors and ranges are coded as.
 template <class Word>
-class ValueSymbols {
+class BoundsSymbols {
  public:
-  ValueSymbols(const ErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
-               const Page<Word>& page);
+  BoundsSymbols(const ErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
+                const Page<Word>& page);
 
   struct Stage {
     std::size_t base = 0;  ///< to which contexts are added
@@ -69,7 +69,7 @@ class ValueSymbols {
     int count;
   };
 
-  [[nodiscard]] const ValueSummary& summary() const { return summary_; }
+  [[nodiscard]] const BoundsSummary& summary() const { return summary_; }
   /// Those to be coded, by stages.
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
   /// The bits that symbols leave open, in their order.
@@ -78,21 +78,21 @@ class ValueSymbols {
   // For walk_values.
   [[nodiscard]] static bool needs_errors() { return true; }
   [[nodiscard]] static bool needs_ranges() { return true; }
-  void errors(const ValueStage& stage);
-  void range(std::size_t side, const ValueStage& stage);
+  void errors(const BoundsStage& stage);
+  void range(std::size_t side, const BoundsStage& stage);
 
  private:
-  void collect(const ErrorGeometry& geometry, ValueTrust trust);
+  void collect(const ErrorGeometry& geometry, BoundsTrust trust);
   void leave_out_what_modes_tell();
   /// Adds the stage, with the symbols that symbol(cell) gives of the points that are coded. Returns whether
   /// any other point is not as expected.
   template <class T, class Symbol>
-  bool add(const ValueStage& stage, const ParityCells<T>& found, const ParityCells<T>& expected,
+  bool add(const BoundsStage& stage, const ParityCells<T>& found, const ParityCells<T>& expected,
            Symbol symbol);
 
   PageShape shape_;
-  std::unique_ptr<ValueFields<Word>> fields_;
-  ValueSummary summary_;
+  std::unique_ptr<BoundsFields<Word>> fields_;
+  BoundsSummary summary_;
   std::vector<Stage> stages_;
   std::vector<std::size_t> range_stages_;  ///< which of them
   std::vector<Extra> extras_;

@@ -13,28 +13,28 @@ namespace adamas {
 /// the least samples; side 1 has all bits inverted, so that what is greatest is least there too. The greatest
 /// word stands where nothing is known.
 template <class Word>
-struct ValueFields {
+struct BoundsFields {
   static constexpr Word kUnknown = static_cast<Word>(~Word{0});
 
   /// What is known before any value; of a complete page its samples alone.
   void load(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
   /// The page's own values, for an encoder.
-  void load_values(const PageShape& shape, const PageValues<Word>& page);
+  void load_values(const PageShape& shape, const PageBounds<Word>& page);
   /// Gives all own points the same error.
   void fill_errors(const PageShape& shape, std::uint8_t code);
   /// The values of all places of the page.
-  void store_values(const PageShape& shape, PageValues<Word>& page) const;
+  void store_values(const PageShape& shape, PageBounds<Word>& page) const;
 
   std::array<AllCells<Word>, 2> samples;  ///< words of finite samples
-  std::array<AllCells<Word>, 2> values;   ///< the ranges found so far, and those of coarser levels
-  AllCells<std::uint8_t> errors;          ///< codes found so far, and those of coarser levels; 0 elsewhere
+  std::array<AllCells<Word>, 2> values;   ///< the ranges found so far, and those of coarser LODs
+  AllCells<std::uint8_t> errors;          ///< codes found so far, and those of coarser LODs; 0 elsewhere
   /// By cube, which is where its centre is: the greatest of the least samples of the diamonds that are the
   /// parents of the cube's; 0 where they are not known.
   std::array<ParityCells<Word>, 2> cube_bounds;
   /// By cube: 63 less the greatest code that the least error of these parents lets a point have; 0 where that
   /// is not known.
   ParityCells<std::uint8_t> cube_error_room;
-  /// Of the finest level alone: finite; what is not known is mirrored.
+  /// Of the finest LOD alone: finite; what is not known is mirrored.
   HeightGrid heights;
 
   // What stages work with, of the points of one parity; the predictions of errors of all.

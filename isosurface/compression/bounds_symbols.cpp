@@ -1,4 +1,4 @@
-#include "isosurface/compression/value_symbols.h"
+#include "isosurface/compression/bounds_symbols.h"
 
 #include "core/base/assert.h"
 
@@ -18,7 +18,7 @@ void for_each_own_row(const PageShape& shape, Visit visit) {
 }  // namespace
 
 template <class Word>
-void ValueSummary::add_errors(const PageShape& shape, const ValueFields<Word>& fields) {
+void BoundsSummary::add_errors(const PageShape& shape, const BoundsFields<Word>& fields) {
   RowBytes any = 0, all = ~any;
   for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
     const RowBytes codes = load_row(fields.errors[parity].data() + cell), counted = first_bytes(count);
@@ -32,28 +32,28 @@ void ValueSummary::add_errors(const PageShape& shape, const ValueFields<Word>& f
 }
 
 template <class Word>
-void ValueSummary::add_ranges(const PageShape& shape, const ValueFields<Word>& fields) {
+void BoundsSummary::add_ranges(const PageShape& shape, const BoundsFields<Word>& fields) {
   for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
     const Word* words = fields.values[0][parity].data() + cell;
-    for (int n = 0; !any_word && n < count; ++n) any_word = words[n] != ValueFields<Word>::kUnknown;
+    for (int n = 0; !any_word && n < count; ++n) any_word = words[n] != BoundsFields<Word>::kUnknown;
   });
 }
 
 template <class Word>
-ValueSymbols<Word>::ValueSymbols(const ErrorGeometry& geometry, const PageShape& shape,
-                                 const Surroundings<Word>& around, const Page<Word>& page)
-    : shape_(shape), fields_(std::make_unique_for_overwrite<ValueFields<Word>>()) {
+BoundsSymbols<Word>::BoundsSymbols(const ErrorGeometry& geometry, const PageShape& shape,
+                                   const Surroundings<Word>& around, const Page<Word>& page)
+    : shape_(shape), fields_(std::make_unique_for_overwrite<BoundsFields<Word>>()) {
   fields_->load(shape, around, page);
   fields_->load_values(shape, page);
   collect(geometry, {true, true});
   // Of what is not as foreseen all is coded.
-  const ValueTrust trust{!summary_.any_sure_error_other, !summary_.any_sure_range_other};
+  const BoundsTrust trust{!summary_.any_sure_error_other, !summary_.any_sure_range_other};
   if (!trust.errors || !trust.ranges) collect(geometry, trust);
   leave_out_what_modes_tell();
 }
 
 template <class Word>
-void ValueSymbols<Word>::collect(const ErrorGeometry& geometry, ValueTrust trust) {
+void BoundsSymbols<Word>::collect(const ErrorGeometry& geometry, BoundsTrust trust) {
   summary_.any_other = false;
   stages_.clear();
   range_stages_.clear();
@@ -69,8 +69,8 @@ void ValueSymbols<Word>::collect(const ErrorGeometry& geometry, ValueTrust trust
 
 template <class Word>
 template <class T, class Symbol>
-bool ValueSymbols<Word>::add(const ValueStage& stage, const ParityCells<T>& found,
-                             const ParityCells<T>& expected, Symbol symbol) {
+bool BoundsSymbols<Word>::add(const BoundsStage& stage, const ParityCells<T>& found,
+                              const ParityCells<T>& expected, Symbol symbol) {
   Stage& made = stages_.emplace_back();
   made.base = stage.base;
   made.contexts.assign(stage.contexts.begin(),
@@ -92,17 +92,17 @@ bool ValueSymbols<Word>::add(const ValueStage& stage, const ParityCells<T>& foun
 }
 
 template <class Word>
-void ValueSymbols<Word>::errors(const ValueStage& stage) {
+void BoundsSymbols<Word>::errors(const BoundsStage& stage) {
   const auto& found = fields_->errors[static_cast<std::size_t>(stage.parity)];
   const auto& expected = fields_->predicted[static_cast<std::size_t>(stage.parity)];
   summary_.any_sure_error_other |= add(stage, found, expected, [&](std::size_t cell) {
-    ADAMAS_ASSERT(found[cell] < ValueContexts<Word>::kErrorSymbols);
+    ADAMAS_ASSERT(found[cell] < BoundsContexts<Word>::kErrorSymbols);
     return static_cast<std::uint8_t>((found[cell] - expected[cell]) & 63);
   });
 }
 
 template <class Word>
-void ValueSymbols<Word>::range(std::size_t side, const ValueStage& stage) {
+void BoundsSymbols<Word>::range(std::size_t side, const BoundsStage& stage) {
   range_stages_.push_back(stages_.size());
   const auto& found = fields_->values[side][static_cast<std::size_t>(stage.parity)];
   const auto& expected = fields_->known[side];
@@ -118,7 +118,7 @@ void ValueSymbols<Word>::range(std::size_t side, const ValueStage& stage) {
 }
 
 template <class Word>
-void ValueSymbols<Word>::leave_out_what_modes_tell() {
+void BoundsSymbols<Word>::leave_out_what_modes_tell() {
   const bool errors = is_coded(summary_.error_mode()), ranges = is_coded(summary_.range_mode());
   if (!ranges) extras_.clear();
   std::size_t next_range = 0;
@@ -129,14 +129,14 @@ void ValueSymbols<Word>::leave_out_what_modes_tell() {
   }
 }
 
-template void ValueSummary::add_errors(const PageShape&, const ValueFields<std::uint8_t>&);
-template void ValueSummary::add_errors(const PageShape&, const ValueFields<std::uint16_t>&);
-template void ValueSummary::add_errors(const PageShape&, const ValueFields<std::uint32_t>&);
-template void ValueSummary::add_ranges(const PageShape&, const ValueFields<std::uint8_t>&);
-template void ValueSummary::add_ranges(const PageShape&, const ValueFields<std::uint16_t>&);
-template void ValueSummary::add_ranges(const PageShape&, const ValueFields<std::uint32_t>&);
-template class ValueSymbols<std::uint8_t>;
-template class ValueSymbols<std::uint16_t>;
-template class ValueSymbols<std::uint32_t>;
+template void BoundsSummary::add_errors(const PageShape&, const BoundsFields<std::uint8_t>&);
+template void BoundsSummary::add_errors(const PageShape&, const BoundsFields<std::uint16_t>&);
+template void BoundsSummary::add_errors(const PageShape&, const BoundsFields<std::uint32_t>&);
+template void BoundsSummary::add_ranges(const PageShape&, const BoundsFields<std::uint8_t>&);
+template void BoundsSummary::add_ranges(const PageShape&, const BoundsFields<std::uint16_t>&);
+template void BoundsSummary::add_ranges(const PageShape&, const BoundsFields<std::uint32_t>&);
+template class BoundsSymbols<std::uint8_t>;
+template class BoundsSymbols<std::uint16_t>;
+template class BoundsSymbols<std::uint32_t>;
 
 }  // namespace adamas

@@ -12,16 +12,16 @@
 
 namespace adamas {
 
-/// What is known of the points of one level, in the planes of k that are at work or in all of them.
-/// Coordinates are in units of the level. Word: OrderedWord of the samples' type.
+/// What is known of the points of one LOD, in the planes of k that are at work or in all of them.
+/// Coordinates are in units of the LOD. Word: OrderedWord of the samples' type.
 template <class Word>
-class LevelValues {
+class LodValues {
  public:
   static constexpr Word kGreatest = std::numeric_limits<Word>::max();
 
   /// `size` points per axis, of which `planes` are held at a time: plane z in the place of z - planes.
   /// `generations` codes are kept per point beside its own.
-  LevelValues(LatticePoint size, int planes, int generations, bool with_samples)
+  LodValues(LatticePoint size, int planes, int generations, bool with_samples)
       : size_(size),
         planes_(std::min(size.k, planes)),
         stride_(static_cast<std::size_t>(size.i) + 1),

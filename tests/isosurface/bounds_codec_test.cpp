@@ -1,4 +1,4 @@
-#include "isosurface/compression/value_codec.h"
+#include "isosurface/compression/bounds_codec.h"
 
 #include <gtest/gtest.h>
 
@@ -29,14 +29,14 @@ template <class Word>
 using Cases = std::vector<Case<Word>>;
 
 template <class Word>
-ValueCodec<Word> codec_of(const Cases<Word>& cases, const Vec3& spacing = kEven) {
-  ValueSurvey<Word> survey(spacing);
+BoundsCodec<Word> codec_of(const Cases<Word>& cases, const Vec3& spacing = kEven) {
+  BoundsSurvey<Word> survey(spacing);
   for (const auto& c : cases) survey.add(c.shape, c.around, c.page);
-  return ValueCodec<Word>(survey);
+  return BoundsCodec<Word>(survey);
 }
 
 template <class Word>
-Bytes encoded(const ValueCodec<Word>& codec, const Case<Word>& c) {
+Bytes encoded(const BoundsCodec<Word>& codec, const Case<Word>& c) {
   Bytes bytes;
   codec.encode(c.shape, c.around, c.page, bytes);
   return bytes;
@@ -54,7 +54,7 @@ std::unique_ptr<Page<Word>> samples_of(const Case<Word>& c) {
 }
 
 template <class Word>
-void expect_there_and_back(const ValueCodec<Word>& codec, const Case<Word>& c) {
+void expect_there_and_back(const BoundsCodec<Word>& codec, const Case<Word>& c) {
   const Bytes bytes = encoded(codec, c);
   const auto found = samples_of(c);
   ASSERT_TRUE(codec.decode(bytes, c.shape, c.around, *found, *found));
@@ -74,8 +74,8 @@ void expect_there_and_back(const ValueCodec<Word>& codec, const Case<Word>& c) {
 /// With the codec of all, and with that which is made from its tables. Returns the bytes of all pages.
 template <class Word>
 std::size_t expect_all_there_and_back(const Cases<Word>& cases, const Vec3& spacing = kEven) {
-  const ValueCodec<Word> codec = codec_of(cases, spacing);
-  const ValueCodec<Word> parsed = ValueCodec<Word>::parse(codec.tables(), spacing, "here");
+  const BoundsCodec<Word> codec = codec_of(cases, spacing);
+  const BoundsCodec<Word> parsed = BoundsCodec<Word>::parse(codec.tables(), spacing, "here");
   EXPECT_EQ(parsed.tables(), codec.tables());
   std::size_t size = 0;
   for (const auto& c : cases) {
@@ -139,9 +139,9 @@ Case<Word> any_case(std::mt19937_64& random, const PageShape& shape) {
 }
 
 template <class Word>
-class ValueCodecOf : public testing::Test {};
+class BoundsCodecOf : public testing::Test {};
 using Words = testing::Types<std::uint8_t, std::uint16_t, std::uint32_t>;
-TYPED_TEST_SUITE(ValueCodecOf, Words);
+TYPED_TEST_SUITE(BoundsCodecOf, Words);
 
 template <class Sample>
 void expect_less_than(double bits, double scale, Vec3 spacing = {1, 1, 1}, int depth = 0) {
@@ -153,7 +153,7 @@ void expect_less_than(double bits, double scale, Vec3 spacing = {1, 1, 1}, int d
   EXPECT_LT(8 * static_cast<double>(size) / points, bits);
 }
 
-TEST(ValueCodec, CodesWhatVolumesHold) {
+TEST(BoundsCodec, CodesWhatVolumesHold) {
   expect_less_than<std::uint8_t>(3, 120);
   expect_less_than<std::uint16_t>(6, 30000);
   expect_less_than<std::int16_t>(6, 15000);
@@ -161,26 +161,26 @@ TEST(ValueCodec, CodesWhatVolumesHold) {
   expect_less_than<std::uint8_t>(4, 120, {1, 1, 2.5});
 }
 
-TEST(ValueCodec, CodesLevelsWithoutValuesInAByteOrTwo) {
+TEST(BoundsCodec, CodesLodsWithoutValuesInAByteOrTwo) {
   const test::PreparedVolume<std::uint8_t> reference(kDimensions, waves<std::uint8_t>(kDimensions, 90),
                                                      {1, 1, 1}, 1);
   const auto cases = cases_of(reference);
   const auto codec = codec_of(cases);
   expect_all_there_and_back(cases);
   for (const auto& c : cases) {
-    if (c.shape.level < 1) {
+    if (c.shape.lod < 1) {
       EXPECT_EQ(encoded(codec, c).size(), 1u);
     }
   }
 }
 
-TYPED_TEST(ValueCodecOf, KnowsNothingOfValuesBeforeAndFarBehindThePage) {
+TYPED_TEST(BoundsCodecOf, KnowsNothingOfValuesBeforeAndFarBehindThePage) {
   using Word = TypeParam;
   std::mt19937_64 random(9);
   for (const LatticePoint count : {LatticePoint{16, 16, 16}, LatticePoint{16, 9, 1}}) {
-    for (const int level : {0, 1}) {
-      Case<Word> c = any_case<Word>(random, {count, false, level});
-      const ValueCodec<Word> codec = codec_of<Word>({c});
+    for (const int lod : {0, 1}) {
+      Case<Word> c = any_case<Word>(random, {count, false, lod});
+      const BoundsCodec<Word> codec = codec_of<Word>({c});
       const Bytes expected = encoded(codec, c);
       const Case<Word> other = any_case<Word>(random, c.shape);
       for (std::size_t n = 0; n < Surroundings<Word>::kPoints; ++n) {
@@ -196,7 +196,7 @@ TYPED_TEST(ValueCodecOf, KnowsNothingOfValuesBeforeAndFarBehindThePage) {
   }
 }
 
-TEST(ValueCodec, CodesAConstantInAByte) {
+TEST(BoundsCodec, CodesAConstantInAByte) {
   const test::PreparedVolume<std::uint16_t> reference(kDimensions,
                                                       std::vector<std::uint16_t>(41 * 35 * 30, 9));
   const auto cases = cases_of(reference);
@@ -210,7 +210,7 @@ TEST(ValueCodec, CodesAConstantInAByte) {
   }
 }
 
-TEST(ValueCodec, CodesWhereNumbersAreNotFinite) {
+TEST(BoundsCodec, CodesWhereNumbersAreNotFinite) {
   std::vector<float> samples = waves<float>(kDimensions, 3);
   std::mt19937_64 random(1);
   const float infinity = std::numeric_limits<float>::infinity();
@@ -222,7 +222,7 @@ TEST(ValueCodec, CodesWhereNumbersAreNotFinite) {
   expect_all_there_and_back(cases_of(test::PreparedVolume<float>(kDimensions, samples)));
 }
 
-TEST(ValueCodec, CodesOneVolumeWithTheTablesOfAnother) {
+TEST(BoundsCodec, CodesOneVolumeWithTheTablesOfAnother) {
   const auto cases =
       cases_of(test::PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
   const Buckyball ball({33, 33, 33}, SampleType::kUint8);
@@ -235,11 +235,10 @@ TEST(ValueCodec, CodesOneVolumeWithTheTablesOfAnother) {
   for (const auto& c : others) expect_there_and_back(codec, c);
 }
 
-TYPED_TEST(ValueCodecOf, CodesAnything) {
+TYPED_TEST(BoundsCodecOf, CodesAnything) {
   std::mt19937_64 random(2);
   Cases<TypeParam> cases;
-  for (const int level : {0, 1, 5})
-    cases.push_back(any_case<TypeParam>(random, {{16, 16, 16}, false, level}));
+  for (const int lod : {0, 1, 5}) cases.push_back(any_case<TypeParam>(random, {{16, 16, 16}, false, lod}));
   cases.push_back(any_case<TypeParam>(random, {{9, 9, 9}, true, 4}));
   cases.push_back(any_case<TypeParam>(random, {{16, 16, 16}, true, 4}));
   expect_all_there_and_back(cases);
@@ -248,7 +247,7 @@ TYPED_TEST(ValueCodecOf, CodesAnything) {
   for (const auto& c : cases) expect_there_and_back(codec, c);
 }
 
-TYPED_TEST(ValueCodecOf, CodesPagesOfAllSizes) {
+TYPED_TEST(BoundsCodecOf, CodesPagesOfAllSizes) {
   std::mt19937_64 random(3);
   Cases<TypeParam> cases;
   for (int n = 1; n <= 16; ++n) {
@@ -260,7 +259,7 @@ TYPED_TEST(ValueCodecOf, CodesPagesOfAllSizes) {
   expect_all_there_and_back(cases);
 }
 
-TYPED_TEST(ValueCodecOf, CodesPagesThatAreAllAlike) {
+TYPED_TEST(BoundsCodecOf, CodesPagesThatAreAllAlike) {
   std::mt19937_64 random(4);
   Cases<TypeParam> cases;
   for (const PageShape& shape :
@@ -274,25 +273,25 @@ TYPED_TEST(ValueCodecOf, CodesPagesThatAreAllAlike) {
   EXPECT_EQ(expect_all_there_and_back(cases), 6u);
 }
 
-TEST(ValueCodec, IsTheSameForSurveysInAnyOrder) {
+TEST(BoundsCodec, IsTheSameForSurveysInAnyOrder) {
   const auto cases =
       cases_of(test::PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
-  ValueSurvey<std::uint8_t> forth(kEven), back(kEven), parts(kEven);
+  BoundsSurvey<std::uint8_t> forth(kEven), back(kEven), parts(kEven);
   for (std::size_t n = 0; n < cases.size(); ++n) {
     const auto& a = cases[n];
     const auto& b = cases[cases.size() - 1 - n];
     forth.add(a.shape, a.around, a.page);
     back.add(b.shape, b.around, b.page);
-    ValueSurvey<std::uint8_t> one(kEven);
+    BoundsSurvey<std::uint8_t> one(kEven);
     one.add(a.shape, a.around, a.page);
     parts.merge(one);
   }
-  const Bytes tables = ValueCodec<std::uint8_t>(forth).tables();
-  EXPECT_EQ(ValueCodec<std::uint8_t>(back).tables(), tables);
-  EXPECT_EQ(ValueCodec<std::uint8_t>(parts).tables(), tables);
+  const Bytes tables = BoundsCodec<std::uint8_t>(forth).tables();
+  EXPECT_EQ(BoundsCodec<std::uint8_t>(back).tables(), tables);
+  EXPECT_EQ(BoundsCodec<std::uint8_t>(parts).tables(), tables);
 }
 
-TYPED_TEST(ValueCodecOf, RefusesPagesThatAreCutOrTooLong) {
+TYPED_TEST(BoundsCodecOf, RefusesPagesThatAreCutOrTooLong) {
   std::mt19937_64 random(5);
   const Case<TypeParam> c = any_case<TypeParam>(random, {{8, 5, 6}, false, 0});
   const auto codec = codec_of<TypeParam>({c});
@@ -305,7 +304,7 @@ TYPED_TEST(ValueCodecOf, RefusesPagesThatAreCutOrTooLong) {
   EXPECT_FALSE(codec.decode(bytes, c.shape, c.around, *page, *page));
 }
 
-TYPED_TEST(ValueCodecOf, AnswersToFlippedBits) {
+TYPED_TEST(BoundsCodecOf, AnswersToFlippedBits) {
   std::mt19937_64 random(6);
   const Case<TypeParam> c = any_case<TypeParam>(random, {{6, 7, 5}, false, 0});
   const auto codec = codec_of<TypeParam>({c});
@@ -320,25 +319,25 @@ TYPED_TEST(ValueCodecOf, AnswersToFlippedBits) {
   }
 }
 
-TEST(ValueCodec, AnswersToTablesThatAreCutOrCorrupt) {
+TEST(BoundsCodec, AnswersToTablesThatAreCutOrCorrupt) {
   const auto cases =
       cases_of(test::PreparedVolume<std::uint8_t>({20, 20, 20}, waves<std::uint8_t>({20, 20, 20}, 100)));
   const auto codec = codec_of(cases);
   const Bytes tables = codec.tables();
   for (std::size_t length = 0; length < tables.size(); ++length) {
     EXPECT_THROW(
-        static_cast<void>(ValueCodec<std::uint8_t>::parse(std::span(tables).first(length), kEven, "here")),
+        static_cast<void>(BoundsCodec<std::uint8_t>::parse(std::span(tables).first(length), kEven, "here")),
         Error);
   }
   Bytes longer = tables;
   longer.push_back(std::byte{0});
-  EXPECT_THROW(static_cast<void>(ValueCodec<std::uint8_t>::parse(longer, kEven, "here")), Error);
+  EXPECT_THROW(static_cast<void>(BoundsCodec<std::uint8_t>::parse(longer, kEven, "here")), Error);
   std::size_t good = 0;
   for (std::size_t bit = 0; bit < 8 * tables.size(); ++bit) {
     Bytes corrupt = tables;
     corrupt[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
     try {
-      const auto other = ValueCodec<std::uint8_t>::parse(corrupt, kEven, "here");
+      const auto other = BoundsCodec<std::uint8_t>::parse(corrupt, kEven, "here");
       ASSERT_EQ(other.tables(), corrupt);
       if (++good % 50 == 0) expect_there_and_back(other, cases.back());
     } catch (const Error& error) {

@@ -1,4 +1,4 @@
-#include "isosurface/compression/value_codec.h"
+#include "isosurface/compression/bounds_codec.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "isosurface/compression/bit_stream.h"
-#include "isosurface/compression/value_symbols.h"
+#include "isosurface/compression/bounds_symbols.h"
 #include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
@@ -25,11 +25,11 @@ std::byte head(ErrorMode errors, RangeMode ranges) {
 
 /// The decoder's part of walk_values.
 template <class Word>
-class ValueReader {
+class BoundsReader {
  public:
-  ValueReader(const ContextCoder& coder, std::span<const std::byte> symbols,
-              std::span<const std::byte> extras, const PageShape& shape, ErrorMode error_mode,
-              RangeMode range_mode, ValueFields<Word>& fields)
+  BoundsReader(const ContextCoder& coder, std::span<const std::byte> symbols,
+               std::span<const std::byte> extras, const PageShape& shape, ErrorMode error_mode,
+               RangeMode range_mode, BoundsFields<Word>& fields)
       : shape_(shape),
         error_mode_(error_mode),
         range_mode_(range_mode),
@@ -40,7 +40,7 @@ class ValueReader {
   [[nodiscard]] bool needs_errors() const { return is_coded(error_mode_); }
   [[nodiscard]] bool needs_ranges() const { return range_mode_ != RangeMode::kEmpty; }
 
-  void errors(const ValueStage& stage) {
+  void errors(const BoundsStage& stage) {
     decode(stage);
     if (error_mode_ == ErrorMode::kCoded)
       summary_.any_sure_error_other |= any_sure_symbol(stage, ErrorStages<Word>::kSure);
@@ -48,7 +48,7 @@ class ValueReader {
     const std::uint8_t* const predicted = fields_.predicted[parity].data();
     std::uint8_t* const errors = fields_.errors[parity].data();
     with_wide_lanes([&](auto bytes) {
-      constexpr RowBytes kCode = kEachByte * (ValueContexts<Word>::kErrorSymbols - 1);
+      constexpr RowBytes kCode = kEachByte * (BoundsContexts<Word>::kErrorSymbols - 1);
       RowBytes all = 0;
       for_each_row<bytes() == 32>(stage, [&](std::size_t cell, RowBytes symbols, int count) {
         all |= symbols;
@@ -59,7 +59,7 @@ class ValueReader {
     });
   }
 
-  void range(std::size_t side, const ValueStage& stage) {
+  void range(std::size_t side, const BoundsStage& stage) {
     if (range_mode_ == RangeMode::kPredicted) {
       symbols_.fill(Token::kPredicted);
     } else {
@@ -99,12 +99,12 @@ class ValueReader {
   using Token = RangeToken<Word>;
   static_assert(Token::kPredicted == 0);
 
-  void decode(const ValueStage& stage) {
+  void decode(const BoundsStage& stage) {
     decoder_.decode(stage.base, {stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
   }
 
   /// Where points that are sure are coded: whether any of them is not as expected.
-  bool any_sure_symbol(const ValueStage& stage, std::uint8_t sure_context) const {
+  bool any_sure_symbol(const BoundsStage& stage, std::uint8_t sure_context) const {
     unsigned any = 0;
     for (std::size_t n = 0; n < stage.size; ++n) any |= stage.contexts[n] == sure_context ? symbols_[n] : 0u;
     return any != 0;
@@ -113,7 +113,7 @@ class ValueReader {
   /// Calls visit(cell, symbols, number of points) for each row; the symbols of points that are not coded are
   /// 0.
   template <bool Wide, class Visit>
-  [[gnu::always_inline]] void for_each_row(const ValueStage& stage, Visit visit) const {
+  [[gnu::always_inline]] void for_each_row(const BoundsStage& stage, Visit visit) const {
     const std::uint8_t* next = symbols_.data();
     const RowBytes* coded = stage.coded.data();
     stage.box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
@@ -167,7 +167,7 @@ class ValueReader {
   /// The words for these.
   void put_far(const ParityBox& box, const ParityCells<std::uint8_t>& symbols, std::size_t side,
                Word* values) {
-    std::array<std::uint16_t, ValueStage::kMost> cells;
+    std::array<std::uint16_t, BoundsStage::kMost> cells;
     std::size_t count = 0;
     box.for_each_row([&](std::size_t first, std::size_t, int) {
       for (RowBytes open = open_symbols(load_row(symbols.data() + first)); open != 0; open &= open - 1)
@@ -213,24 +213,24 @@ class ValueReader {
   PageShape shape_;
   ErrorMode error_mode_;
   RangeMode range_mode_;
-  ValueFields<Word>& fields_;
+  BoundsFields<Word>& fields_;
   ContextDecoder decoder_;
   BitReader extras_;
-  ValueSummary summary_;
+  BoundsSummary summary_;
   bool good_ = true;
-  std::array<std::uint8_t, ValueStage::kMost + ValueStage::kSlack> symbols_;
+  std::array<std::uint8_t, BoundsStage::kMost + BoundsStage::kSlack> symbols_;
 };
 
 }  // namespace
 
 template <class Word>
-ValueSurvey<Word>::ValueSurvey(const Vec3& spacing)
-    : geometry_(spacing), counts_(ValueContexts<Word>::kCount, ValueContexts<Word>::kSymbols) {}
+BoundsSurvey<Word>::BoundsSurvey(const Vec3& spacing)
+    : geometry_(spacing), counts_(BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols) {}
 
 template <class Word>
-void ValueSurvey<Word>::add(const PageShape& shape, const Surroundings<Word>& around,
-                            const Page<Word>& page) {
-  const ValueSymbols<Word> symbols(geometry_, shape, around, page);
+void BoundsSurvey<Word>::add(const PageShape& shape, const Surroundings<Word>& around,
+                             const Page<Word>& page) {
+  const BoundsSymbols<Word> symbols(geometry_, shape, around, page);
   for (const auto& stage : symbols.stages()) {
     for (std::size_t n = 0; n < stage.symbols.size(); ++n)
       counts_.add(stage.base + stage.contexts[n], stage.symbols[n]);
@@ -238,7 +238,7 @@ void ValueSurvey<Word>::add(const PageShape& shape, const Surroundings<Word>& ar
 }
 
 template <class Word>
-std::vector<std::byte> ValueCodec<Word>::tables() const {
+std::vector<std::byte> BoundsCodec<Word>::tables() const {
   std::vector<std::byte> bytes;
   BitWriter out(bytes);
   coder_.write(out);
@@ -247,19 +247,19 @@ std::vector<std::byte> ValueCodec<Word>::tables() const {
 }
 
 template <class Word>
-ValueCodec<Word> ValueCodec<Word>::parse(std::span<const std::byte> tables, const Vec3& spacing,
-                                         std::string_view name) {
+BoundsCodec<Word> BoundsCodec<Word>::parse(std::span<const std::byte> tables, const Vec3& spacing,
+                                           std::string_view name) {
   BitReader in(tables);
   ContextCoder coder =
-      ContextCoder::read(in, ValueContexts<Word>::kCount, ValueContexts<Word>::kSymbols, name);
+      ContextCoder::read(in, BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols, name);
   if (!in.at_end()) fail("{}: expected the end after the tables of values, found more data", name);
-  return ValueCodec(ErrorGeometry(spacing), std::move(coder));
+  return BoundsCodec(ErrorGeometry(spacing), std::move(coder));
 }
 
 template <class Word>
-void ValueCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& around,
-                              const Page<Word>& page, std::vector<std::byte>& out) const {
-  const ValueSymbols<Word> symbols(geometry_, shape, around, page);
+void BoundsCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& around,
+                               const Page<Word>& page, std::vector<std::byte>& out) const {
+  const BoundsSymbols<Word> symbols(geometry_, shape, around, page);
   const ErrorMode errors = symbols.summary().error_mode();
   const RangeMode ranges = symbols.summary().range_mode();
   out.push_back(head(errors, ranges));
@@ -279,9 +279,9 @@ void ValueCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& 
 }
 
 template <class Word>
-bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape& shape,
-                              const Surroundings<Word>& around, const PageSamples<Word>& samples,
-                              PageValues<Word>& values) const {
+bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape& shape,
+                               const Surroundings<Word>& around, const PageSamples<Word>& samples,
+                               PageBounds<Word>& values) const {
   if (bytes.empty()) return false;
   const auto modes = std::to_integer<std::uint8_t>(bytes[0]);
   const auto errors = static_cast<ErrorMode>(modes & 3);
@@ -293,7 +293,7 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
     if (bytes.empty()) return false;
     error = std::to_integer<std::uint8_t>(bytes[0]);
     const bool any_point = shape.complete || shape.count != LatticePoint{1, 1, 1};
-    if (error == 0 || error >= ValueContexts<Word>::kErrorSymbols || !any_point) return false;
+    if (error == 0 || error >= BoundsContexts<Word>::kErrorSymbols || !any_point) return false;
     bytes = bytes.subspan(1);
   }
   const bool coded = is_coded(errors) || is_coded(ranges);
@@ -306,25 +306,26 @@ bool ValueCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape&
   } else if (!bytes.empty()) {
     return false;
   }
-  ValueFields<Word> fields;
+  BoundsFields<Word> fields;
   fields.load(shape, around, samples);
   if (!is_coded(errors)) fields.fill_errors(shape, error);
-  ValueReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), shape, errors, ranges, fields);
+  BoundsReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), shape, errors, ranges,
+                            fields);
   if (shape.complete) {
     walk_complete_values<Word>(fields, shape, reader);
   } else {
-    const ValueTrust trust{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
+    const BoundsTrust trust{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
     walk_values<Word>(fields, geometry_, shape, trust, reader);
   }
   fields.store_values(shape, values);
   return reader.finish();
 }
 
-template class ValueSurvey<std::uint8_t>;
-template class ValueSurvey<std::uint16_t>;
-template class ValueSurvey<std::uint32_t>;
-template class ValueCodec<std::uint8_t>;
-template class ValueCodec<std::uint16_t>;
-template class ValueCodec<std::uint32_t>;
+template class BoundsSurvey<std::uint8_t>;
+template class BoundsSurvey<std::uint16_t>;
+template class BoundsSurvey<std::uint32_t>;
+template class BoundsCodec<std::uint8_t>;
+template class BoundsCodec<std::uint16_t>;
+template class BoundsCodec<std::uint32_t>;
 
 }  // namespace adamas

@@ -48,7 +48,7 @@ template <int Parity, class Lanes, class T>
 /// Of which points of a parity all that matters is on their page.
 class SurePoints {
  public:
-  /// Whether the errors of points are sure on the finest level, or the ranges, those of edges on that level
+  /// Whether the errors of points are sure on the finest LOD, or the ranges, those of edges on that LOD
   /// alone.
   enum class Of : std::uint8_t { kErrors, kRanges };
 
@@ -91,7 +91,7 @@ class SurePoints {
 };
 
 /// What is coded of a page at once: one number of each of some of the points of a parity.
-struct ValueStage {
+struct BoundsStage {
   static constexpr std::size_t kMost = 512, kSlack = 8;
 
   int parity = 0;
@@ -113,7 +113,7 @@ struct ValueStage {
 };
 
 template <bool Wide, class Row>
-void ValueStage::add_rows(const SurePoints& points, Row row) {
+void BoundsStage::add_rows(const SurePoints& points, Row row) {
   std::size_t n = 0;
   box.for_each_row([&](std::size_t cell, std::size_t, int count) {
     const auto [all_contexts, all_coded] = row(cell, points.row(n));

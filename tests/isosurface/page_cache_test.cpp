@@ -1,4 +1,4 @@
-#include "isosurface/storage/page_tree.h"
+#include "isosurface/storage/page_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -11,24 +11,24 @@
 namespace adamas {
 namespace {
 
-/// Any function of a point of a level that the tree may not know beforehand.
+/// Any function of a point of an LOD that the tree may not know beforehand.
 std::uint16_t sample_at(LatticePoint p) { return static_cast<std::uint16_t>(hash_value(p) >> 40); }
 
 using Word = std::uint16_t;
 
 /// Fills parts of a page's own points.
 bool fill_own(const PageId& id, const PageShape& shape, PageParts parts, PageSamples<Word>& samples,
-              PageValues<Word>* values) {
+              PageBounds<Word>* values) {
   LatticePoint q{};
   for (q.k = 0; q.k < shape.count.k; ++q.k)
     for (q.j = 0; q.j < shape.count.j; ++q.j)
       for (q.i = 0; q.i < shape.count.i; ++q.i) {
         if (!shape.owns(q)) continue;
         const std::size_t place = PageGrid::place(q, 0);
-        const Word sample = sample_at((1 << id.level) * (PageGrid::kSide * id.block + q));
+        const Word sample = sample_at((1 << id.lod) * (PageGrid::kSide * id.block + q));
         if (has_part(parts, PageParts::kSamples)) samples.samples[place] = sample;
         EXPECT_EQ(samples.samples[place], sample);
-        EXPECT_EQ(values != nullptr, has_part(parts, PageParts::kValues));
+        EXPECT_EQ(values != nullptr, has_part(parts, PageParts::kBounds));
         if (values == nullptr) continue;
         values->low[place] = static_cast<Word>(sample ^ 1);
         values->high[place] = static_cast<Word>(sample ^ 2);
@@ -39,31 +39,31 @@ bool fill_own(const PageId& id, const PageShape& shape, PageParts parts, PageSam
 
 /// A tree of pages that are filled so; `fill` may do more.
 template <class Fill>
-PageTree<Word> tree_of(const PageGrid& grid, std::size_t memory, Fill fill) {
+PageCache<Word> tree_of(const PageGrid& grid, std::size_t memory, Fill fill) {
   return {grid, memory,
           [fill](const PageId& id, const PageShape& shape, const Surroundings<Word>&, PageParts parts,
-                 PageSamples<Word>& samples, PageValues<Word>* values) {
+                 PageSamples<Word>& samples, PageBounds<Word>* values) {
             return fill(id, parts) && fill_own(id, shape, parts, samples, values);
           }};
 }
-PageTree<Word> tree_of(const PageGrid& grid, std::size_t memory) {
+PageCache<Word> tree_of(const PageGrid& grid, std::size_t memory) {
   return tree_of(grid, memory, [](const PageId&, PageParts) { return true; });
 }
 
-class PageTreeOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
+class PageCacheOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
  protected:
-  /// Whether the samples or the values of all points of the page are right, those of coarser levels too.
+  /// Whether the samples or the values of all points of the page are right, those of coarser LODs too.
   static void check_samples(const PageGrid& grid, const PageId& id, const PagePoints<Word>& samples) {
     for_each_point(grid, id, [&](std::size_t place, Word expected) { ASSERT_EQ(samples[place], expected); });
   }
-  static void check_values(const PageGrid& grid, const PageId& id, const PageValues<Word>& values) {
+  static void check_values(const PageGrid& grid, const PageId& id, const PageBounds<Word>& values) {
     for_each_point(grid, id, [&](std::size_t place, Word expected) {
       ASSERT_EQ(values.low[place], expected ^ 1);
       ASSERT_EQ(values.high[place], expected ^ 2);
       ASSERT_EQ(values.errors[place], expected & 63);
     });
   }
-  static void check(const PageGrid& grid, const PageId& id, PageTree<Word>& tree) {
+  static void check(const PageGrid& grid, const PageId& id, PageCache<Word>& tree) {
     const auto page = std::make_unique<Page<Word>>();
     ASSERT_TRUE(tree.copy(id, *page));
     check_samples(grid, id, page->samples);
@@ -72,11 +72,11 @@ class PageTreeOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
 
   static std::vector<PageId> pages_in_random_order(const PageGrid& grid) {
     std::vector<PageId> pages;
-    for (int level = 0; level <= grid.top(); ++level) {
-      const LatticePoint n = grid.blocks(level);
+    for (int lod = 0; lod <= grid.top(); ++lod) {
+      const LatticePoint n = grid.blocks(lod);
       for (std::int32_t k = 0; k < n.k; ++k)
         for (std::int32_t j = 0; j < n.j; ++j)
-          for (std::int32_t i = 0; i < n.i; ++i) pages.push_back({level, {i, j, k}});
+          for (std::int32_t i = 0; i < n.i; ++i) pages.push_back({lod, {i, j, k}});
     }
     std::mt19937 random(1);
     std::shuffle(pages.begin(), pages.end(), random);
@@ -91,11 +91,11 @@ class PageTreeOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
     for (q.k = 0; q.k < n.k; ++q.k)
       for (q.j = 0; q.j < n.j; ++q.j)
         for (q.i = 0; q.i < n.i; ++q.i)
-          visit(PageGrid::place(q, 0), sample_at((1 << id.level) * (PageGrid::kSide * id.block + q)));
+          visit(PageGrid::place(q, 0), sample_at((1 << id.lod) * (PageGrid::kSide * id.block + q)));
   }
 };
 
-TEST_P(PageTreeOf, PagesHaveTheirPointsAndThoseOfCoarserLevels) {
+TEST_P(PageCacheOf, PagesHaveTheirPointsAndThoseOfCoarserLods) {
   const PageGrid grid(GetParam());
   std::uint64_t loads = 0;
   auto tree = tree_of(grid, std::size_t{1} << 40, [&loads](const PageId&, PageParts parts) {
@@ -108,7 +108,7 @@ TEST_P(PageTreeOf, PagesHaveTheirPointsAndThoseOfCoarserLevels) {
   EXPECT_EQ(tree.loaded_as_predictors(), 0u);
 }
 
-TEST_P(PageTreeOf, SamplesAloneNeedNoValues) {
+TEST_P(PageCacheOf, SamplesAloneNeedNoValues) {
   const PageGrid grid(GetParam());
   auto tree = tree_of(grid, std::size_t{1} << 40,
                       [](const PageId&, PageParts parts) { return parts == PageParts::kSamples; });
@@ -120,7 +120,7 @@ TEST_P(PageTreeOf, SamplesAloneNeedNoValues) {
   EXPECT_EQ(tree.loaded(), grid.page_count());
 }
 
-TEST_P(PageTreeOf, PartsThatLeftComeBack) {
+TEST_P(PageCacheOf, PartsThatLeftComeBack) {
   const PageGrid grid(GetParam());
   for (const std::size_t memory : {std::size_t{0}, 100 * sizeof(Page<Word>), std::size_t{1} << 40}) {
     auto tree = tree_of(grid, memory);
@@ -130,13 +130,13 @@ TEST_P(PageTreeOf, PartsThatLeftComeBack) {
       const PageId& id = pages[random() % pages.size()];
       switch (random() % 8) {
         case 0:
-          tree.drop_values(id);
+          tree.drop_bounds(id);
           break;
         case 1:
           check(grid, id, tree);
           break;
         case 2:
-          if (random() % 64 == 0) tree.drop_values();
+          if (random() % 64 == 0) tree.drop_bounds();
           break;
         case 3:
           if (const PageSamples<Word>* found = tree.find(id)) check_samples(grid, id, found->samples);
@@ -154,21 +154,21 @@ TEST_P(PageTreeOf, PartsThatLeftComeBack) {
   }
 }
 
-TEST_P(PageTreeOf, SurroundingsAreThePointsOfTheNextLevel) {
+TEST_P(PageCacheOf, SurroundingsAreThePointsOfTheNextLod) {
   const PageGrid grid(GetParam());
   auto tree = tree_of(grid, std::size_t{1} << 24);
   for (const PageId& id : pages_in_random_order(grid)) {
     if (grid.is_complete(id)) continue;
     Surroundings<Word> around;
     ASSERT_TRUE(tree.surroundings(id, around));
-    const LatticePoint extent = grid.extent(id.level + 1);
+    const LatticePoint extent = grid.extent(id.lod + 1);
     for (std::int32_t c = 0; c < 11; ++c)
       for (std::int32_t b = 0; b < 11; ++b)
         for (std::int32_t a = 0; a < 11; ++a) {
           LatticePoint p{8 * id.block.i + a - 1, 8 * id.block.j + b - 1, 8 * id.block.k + c - 1};
           const std::size_t place = surrounding_place({2 * (a - 1), 2 * (b - 1), 2 * (c - 1)});
           for (int axis = 0; axis < 3; ++axis) p[axis] = std::clamp(p[axis], 0, extent[axis]);
-          const Word expected = sample_at((2 << id.level) * p);
+          const Word expected = sample_at((2 << id.lod) * p);
           ASSERT_EQ(around.samples[place], expected);
           const bool is_on_parent = p.i / 16 == id.block.i / 2 && p.j / 16 == id.block.j / 2 &&
                                     p.k / 16 == id.block.k / 2 && std::min({a, b, c}) >= 1 &&
@@ -180,7 +180,7 @@ TEST_P(PageTreeOf, SurroundingsAreThePointsOfTheNextLevel) {
   }
 }
 
-TEST_P(PageTreeOf, ScratchKeepsOwnPoints) {
+TEST_P(PageCacheOf, ScratchKeepsOwnPoints) {
   const PageGrid grid(GetParam());
   ScratchPages<Word> scratch(std::filesystem::temp_directory_path(), grid);
   for (const PageId& id : pages_in_random_order(grid)) {
@@ -189,25 +189,25 @@ TEST_P(PageTreeOf, ScratchKeepsOwnPoints) {
     fill_own(id, page_shape(grid, id), PageParts::kAll, page, &page);
     scratch.put(id, page);
   }
-  PageTree<Word> tree(grid, 100,
-                      [&](const PageId& id, const PageShape&, const Surroundings<Word>&, PageParts parts,
-                          PageSamples<Word>& samples, PageValues<Word>* values) {
-                        scratch.get(id, parts, samples, values);
-                        return true;
-                      });
+  PageCache<Word> tree(grid, 100,
+                       [&](const PageId& id, const PageShape&, const Surroundings<Word>&, PageParts parts,
+                           PageSamples<Word>& samples, PageBounds<Word>* values) {
+                         scratch.get(id, parts, samples, values);
+                         return true;
+                       });
   for (const PageId& id : pages_in_random_order(grid)) {
     check_samples(grid, id, tree.samples(id)->samples);
     check(grid, id, tree);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Dimensions, PageTreeOf,
+INSTANTIATE_TEST_SUITE_P(Dimensions, PageCacheOf,
                          testing::Values(std::array<std::uint64_t, 3>{1, 1, 1},
                                          std::array<std::uint64_t, 3>{17, 17, 17},
                                          std::array<std::uint64_t, 3>{65, 65, 65},
                                          std::array<std::uint64_t, 3>{33, 100, 5}));
 
-TEST(PageTree, WhatCannotBeHadTakesWhatIsPredictedFromItAlong) {
+TEST(PageCache, WhatCannotBeHadTakesWhatIsPredictedFromItAlong) {
   const PageGrid grid({100, 100, 100});
   const PageId bad{1, {1, 1, 1}};
   auto tree = tree_of(grid, std::size_t{1} << 24, [bad](const PageId& id, PageParts) { return id != bad; });
@@ -219,7 +219,7 @@ TEST(PageTree, WhatCannotBeHadTakesWhatIsPredictedFromItAlong) {
   EXPECT_GT(tree.loaded_as_predictors(), 0u);
 }
 
-TEST(PageTree, ValuesThatCannotBeHadLeaveSamples) {
+TEST(PageCache, ValuesThatCannotBeHadLeaveSamples) {
   const PageGrid grid({100, 100, 100});
   const PageId bad{1, {1, 1, 1}};
   auto tree = tree_of(grid, std::size_t{1} << 24, [bad](const PageId& id, PageParts parts) {

@@ -12,19 +12,19 @@ namespace adamas {
 
 /// Pages of one volume in memory: the samples of those that were asked for, and the values of those of which
 /// values were. Those leave first that nobody asked for since they were last considered (second chance, an
-/// approximation of least recently used). Samples of a page need those of the pages of the next coarser level
+/// approximation of least recently used). Samples of a page need those of the pages of the next coarser LOD
 /// round it, values those of the one that has its place, which are got in the same way.
 template <class Word>
-class PageTree {
+class PageCache {
  public:
-  /// Fills parts of the page's own points; those of coarser levels are there already, and the samples too
+  /// Fills parts of the page's own points; those of coarser LODs are there already, and the samples too
   /// where values are all that is wanted. `values` is null where they are not. Returns false where a part
   /// cannot be had.
   using Loader = std::function<bool(const PageId&, const PageShape&, const Surroundings<Word>&,
-                                    PageParts parts, PageSamples<Word>& samples, PageValues<Word>* values)>;
+                                    PageParts parts, PageSamples<Word>& samples, PageBounds<Word>* values)>;
 
   /// Keeps pages of so many bytes at most, but never less than kLeast.
-  PageTree(const PageGrid& grid, std::size_t memory, Loader loader);
+  PageCache(const PageGrid& grid, std::size_t memory, Loader loader);
   static constexpr std::size_t kLeast = 64;
 
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
@@ -36,7 +36,7 @@ class PageTree {
     const Slot* slot = get(id, PageParts::kSamples, true);
     return slot == nullptr ? nullptr : slot->samples;
   }
-  const PageValues<Word>* values(const PageId& id) {
+  const PageBounds<Word>* values(const PageId& id) {
     const Slot* slot = get(id, PageParts::kAll, true);
     return slot == nullptr ? nullptr : slot->values;
   }
@@ -50,11 +50,11 @@ class PageTree {
   /// All of a page. Returns false where it cannot be had.
   bool copy(const PageId& id, Page<Word>& page);
   /// The values of the page will hardly be asked for again.
-  void drop_values(const PageId& id);
+  void drop_bounds(const PageId& id);
   /// The same of all pages: their memory is free for others.
-  void drop_values();
+  void drop_bounds();
 
-  /// What is known round a page of the next coarser level, or parts of it. Returns false where something
+  /// What is known round a page of the next coarser LOD, or parts of it. Returns false where something
   /// cannot be had. Does nothing for a complete page.
   bool surroundings(const PageId& id, Surroundings<Word>& around, PageParts parts = PageParts::kAll);
 
@@ -67,11 +67,11 @@ class PageTree {
   struct Slot {
     PageId id;
     PageSamples<Word>* samples = nullptr;  ///< null where the slot is free
-    PageValues<Word>* values = nullptr;    ///< null where they are not there
+    PageBounds<Word>* values = nullptr;    ///< null where they are not there
     bool used = false, wanted = false;
   };
-  /// Slots of the pages of a level, i running fastest.
-  struct Level {
+  /// Slots of the pages of an LOD, i running fastest.
+  struct Lod {
     std::size_t row, plane;
     std::vector<std::uint32_t> slots;
   };
@@ -83,16 +83,16 @@ class PageTree {
   };
 
   [[nodiscard]] std::uint32_t& slot_of(const PageId& id) {
-    Level& level = levels_[static_cast<std::size_t>(id.level)];
+    Lod& lod = lods_[static_cast<std::size_t>(id.lod)];
     const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
-    return level.slots[at(id.block.i) + level.row * at(id.block.j) + level.plane * at(id.block.k)];
+    return lod.slots[at(id.block.i) + lod.row * at(id.block.j) + lod.plane * at(id.block.k)];
   }
   /// `wanted`: the page is asked for itself, not to predict another. Null where it cannot be had.
   const Slot* get(const PageId& id, PageParts parts, bool wanted);
   const Slot* load(const PageId& id, PageParts parts, bool wanted);
-  /// Copies the points of coarser levels into parts of a page.
+  /// Copies the points of coarser LODs into parts of a page.
   void fill_coarser(const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
-                    PageSamples<Word>& samples, PageValues<Word>* values) const;
+                    PageSamples<Word>& samples, PageBounds<Word>* values) const;
   /// Room for a part, for which pages leave if need be.
   template <class Part>
   Part* room_for(Parts<Part>& parts);
@@ -103,17 +103,17 @@ class PageTree {
   PageGrid grid_;
   std::size_t memory_;
   Loader loader_;
-  std::vector<Level> levels_;
+  std::vector<Lod> lods_;
   Parts<PageSamples<Word>> samples_;
-  Parts<PageValues<Word>> values_;
+  Parts<PageBounds<Word>> values_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;  ///< slots
   std::size_t considered_ = 0;       ///< the slot whose page is the next that may leave
   std::uint64_t loaded_ = 0, predictors_ = 0;
 };
 
-extern template class PageTree<std::uint8_t>;
-extern template class PageTree<std::uint16_t>;
-extern template class PageTree<std::uint32_t>;
+extern template class PageCache<std::uint8_t>;
+extern template class PageCache<std::uint16_t>;
+extern template class PageCache<std::uint32_t>;
 
 }  // namespace adamas

@@ -1,4 +1,4 @@
-#include "isosurface/storage/page_tree.h"
+#include "isosurface/storage/page_cache.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int32_t kAround = Surroundings<std::uint8_t>::kSide;
 
-/// Where along an axis places of Surroundings lie in the pages of the next coarser level.
+/// Where along an axis places of Surroundings lie in the pages of the next coarser LOD.
 struct AxisPlaces {
   std::array<std::int32_t, 2> blocks{};
   int block_count = 0;
@@ -51,7 +51,7 @@ struct BoxPlaces {
         z(block.k, extent.k, first, last) {}
 };
 
-/// Of a page round which something is: the part of Surroundings that one page of the next coarser level has.
+/// Of a page round which something is: the part of Surroundings that one page of the next coarser LOD has.
 struct Part {
   const BoxPlaces& places;
   std::array<int, 3> blocks;  ///< which of those of the axes
@@ -94,17 +94,17 @@ void copy_part(const Part& part, const PagePoints<T>& from, std::array<T, kAroun
 }  // namespace
 
 template <class Word>
-PageTree<Word>::PageTree(const PageGrid& grid, std::size_t memory, Loader loader)
+PageCache<Word>::PageCache(const PageGrid& grid, std::size_t memory, Loader loader)
     : grid_(grid), memory_(memory), loader_(std::move(loader)) {
-  for (int level = 0; level <= grid_.top(); ++level) {
-    const LatticePoint n = grid_.blocks(level);
+  for (int lod = 0; lod <= grid_.top(); ++lod) {
+    const LatticePoint n = grid_.blocks(lod);
     const auto row = static_cast<std::size_t>(n.i), plane = row * static_cast<std::size_t>(n.j);
-    levels_.push_back({row, plane, std::vector<std::uint32_t>(plane * static_cast<std::size_t>(n.k), kNone)});
+    lods_.push_back({row, plane, std::vector<std::uint32_t>(plane * static_cast<std::size_t>(n.k), kNone)});
   }
 }
 
 template <class Word>
-const typename PageTree<Word>::Slot* PageTree<Word>::get(const PageId& id, PageParts parts, bool wanted) {
+const typename PageCache<Word>::Slot* PageCache<Word>::get(const PageId& id, PageParts parts, bool wanted) {
   const std::uint32_t found = slot_of(id);
   if (found == kNone) return load(id, parts, wanted);
   Slot& slot = slots_[found];
@@ -113,19 +113,19 @@ const typename PageTree<Word>::Slot* PageTree<Word>::get(const PageId& id, PageP
     slot.wanted = true;
     --predictors_;
   }
-  return slot.values == nullptr && has_part(parts, PageParts::kValues) ? load(id, parts, wanted) : &slot;
+  return slot.values == nullptr && has_part(parts, PageParts::kBounds) ? load(id, parts, wanted) : &slot;
 }
 
 template <class Word>
-const typename PageTree<Word>::Slot* PageTree<Word>::load(const PageId& id, PageParts parts, bool wanted) {
+const typename PageCache<Word>::Slot* PageCache<Word>::load(const PageId& id, PageParts parts, bool wanted) {
   Surroundings<Word> around;
   if (!surroundings(id, around, parts)) return nullptr;
   // Not before: what predicts the page may have pushed others out. That may happen here, too, to the page
   // itself where its samples were there.
-  PageValues<Word>* values = has_part(parts, PageParts::kValues) ? room_for(values_) : nullptr;
+  PageBounds<Word>* values = has_part(parts, PageParts::kBounds) ? room_for(values_) : nullptr;
   const std::uint32_t known = slot_of(id);
   PageSamples<Word>* samples = known != kNone ? slots_[known].samples : room_for(samples_);
-  const PageParts missing = known == kNone ? parts : PageParts::kValues;
+  const PageParts missing = known == kNone ? parts : PageParts::kBounds;
   const PageShape shape = page_shape(grid_, id);
   if (!shape.complete) fill_coarser(shape, around, missing, *samples, values);
   // A cube whose only point is a coarser one has no page.
@@ -150,34 +150,34 @@ const typename PageTree<Word>::Slot* PageTree<Word>::load(const PageId& id, Page
 }
 
 template <class Word>
-bool PageTree<Word>::copy(const PageId& id, Page<Word>& page) {
+bool PageCache<Word>::copy(const PageId& id, Page<Word>& page) {
   const Slot* slot = get(id, PageParts::kAll, true);
   if (slot == nullptr) return false;
   static_cast<PageSamples<Word>&>(page) = *slot->samples;
-  static_cast<PageValues<Word>&>(page) = *slot->values;
+  static_cast<PageBounds<Word>&>(page) = *slot->values;
   return true;
 }
 
 template <class Word>
-void PageTree<Word>::drop_values(const PageId& id) {
+void PageCache<Word>::drop_bounds(const PageId& id) {
   const std::uint32_t found = slot_of(id);
   if (found == kNone || slots_[found].values == nullptr) return;
   values_.free.push_back(std::exchange(slots_[found].values, nullptr));
 }
 
 template <class Word>
-void PageTree<Word>::drop_values() {
+void PageCache<Word>::drop_bounds() {
   for (Slot& slot : slots_) slot.values = nullptr;
   values_ = {};
 }
 
 template <class Word>
-bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around, PageParts parts) {
+bool PageCache<Word>::surroundings(const PageId& id, Surroundings<Word>& around, PageParts parts) {
   if (grid_.is_complete(id)) return true;
-  const LatticePoint extent = grid_.extent(id.level + 1);
+  const LatticePoint extent = grid_.extent(id.lod + 1);
   const BoxPlaces all(id.block, extent, 0, kAround - 1), inner(id.block, extent, 1, kAround - 2);
   const LatticePoint parent{id.block.i / 2, id.block.j / 2, id.block.k / 2};
-  if (has_part(parts, PageParts::kValues)) {
+  if (has_part(parts, PageParts::kBounds)) {
     around.low.fill(0);
     around.high.fill(static_cast<Word>(~Word{0}));
     around.errors.fill(Surroundings<Word>::kNoBound);
@@ -189,9 +189,8 @@ bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around, 
           return axis.blocks[static_cast<std::size_t>(b)];
         };
         const LatticePoint of{block(all.x, bx), block(all.y, by), block(all.z, bz)};
-        const bool with_values = has_part(parts, PageParts::kValues) && of == parent;
-        const Slot* from =
-            get({id.level + 1, of}, with_values ? PageParts::kAll : PageParts::kSamples, false);
+        const bool with_values = has_part(parts, PageParts::kBounds) && of == parent;
+        const Slot* from = get({id.lod + 1, of}, with_values ? PageParts::kAll : PageParts::kSamples, false);
         if (from == nullptr) return false;
         copy_part(Part{all, {bx, by, bz}}, from->samples->samples, around.samples);
         if (!with_values) continue;
@@ -206,8 +205,8 @@ bool PageTree<Word>::surroundings(const PageId& id, Surroundings<Word>& around, 
 }
 
 template <class Word>
-void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
-                                  PageSamples<Word>& samples, PageValues<Word>* values) const {
+void PageCache<Word>::fill_coarser(const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
+                                   PageSamples<Word>& samples, PageBounds<Word>* values) const {
   for (std::int32_t k = 0; k < shape.count.k; k += 2) {
     for (std::int32_t j = 0; j < shape.count.j; j += 2) {
       const std::size_t to = PageGrid::place({0, j, k}, 0), from = surrounding_place({0, j, k});
@@ -227,9 +226,9 @@ void PageTree<Word>::fill_coarser(const PageShape& shape, const Surroundings<Wor
 
 template <class Word>
 template <class PartOf>
-PartOf* PageTree<Word>::room_for(Parts<PartOf>& parts) {
+PartOf* PageCache<Word>::room_for(Parts<PartOf>& parts) {
   const std::size_t taken =
-      samples_.all.size() * sizeof(PageSamples<Word>) + values_.all.size() * sizeof(PageValues<Word>);
+      samples_.all.size() * sizeof(PageSamples<Word>) + values_.all.size() * sizeof(PageBounds<Word>);
   if (parts.free.empty() && (taken + sizeof(PartOf) <= memory_ || parts.all.size() < kLeast))
     return parts.all.add();
   while (parts.free.empty()) leave();
@@ -239,7 +238,7 @@ PartOf* PageTree<Word>::room_for(Parts<PartOf>& parts) {
 }
 
 template <class Word>
-void PageTree<Word>::leave() {
+void PageCache<Word>::leave() {
   for (;; considered_ = considered_ + 1 == slots_.size() ? 0 : considered_ + 1) {
     Slot& slot = slots_[considered_];
     if (slot.samples == nullptr) continue;
@@ -254,7 +253,7 @@ void PageTree<Word>::leave() {
 }
 
 template <class Word>
-std::uint32_t PageTree<Word>::free_slot() {
+std::uint32_t PageCache<Word>::free_slot() {
   if (free_.empty()) {
     slots_.emplace_back();
     return static_cast<std::uint32_t>(slots_.size() - 1);
@@ -264,8 +263,8 @@ std::uint32_t PageTree<Word>::free_slot() {
   return slot;
 }
 
-template class PageTree<std::uint8_t>;
-template class PageTree<std::uint16_t>;
-template class PageTree<std::uint32_t>;
+template class PageCache<std::uint8_t>;
+template class PageCache<std::uint16_t>;
+template class PageCache<std::uint32_t>;
 
 }  // namespace adamas
