@@ -20,7 +20,7 @@ class SubtreeMesh {
       : diamonds_(diamonds),
         pages_(pages),
         bisections_(bisections),
-        mesh_(diamonds.domain(), diamonds.levels()) {}
+        mesh_(diamonds.domain(), diamonds.lods()) {}
 
   [[nodiscard]] const IndexedHierarchy& mesh() const { return mesh_; }
   [[nodiscard]] double greatest_error() const { return diamonds_.error(greatest_rank_); }
