@@ -51,7 +51,7 @@ class SubtreeMesh {
  private:
   /// What is exactly linear, or not crossed, or lost, stays as it is.
   [[nodiscard]] bool has_subtree(const Diamond& diamond, int rank) const {
-    const bool has_values = 3 * diamonds_.level(diamond.point()) >= bisections_;
+    const bool has_values = 3 * diamonds_.lod(diamond.point()) >= bisections_;
     return !has_values || (rank > 0 && !pages_.is_lost(diamond.point()));
   }
   [[nodiscard]] bool is_in_domain(const Diamond& diamond, int slot) const {
@@ -63,7 +63,7 @@ class SubtreeMesh {
     done_.clear();
   }
   void refine(const Diamond& diamond, int slot, int bisections) {
-    if (bisections == 0 || diamonds_.level(diamond.point()) < 0) return;
+    if (bisections == 0 || diamonds_.lod(diamond.point()) < 0) return;
     split(diamond);
     if (bisections == 1) return;
     for (const int end : {0, 1}) {
