@@ -42,7 +42,7 @@ SLOW = {r"CLI/.*": ["cli/command.cpp", "cli/command_line.cpp", "cli/config_file.
 # Headers that are there to convert to the types of a library: for .cpp files of every folder.
 CONVERSIONS = ["interfaces/simplification/openmesh_patches.h"]
 FOLDERS = ["core", "interfaces", "isosurface", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
-ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
+ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
 MOST_LINES = 400
