@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cli/figures.h"
-#include "cli/material_numbers.h"
+#include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/geometry/length_limits.h"

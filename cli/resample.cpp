@@ -8,7 +8,7 @@
 #include "cli/input_options.h"
 #include "cli/mesh_outputs.h"
 #include "cli/resample_figures.h"
-#include "cli/resampling_setup.h"
+#include "cli/resampling_options.h"
 #include "cli/simplification_options.h"
 #include "cli/usage_error.h"
 #include "core/io/array_file.h"
@@ -201,11 +201,11 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
 }
 
 /// The interfaces of the mesh, with fewer triangles where that is wanted.
-InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationWish& wish, Figures& figures,
-                               Console& console) {
-  if (!wish.wanted()) return approximated_interfaces(resampler, console);
+InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationRequest& request,
+                               Figures& figures, Console& console) {
+  if (!request.wanted()) return approximated_interfaces(resampler, console);
   const ResamplingSource shown = source_of_approximated_interfaces(resampler, console);
-  SimplifiedInterfaces found = simplify_and_print(shown, wish, figures, console);
+  SimplifiedInterfaces found = simplify_and_print(shown, request, figures, console);
   console.note(
       "the simplified interfaces are within {:.4g} of those of the mesh, and so within the interface error "
       "and "
@@ -216,10 +216,10 @@ InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationW
 
 /// Writes what is asked for; returns the ledgers of the input and of all meshes that were written.
 std::vector<Ledger> write_outputs(const Options& options, const Input& input, Resampler& resampler,
-                                  const SimplificationWish& wish, Figures& figures, Session& session) {
+                                  const SimplificationRequest& request, Figures& figures, Session& session) {
   Console& console = session.console;
   if (options.outputs.need_interfaces())
-    write_interfaces(options.outputs, shown_interfaces(resampler, wish, figures, console),
+    write_interfaces(options.outputs, shown_interfaces(resampler, request, figures, console),
                      resampler.source().box, session);
   session.outputs.write(options.save, [&](const auto& path) {
     console.step("measuring all cells of the hierarchy", -1);
@@ -244,8 +244,8 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
 
 void run(const Options& options, Session& session) {
   Console& console = session.console;
-  const ResamplingWishes wishes(options.text);
-  const SimplificationWish simplification(options.simplification);
+  const ResamplingRequest request(options.text);
+  const SimplificationRequest simplification(options.simplification);
   if (simplification.wanted() && !options.outputs.need_interfaces())
     wrong_usage("--simplify: expected --interfaces-out or --picture beside it, found none");
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && options.save.empty() &&
@@ -258,11 +258,11 @@ void run(const Options& options, Session& session) {
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
   const Input input = load_input(options.input, console, [&](const InputFacts& found) {
-    wishes.check(found);
+    request.check(found);
     simplification.check(found);
   });
   options.outputs.picture.check_materials(input.source.materials, input.source.name);
-  Resampler resampler(input.source, wishes.options(input.source), console);
+  Resampler resampler(input.source, request.options(input.source), console);
   resampler.refine();
   console.step("measuring", -1);
   const ResampleFigures measured = measure(resampler, console);

@@ -4,10 +4,10 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/input_options.h"
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
-#include "cli/resampling_setup.h"
-#include "cli/saved_hierarchy_input.h"
+#include "cli/resampling_options.h"
 #include "cli/usage_error.h"
 #include "interfaces/selection/selection.h"
 

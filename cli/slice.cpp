@@ -1,17 +1,19 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/resampling_setup.h"
+#include "cli/resampling_options.h"
 #include "cli/slice_panels.h"
-#include "cli/slice_polygons.h"
 #include "cli/slice_samples.h"
 #include "cli/usage_error.h"
+#include "core/data/unstructured_mesh.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "interfaces/cross_section/cross_section.h"
 
 namespace adamas {
 
@@ -35,6 +37,33 @@ Plane parse_any_plane(const Options& options) {
   const Plane plane{parse_vector("--origin", options.origin), parse_vector("--normal", options.normal)};
   if (!(squared_norm(plane.normal) > 0)) wrong_usage("--normal: expected a vector with a length, found 0");
   return plane;
+}
+
+/// The pieces of a section as polygons with points of their own, so that values jump at interfaces: cell
+/// arrays `material` and `cell`, the point array `field` unless it is empty, the field array
+/// `material_names`.
+UnstructuredMesh section_polygons(const CrossSection& section,
+                                  const IdVector<MaterialId, std::string>& materials,
+                                  const std::string& field) {
+  UnstructuredMesh mesh;
+  mesh.kind = CellKind::kPolygons;
+  std::vector<std::int32_t> material, cell;
+  std::vector<double> values;
+  for (const SectionPiece& piece : section.pieces) {
+    for (const Vec3& p : piece.corners) {
+      mesh.connectivity.push_back(static_cast<std::uint32_t>(mesh.points.size()));
+      mesh.points.push_back(p);
+    }
+    mesh.offsets.push_back(mesh.connectivity.size());
+    material.push_back(static_cast<std::int32_t>(piece.material.value));
+    cell.push_back(static_cast<std::int32_t>(piece.cell));
+    values.insert(values.end(), piece.values.begin(), piece.values.end());
+  }
+  mesh.cell_arrays.push_back({"material", 1, std::move(material)});
+  mesh.cell_arrays.push_back({"cell", 1, std::move(cell)});
+  if (!field.empty()) mesh.point_arrays.push_back({field, 1, std::move(values)});
+  mesh.field_arrays.push_back({"material_names", 1, std::vector<std::string>(materials)});
+  return mesh;
 }
 
 /// `--field NAME=FILE` adds a field as for other commands; the last one named is shown.

@@ -5,8 +5,7 @@
 
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
-#include "cli/material_numbers.h"
-#include "cli/saved_hierarchy_input.h"
+#include "cli/input_options.h"
 #include "cli/usage_error.h"
 #include "core/data/volume_placement.h"
 #include "core/io/input_file.h"

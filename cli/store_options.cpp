@@ -1,4 +1,4 @@
-#include "cli/store_input.h"
+#include "cli/store_options.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,9 +1,16 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "cli/command.h"
+#include "cli/input_options.h"
+#include "core/data/volume.h"
 #include "core/io/volume_reader.h"
 
 namespace adamas {
@@ -27,6 +34,10 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
 /// Opens it. Throws UsageError where options do not go together.
 VolumeReader open_volume_input(const VolumeInput& input, Session& session);
 
+/// The volume that a file is, if it is to be read as one: where the options say so, and where no other reader
+/// knows it or all that it may say of places.
+std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session);
+
 /// Whether a file is of a format that has nothing but the samples of one array, one number each; by its name
 /// and, of NRRD, its header.
 bool has_one_array(const std::string& path);
@@ -40,5 +51,18 @@ void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
 
 /// Throws Error where an axis has fewer than two samples: nothing lies between them.
 void check_two_samples(const std::string& name, const VolumeGrid& grid);
+
+/// The option -o of a command that makes a volume.
+void add_volume_output(const Command& command, std::string& output);
+
+/// Declares the file and, where its samples go to another, that one.
+void declare_volume_output(const std::string& output, OutputSet& outputs);
+
+/// Takes one plane after another.
+using PlaneSink = std::function<void(std::span<const std::byte>)>;
+
+/// Writes the declared files from the planes that `make(sink)` gives in ascending order; returns their bytes.
+std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
+                                const std::function<void(const PlaneSink&)>& make, Session& session);
 
 }  // namespace adamas

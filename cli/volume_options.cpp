@@ -1,6 +1,7 @@
-#include "cli/volume_input.h"
+#include "cli/volume_options.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
@@ -8,10 +9,12 @@
 #include "core/io/grid_axes.h"
 #include "core/io/input_file.h"
 #include "core/io/meta_image_fields.h"
+#include "core/io/nifti_header.h"
 #include "core/io/nrrd_header.h"
 #include "core/io/number_list.h"
 #include "core/io/volume_format.h"
 #include "core/io/volume_stack.h"
+#include "core/io/volume_writer.h"
 #include "core/io/xml_tags.h"
 #include "isosurface/volume/page_grid.h"
 
@@ -150,6 +153,22 @@ void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
   }
 }
 
+std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session) {
+  const std::string path = input.path, extension = file_extension(path);
+  const auto is = [&extension](const char* one) { return extension == one; };
+  volume.path = path;
+  if (!volume.option().empty() || is(".h5") || is(".hdf5") || is(".he5"))
+    return open_volume_input(volume, session);
+  if (!input.grid_option().empty()) return {};
+  const bool pair = is(".hdr") || is(".hdr.gz") || is(".img") || is(".img.gz");
+  // Pictures of high dynamic range end in .hdr too.
+  if (pair && !read_beginning(path).starts_with("#?")) return open_volume_input(volume, session);
+  if (!(is(".nii") || is(".nii.gz"))) return {};
+  // One of colours is no volume.
+  if (!NiftiHeader::parse(read_nifti_header(path), path).type()) return {};
+  return open_volume_input(volume, session);
+}
+
 void add_volume_input(const Command& command, VolumeInput& input) {
   command
       .add_option(
@@ -199,6 +218,46 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
                   "Folder for scratch data, up to four times the volume's samples (default: that "
                   "of the system, $TMPDIR or /tmp)")
       .type_name("FOLDER");
+}
+
+void add_volume_output(const Command& command, std::string& output) {
+  command
+      .add_option(
+          "-o,--output", output,
+          "The volume: .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw alone")
+      .required()
+      .type_name("FILE");
+}
+
+void declare_volume_output(const std::string& output, OutputSet& outputs) {
+  outputs.declare("-o", output, {".vti", ".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".raw"});
+  outputs.declare("-o", volume_data_file(output).string());
+}
+
+std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
+                                const std::function<void(const PlaneSink&)>& make, Session& session) {
+  OutputSet& outputs = session.outputs;
+  VolumeWriterOptions options;
+  options.array = array;
+  const auto write = [&](const std::filesystem::path& path) {
+    VolumeWriter writer(path, grid, options);
+    make([&](std::span<const std::byte> samples) { writer.write_plane(samples); });
+    writer.finish();
+  };
+  if (const std::string lost = lost_places(output, grid); !lost.empty()) session.console.note("{}", lost);
+  const std::string data = volume_data_file(output).string();
+  if (data.empty()) {
+    outputs.write(output, write);
+    return outputs.bytes(output);
+  }
+  outputs.write(output, [&](const auto& path) {
+    outputs.write(data, [&](const auto& data_path) {
+      options.data_file = data_path;
+      options.data_name = std::filesystem::path(data).filename().string();
+      write(path);
+    });
+  });
+  return outputs.bytes(output) + outputs.bytes(data);
 }
 
 }  // namespace adamas

@@ -29,9 +29,9 @@ std::size_t field_number(const std::vector<FieldInfo>& fields, const std::string
                          const std::string& source);
 
 /// The options with their values checked, before the input is known.
-struct ResamplingWishes {
+struct ResamplingRequest {
   /// Throws UsageError.
-  explicit ResamplingWishes(const ResamplingText& text);
+  explicit ResamplingRequest(const ResamplingText& text);
   /// Throws UsageError for an interface error that says nothing in this domain, and Error for fields that the
   /// input has not.
   void check(const InputFacts& input) const;

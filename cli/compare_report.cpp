@@ -1,10 +1,13 @@
-#include "cli/compare_figures.h"
+#include "cli/compare_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "cli/resample_figures.h"
+#include "core/picture/plot.h"
 #include "interfaces/reference/sizing_search.h"
 
 namespace adamas {
@@ -144,6 +147,45 @@ Figures row_figures(const ComparedMesh& row, const ResamplingSource& source) {
   return figures;
 }
 
+constexpr std::array kJoined{MeshKind::kOwn,
+                             MeshKind::kOwnCut,
+                             MeshKind::kTetGen,
+                             MeshKind::kMesh3,
+                             MeshKind::kMesh3Optimised,
+                             MeshKind::kTetGenSimplified,
+                             MeshKind::kMesh3Simplified,
+                             MeshKind::kMesh3Labels};
+
+/// One diagram: a line per kind of mesh, and a level where the distance is none.
+Plot make_plot(const std::vector<ComparedMesh>& rows, const std::string& title, const std::string& label,
+               double (*value)(const ComparedMesh&)) {
+  Plot plot;
+  plot.title = title;
+  plot.x = {.label = "measured two-sided distance of interfaces", .kind = AxisKind::kLogarithmic};
+  plot.y = {.label = label, .kind = AxisKind::kLogarithmic};
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  for (const MeshKind kind : kJoined) {
+    PlotSeries series{.name = mesh_name(kind)};
+    for (const ComparedMesh& row : rows) {
+      const double distance = row.figures.distance.greatest();
+      if (row.kind != kind || !row.failure.empty() || !std::isfinite(distance) || !(distance > 0)) continue;
+      series.x.push_back(distance);
+      series.y.push_back(value(row));
+      nearest = std::min(nearest, distance), farthest = std::max(farthest, distance);
+    }
+    if (!series.x.empty()) plot.series.push_back(series);
+  }
+  for (const ComparedMesh& row : rows) {
+    if (row.kind != MeshKind::kTetGenUntouched || !row.failure.empty() || !(farthest > 0)) continue;
+    plot.series.push_back({.name = mesh_name(row.kind) + ", distance 0",
+                           .x = {nearest, farthest},
+                           .y = {value(row), value(row)},
+                           .markers = false,
+                           .dashed = true});
+  }
+  return plot;
+}
+
 }  // namespace
 
 void print_plan(const ComparisonOptions& options, Console& console) {
@@ -235,6 +277,15 @@ std::string comparison_csv(const std::vector<ComparedMesh>& rows, const Resampli
     csv += (volume ? fmt::format("{}", *volume) : "") + "\n";
   }
   return csv;
+}
+
+void write_comparison_picture(const std::filesystem::path& path, const std::vector<ComparedMesh>& rows,
+                              const std::string& title) {
+  const std::array plots{
+      make_plot(rows, title + ": tetrahedra", "tetrahedra",
+                [](const ComparedMesh& row) { return static_cast<double>(row.figures.tetrahedra); }),
+      make_plot(rows, title + ": seconds", "seconds", [](const ComparedMesh& row) { return row.seconds; })};
+  write_bytes(path, draw_plots(plots, picture_format(path), {.width = 1000, .height = 800}));
 }
 
 }  // namespace adamas

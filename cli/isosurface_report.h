@@ -1,11 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/surface_picture.h"
 #include "core/data/triangle_surface.h"
 #include "core/data/volume.h"
 #include "isosurface/extraction/surface_request.h"
@@ -35,5 +38,11 @@ class IsosurfaceFigures {
   std::uint64_t tetrahedra_ = 0, diamonds_ = 0;
   double max_error_ = 0;
 };
+
+/// A picture of isosurfaces as a picture file. `isovalues[n]` is that of the triangles before `ends[n]`, from
+/// the one before it on; several have colours and a legend.
+void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
+                              const std::vector<std::size_t>& ends, const std::vector<double>& isovalues,
+                              const Box3& domain, const PictureOptions& camera);
 
 }  // namespace adamas

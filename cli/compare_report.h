@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -21,5 +22,9 @@ void print_comparison_row(const ComparedMesh& row, const ResamplingSource& sourc
 /// The rows for `--json`, and as CSV.
 Figures comparison_figures(const std::vector<ComparedMesh>& rows, const ResamplingSource& source);
 std::string comparison_csv(const std::vector<ComparedMesh>& rows, const ResamplingSource& source);
+
+/// Tetrahedra and seconds against the measured two-sided distance, both logarithmic, side by side.
+void write_comparison_picture(const std::filesystem::path& path, const std::vector<ComparedMesh>& rows,
+                              const std::string& title);
 
 }  // namespace adamas

@@ -1,10 +1,14 @@
-#include "cli/isosurface_figures.h"
+#include "cli/isosurface_report.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "cli/store_input.h"
+#include "cli/store_options.h"
 #include "core/base/error.h"
+#include "core/picture/interface_picture.h"
+#include "core/picture/palette.h"
 
 namespace adamas {
 
@@ -24,6 +28,9 @@ std::string reason_for_none(const SurfaceRequest& request, const std::array<doub
 std::string damaged_pages(std::size_t count) {
   return fmt::format("{} damaged page{}", count, count == 1 ? "" : "s");
 }
+
+/// Of a surface alone; light, so that shading shows its form.
+constexpr Colour kBone{0.93, 0.85, 0.71};
 
 }  // namespace
 
@@ -84,6 +91,24 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
   figures["seconds"] = seconds;
   figures["peak_memory_bytes"] = peak_memory_bytes();
   session_.outputs.write(session_.json, [&figures](const auto& path) { write_figures(path, figures); });
+}
+
+void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
+                              const std::vector<std::size_t>& ends, const std::vector<double>& isovalues,
+                              const Box3& domain, const PictureOptions& camera) {
+  InterfacePicture picture;
+  picture.domain = domain;
+  camera.aim(picture);
+  picture.triangles.reserve(surface.triangles.size());
+  for (std::size_t n = 0; n < ends.size(); ++n) {
+    const Colour colour = ends.size() > 1 ? material_colour(n) : kBone;
+    if (ends.size() > 1) picture.materials.push_back({fmt::format("{:.6g}", isovalues[n]), colour});
+    for (std::size_t t = picture.triangles.size(); t < ends[n]; ++t) {
+      const auto [a, b, c] = surface.triangles[t];
+      picture.triangles.push_back({{surface.points[a], surface.points[b], surface.points[c]}, colour});
+    }
+  }
+  write_interfaces(picture, path, camera.sizes());
 }
 
 }  // namespace adamas

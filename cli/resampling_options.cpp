@@ -1,4 +1,4 @@
-#include "cli/resampling_setup.h"
+#include "cli/resampling_options.h"
 
 #include <algorithm>
 
@@ -62,7 +62,7 @@ std::size_t field_number(const std::vector<FieldInfo>& fields, const std::string
   return static_cast<std::size_t>(found - fields.begin());
 }
 
-ResamplingWishes::ResamplingWishes(const ResamplingText& text)
+ResamplingRequest::ResamplingRequest(const ResamplingText& text)
     : interface_error(parse_error_target("--interface-error", text.interface_error, true)),
       field_errors(parse_field_errors(text.field_errors)) {
   if (!text.max_tetrahedra.empty()) max_tetrahedra = parse_count("--max-tetrahedra", text.max_tetrahedra);
@@ -94,13 +94,13 @@ std::vector<std::optional<double>> field_errors_of(const FieldErrorTargets& targ
   return result;
 }
 
-void ResamplingWishes::check(const InputFacts& input) const {
+void ResamplingRequest::check(const InputFacts& input) const {
   static_cast<void>(interface_error_of("--interface-error", interface_error, input));
   for (const auto& [name, target] : field_errors)
     static_cast<void>(field_number(input.fields, name, input.name));
 }
 
-ResamplingOptions ResamplingWishes::options(const ResamplingSource& source) const {
+ResamplingOptions ResamplingRequest::options(const ResamplingSource& source) const {
   const InputFacts input = facts_of(source);
   check(input);
   if (conserve && source.body_volumes.empty() && !source.network->triangles().empty())
