@@ -8,7 +8,7 @@
 #include "cli/output_set.h"
 
 // CLI11's headers take seconds to compile, so the files of the commands see only the handles below.
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): it is that library's
 class App;
 class Option;
 }  // namespace CLI

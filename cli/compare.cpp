@@ -21,7 +21,7 @@ namespace adamas {
 
 namespace {
 
-/// Less address space than this is not enough to load the libraries.
+/// With less address space the other program could not even load its libraries.
 constexpr std::size_t kLeastMemory = std::size_t{64} << 20;
 
 struct Options {
@@ -58,7 +58,7 @@ void choose_references(const std::string& text, ComparisonOptions& options) {
     wrong_usage("--reference: expected tetgen, mesh3 or both with a comma between them, found '{}'", text);
 }
 
-/// What can be read of TetGen's answers rests on two of the switches, and others would have it write files.
+/// TetGen's output can only be read with the switches z and p, and some other switches make it write files.
 void check_switches(const std::string& switches) {
   constexpr const char* kKnown = "zpYqaMTXOCDSbVQ0123456789./e-";
   if (switches.find('z') == std::string::npos || switches.find('p') == std::string::npos ||
@@ -76,7 +76,8 @@ ComparisonOptions comparison_options(const Options& options) {
   return result;
 }
 
-/// Walls between the sites of a grid along an axis: half way between nodes where these have the values.
+/// The coordinates along an axis at which one label ends and the next begins: the nodes, where cells have the
+/// labels; the middles between nodes, where the nodes have them.
 std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
   const auto& nodes = grid.nodes[static_cast<std::size_t>(axis)];
   if (grid.centering == Centering::kCells) return nodes;
@@ -86,7 +87,7 @@ std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
   return walls;
 }
 
-/// The labels of an input; none where it has no labels, or interfaces of its own.
+/// The labels of an input; empty where it has fractions or interfaces instead of labels.
 std::optional<LabelImage> label_image(const Input& input) {
   if (!input.data || input.data->labels.empty()) return std::nullopt;
   const RectilinearGrid& grid = input.data->grid;
@@ -119,7 +120,7 @@ std::filesystem::path find_reference_program() {
        kReferenceName, kReferenceVariable);
 }
 
-/// Where the rows are that were finished before the user stopped.
+/// Says in which files the rows are that were finished before the user stopped the run.
 std::string where_kept(const Options& options, const std::string& json) {
   std::string files;
   for (const std::string& file : {options.csv, json}) {
@@ -147,7 +148,7 @@ void run(const Options& options, Session& session) {
   for (std::size_t i = 0; i < requests.size(); ++i)
     comparison.interface_errors[i] = requests[i].options(input.source).interface_error;
   print_comparison_header(console);
-  // Rows are kept as they come, whatever becomes of the rest.
+  // The files are written again after each row, so that finished rows are kept when a later one fails.
   std::vector<ComparedMesh> rows;
   const auto keep = [&](bool whole) {
     session.outputs.publish(options.csv, [&](const auto& path) {

@@ -14,7 +14,7 @@ namespace adamas {
 
 namespace {
 
-/// Greatest over the fields, each in parts of its range.
+/// The greatest error of all fields, each as a part of the range of its field.
 struct RelativeErrors {
   std::optional<double> max, mean, interface_max, interface_mean;
 };
@@ -36,7 +36,7 @@ RelativeErrors relative_errors(const ComparedMesh& row, const ResamplingSource& 
   return result;
 }
 
-/// Greatest relative difference of a material's volume from what the input states.
+/// The greatest relative difference between a material's volume in the mesh and in the input.
 std::optional<double> volume_error(const ComparedMesh& row, const ResamplingSource& source) {
   std::optional<double> result;
   for (MaterialId m(0); m.value < source.volumes.size(); ++m.value) {
@@ -55,7 +55,8 @@ std::string short_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "none";
 }
 
-/// A column of the table that grows row by row: its width is that of the widest usual entry.
+/// A column of the table. Rows are printed one by one, so that its width is fixed: that of the widest usual
+/// entry.
 struct Column {
   const char* name;
   std::size_t width;
@@ -156,7 +157,7 @@ constexpr std::array kJoined{MeshKind::kOwn,
                              MeshKind::kMesh3Simplified,
                              MeshKind::kMesh3Labels};
 
-/// One diagram: a line per kind of mesh, and a level where the distance is none.
+/// One diagram: a line for each generator with a measured distance, a horizontal line for one without.
 Plot make_plot(const std::vector<ComparedMesh>& rows, const std::string& title, const std::string& label,
                double (*value)(const ComparedMesh&)) {
   Plot plot;

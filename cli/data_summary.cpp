@@ -20,7 +20,7 @@ namespace {
 
 Figures vector_figures(const Vec3& v) { return Figures{v.x, v.y, v.z}; }
 
-/// Least and greatest finite sample.
+/// Sets the array's range to that of the finite samples.
 void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
   std::vector<std::byte> plane(reader.grid().plane_bytes());
   array.min = std::numeric_limits<double>::infinity();
@@ -41,7 +41,7 @@ void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
   }
 }
 
-/// Least and greatest sample.
+/// Prints the least and the greatest sample, which the store knows.
 void print_range(StoreFile& file, Console& console, Figures& figures) {
   with_sample_type(file.header().grid.type, [&](auto sample) {
     using Sample = decltype(sample);

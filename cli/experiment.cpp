@@ -22,7 +22,7 @@ namespace adamas {
 
 namespace {
 
-/// Width in pixels of pictures with three panels.
+/// The width in pixels of pictures with three panels.
 constexpr double kSliceWidth = 2000;
 
 ResamplingOptions without_fields(ResamplingOptions options) {

@@ -13,7 +13,7 @@ namespace adamas {
 
 namespace {
 
-/// Interface errors of the curve, in relation to the target, where none are given.
+/// The default interface errors of the curve, in relation to the target.
 constexpr std::array kCurve{8.0, 4.0, 2.0, 1.0};
 constexpr std::array kPublishable{"interface tetrahedra", "tetrahedra", "tetrahedra with fields",
                                   "greatest field error at interfaces", "mean field error at interfaces"};

@@ -48,7 +48,7 @@ Plot interface_plot(const std::vector<ExperimentRun>& runs) {
   return plot;
 }
 
-/// One series per field: its mean error in cells with an interface, as a part of its range.
+/// A series for each field: its mean error in cells with an interface, as a part of the field's range.
 Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldInfo>& fields) {
   Plot plot;
   plot.x = {"tetrahedra", AxisKind::kLogarithmic};
@@ -60,7 +60,7 @@ Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldI
       series.x.push_back(static_cast<double>(run.figures.tetrahedra));
       series.y.push_back(range > 0 ? run.figures.fields[f].at_interfaces.mean() / range : 0);
     }
-    // A field that comes back exactly would stretch the axis down to round-off.
+    // The errors of a field that the mesh reproduces exactly are round-off, which would stretch the axis.
     if (*std::max_element(series.y.begin(), series.y.end()) > 1e-12) plot.series.push_back(std::move(series));
   }
   return plot;

@@ -20,17 +20,17 @@ namespace adamas {
 namespace {
 
 constexpr std::size_t kDefaultSteps = 11;
-/// More files than this in one go are a slip of the hand.
+/// A greater number of files is taken for a typing error.
 constexpr std::size_t kMostSteps = 1000;
 
-/// The data that come of a flow: the last ones alone, or F.pvd with F_0000.vtr, F_0001.vtr, ... beside it,
-/// evenly spaced in time from the start to the end.
+/// The files with the states of a flow: either one file with the last state, or a series F.pvd with
+/// F_0000.vtr, F_0001.vtr, ... beside it, which are evenly spaced in time from the start to the end.
 class FlowSeries {
  public:
   /// Declares the outputs. `steps` is the value of --steps, or empty. Throws UsageError and Error.
   FlowSeries(std::string output, const std::string& steps, double end, OutputSet& outputs);
 
-  /// Lets the flow go on to each of the times and writes what it is then.
+  /// Advances the flow to each of the times and writes its state there.
   template <std::size_t N>
   void write(FlowSolver<N>& flow, const FlowUnits& units, Session& session) {
     for (std::size_t i = 0; i < files_.size(); ++i) {
@@ -43,7 +43,7 @@ class FlowSeries {
     finish(session.outputs);
   }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
-  /// Of all files together, once they are written.
+  /// The bytes of all files together, once they are written.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
  private:
@@ -107,7 +107,7 @@ ImpactOptions impact_options(const Options& options) {
   return impact;
 }
 
-/// What became of the masses and of the energy, printed and in the figures.
+/// Prints the masses and the energy at the start and at the end, and adds them to the figures.
 void print_ledger(const FlowSolver<3>& flow, const FlowLedger<3>& start, Console& console, Figures& figures) {
   const FlowLedger<3> now = flow.inside();
   std::vector<std::vector<std::string>> rows{{"", "at the start", "at the end", "went out", "difference"}};

@@ -43,7 +43,8 @@ void note_mended_fractions(const MultiMaterialData& data, Console& console) {
   console.note("{}: volume fractions were mended: {}", data.source, what);
 }
 
-/// Names are the same everywhere to the letter; the reader is less strict with these.
+/// Throws where --extensive names no field. Letter case counts as in all other options, although the reader
+/// of the data ignores it.
 void check_extensive(const InputOptions& options, const MultiMaterialData& data) {
   for (const std::string& name : options.extensive) {
     const auto same = [&name](const Field& field) { return field.name == name; };

@@ -14,7 +14,8 @@ namespace adamas {
 
 namespace {
 
-/// Why there is no triangle. `range`: least and greatest sample; none are known where the first is greater.
+/// Says why there is no triangle. `range`: least and greatest sample; none are known where the first is
+/// greater.
 std::string reason_for_none(const SurfaceRequest& request, const std::array<double, 2>& range) {
   if (range[0] > range[1]) return "no sample is a finite number";
   if (request.isovalue <= range[0] || request.isovalue > range[1])
@@ -29,7 +30,7 @@ std::string damaged_pages(std::size_t count) {
   return fmt::format("{} damaged page{}", count, count == 1 ? "" : "s");
 }
 
-/// Of a surface alone; light, so that shading shows its form.
+/// The colour of a single surface, light so that shading shows its form.
 constexpr Colour kBone{0.93, 0.85, 0.71};
 
 }  // namespace
@@ -60,7 +61,7 @@ void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const Extract
   std::size_t count = 0;
   for (const PageId& page : lost) {
     if (request.strict) fail("{} is damaged, on which normals depend", page_name(page));
-    // Where the surface is coarser, so are its normals.
+    // Pages without which the surface itself is coarser were told of before.
     if (std::find(surface.lost.begin(), surface.lost.end(), page) == surface.lost.end()) ++count;
   }
   if (count == 0) return;

@@ -23,12 +23,12 @@ namespace adamas {
 
 namespace {
 
-/// Volumes of bodies that differ by more than this part of the domain are told.
+/// Volumes of bodies count as changed when they differ by more than this part of the domain's volume.
 constexpr double kVolumesRestored = 1e-9;
 
 double tolerance_of(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error) {
   if (output.error.empty()) {
-    // A mesh of planes alone has no error to go by.
+    // The interface error of a mesh of planes is 0, so that half of it would be no target.
     const double least = 1e-4 * mesh.box.diagonal();
     return std::max(kCutTolerance * interface_error, least);
   }
@@ -72,7 +72,7 @@ void note_changed_bodies(const CutMeshReport& report, const ResampledMesh& mesh,
                  volume_text(report.volume_difference));
 }
 
-/// Distances from the input's interfaces; none where there are none.
+/// The distances from the input's interfaces; empty where the input is not known.
 std::optional<InterfaceCertificate> compare_with_input(const ConformingMesh& cut, const ResampledMesh& mesh,
                                                        const ResamplingSource* source, double target,
                                                        const Progress& progress) {

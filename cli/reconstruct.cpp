@@ -38,7 +38,7 @@ Figures print_volumes(const MultiMaterialData& data, const Reconstruction& resul
   return figures;
 }
 
-/// How well the volumes in cells agree with the fractions there.
+/// Prints how well the volumes in the cells agree with the volume fractions there.
 Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
   if (agreement.mixed_cells > 0) {
     console.print(
@@ -58,7 +58,7 @@ Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
           {"full_greatest_difference", agreement.greatest_in_full_cell}};
 }
 
-/// Says what the fractions hold and the interfaces do not show.
+/// Notes what the volume fractions contain but the interfaces do not show.
 void note_losses(const MultiMaterialData& data, const Reconstruction& result, Figures& figures,
                  Console& console) {
   constexpr std::size_t kMostNotes = 10;
@@ -86,13 +86,13 @@ void note_losses(const MultiMaterialData& data, const Reconstruction& result, Fi
   figures["lost_bodies"] = bodies;
 }
 
-/// The interfaces of an input, with what is printed of them.
+/// The interfaces of an input, and its domain.
 struct Interfaces {
   InterfaceMesh mesh;
   Box3 box;
 };
 
-/// Takes fewer triangles where that is wanted.
+/// Simplifies the interfaces where the options ask for it.
 Interfaces simplified(Interfaces&& found, const ResamplingSource& source,
                       const SimplificationRequest& request, Figures& figures, Console& console) {
   if (request.wanted()) found.mesh = simplify_and_print(source, request, figures, console).mesh;
@@ -119,7 +119,8 @@ Interfaces reconstruct(const Options& options, const SimplificationRequest& requ
   return simplified({result.take_mesh(), box}, source, request, figures, console);
 }
 
-/// Given interfaces: checked, welded, without triangles that bound nothing.
+/// Loads given interfaces: they are checked and welded, and triangles with the same material on both sides
+/// are left out.
 Interfaces take_given(const Options& options, const SimplificationRequest& request, Figures& figures,
                       Console& console) {
   const Input input =

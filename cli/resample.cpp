@@ -20,7 +20,7 @@ namespace adamas {
 
 namespace {
 
-/// A distance between interfaces; infinite where the mesh shows none.
+/// The text of a distance between interfaces, which is infinite where the mesh shows none.
 std::string shown_length(double length) {
   return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
 }
@@ -33,7 +33,7 @@ struct Options {
   std::string save;
 };
 
-/// Says which of the distances are greater than wanted, and why.
+/// Notes which of the distances are greater than the interface error, and why.
 void note_shortfalls(const InterfaceCertificate& certificate, const Resampler& resampler, Console& console) {
   const auto note = [&](const std::string& what, const InterfaceDistance& distance) {
     const auto shortfall = interface_shortfall(resampler, distance);
@@ -50,7 +50,7 @@ void note_shortfalls(const InterfaceCertificate& certificate, const Resampler& r
     note("the interface error wanted for the lines where three materials meet", *certificate.junctions);
 }
 
-/// Names what the mesh does not show as the input has it.
+/// Notes the materials and bodies of the input that the mesh shows changed or not at all.
 void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
   constexpr std::size_t kMost = 10;
   for (const MaterialId material : lost_materials(m, source)) {
@@ -100,7 +100,7 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   };
   if (certificate) {
     add_distance("interface error", certificate->networks);
-    // Of two materials each one's boundary is the whole.
+    // With two materials the boundary of each consists of all interfaces.
     if (resampler.source().materials.size() > 2)
       add_distance("interface error per material", certificate->materials);
     if (certificate->junctions) add_distance("junction error", *certificate->junctions);
@@ -120,7 +120,8 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   note_bodies(m, resampler.source(), console);
 }
 
-/// How many elements of each kind the errors are of; once where they are the same for all fields.
+/// Prints over how many elements of each kind the errors are taken; once where that is the same for all
+/// fields.
 void print_elements(const ResampleFigures& m, const FieldSource& source, Console& console) {
   std::vector<std::string> texts;
   for (const FieldFigures& field : m.fields) {
@@ -164,7 +165,7 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
   }
 }
 
-/// Says whether volumes are conserved, where that was wanted.
+/// Prints whether volumes are conserved, where the options ask for it.
 void print_conservation(const ResampleFigures& m, const Resampler& resampler, Console& console) {
   if (!resampler.options().conserve) return;
   const BodyFigures* worst = nullptr;
@@ -200,7 +201,7 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
   if (source.materials.size() > kMost) console.print("  ... and {} more\n", source.materials.size() - kMost);
 }
 
-/// The interfaces of the mesh, with fewer triangles where that is wanted.
+/// The interfaces of the mesh, simplified where the options ask for it.
 InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationRequest& request,
                                Figures& figures, Console& console) {
   if (!request.wanted()) return approximated_interfaces(resampler, console);
@@ -228,7 +229,7 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
     write_array_file(path, {kHierarchyFormat, kHierarchyVersion, to_arrays(hierarchy)});
   });
   std::vector<Ledger> ledgers;
-  // Beside given interfaces a grid need not know materials.
+  // Where interfaces are given, the grid needs no materials.
   if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
     ledgers.push_back({"input", material_integrals(*input.data)});
   } else if (!input.source.volumes.empty()) {

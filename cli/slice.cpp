@@ -90,7 +90,7 @@ std::vector<SliceMode> modes(const Options& options, const SliceInput& input, bo
   if (options.mode == "plain") return {SliceMode::kPlain};
   if (options.mode != "all") return {SliceMode::kMaterials};
   std::vector<SliceMode> all{SliceMode::kMaterials};
-  // Without a field the two modes of the mesh show the same.
+  // Where no field is shown, the two modes of the mesh look the same.
   if (with_field) all.insert(all.begin(), SliceMode::kPlain);
   if (has_data) all.insert(all.begin(), SliceMode::kInput);
   return all;
@@ -125,8 +125,8 @@ SlicePicture make_picture(const Options& options, const SliceInput& input, const
   return picture;
 }
 
-/// Areas of the last section: the one with the materials, where there are several. Samples alone
-/// have none.
+/// Prints the areas of the materials in the last section, which is the one with the fields of each material.
+/// Samples without materials have none.
 void report_areas(const SliceInput& input, const CrossSection& section, bool plain, Session& session,
                   Figures& figures) {
   figures["area"] = section.area;
@@ -144,7 +144,7 @@ void report_areas(const SliceInput& input, const CrossSection& section, bool pla
   session.console.table(rows);
 }
 
-/// Options that would say nothing where no field is shown.
+/// Throws UsageError at options that mean nothing where no field is shown.
 void check_field_options(const Options& options, const std::string& field) {
   if (!field.empty()) return;
   if (!options.range.empty()) wrong_usage("--range: expected --field as well");
@@ -152,7 +152,7 @@ void check_field_options(const Options& options, const std::string& field) {
   if (options.mode == "plain") wrong_usage("--mode plain: expected --field as well");
 }
 
-/// Options that cannot be, and files that may not be written.
+/// Throws at options that make no sense, and at an output that cannot be written.
 void check_options(const Options& options, OutputSet& outputs) {
   if (options.draw_cells && options.no_draw_cells)
     wrong_usage("--draw-cells and --no-draw-cells: expected one of them");
@@ -162,7 +162,8 @@ void check_options(const Options& options, OutputSet& outputs) {
   outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});
 }
 
-/// Cells are drawn as asked for, else those of a mesh and, beside it, those of its input where they are seen.
+/// Whether cells are drawn: as the options say; without them, the cells of a mesh are drawn, and those of its
+/// input where they are wide enough to be seen.
 void choose_cells(const Options& options, const SliceInput& input, const SliceOptions& size,
                   std::size_t panels, SliceStyle& style) {
   style.mesh_cells = options.draw_cells || !options.no_draw_cells;
@@ -193,7 +194,7 @@ void run(const Options& options, Session& session) {
   const SliceOptions size = picture_size(options);
   InputOptions from = options.input;
   style.field = split_fields(from);
-  // Data without materials may do where no option is about them.
+  // Data without materials are enough unless an option is about materials.
   from.plain = from.material_option().empty() && options.original.empty();
   check_options(options, session.outputs);
   const SampleOrigin origin = sample_origin(options.input, options.volume, options.original);

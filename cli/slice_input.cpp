@@ -19,7 +19,8 @@ namespace adamas {
 
 namespace {
 
-/// The data's materials in the order of the mesh's, by name; the mesh may have more.
+/// Brings the data's materials into the order of the mesh's, by their names; the mesh may have more
+/// materials.
 void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
   const auto there = material_numbers(data.materials, mesh.materials, data.source, "the mesh");
   const std::size_t count = mesh.materials.size();

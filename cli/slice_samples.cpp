@@ -21,10 +21,10 @@ namespace adamas {
 
 namespace {
 
-/// Samples that are read at most: four for each pixel of a large picture, or a cube of 256^3.
+/// The greatest number of samples that are read: four for each pixel of a large picture, or a cube of 256^3.
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 24;
 
-/// What of the grid's frame the samples of an LOD next to the plane span.
+/// The part of the grid, in its frame, that the samples of an LOD next to the plane span.
 Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
   const Box3 box = grid.frame_box();
   Box3 region, cut;
@@ -32,7 +32,7 @@ Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
   for (int axis = 0; axis < 3; ++axis) {
     const double step = std::ldexp(grid.spacing[axis], lod);
     const double layers = std::floor((box.max[axis] - box.min[axis]) / step);
-    // Where it is at right angles to the axis, all of it lies where the plane does.
+    // A plane at right angles to the axis meets it at a single coordinate.
     const bool across = plane.axis() == axis;
     const double low = ((across ? plane.origin[axis] : cut.min[axis]) - box.min[axis]) / step;
     const double high = ((across ? plane.origin[axis] : cut.max[axis]) - box.min[axis]) / step;
@@ -44,7 +44,7 @@ Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
   return region;
 }
 
-/// The samples of a part as nodes in the frame of the whole.
+/// The samples of a part as the nodes of a grid in the frame of the whole volume.
 RectilinearGrid nodes_of(const RestoredPart& part, const VolumeGrid& whole) {
   RectilinearGrid grid;
   grid.centering = Centering::kPoints;
@@ -57,9 +57,7 @@ RectilinearGrid nodes_of(const RestoredPart& part, const VolumeGrid& whole) {
   return grid;
 }
 
-using PlaneSink = std::function<void(std::span<const std::byte>)>;
-
-/// `read` gives the planes of a part, one after another.
+/// Makes the slab from the planes of a part, which `read` gives one after another.
 SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& plane,
                 const std::function<void(const RestoredPart&, const PlaneSink&)>& read, Session& session) {
   check_volume_dimensions(name, volume);

@@ -24,7 +24,7 @@ std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session)
 /// Whether a file is a store, by its name.
 bool is_store(const std::string& path);
 
-/// What reading took, into the figures of a run.
+/// Adds how many pages and bytes were read to the figures of a run.
 void add_page_counts(const PageCounts& counts, Figures& figures);
 
 }  // namespace adamas

@@ -14,10 +14,10 @@ namespace adamas {
 
 namespace {
 
-/// More names than this make no legend.
+/// There is no legend for more materials than these.
 constexpr std::size_t kMostNames = 24;
 
-/// The materials that a choice names: two of an interface, or one and none.
+/// The materials that the text names: both sides of an interface, or one material and an empty name.
 std::array<std::string, 2> chosen_names(const std::string& text) {
   const std::size_t bar = text.find('|');
   if (bar == std::string::npos) return {std::string(trimmed(text)), ""};
@@ -34,7 +34,7 @@ MaterialId find_material(const IdVector<MaterialId, std::string>& materials, con
   fail("{}: --show-interface: expected materials of {}, found '{}'", source, known, name);
 }
 
-/// Whether a picture shows a triangle.
+/// The triangles that a picture shows.
 class Choice {
  public:
   Choice(const std::vector<std::string>& texts, const IdVector<MaterialId, std::string>& materials,

@@ -50,7 +50,7 @@ RawVolume raw_volume(const VolumeInput& input) {
   return raw;
 }
 
-/// Throws UsageError where the array of a file is named that has only one.
+/// Throws UsageError where an option names an array, but files of this format have only one.
 void check_array(const VolumeInput& input) {
   if (input.array.empty()) return;
   const VolumeFormat format = find_volume_format(input.path);
@@ -161,10 +161,10 @@ std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput v
     return open_volume_input(volume, session);
   if (!input.grid_option().empty()) return {};
   const bool pair = is(".hdr") || is(".hdr.gz") || is(".img") || is(".img.gz");
-  // Pictures of high dynamic range end in .hdr too.
+  // The names of pictures of high dynamic range end in .hdr too.
   if (pair && !read_beginning(path).starts_with("#?")) return open_volume_input(volume, session);
   if (!(is(".nii") || is(".nii.gz"))) return {};
-  // One of colours is no volume.
+  // A file of colours is not a volume.
   if (!NiftiHeader::parse(read_nifti_header(path), path).type()) return {};
   return open_volume_input(volume, session);
 }
