@@ -29,7 +29,7 @@ std::array<Temporary, 32> temporaries;
 std::array<Group, 32> groups;
 
 /// Calls visit(folder, name) for the entries of a folder, which a signal handler may do: no library looks
-/// into folders without allocating, and a thread of its own would be there when readers fork.
+/// into folders without allocating.
 template <class Visit>
 void for_each_entry(int folder, char* entries, std::size_t size, Visit&& visit) {
   for (long count = 0; (count = syscall(SYS_getdents64, folder, entries, size)) > 0;) {
