@@ -4,6 +4,8 @@
 #include <bit>
 #include <limits>
 
+#include "core/base/hash.h"
+
 namespace adamas {
 
 namespace {
@@ -88,7 +90,7 @@ class Estimator {
     for (const Vec3& p : network_.triangle_corners(triangle)) {
       std::uint64_t corner = 0;
       for (const double x : {p.x, p.y, p.z})
-        corner = (corner ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15ull;
+        corner = hash_combine(corner, std::bit_cast<std::uint64_t>(x));
       bits ^= corner;
     }
     return bits >> 32;
