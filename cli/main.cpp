@@ -11,7 +11,7 @@
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
 #include "cli/usage_message.h"
-#include "core/base/visible_text.h"
+#include "core/base/text.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include "cli/usage_error.h"
 #include "core/base/error.h"
-#include "core/base/trimmed.h"
+#include "core/base/text.h"
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 

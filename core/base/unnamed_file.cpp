@@ -18,7 +18,8 @@ namespace adamas {
 int open_unnamed_file(const std::filesystem::path& folder) {
   const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (unnamed >= 0) return unnamed;
-  // Some file systems cannot make files without names. No signal ends this thread while there is one.
+  // Some file systems cannot make files without names. Signals are blocked while
+  // the file has a name, so that none of them ends this thread and leaves it behind.
   sigset_t all{}, before{};
   sigfillset(&all);
   ::pthread_sigmask(SIG_BLOCK, &all, &before);

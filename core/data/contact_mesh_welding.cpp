@@ -53,7 +53,7 @@ void ContactMeshBuilder::weld_crowded_points() {
 }
 
 void ContactMeshBuilder::drop_repeated(std::vector<std::uint32_t>& loop) {
-  // Also ways there and back.
+  // What is left of an edge that was run along and back is a point between two equal ones.
   for (std::size_t before = 0; before != loop.size();) {
     before = loop.size();
     loop.erase(std::unique(loop.begin(), loop.end()), loop.end());

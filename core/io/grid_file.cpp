@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/visible_text.h"
+#include "core/base/text.h"
 #include "core/io/input_file.h"
 #include "core/io/legacy_vtk_check.h"
 #include "core/io/meta_image_check.h"
