@@ -143,28 +143,29 @@ TEST_F(ReaderProgram, EndsWithThisProcess) {
   }));
 }
 
-/// A child that went on with this program's code would now and then find the allocator locked for ever.
+/// A child that went on with this program's code might wait for ever for a lock that a thread held which it
+/// does not have.
 TEST_F(ReaderProgram, DoesNotMindThreadsThatAllocate) {
   std::atomic<bool> stop = false;
   std::vector<std::thread> threads;
-  for (unsigned t = 0; t < 4; ++t) {
+  for (unsigned t = 0; t < 2; ++t) {
     threads.emplace_back([&stop, t] {
       std::vector<std::string> kept(64);
       for (std::size_t i = 0; !stop; ++i) kept[i % kept.size()] = std::string(17 * (i % 97) + 31 * t, 'x');
     });
   }
   const GridFile first = read_grid_file(file);
-  for (int i = 0; i < 40; ++i) EXPECT_TRUE(equal(read_grid_file(file), first)) << i;
+  for (int i = 0; i < 15; ++i) EXPECT_TRUE(equal(read_grid_file(file), first)) << i;
   // Several at once, too.
   std::vector<std::thread> readers;
   std::atomic<int> same = 0;
-  for (int t = 0; t < 4; ++t) {
+  for (int t = 0; t < 3; ++t) {
     readers.emplace_back([&] {
-      for (int i = 0; i < 5; ++i) same += equal(read_grid_file(file), first) ? 1 : 0;
+      for (int i = 0; i < 3; ++i) same += equal(read_grid_file(file), first) ? 1 : 0;
     });
   }
   for (std::thread& reader : readers) reader.join();
-  EXPECT_EQ(same, 20);
+  EXPECT_EQ(same, 9);
   stop = true;
   for (std::thread& thread : threads) thread.join();
 }
