@@ -4,6 +4,6 @@
 
 namespace {
 
-[[maybe_unused]] const int named = ::setenv("ADAMAS_READER_PROGRAM", ADAMAS_READER_PROGRAM, 0);
+[[maybe_unused]] const int kNamed = ::setenv("ADAMAS_READER_PROGRAM", ADAMAS_READER_PROGRAM, 0);
 
 }  // namespace
