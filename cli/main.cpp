@@ -7,7 +7,7 @@
 #include "cli/exit_status.h"
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
-#include "core/base/visible_text.h"
+#include "core/base/text.h"
 
 namespace {
 

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
@@ -10,6 +12,16 @@
 namespace adamas {
 
 namespace {
+
+/// The variables of the environment that the program reads, beside those of the system.
+constexpr std::array<std::pair<const char*, const char*>, 2> kVariables{{
+    {"ADAMAS_READER_PROGRAM",
+     "The program that reads files by the libraries of others, where it is not beside adamas or in "
+     "../libexec."},
+    {"ADAMAS_REFERENCE_PROGRAM",
+     "The program that runs other mesh generators for compare, where it is not beside adamas or in "
+     "../libexec."},
+}};
 
 /// The text escaped for roff, so that no line is a request and hyphens can be copied from the page.
 std::string roff(const std::string& text) {
@@ -86,11 +98,9 @@ std::string man_page(const CommandDescription& app) {
   page += ".SH EXIT STATUS\n";
   for (const auto& [status, meaning] : kExitStatuses)
     page += ".TP\n.B " + std::to_string(status) + "\n" + roff(meaning) + "\n";
-  page += ".SH ENVIRONMENT\n.TP\n.B ADAMAS_REFERENCE_PROGRAM\n" +
-          roff(
-              "The program that runs other mesh generators for compare, where it is not beside adamas or in "
-              "../libexec.") +
-          "\n";
+  page += ".SH ENVIRONMENT\n";
+  for (const auto& [variable, meaning] : kVariables)
+    page += ".TP\n.B " + std::string(variable) + "\n" + roff(meaning) + "\n";
   return page;
 }
 

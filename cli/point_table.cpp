@@ -10,7 +10,7 @@
 
 #include "cli/figures.h"
 #include "core/base/error.h"
-#include "core/base/trimmed.h"
+#include "core/base/text.h"
 #include "core/io/input_file.h"
 
 namespace adamas {

@@ -6,7 +6,7 @@
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
-#include "core/base/trimmed.h"
+#include "core/base/text.h"
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 

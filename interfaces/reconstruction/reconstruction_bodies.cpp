@@ -4,8 +4,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "core/base/hash.h"
 #include "core/data/contact_mesh.h"
-#include "core/geometry/edge_key.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/reconstruction/reconstruction.h"
 

@@ -1,4 +1,4 @@
-#include "core/base/large_blocks.h"
+#include "core/base/large_pages.h"
 
 #include <cstdlib>
 #include <mutex>
@@ -9,8 +9,8 @@ namespace adamas {
 
 namespace {
 
-/// Blocks to be taken again; more than so many go back to the system. None with a sanitizer, which could not
-/// tell who owns them.
+/// How many free blocks are kept; further ones go back to the system. With a sanitizer none is kept, since it
+/// could not tell who uses one.
 #ifdef __SANITIZE_ADDRESS__
 constexpr std::size_t kMost = 0;
 #else
@@ -45,7 +45,7 @@ std::byte* take_large_block() {
   }
   void* const memory = std::aligned_alloc(kLargePage, kLargePage);
   if (memory == nullptr) throw std::bad_alloc();
-  wish_for_large_pages(memory, kLargePage);
+  request_large_pages(memory, kLargePage);
   return static_cast<std::byte*>(memory);
 }
 

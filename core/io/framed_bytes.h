@@ -2,14 +2,20 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 namespace adamas {
 
-/// The child's end of the pipe of read_in_child.
+/// The longest frame, in bytes.
+inline constexpr std::size_t kFrameBytes = std::size_t{1} << 20;
+
+/// Where a stream of bytes ends before its data are whole.
+struct TruncatedStream {};
+
+/// Writes values to a pipe or file in frames, so that its reader sees whether all of them came. Throws Error
+/// where they cannot be written.
 class ByteSink {
  public:
   explicit ByteSink(int descriptor) : descriptor_(descriptor) {}
@@ -27,7 +33,7 @@ class ByteSink {
     put(static_cast<std::uint64_t>(values.size()));
     write(values.data(), values.size() * sizeof(T));
   }
-  /// Ends the stream: whole, or with an error for the parent to throw.
+  /// Ends the stream: whole, or with an error for its reader to throw.
   void finish();
   void finish_with_error(const std::string& message);
 
@@ -39,8 +45,8 @@ class ByteSink {
   std::vector<char> buffer_;
 };
 
-/// The parent's end: throws Error where the child reported one or stopped before its data were whole. Nothing
-/// that comes through is trusted: counts are bounded by what does arrive.
+/// The other end: throws Error where the writer reported one, and TruncatedStream where it stopped before its
+/// data were whole. Nothing that comes through is trusted: counts are bounded by what does arrive.
 class ByteSource {
  public:
   explicit ByteSource(int descriptor) : descriptor_(descriptor) {}
@@ -81,12 +87,5 @@ class ByteSource {
   std::vector<char> frame_;
   std::size_t position_ = 0;
 };
-
-/// Runs `produce` in a forked child whose standard streams are closed and whose memory and time are limited,
-/// and `consume` here on what it sends. What goes wrong in the child, a crash of a library included, is
-/// thrown here as an Error that begins with `name`; `input_bytes` stretches the time limit.
-void read_in_child(const std::string& name, std::size_t input_bytes,
-                   const std::function<void(ByteSink&)>& produce,
-                   const std::function<void(ByteSource&)>& consume);
 
 }  // namespace adamas

@@ -7,25 +7,24 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/base/large_blocks.h"
+#include "core/base/large_pages.h"
 
 namespace adamas {
 
-/// Many objects of one type that stay where they are until the end, not initialised: in a small block of
-/// memory and, where that does not suffice, in large blocks.
+/// A vector whose elements stay where they are as it grows. They are not initialised, and lie in a small
+/// block of memory and, where that does not suffice, in large blocks that go from one user to the next.
 template <class T>
-class Arena {
+class StableVector {
  public:
   static_assert(std::is_trivially_destructible_v<T>);
 
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// Valid for as long as the arena is.
+  /// Appends an element, and returns where it is for as long as the vector lives.
   T* add() {
     if (size_ == capacity_) grow();
     return new (place(size_++)) T;
   }
-  /// The one that was added as the nth, from 0.
   [[nodiscard]] T& operator[](std::size_t n) { return *std::launder(reinterpret_cast<T*>(place(n))); }
 
  private:

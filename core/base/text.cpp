@@ -1,12 +1,9 @@
-#include "core/base/visible_text.h"
+#include "core/base/text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
-
-#include "core/base/utf8.h"
 
 namespace adamas {
 
@@ -25,13 +22,33 @@ std::uint32_t code_point(std::string_view character) {
 
 bool is_control(std::uint32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
 
-/// Marks, embeddings, overrides and isolates; ends of lines and paragraphs.
+/// Whether the character marks, embeds, overrides or isolates a direction of writing, or ends a line or
+/// paragraph.
 bool turns_or_ends_a_line(std::uint32_t code) {
   return code == 0x61c || code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||
          (code >= 0x2066 && code <= 0x2069);
 }
 
 }  // namespace
+
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&text](std::size_t i) {
+    return static_cast<unsigned char>(i < text.size() ? text[i] : 0);
+  };
+  if (text.empty()) return 0;
+  const unsigned first = byte(0), second = byte(1);
+  std::size_t length = 0;
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first < 0xe0) length = 2;
+  if (first >= 0xe0 && first < 0xf0) length = 3;
+  if (first >= 0xf0 && first < 0xf5) length = 4;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0u) != 0x80u) return 0;
+  }
+  const bool wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
+                     (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90);
+  return wrong ? 0 : length;
+}
 
 std::string visible_text(std::string_view text) {
   const auto is_plain = [](char c) { return c >= ' ' && c <= '~'; };

@@ -1,10 +1,8 @@
-#include "core/base/visible_text.h"
+#include "core/base/text.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
-
-#include "core/base/utf8.h"
 
 namespace adamas {
 namespace {
