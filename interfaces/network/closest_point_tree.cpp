@@ -22,6 +22,27 @@ float round_down(double x) {
   return static_cast<double>(f) > x ? std::nextafter(f, -kFloatInfinity) : f;
 }
 
+/// Squared distances between the boxes of a node's children and a box round a point, and a bit for each child
+/// that is within the bound.
+template <class Node, std::size_t kWidth>
+unsigned children_within(const Node& node, const __m128 (&low)[3], const __m128 (&high)[3], float bound,
+                         float (&distances)[kWidth]) {
+  const __m128 zero = _mm_setzero_ps();
+  unsigned hits = 0;
+  for (std::size_t half = 0; half < kWidth; half += 4) {
+    __m128 sum = zero;
+    for (int axis = 0; axis < 3; ++axis) {
+      const __m128 under = _mm_sub_ps(_mm_load_ps(node.lower[axis] + half), high[axis]);
+      const __m128 over = _mm_sub_ps(low[axis], _mm_load_ps(node.upper[axis] + half));
+      const __m128 gap = _mm_max_ps(_mm_max_ps(under, over), zero);
+      sum = _mm_add_ps(sum, _mm_mul_ps(gap, gap));
+    }
+    _mm_store_ps(distances + half, sum);
+    hits |= static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(sum, _mm_set1_ps(bound)))) << half;
+  }
+  return hits;
+}
+
 /// Bound for squared distances to boxes in float: above every rounding error of computing them.
 float box_bound(double squared_distance, double scale) {
   const double scaled = squared_distance * scale * scale;
@@ -82,22 +103,9 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
   while (true) {
     if (entry.count == 0) {
       const Node& node = nodes_[entry.first];
-      const __m128 zero = _mm_setzero_ps();
       alignas(16) float distances[kWidth];
-      unsigned hits = 0;
-      for (int half = 0; half < kWidth; half += 4) {
-        __m128 sum = zero;
-        for (int axis = 0; axis < 3; ++axis) {
-          const __m128 under = _mm_sub_ps(_mm_load_ps(node.lower[axis] + half), high[axis]);
-          const __m128 over = _mm_sub_ps(low[axis], _mm_load_ps(node.upper[axis] + half));
-          const __m128 gap = _mm_max_ps(_mm_max_ps(under, over), zero);
-          sum = _mm_add_ps(sum, _mm_mul_ps(gap, gap));
-        }
-        _mm_store_ps(distances + half, sum);
-        hits |= static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(sum, _mm_set1_ps(bound)))) << half;
-      }
       const std::size_t base = top;
-      for (; hits != 0; hits &= hits - 1) {
+      for (unsigned hits = children_within(node, low, high, bound, distances); hits != 0; hits &= hits - 1) {
         const auto i = static_cast<unsigned>(__builtin_ctz(hits));
         if (node.count[i] == kEmptySlot) continue;
         // Kept with the farthest first.

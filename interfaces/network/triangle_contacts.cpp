@@ -1,9 +1,12 @@
-#include "interfaces/simplification/triangle_contacts.h"
+#include "interfaces/network/triangle_contacts.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
+#include <mutex>
+
+#include "interfaces/network/box_tree.h"
+#include "interfaces/network/weld.h"
 
 namespace adamas {
 
@@ -13,9 +16,37 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Triangle = Kernel::Triangle_3;
 using Segment = Kernel::Segment_3;
-using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const PlacedTriangle*>;
+using Pair = std::array<std::uint32_t, 2>;
 
 Point at(const Vec3& p) { return {p.x, p.y, p.z}; }
+
+Triangle exact_triangle(const PlacedTriangle& t) {
+  return {at(t.corners[0]), at(t.corners[1]), at(t.corners[2])};
+}
+
+bool share_point(const PlacedTriangle& a, const PlacedTriangle& b) {
+  return std::any_of(a.points.begin(), a.points.end(), [&b](std::uint32_t p) {
+    return p == b.points[0] || p == b.points[1] || p == b.points[2];
+  });
+}
+
+std::vector<PlacedTriangle> placed_triangles(const InterfaceMesh& mesh) {
+  std::vector<PlacedTriangle> placed;
+  placed.reserve(mesh.triangles.size());
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    const auto& p = t.points;
+    placed.push_back({p, {mesh.points[p[0]], mesh.points[p[1]], mesh.points[p[2]]}});
+  }
+  return placed;
+}
+
+BoxTree tree_of(const std::vector<PlacedTriangle>& triangles) {
+  std::vector<Box3> boxes(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const Vec3& corner : triangles[t].corners) boxes[t].extend(corner);
+  }
+  return BoxTree(boxes);
+}
 
 /// Corners that two triangles share, and then the others of each.
 struct Pairing {
@@ -41,8 +72,7 @@ struct Pairing {
 }  // namespace
 
 bool in_contact(const PlacedTriangle& a, const PlacedTriangle& b) {
-  const Triangle first(at(a.corners[0]), at(a.corners[1]), at(a.corners[2]));
-  const Triangle second(at(b.corners[0]), at(b.corners[1]), at(b.corners[2]));
+  const Triangle first = exact_triangle(a), second = exact_triangle(b);
   if (first.is_degenerate() || second.is_degenerate()) return false;
   const Pairing pair(a, b);
   const auto& s = pair.shared;
@@ -75,23 +105,34 @@ bool holds(const std::array<Vec3, 4>& tetrahedron, const Vec3& p) {
   return true;
 }
 
-std::vector<std::array<std::uint32_t, 2>> find_contacts(const InterfaceMesh& mesh) {
-  std::vector<PlacedTriangle> placed;
-  placed.reserve(mesh.triangles.size());
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    const auto& p = t.points;
-    placed.push_back({p, {mesh.points[p[0]], mesh.points[p[1]], mesh.points[p[2]]}});
+SelfIntersections find_self_intersections(const InterfaceMesh& mesh) {
+  std::vector<PlacedTriangle> placed = placed_triangles(mesh);
+  const std::vector<std::uint32_t> welded = weld_points(mesh.points);
+  for (PlacedTriangle& t : placed) {
+    for (std::uint32_t& p : t.points) p = welded[p];
   }
-  std::vector<Box> boxes;
-  boxes.reserve(placed.size());
-  for (const PlacedTriangle& t : placed)
-    boxes.emplace_back(at(t.corners[0]).bbox() + at(t.corners[1]).bbox() + at(t.corners[2]).bbox(), &t);
-  std::vector<std::array<std::uint32_t, 2>> pairs;
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& x, const Box& y) {
-    if (!in_contact(*x.handle(), *y.handle())) return;
-    const auto i = static_cast<std::uint32_t>(x.handle() - placed.data());
-    const auto j = static_cast<std::uint32_t>(y.handle() - placed.data());
-    pairs.push_back({std::min(i, j), std::max(i, j)});
+  SelfIntersections result;
+  std::mutex mutex;
+  tree_of(placed).for_each_touching_pair([&](std::uint32_t i, std::uint32_t j) {
+    if (share_point(placed[i], placed[j])) return;
+    const Triangle first = exact_triangle(placed[i]), second = exact_triangle(placed[j]);
+    if (first.is_degenerate() || second.is_degenerate() || !CGAL::do_intersect(first, second)) return;
+    const Pair pair{i, j};
+    const std::lock_guard lock(mutex);
+    ++result.count;
+    if (!result.first || pair < *result.first) result.first = pair;
+  });
+  return result;
+}
+
+std::vector<Pair> find_contacts(const InterfaceMesh& mesh) {
+  const std::vector<PlacedTriangle> placed = placed_triangles(mesh);
+  std::vector<Pair> pairs;
+  std::mutex mutex;
+  tree_of(placed).for_each_touching_pair([&](std::uint32_t i, std::uint32_t j) {
+    if (!in_contact(placed[i], placed[j])) return;
+    const std::lock_guard lock(mutex);
+    pairs.push_back({i, j});
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
