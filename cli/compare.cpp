@@ -1,7 +1,4 @@
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,7 +12,6 @@
 #include "cli/resampling_options.h"
 #include "cli/usage_error.h"
 #include "core/base/child_process.h"
-#include "core/base/error.h"
 #include "core/io/output_stream.h"
 
 namespace adamas {
@@ -93,32 +89,6 @@ std::optional<LabelImage> label_image(const Input& input) {
   if (!input.data || input.data->labels.empty()) return std::nullopt;
   const RectilinearGrid& grid = input.data->grid;
   return LabelImage{walls_of(grid, 0), walls_of(grid, 1), walls_of(grid, 2), input.data->labels};
-}
-
-constexpr const char* kReferenceVariable = "ADAMAS_REFERENCE_PROGRAM";
-constexpr const char* kReferenceName = "adamas-reference";
-
-bool can_run(const std::filesystem::path& path) {
-  std::error_code code;
-  return std::filesystem::is_regular_file(path, code) && ::access(path.c_str(), X_OK) == 0;
-}
-
-/// The program that runs other mesh generators: where the variable ADAMAS_REFERENCE_PROGRAM says, or beside
-/// the running program, or where it is installed. Throws Error where there is none.
-std::filesystem::path find_reference_program() {
-  const char* given = std::getenv(kReferenceVariable);
-  if (given != nullptr && *given != '\0') {
-    if (!can_run(given)) fail("{}: expected a program, found none at '{}'", kReferenceVariable, given);
-    return given;
-  }
-  std::error_code code;
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
-  const std::filesystem::path beside = folder / kReferenceName;
-  const std::filesystem::path installed = folder / ".." / "libexec" / kReferenceName;
-  if (can_run(beside)) return beside;
-  if (can_run(installed)) return installed;
-  fail("expected the program '{}' beside adamas or in ../libexec, found none (the variable {} can name it)",
-       kReferenceName, kReferenceVariable);
 }
 
 /// Says in which files the rows are that were finished before the user stopped the run.
