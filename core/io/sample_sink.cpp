@@ -1,6 +1,7 @@
 #include "core/io/sample_sink.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -14,11 +15,8 @@ constexpr std::uint64_t kStep = std::uint64_t{1} << 22;
 
 }  // namespace
 
-SampleSink::SampleSink(const VolumeSource& source, const std::filesystem::path& folder, Progress& progress)
-    : source_(source),
-      progress_(progress),
-      file_(FileHandle::scratch(folder)),
-      expected_(source.sample_file_bytes()) {
+SampleSink::SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> scratch, Progress& progress)
+    : source_(source), progress_(progress), file_(std::move(scratch)), expected_(source.sample_file_bytes()) {
   progress_.step(kStage, 0);
 }
 
@@ -39,6 +37,7 @@ VolumeSource SampleSink::finish() const {
   }
   VolumeSource result = source_;
   result.scratch = file_;
+  result.more_files.clear();
   result.header_bytes = result.skip_lines = result.skip_bytes = 0;
   result.count_bytes = 0;
   result.at_end = result.base64 = result.before_tag = false;

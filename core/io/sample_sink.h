@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -14,8 +13,8 @@ namespace adamas {
 /// Takes the unpacked samples of a volume into a scratch file.
 class SampleSink {
  public:
-  /// `source` stays with the caller. Throws Error where there is no room for the scratch file.
-  SampleSink(const VolumeSource& source, const std::filesystem::path& folder, Progress& progress);
+  /// `source` stays with the caller; `scratch` is empty.
+  SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> scratch, Progress& progress);
 
   /// Takes the first `expected` bytes in all and leaves the others alone. Throws Cancelled, and Error where
   /// the disk is full.

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/io/output_stream.h"
-#include "core/io/xml_text.h"
+#include "core/io/xml_file.h"
 
 namespace adamas {
 

@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/io/xml_text.h"
+#include "core/io/xml_file.h"
 
 namespace adamas {
 

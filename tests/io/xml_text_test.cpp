@@ -1,4 +1,4 @@
-#include "core/io/xml_text.h"
+#include "core/io/xml_file.h"
 
 #include <gtest/gtest.h>
 
