@@ -160,14 +160,14 @@ std::vector<std::string> read_texts(VolumeSource source) {
 VolumeSource volume_of(const ImageHeader& header, const std::string& array,
                        std::optional<std::uint64_t> time) {
   const ImageArray& chosen = chosen_array(header, array);
-  require_found(header, chosen);
   VolumeSource source = chosen.source;
-  if (source.components != 1)
-    fail("{}: expected one value per sample, found {}", header.name, source.components);
   source.grid.dimensions = header.dimensions;
   source.grid.spacing = header.spacing;
   source.grid.space = header.space;
   source.grid.check(source.name);
+  require_found(header, chosen);
+  if (source.components != 1)
+    fail("{}: expected one value per sample, found {}", header.name, source.components);
   set_time(header, time, source);
   GridAxes axes = header.axes;
   for (std::size_t a = 0; a < 3; ++a) {

@@ -71,7 +71,7 @@ class Parser {
     if (!sizes || sizes->empty() || sizes->size() > 3) fail_field("DimSize", "one to three sizes");
     axes_ = sizes->size();
     if (fields_.has("NDims") && fields_.value("NDims") != std::to_string(axes_)) {
-      fail_field("NDims", fmt::format("{} as there are sizes", axes_));
+      fail_field("NDims", fmt::format("{} as there are sizes in DimSize", axes_));
     }
     std::copy(sizes->begin(), sizes->end(), image_.dimensions.begin());
     source_.grid.dimensions = image_.dimensions;

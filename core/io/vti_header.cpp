@@ -170,8 +170,9 @@ class Parser {
       source.skip_bytes = numbers<std::uint64_t>(tag, "offset", 1).front();
       return array;
     }
-    if (format != "ascii" && format != "binary")
-      fail_value("DataArray format", "appended, binary or ascii", format);
+    if (format != "ascii" && format != "binary" && array.missing.empty())
+      array.missing = fmt::format("DataArray format: expected appended, binary or ascii, found '{}'",
+                                  printable(format, kShown));
     source.base64 = format == "binary";
     source.before_tag = true;
     source.header_bytes = tag.text.value_or(0);

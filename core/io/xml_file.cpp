@@ -52,6 +52,7 @@ class TagReader {
     if (!appended_) return;
     std::uint64_t at = tags_.back().end;
     piece.remove_prefix(static_cast<std::size_t>(at - (added_ - piece.size())));
+    if (piece.empty()) piece = bytes();
     for (; !piece.empty(); piece = bytes()) {
       const std::size_t blanks = std::min(piece.find_first_not_of(kBlanks), piece.size());
       at += blanks;
