@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/base/text.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
@@ -74,6 +75,18 @@ TEST(XmlTags, WhatCouldGrowOrIsOtherIsRefused) {
   for (int i = 0; i < 300'000; ++i) many += "<g/>";
   EXPECT_TRUE(test::says(message(many + "</f>"), limit));
   EXPECT_EQ(tags_of("<f>" + std::string(3'000'000, 'x') + "</f>").size(), 2u) << "texts may be long";
+}
+
+TEST(Utf8, LengthOfTheFirstCharacter) {
+  EXPECT_EQ(utf8_length(""), 0u);
+  EXPECT_EQ(utf8_length("az"), 1u);
+  EXPECT_EQ(utf8_length("\xc3\xa4z"), 2u);
+  EXPECT_EQ(utf8_length("\xe2\x82\xac"), 3u);
+  EXPECT_EQ(utf8_length("\xf0\x9d\x84\x9e"), 4u);
+  for (const char* bad : {"\x80", "\xc0\x80", "\xc3", "\xe2\x82", "\xe0\x80\x80", "\xed\xa0\x80",
+                          "\xf0\x80\x80\x80", "\xf4\x90\x80\x80", "\xff"}) {
+    EXPECT_EQ(utf8_length(bad), 0u) << bad;
+  }
 }
 
 }  // namespace
