@@ -7,7 +7,6 @@
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
-#include "core/io/vtk_grid_reader.h"
 
 namespace adamas {
 

@@ -68,5 +68,7 @@ GridFile read_grid_file(const std::filesystem::path& path);
 /// What a library reads, by the ending of the file's name: .vti, .vtr, legacy .vtk, .tif(f) and the pictures
 /// of VTK. It may crash on a corrupt file, so that it works in a child process (read_in_child).
 GridFile read_grid_by_library(const std::filesystem::path& path);
+/// The same without the child process.
+GridFile read_grid_with_vtk(const std::filesystem::path& path);
 
 }  // namespace adamas

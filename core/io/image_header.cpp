@@ -8,8 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/io/grid_axes.h"
+#include "core/io/header_text.h"
 #include "core/io/input_file.h"
-#include "core/io/printable.h"
 #include "core/io/volume_reader.h"
 #include "core/io/volume_unpacking.h"
 

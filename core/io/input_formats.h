@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/io/grid_file.h"
@@ -39,6 +40,8 @@ struct InputFormat {
   /// Finds the samples of a volume, where there is no header; null: no volumes.
   VolumeSource (*find_volume)(const std::filesystem::path& path, const VolumeOptions& options,
                               Progress& progress) = nullptr;
+  /// The files beside it that a header names or means, whether they exist or not; null where it cannot.
+  std::vector<std::filesystem::path> (*referred_files)(const std::filesystem::path& path) = nullptr;
   bool several_arrays = false;  ///< whether a file may have several, of which a volume is one by its name
   bool several_times = false;
 

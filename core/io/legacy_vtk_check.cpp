@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/io/header_text.h"
 #include "core/io/input_file.h"
-#include "core/io/printable.h"
 #include "core/io/vtk_checks.h"
 
 namespace adamas {

@@ -8,10 +8,9 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
-#include "core/io/number_list.h"
-#include "core/io/printable.h"
 #include "core/io/referred_files.h"
 
 namespace adamas {
@@ -95,7 +94,7 @@ class Parser {
   /// Samples in several files, a part of the planes in each.
   void set_data_files() {
     if (source_.packed()) fail_field("ElementDataFile", "one file where samples are compressed or text");
-    auto files = referred_files(path_);
+    auto files = files_in_header(path_);
     if (files.empty()) fail_field("ElementDataFile", "the names of files of samples");
     source_.file = files.front();
     source_.more_files.assign(files.begin() + 1, files.end());
@@ -200,14 +199,15 @@ MetaImageFields parse_meta_image_fields(std::string_view text, const std::string
 }
 
 InputFormat meta_image_format() {
-  return {.name = "MetaImage",
-          .endings = ".mha .mhd",
-          .shown_by =
-              [](std::string_view bytes) {
-                return bytes.starts_with("ObjectType") || bytes.starts_with("NDims");
-              },
-          .read_header =
-              [](const std::filesystem::path& path) { return meta_image(read_beginning(path), path); }};
+  return {
+      .name = "MetaImage",
+      .endings = ".mha .mhd",
+      .shown_by =
+          [](std::string_view bytes) {
+            return bytes.starts_with("ObjectType") || bytes.starts_with("NDims");
+          },
+      .read_header = [](const std::filesystem::path& path) { return meta_image(read_beginning(path), path); },
+      .referred_files = files_in_header};
 }
 
 ImageHeader meta_image(std::string_view text, const std::filesystem::path& path) {

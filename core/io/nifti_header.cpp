@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "core/base/error.h"
-#include "core/io/inflate_stream.h"
+#include "core/io/decompression.h"
 #include "core/io/input_file.h"
 
 namespace adamas {

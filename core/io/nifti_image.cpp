@@ -143,6 +143,18 @@ GridFile read_grid(const std::filesystem::path& path) {
   return picture ? read_grid_by_library(path) : grid_of(read_image(path), path);
 }
 
+/// The others that may belong to a pair.
+std::vector<std::filesystem::path> others_of_pair(const std::filesystem::path& path) {
+  const std::string extension = file_extension(path);
+  const bool header = extension.starts_with(".hdr");
+  if (!header && !extension.starts_with(".img")) return {};
+  std::vector<std::filesystem::path> files;
+  for (const char* other :
+       {header ? ".img" : ".hdr", header ? ".img.gz" : ".hdr.gz", header ? ".IMG" : ".HDR"})
+    files.push_back(path.parent_path() / (file_stem(path) + other));
+  return files;
+}
+
 bool is_nifti(std::string_view bytes) {
   return (bytes.size() >= 348 && bytes.substr(344, 4) == std::string_view("n+1\0", 4)) ||
          (bytes.size() >= 8 && bytes.substr(4, 4) == std::string_view("n+2\0", 4));
@@ -157,6 +169,7 @@ InputFormat nifti_format() {
           .shown_by = is_nifti,
           .read_header = read_image,
           .read_grid = read_grid,
+          .referred_files = others_of_pair,
           .several_times = true};
 }
 

@@ -8,10 +8,11 @@
 
 #include "core/base/error.h"
 #include "core/data/anatomical_space.h"
+#include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/nrrd_places.h"
-#include "core/io/printable.h"
+#include "core/io/referred_files.h"
 
 namespace adamas {
 
@@ -233,11 +234,12 @@ NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name) {
 }
 
 InputFormat nrrd_format() {
-  return {.name = "NRRD",
-          .endings = ".nrrd .nhdr",
-          .shown_by = [](std::string_view bytes) { return bytes.starts_with("NRRD0"); },
-          .read_header =
-              [](const std::filesystem::path& path) { return nrrd_image(read_beginning(path), path); }};
+  return {
+      .name = "NRRD",
+      .endings = ".nrrd .nhdr",
+      .shown_by = [](std::string_view bytes) { return bytes.starts_with("NRRD0"); },
+      .read_header = [](const std::filesystem::path& path) { return nrrd_image(read_beginning(path), path); },
+      .referred_files = files_in_header};
 }
 
 ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path) {

@@ -17,8 +17,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
 #include "core/io/unstructured_mesh_io.h"
-#include "core/io/vtk_array.h"
-#include "core/io/vtk_messages.h"
+#include "core/io/vtk_support.h"
 
 namespace adamas {
 

@@ -8,7 +8,6 @@
 #include "core/io/input_formats.h"
 #include "core/io/volume_import.h"
 #include "core/io/vtk_checks.h"
-#include "core/io/vtk_grid_reader.h"
 
 namespace adamas {
 

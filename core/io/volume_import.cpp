@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/io/sample_sink.h"
+#include "core/io/volume_unpacking.h"
 
 namespace adamas {
 

@@ -4,9 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/io/header_text.h"
 #include "core/io/input_formats.h"
-#include "core/io/number_list.h"
-#include "core/io/printable.h"
 #include "core/io/vtk_checks.h"
 
 namespace adamas {

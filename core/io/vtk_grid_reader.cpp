@@ -1,5 +1,3 @@
-#include "core/io/vtk_grid_reader.h"
-
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSetReader.h>
@@ -17,9 +15,10 @@
 
 #include "core/base/error.h"
 #include "core/io/grid_axes.h"
+#include "core/io/grid_file.h"
 #include "core/io/input_file.h"
-#include "core/io/tiff_reader.h"
-#include "core/io/vtk_messages.h"
+#include "core/io/tiff_pages.h"
+#include "core/io/vtk_support.h"
 
 namespace adamas {
 

@@ -8,9 +8,8 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/io/bunzip_stream.h"
+#include "core/io/decompression.h"
 #include "core/io/grid_file.h"
-#include "core/io/inflate_stream.h"
 #include "core/io/meta_image.h"
 #include "core/io/network_ply.h"
 #include "core/io/network_text.h"
