@@ -161,9 +161,8 @@ void add_compare(const Command& app, Session& session) {
       "adamas compare cells.vtr --interface-error 2% --interface-error 1% -o comparison.png",
       [options, &session] { run(*options, session); });
   command
-      .add_option(
-          "input", options->input.path,
-          std::string("What to mesh: ") + kGridFiles + ", or a labelled network (.vtp, .ply, .arec, .txt)")
+      .add_option("input", options->input.path,
+                  "What to mesh: " + grid_files() + ", or a labelled network (.vtp, .ply, .arec, .txt)")
       .type_name("FILE");
   command
       .add_option("--interface-error", options->interface_errors,

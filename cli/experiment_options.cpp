@@ -39,8 +39,7 @@ bool same_letters(const std::string& a, const std::string& b) {
 }  // namespace
 
 void add_experiment_options(const Command& command, ExperimentOptions& options) {
-  command.add_option("input", options.input.path, std::string("What to resample: ") + kGridFiles)
-      .type_name("FILE");
+  command.add_option("input", options.input.path, "What to resample: " + grid_files()).type_name("FILE");
   command.add_option("--generate", options.generate, "Make the input: a scene of adamas generate, or impact")
       .type_name("NAME")
       .one_of(generated_names());

@@ -11,7 +11,6 @@
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/io/multi_material_writer.h"
-#include "core/io/series_writer.h"
 #include "datasets/flow/flow_output.h"
 #include "datasets/flow/impact.h"
 

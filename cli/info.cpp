@@ -203,6 +203,7 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
       }
       return print_arrays(s, console, figures);
     }
+    case InputKind::kPolygons:
     case InputKind::kNetwork:
       if (is_network(s, options)) return print_network(read_given_interfaces(options), console, figures);
       return print_arrays(s, console, figures);
@@ -271,7 +272,7 @@ void add_info(const Command& app, Session& session) {
   command
       .add_option(
           "input", options->input.path,
-          std::string("Any file that can be read: ") + kGridFiles +
+          "Any file that can be read: " + grid_files() +
               ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .ply, .arec, .txt), a surface "
               "(.obj, .off, .ply, .stl) or a store (.adm)")
       .type_name("FILE");

@@ -9,7 +9,6 @@
 #include "core/base/error.h"
 #include "core/io/array_file.h"
 #include "core/io/input_file.h"
-#include "core/io/network_ply.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/source/grid_source.h"
@@ -17,10 +16,6 @@
 namespace adamas {
 
 namespace {
-
-bool is_one_of(const std::string& text, std::initializer_list<const char*> list) {
-  return std::find(list.begin(), list.end(), text) != list.end();
-}
 
 /// "1 site", "2 sites".
 std::string counted(std::size_t count, const std::string& thing) {
@@ -92,11 +87,13 @@ std::string InputOptions::interface_option() const {
 }
 
 InputKind input_kind(const std::string& path) {
-  const std::string extension = file_extension(path);
-  if (extension == ".vtu" || is_saved_hierarchy(path)) return InputKind::kMesh;
-  if (is_one_of(extension, {".vtp", ".arec", ".txt"}) || is_network_ply(path)) return InputKind::kNetwork;
-  if (is_one_of(extension, {".obj", ".off", ".ply", ".stl"})) return InputKind::kSurface;
-  return InputKind::kGrid;
+  if (is_saved_hierarchy(path)) return InputKind::kMesh;
+  const InputKind kind = input_kind(std::filesystem::path(path));
+  return kind == InputKind::kPolygons ? InputKind::kNetwork : kind;
+}
+
+std::string grid_files() {
+  return fmt::format("data on a grid ({} and other images)", list_grid_endings(","));
 }
 
 void add_material_options(const Command& command, InputOptions& options, const char* field,
@@ -240,6 +237,7 @@ MultiMaterialData load_data(const InputOptions& given, Console& console) {
   switch (input_kind(options.path)) {
     case InputKind::kMesh:
       fail("{}: expected data on a grid, found a tetrahedral mesh", options.path);
+    case InputKind::kPolygons:
     case InputKind::kNetwork:
       fail("{}: expected data on a grid, found interface meshes", options.path);
     case InputKind::kSurface:

@@ -13,6 +13,7 @@
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
+#include "core/io/input_formats.h"
 #include "core/io/multi_material_reader.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/source/resampling_source.h"
@@ -41,13 +42,9 @@ struct InputOptions {
 };
 
 /// The grids that help texts name; messages of the readers tell of others.
-inline constexpr const char* kGridFiles =
-    "data on a grid (.vti, .vtr, .vtk, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .tif, .png and "
-    "other images)";
+std::string grid_files();
 
-enum class InputKind { kGrid, kNetwork, kMesh, kSurface };
-/// By the extension: a tetrahedral mesh (.vtu), an interface mesh (.vtp, .arec, .txt), a surface without
-/// materials (.obj, .off, .ply, .stl), or else a grid.
+/// As core/io/input_formats.h has it; a saved hierarchy is a mesh, and polygons are taken for a network.
 InputKind input_kind(const std::string& path);
 
 /// Options for volume fractions, labels and fields on a grid. `field` describes `--field`, whose meaning some

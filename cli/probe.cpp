@@ -177,7 +177,7 @@ void add_probe(const Command& app, Session& session) {
                   [options, &session] { run(*options, session); });
   command
       .add_option("input", options->input.path,
-                  std::string("What to probe: ") + kGridFiles +
+                  "What to probe: " + grid_files() +
                       ", interfaces (.vtp, .ply, .arec, .txt), or a mesh from adamas resample (.vtu)")
       .type_name("FILE");
   command.add_option("--points-file", options->points, "Points, x,y,z a line").type_name("FILE");

@@ -170,7 +170,7 @@ void add_reconstruct(const Command& app, Session& session) {
                   [options, &session] { run(*options, session); });
   command
       .add_option("input", options->input.path,
-                  std::string("What to reconstruct: ") + kGridFiles +
+                  "What to reconstruct: " + grid_files() +
                       ", or a network to check and write anew (.vtp, .ply, .arec, .txt)")
       .type_name("FILE");
   command.add_option("-o,--output", options->output, "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec")

@@ -295,8 +295,7 @@ void add_resample(const Command& app, Session& session) {
                   [options, &session] { run(*options, session); });
   command
       .add_option("input", options->input.path,
-                  std::string("What to resample: ") + kGridFiles +
-                      ", or a labelled network (.vtp, .ply, .arec, .txt)")
+                  "What to resample: " + grid_files() + ", or a labelled network (.vtp, .ply, .arec, .txt)")
       .type_name("FILE");
   add_resampling_options(command, options->text);
   add_mesh_output_options(command, options->outputs);

@@ -273,7 +273,7 @@ void add_slice(const Command& app, Session& session) {
   command
       .add_option(
           "input", options->input.path,
-          std::string("What to cut: ") + kGridFiles +
+          "What to cut: " + grid_files() +
               ", a mesh from adamas resample (.vtu), interfaces (.vtp, .ply, .arec, .txt), or a store from "
               "adamas store (.adm)")
       .type_name("FILE");

@@ -8,14 +8,9 @@
 #include "core/base/error.h"
 #include "core/io/grid_axes.h"
 #include "core/io/input_file.h"
-#include "core/io/meta_image_fields.h"
-#include "core/io/nifti_header.h"
-#include "core/io/nrrd_header.h"
-#include "core/io/number_list.h"
-#include "core/io/volume_format.h"
+#include "core/io/input_formats.h"
 #include "core/io/volume_stack.h"
 #include "core/io/volume_writer.h"
-#include "core/io/xml_tags.h"
 #include "isosurface/volume/page_grid.h"
 
 namespace adamas {
@@ -53,9 +48,7 @@ RawVolume raw_volume(const VolumeInput& input) {
 /// Throws UsageError where an option names an array, but files of this format have only one.
 void check_array(const VolumeInput& input) {
   if (input.array.empty()) return;
-  const VolumeFormat format = find_volume_format(input.path);
-  if (format == VolumeFormat::kVti || format == VolumeFormat::kHdf5 || format == VolumeFormat::kOtherGrid)
-    return;
+  if (find_volume_format(input.path).several_arrays) return;
   wrong_usage("--array: expected a file that may have several arrays, found {}", input.path);
 }
 
@@ -112,32 +105,23 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
 }
 
 bool has_one_array(const std::string& path) {
-  const std::string extension = file_extension(path);
-  const auto is = [&extension](std::initializer_list<const char*> list) {
-    return std::find(list.begin(), list.end(), extension) != list.end();
-  };
-  if (is({".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".h5", ".hdf5", ".he5"})) return true;
-  if (is({".nrrd", ".nhdr"})) return parse_nrrd_header(read_beginning(path), path).components == 1;
-  if (!is({".mha", ".mhd"})) return false;
-  const std::string channels =
-      parse_meta_image_fields(read_beginning(path), path).value("ElementNumberOfChannels");
-  return channels.empty() || channels == "1";
+  const InputFormat* format = find_format_by_name(path);
+  if (format == nullptr || !format->gives_volumes()) return false;
+  // A data set of HDF5 is always a volume, a NIfTI too, whatever its header says.
+  if (!format->gives_grids() || format->several_times) return true;
+  if (format->several_arrays || format->read_header == nullptr) return false;
+  return format->read_header(path).arrays.front().source.components == 1;
 }
 
 bool is_aslant_image(const std::string& path) {
-  if (file_extension(path) != ".vti") return false;
-  const std::string text = read_beginning(path);
-  XmlTags tags(text, path);
-  while (const auto tag = tags.next()) {
-    if (tag->name != "ImageData") continue;
-    const auto numbers = parse_number_list<double>(tag->value("Direction"));
-    if (!numbers || numbers->size() != 9) return false;
-    GridAxes axes;
-    for (std::size_t column = 0; column < 3; ++column)
-      axes.directions[column] = {(*numbers)[column], (*numbers)[3 + column], (*numbers)[6 + column]};
-    return !are_parallel(axes);
+  const InputFormat* format = find_format_by_name(path);
+  if (format == nullptr || format->read_header == nullptr || !format->several_arrays) return false;
+  try {
+    return !are_parallel(format->read_header(path).axes);
+  } catch (const Error&) {
+    // The reader of grids may know it, or tells better what is wrong.
+    return false;
   }
-  return false;
 }
 
 void check_two_samples(const std::string& name, const VolumeGrid& grid) {
@@ -154,27 +138,23 @@ void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
 }
 
 std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session) {
-  const std::string path = input.path, extension = file_extension(path);
-  const auto is = [&extension](const char* one) { return extension == one; };
-  volume.path = path;
-  if (!volume.option().empty() || is(".h5") || is(".hdf5") || is(".he5"))
-    return open_volume_input(volume, session);
-  if (!input.grid_option().empty()) return {};
-  const bool pair = is(".hdr") || is(".hdr.gz") || is(".img") || is(".img.gz");
-  // The names of pictures of high dynamic range end in .hdr too.
-  if (pair && !read_beginning(path).starts_with("#?")) return open_volume_input(volume, session);
-  if (!(is(".nii") || is(".nii.gz"))) return {};
-  // A file of colours is not a volume.
-  if (!NiftiHeader::parse(read_nifti_header(path), path).type()) return {};
+  const InputFormat* format = find_format_by_name(input.path);
+  volume.path = input.path;
+  const bool no_grid = format != nullptr && format->gives_volumes() && !format->gives_grids();
+  if (!volume.option().empty() || no_grid) return open_volume_input(volume, session);
+  if (!input.grid_option().empty() || format == nullptr || !format->several_times) return {};
+  // The names of pictures of high dynamic range end in .hdr as well as those of NIfTI's headers.
+  if (read_beginning(input.path).starts_with("#?")) return {};
+  // A file of colours or vectors is not a volume.
+  if (format->read_header(input.path).arrays.front().source.components != 1) return {};
   return open_volume_input(volume, session);
 }
 
 void add_volume_input(const Command& command, VolumeInput& input) {
   command
-      .add_option(
-          "input", input.path,
-          "The volume: .nrrd, .nhdr, .mha, .mhd, .vti, .vtr, .vtk, .nii, .nii.gz, .hdr, .h5, .tif, .png "
-          "or .slc; with --dimensions a raw file, with --stack a pattern")
+      .add_option("input", input.path,
+                  "The volume: " + list_volume_endings("or") +
+                      "; with --dimensions a raw file, with --stack a pattern")
       .required()
       .type_name("FILE");
   add_volume_options(command, input, "--origin,--first-sample");

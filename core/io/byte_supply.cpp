@@ -84,6 +84,15 @@ ByteSupply supply_file(std::shared_ptr<const FileHandle> file, std::uint64_t beg
   };
 }
 
+ByteSupply supply_both(ByteSupply first, ByteSupply second) {
+  return [first = std::move(first), second = std::move(second), ended = false]() mutable {
+    const std::string_view piece = ended ? std::string_view() : first();
+    if (!piece.empty()) return piece;
+    ended = true;
+    return second();
+  };
+}
+
 ByteSupply supply_before(ByteSupply bytes, char mark) {
   return [bytes = std::move(bytes), mark, ended = false]() mutable {
     if (ended) return std::string_view();

@@ -19,6 +19,8 @@ using ByteSupply = std::function<std::string_view()>;
 ByteSupply supply_text(std::string_view text);
 /// The bytes of a file from `begin` to its end.
 ByteSupply supply_file(std::shared_ptr<const FileHandle> file, std::uint64_t begin);
+/// Those of one supply, then those of another.
+ByteSupply supply_both(ByteSupply first, ByteSupply second);
 /// Those before the first `mark`.
 ByteSupply supply_before(ByteSupply bytes, char mark);
 /// What base64 text stands for; blanks in it are passed over, and '=' may stand within it where encoded parts

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/io/array_names.h"
-#include "core/io/centering.h"
+#include "core/io/grid_centering.h"
 
 namespace adamas {
 

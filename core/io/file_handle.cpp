@@ -1,6 +1,7 @@
 #include "core/io/file_handle.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -39,6 +40,12 @@ std::shared_ptr<FileHandle> FileHandle::scratch(std::filesystem::path folder) {
          std::strerror(errno));
   }
   return std::shared_ptr<FileHandle>(new FileHandle(descriptor, folder.string(), 0));
+}
+
+std::shared_ptr<FileHandle> FileHandle::in_memory() {
+  const int descriptor = ::memfd_create("adamas", MFD_CLOEXEC);
+  if (descriptor < 0) fail("expected memory for unpacked samples, found none: {}", std::strerror(errno));
+  return std::shared_ptr<FileHandle>(new FileHandle(descriptor, "memory", 0));
 }
 
 std::size_t FileHandle::read_some(std::uint64_t at, std::span<std::byte> bytes) const {

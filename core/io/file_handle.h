@@ -17,6 +17,8 @@ class FileHandle {
   /// An empty file in `folder` that has no name, so that it is gone with its last user, however that ends. An
   /// empty `folder` stands for that of the system.
   static std::shared_ptr<FileHandle> scratch(std::filesystem::path folder);
+  /// An empty scratch file in memory, for what is going to be read into memory anyway.
+  static std::shared_ptr<FileHandle> in_memory();
 
   ~FileHandle();
   FileHandle(const FileHandle&) = delete;

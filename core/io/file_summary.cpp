@@ -6,9 +6,8 @@
 
 #include "core/data/volume.h"
 #include "core/io/grid_centering.h"
-#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
-#include "core/io/network_ply.h"
 #include "core/io/polygon_soup.h"
 #include "core/io/unstructured_mesh_io.h"
 
@@ -103,23 +102,27 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted,
                            Centering otherwise) {
-  const std::string extension = file_extension(path);
-  if (extension == ".vtu" || extension == ".vtp") return summarize_mesh(path);
   FileSummary summary;
-  const bool labelled = is_network_file(path);
-  if (labelled || is_network_ply(path)) {
-    const InterfaceMesh mesh = read_interface_mesh(path);
-    summary.kind = labelled ? "labelled network" : "interfaces";
-    set_points(mesh.points, summary);
-    summary.cells = mesh.triangles.size();
-    return summary;
-  }
-  if (is_surface_file(path)) {
-    const PolygonSoup soup = read_polygon_soup(path);
-    summary.kind = "surface";
-    set_points(soup.points, summary);
-    summary.cells = soup.offsets.size() - 1;
-    return summary;
+  switch (input_kind(path)) {
+    case InputKind::kMesh:
+    case InputKind::kPolygons:
+      return summarize_mesh(path);
+    case InputKind::kNetwork: {
+      const InterfaceMesh mesh = read_interface_mesh(path);
+      summary.kind = is_network_file(path) ? "labelled network" : "interfaces";
+      set_points(mesh.points, summary);
+      summary.cells = mesh.triangles.size();
+      return summary;
+    }
+    case InputKind::kSurface: {
+      const PolygonSoup soup = read_polygon_soup(path);
+      summary.kind = "surface";
+      set_points(soup.points, summary);
+      summary.cells = soup.offsets.size() - 1;
+      return summary;
+    }
+    case InputKind::kGrid:
+      break;
   }
   return summarize_grid(path, wanted, otherwise);
 }

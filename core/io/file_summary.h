@@ -35,9 +35,8 @@ struct FileSummary {
   std::vector<ArraySummary> arrays;
 };
 
-/// Reads a grid or image (read_grid_file), mesh (.vtu, .vtp), labelled network (.arec, .txt) or surface
-/// (.obj, .off, .ply, .stl) and says what is in it; `wanted` and `otherwise`: see choose_centering. Throws
-/// Error at unusable files.
+/// Reads a file of any kind (input_kind) and says what is in it; `wanted` and `otherwise`: see
+/// choose_centering. Throws Error at unusable files.
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
                            Centering otherwise = Centering::kPoints);
 

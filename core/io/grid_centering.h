@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "core/data/rectilinear_grid.h"
 #include "core/io/grid_file.h"
 
 namespace adamas {
@@ -21,5 +24,11 @@ struct GridCentering {
 /// that cannot be: arrays on both are wanted on one, or one point alone gives its cell no size.
 GridCentering choose_centering(const std::string& name, std::optional<Centering> wanted, Centering otherwise,
                                GridFile& file);
+
+/// Values of one centering moved to the other: each cell gets the mean of its points, each point the mean of
+/// the cells round it. `values[site * components + c]` on the sites of `from`; the result is on those of the
+/// same nodes with the centering `to`.
+std::vector<float> average_to(Centering to, const RectilinearGrid& from, std::size_t components,
+                              const std::vector<float>& values);
 
 }  // namespace adamas

@@ -5,12 +5,8 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/io/input_file.h"
-#include "core/io/legacy_vtk_check.h"
-#include "core/io/meta_image_check.h"
-#include "core/io/nrrd_reader.h"
+#include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
-#include "core/io/vtk_grid_reader.h"
-#include "core/io/vtk_xml_check.h"
 
 namespace adamas {
 
@@ -109,20 +105,21 @@ void send_grid(const ReaderRequest& request, ByteSink& sink) {
   send(read_grid_with_vtk(request.paths.front()), sink);
 }
 
-GridFile read_grid_file(const std::filesystem::path& path) {
+GridFile read_grid_by_library(const std::filesystem::path& path) {
   const std::size_t size = check_input_file(path);
   GridFile file;
-  if (file_extension(path) == ".nrrd" || file_extension(path) == ".nhdr") {
-    file = read_nrrd(path);
-    show_names(file);
-    check_sizes(path.string(), file);
-    return file;
-  }
-  if (file_extension(path) == ".vtk") check_legacy_vtk(path);
-  if (file_extension(path) == ".vti" || file_extension(path) == ".vtr") check_vtk_xml(path);
-  if (file_extension(path) == ".mha" || file_extension(path) == ".mhd") check_meta_image(path);
   const ReaderRequest request{LibraryReader::kGrid, path.string(), size, {path.string()}};
   read_in_child(request, [&file](ByteSource& source) { file = receive(source); });
+  return file;
+}
+
+GridFile read_grid_file(const std::filesystem::path& path) {
+  check_input_file(path);
+  const InputFormat* format = find_input_format(path);
+  if (format == nullptr || !format->gives_grids())
+    fail("{}: expected data on a grid ({}), found something else", path.string(), list_grid_endings("or"));
+  GridFile file =
+      format->read_grid != nullptr ? format->read_grid(path) : grid_of(format->read_header(path), path);
   show_names(file);
   check_sizes(path.string(), file);
   return file;

@@ -59,11 +59,16 @@ struct GridFile {
   [[nodiscard]] std::string array_names() const;
 };
 
-/// Reads .vti, .vtr, legacy .vtk, .nrrd, .nhdr, .mhd, .mha, .nii, .nii.gz, .tif(f) and the other image
-/// formats of VTK, in a child process (read_in_child). The array of a format that names none is called like
-/// the file. NIfTI values are scaled as their header says; axes that are parallel to x, y and z
-/// are exchanged and reversed so that positions are right (lay_out). Throws Error, with the file's
+/// Reads a grid or image of any format that gives one (input_formats.h). The array of a format that names
+/// none is called like the file. NIfTI values are scaled as their header says; axes that are parallel to x, y
+/// and z are exchanged and reversed so that positions are right (lay_out). Throws Error, with the file's
 /// name, at anything that is not a whole file of its kind.
 GridFile read_grid_file(const std::filesystem::path& path);
+
+/// What a library reads, by the ending of the file's name: .vti, .vtr, legacy .vtk, .tif(f) and the pictures
+/// of VTK. It may crash on a corrupt file, so that it works in a child process (read_in_child).
+GridFile read_grid_by_library(const std::filesystem::path& path);
+/// The same without the child process.
+GridFile read_grid_with_vtk(const std::filesystem::path& path);
 
 }  // namespace adamas

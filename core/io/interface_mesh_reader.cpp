@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
+#include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/network_ply.h"
 #include "core/io/network_text.h"
@@ -57,17 +58,24 @@ InterfaceMesh from_polygons(const UnstructuredMesh& polygons, const std::string&
   return mesh;
 }
 
-bool has_extension(const std::filesystem::path& path, std::initializer_list<const char*> list) {
-  return std::find(list.begin(), list.end(), file_extension(path)) != list.end();
+bool is_of_kind(const std::filesystem::path& path, InputKind kind) {
+  const InputFormat* format = find_format_by_name(path);
+  return format != nullptr && format->kind == kind;
 }
 
 }  // namespace
 
-bool is_network_file(const std::filesystem::path& path) { return has_extension(path, {".arec", ".txt"}); }
-
-bool is_surface_file(const std::filesystem::path& path) {
-  return has_extension(path, {".obj", ".off", ".ply", ".stl"});
+InputFormat network_format() {
+  return {.name = "labelled network", .kind = InputKind::kNetwork, .endings = ".arec .txt"};
 }
+
+InputFormat surface_format() {
+  return {.name = "surface", .kind = InputKind::kSurface, .endings = ".obj .off .ply .stl"};
+}
+
+bool is_network_file(const std::filesystem::path& path) { return is_of_kind(path, InputKind::kNetwork); }
+
+bool is_surface_file(const std::filesystem::path& path) { return is_of_kind(path, InputKind::kSurface); }
 
 InterfaceMesh read_labelled_network(const std::filesystem::path& path,
                                     const std::filesystem::path& region_names) {

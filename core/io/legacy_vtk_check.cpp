@@ -1,5 +1,3 @@
-#include "core/io/legacy_vtk_check.h"
-
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -9,8 +7,9 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/io/header_text.h"
 #include "core/io/input_file.h"
-#include "core/io/printable.h"
+#include "core/io/vtk_checks.h"
 
 namespace adamas {
 
@@ -34,9 +33,9 @@ std::uint64_t type_bits(const std::string& type) {
   return found != kBits.end() ? found->second : 0;
 }
 
-class Walker {
+class LegacyWalker {
  public:
-  Walker(const std::filesystem::path& path, std::uint64_t size)
+  LegacyWalker(const std::filesystem::path& path, std::uint64_t size)
       : name_(path.string()), size_(size), stream_(path, std::ios::binary) {}
 
   void run() {
@@ -175,9 +174,6 @@ class Walker {
 
 }  // namespace
 
-void check_legacy_vtk(const std::filesystem::path& path) {
-  Walker walker(path, check_input_file(path));
-  walker.run();
-}
+void check_legacy_vtk(const std::filesystem::path& path) { LegacyWalker(path, check_input_file(path)).run(); }
 
 }  // namespace adamas

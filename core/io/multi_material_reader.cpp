@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/io/array_names.h"
-#include "core/io/centering.h"
 #include "core/io/field_assembly.h"
 #include "core/io/grid_axes.h"
 #include "core/io/grid_centering.h"

@@ -1,5 +1,6 @@
 #include "core/io/multi_material_writer.h"
 
+#include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -14,8 +15,9 @@
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
-#include "core/io/vtk_array.h"
-#include "core/io/vtk_output.h"
+#include "core/io/output_stream.h"
+#include "core/io/vtk_support.h"
+#include "core/io/xml_file.h"
 
 namespace adamas {
 
@@ -105,6 +107,17 @@ void write_multi_material_data(const std::filesystem::path& path, const MultiMat
   } else {
     fail("{}: expected .vtr or .vti for data on a grid, found '{}'", path.string(), extension);
   }
+}
+
+void write_series(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries) {
+  OutputStream stream(path);
+  stream.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n");
+  for (const SeriesEntry& entry : entries) {
+    stream.write(fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time,
+                             xml_attribute(entry.file)));
+  }
+  stream.write("  </Collection>\n</VTKFile>\n");
+  stream.finish();
 }
 
 }  // namespace adamas

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/io/printable.h"
+#include "core/io/header_text.h"
 
 namespace adamas {
 

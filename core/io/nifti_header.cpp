@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "core/base/error.h"
-#include "core/io/inflate_stream.h"
+#include "core/io/decompression.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
@@ -18,12 +18,21 @@ namespace {
 struct Datatype {
   int code;
   StoredType type;
+  std::size_t components = 1;
 };
-constexpr Datatype kDatatypes[] = {{2, StoredType::kUint8},    {4, StoredType::kInt16},
-                                   {8, StoredType::kInt32},    {16, StoredType::kFloat32},
-                                   {64, StoredType::kFloat64}, {256, StoredType::kInt8},
-                                   {512, StoredType::kUint16}, {768, StoredType::kUint32},
-                                   {1024, StoredType::kInt64}, {1280, StoredType::kUint64}};
+/// Those of one number first; then complex numbers, RGB and RGBA.
+constexpr Datatype kDatatypes[] = {
+    {2, StoredType::kUint8},      {4, StoredType::kInt16},       {8, StoredType::kInt32},
+    {16, StoredType::kFloat32},   {64, StoredType::kFloat64},    {256, StoredType::kInt8},
+    {512, StoredType::kUint16},   {768, StoredType::kUint32},    {1024, StoredType::kInt64},
+    {1280, StoredType::kUint64},  {32, StoredType::kFloat32, 2}, {1792, StoredType::kFloat64, 2},
+    {128, StoredType::kUint8, 3}, {2304, StoredType::kUint8, 4}};
+
+const Datatype* find_datatype(int code) {
+  const auto* found = std::find_if(std::begin(kDatatypes), std::end(kDatatypes),
+                                   [code](const Datatype& d) { return d.code == code; });
+  return found == std::end(kDatatypes) ? nullptr : found;
+}
 
 /// Where the fields of a version begin, and the types of their numbers.
 struct Version1 {
@@ -177,9 +186,13 @@ double NiftiHeader::spacing(int axis) const {
 }
 
 std::optional<StoredType> NiftiHeader::type() const {
-  const auto* found = std::find_if(std::begin(kDatatypes), std::end(kDatatypes),
-                                   [this](const Datatype& d) { return d.code == datatype; });
-  return found == std::end(kDatatypes) ? std::nullopt : std::optional(found->type);
+  const Datatype* found = find_datatype(datatype);
+  return found == nullptr ? std::nullopt : std::optional(found->type);
+}
+
+std::size_t NiftiHeader::components() const {
+  const Datatype* found = find_datatype(datatype);
+  return found == nullptr ? 1 : found->components;
 }
 
 std::string read_nifti_header(const std::filesystem::path& path) {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/data/volume.h"
-#include "core/io/grid_file.h"
+#include "core/io/image_header.h"
 #include "core/io/stored_type.h"
 
 namespace adamas {
@@ -39,12 +39,18 @@ struct NiftiHeader {
   [[nodiscard]] std::optional<GridAxes> axes() const;
   /// Length of a step along an axis by pixdim.
   [[nodiscard]] double spacing(int axis) const;
-  /// Nothing for a type of other things than one number.
+  /// Nothing for a type of other things than numbers.
   [[nodiscard]] std::optional<StoredType> type() const;
+  /// Numbers per sample: more than one of colours and of complex numbers.
+  [[nodiscard]] std::size_t components() const;
 };
 
 /// The first bytes of a file, as they are once unpacked: its header, or all there is.
 std::string read_nifti_header(const std::filesystem::path& path);
+
+/// The header that begins the file `path`, NIfTI-1 or NIfTI-2, as that of an image; sizes of files are not
+/// looked at. The samples of a pair lie in the .img beside.
+ImageHeader nifti_image(std::string_view text, const std::filesystem::path& path);
 
 /// The bytes before the samples in a file of its own: NIfTI-1, or NIfTI-2 where there are more than 32767
 /// samples along an axis. Places are in RAS where the grid says what its coordinates are; `grid.space` has

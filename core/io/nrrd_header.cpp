@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/data/anatomical_space.h"
+#include "core/io/header_text.h"
+#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
 #include "core/io/nrrd_places.h"
-#include "core/io/printable.h"
+#include "core/io/referred_files.h"
 
 namespace adamas {
 
@@ -227,6 +231,50 @@ class Parser {
 
 NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name) {
   return Parser(text, name).run();
+}
+
+InputFormat nrrd_format() {
+  return {
+      .name = "NRRD",
+      .endings = ".nrrd .nhdr",
+      .shown_by = [](std::string_view bytes) { return bytes.starts_with("NRRD0"); },
+      .read_header = [](const std::filesystem::path& path) { return nrrd_image(read_beginning(path), path); },
+      .referred_files = files_in_header};
+}
+
+ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path) {
+  const NrrdHeader header = parse_nrrd_header(text, path.string());
+  ImageHeader image;
+  image.kind = "NRRD";
+  image.name = path.string();
+  for (std::size_t axis = 0; axis < 3; ++axis) image.dimensions[axis] = header.sizes[axis];
+  image.axes = header.axes;
+  image.space = header.space;
+  image.centers = header.centers;
+  VolumeSource source;
+  source.name = image.name;
+  source.file = path;
+  if (header.encoding == NrrdEncoding::kGzip) source.coding = SamplePacking::kDeflate;
+  if (header.encoding == NrrdEncoding::kBzip2) source.coding = SamplePacking::kBzip2;
+  if (header.encoding == NrrdEncoding::kText) source.coding = SamplePacking::kText;
+  if (!header.data_file.empty()) {
+    source.file = path.parent_path() / header.data_file;
+    source.name += ": " + source.file.string();
+  } else if (header.header_bytes >= kLongestHeader) {
+    fail("{}: expected a header of less than {} bytes, found a longer one", image.name, kLongestHeader);
+  } else {
+    source.header_bytes = header.header_bytes;
+  }
+  source.skip_lines = header.line_skip;
+  // From the end one can count only where it is in sight.
+  source.at_end = header.byte_skip < 0 && !source.packed();
+  if (header.byte_skip > 0) source.skip_bytes = static_cast<std::uint64_t>(header.byte_skip);
+  source.set_stored(find_stored_type(header.type).value());
+  source.components = header.components;
+  source.big_endian = header.big_endian;
+  source.grid.dimensions = image.dimensions;
+  image.arrays.push_back({.name = {}, .centering = Centering::kPoints, .source = std::move(source)});
+  return image;
 }
 
 }  // namespace adamas

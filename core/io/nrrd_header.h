@@ -3,23 +3,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
-#include "core/data/rectilinear_grid.h"
-#include "core/io/grid_axes.h"
+#include "core/io/image_header.h"
 
 namespace adamas {
 
 enum class NrrdEncoding { kRaw, kGzip, kBzip2, kText };
-
-/// What the samples along an axis stand for: nothing where the header does not say. As values of cells, the
-/// first cell begins `first_face` steps behind the first sample, and each is `cell` steps long.
-struct NrrdCentering {
-  std::optional<Centering> stated;
-  double first_face = -0.5, cell = 1;
-};
 
 /// What the header of an NRRD file says (teem.sourceforge.net/nrrd/format.html), for two or three axes of
 /// space and at most one other axis, the first, whose entries are components.
@@ -29,7 +21,7 @@ struct NrrdHeader {
   std::array<std::size_t, 3> sizes{1, 1, 1};
   std::size_t components = 1;
   GridAxes axes;  ///< a step along each axis and the place of the first sample
-  std::array<NrrdCentering, 3> centers;
+  std::array<SampleCentering, 3> centers;
   std::string space;  ///< as of VolumeGrid
   NrrdEncoding encoding = NrrdEncoding::kRaw;
   bool big_endian = false;
@@ -44,5 +36,9 @@ struct NrrdHeader {
 /// Throws Error with `name` and the line where the text does not begin with a whole header of that kind.
 /// value_count() times type_bytes does not overflow.
 NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name);
+
+/// The same of the text that begins the file `path`, as the header of an image; sizes of files are not looked
+/// at.
+ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace adamas

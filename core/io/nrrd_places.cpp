@@ -46,7 +46,7 @@ std::size_t NrrdPlaces::axes_before(const std::string& name) const {
 /// coordinate, the first and the last sample or, where they are of cells, the outer faces of their cells.
 void NrrdPlaces::set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const {
   const int a = static_cast<int>(axis);
-  NrrdCentering& of = header.centers[axis];
+  SampleCentering& of = header.centers[axis];
   const auto min = entry(mins, at), max = entry(maxs, at);
   const bool cells = of.stated == Centering::kCells;
   double step = entry(spacings, at).value_or(0);

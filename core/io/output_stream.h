@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -39,6 +40,27 @@ class OutputStream {
   std::vector<char> buffer_;
   std::ofstream stream_;
   std::size_t written_ = 0;
+};
+
+/// Compresses bytes into a file as one gzip stream without a name or a time, so that equal bytes give equal
+/// files.
+class GzipStream {
+ public:
+  /// The stream must outlive this.
+  explicit GzipStream(OutputStream& out);
+  ~GzipStream();
+  GzipStream(const GzipStream&) = delete;
+  GzipStream& operator=(const GzipStream&) = delete;
+
+  /// These throw Error where the bytes cannot be written.
+  void write(const void* data, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  /// After the last byte.
+  void finish();
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace adamas

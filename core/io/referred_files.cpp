@@ -10,8 +10,9 @@
 #include <string_view>
 
 #include "core/base/text.h"
+#include "core/io/header_text.h"
 #include "core/io/input_file.h"
-#include "core/io/number_list.h"
+#include "core/io/input_formats.h"
 
 namespace adamas {
 
@@ -87,22 +88,18 @@ std::vector<std::string> names_in_header(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> referred_files(const std::filesystem::path& path) {
-  const std::string extension = file_extension(path);
-  const auto is = [&extension](std::string_view one) { return extension == one; };
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(path, code)) return {};
+std::vector<std::filesystem::path> files_in_header(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files;
-  if (is(".nhdr") || is(".nrrd") || is(".mhd") || is(".mha")) {
-    for (const std::string& name : names_in_header(path)) files.push_back(path.parent_path() / name);
-  }
-  if (extension.starts_with(".hdr") || extension.starts_with(".img")) {
-    const bool header = extension.starts_with(".hdr");
-    for (const char* other :
-         {header ? ".img" : ".hdr", header ? ".img.gz" : ".hdr.gz", header ? ".IMG" : ".HDR"})
-      files.push_back(path.parent_path() / (file_stem(path) + other));
-  }
+  for (const std::string& name : names_in_header(path)) files.push_back(path.parent_path() / name);
   return files;
+}
+
+std::vector<std::filesystem::path> referred_files(const std::filesystem::path& path) {
+  std::error_code code;
+  const InputFormat* format = find_format_by_name(path);
+  if (format == nullptr || format->referred_files == nullptr) return {};
+  return std::filesystem::is_regular_file(path, code) ? format->referred_files(path)
+                                                      : std::vector<std::filesystem::path>();
 }
 
 }  // namespace adamas

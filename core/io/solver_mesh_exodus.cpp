@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/output_file.h"
-#include "core/io/solver_mesh_formats.h"
+#include "core/io/solver_mesh_io.h"
 
 namespace adamas {
 

@@ -12,4 +12,9 @@ namespace adamas {
 /// component). Equal meshes give equal bytes. Throws Error where the file cannot be written in full.
 void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh);
 
+// The formats of write_solver_mesh.
+
+void write_gmsh(const std::filesystem::path& path, const SolverMesh& mesh);
+void write_exodus(const std::filesystem::path& path, const SolverMesh& mesh);
+
 }  // namespace adamas

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/io/printable.h"
+#include "core/io/header_text.h"
 #include "core/io/surface_formats.h"
 #include "core/io/surface_writer.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/io/surface_formats.h"
 #include "core/io/surface_writer.h"
-#include "core/io/xml_text.h"
+#include "core/io/xml_file.h"
 
 namespace adamas {
 

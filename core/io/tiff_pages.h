@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 
+#include "core/io/grid_file.h"
+
 namespace adamas {
 
 /// What the samples of a page are.
@@ -51,5 +53,10 @@ class TiffPages {
   TiffLayout layout_;
   std::size_t page_ = 0;
 };
+
+/// The pages of a TIFF file as the z planes of one image; rows as stored, the first at y = 0; unit spacing.
+/// VTK's own reader turns files of several pages into 8-bit RGBA. Not for the main process: libtiff may crash
+/// on a corrupt file.
+GridFile read_tiff_stack(const std::filesystem::path& path);
 
 }  // namespace adamas

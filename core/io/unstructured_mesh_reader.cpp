@@ -14,10 +14,10 @@
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
+#include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
 #include "core/io/unstructured_mesh_io.h"
-#include "core/io/vtk_array.h"
-#include "core/io/vtk_messages.h"
+#include "core/io/vtk_support.h"
 
 namespace adamas {
 
@@ -196,6 +196,12 @@ void send_mesh(const ReaderRequest& request, ByteSink& sink) {
   send(mesh.point_arrays, sink);
   send(mesh.cell_arrays, sink);
   send(mesh.field_arrays, sink);
+}
+
+InputFormat vtu_format() { return {.name = "VTK XML mesh", .kind = InputKind::kMesh, .endings = ".vtu"}; }
+
+InputFormat vtp_format() {
+  return {.name = "VTK XML polygons", .kind = InputKind::kPolygons, .endings = ".vtp"};
 }
 
 UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path) {

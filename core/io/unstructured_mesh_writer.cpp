@@ -14,8 +14,7 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
-#include "core/io/vtk_array.h"
-#include "core/io/vtk_output.h"
+#include "core/io/vtk_support.h"
 
 namespace adamas {
 

@@ -5,9 +5,9 @@
 #include "core/base/error.h"
 #include "core/io/grid_file.h"
 #include "core/io/input_file.h"
-#include "core/io/legacy_vtk_check.h"
+#include "core/io/input_formats.h"
 #include "core/io/volume_import.h"
-#include "core/io/vtk_grid_reader.h"
+#include "core/io/vtk_checks.h"
 
 namespace adamas {
 
@@ -89,6 +89,16 @@ void send(const GridArray& array, StoredType type, ImportSink& sink) {
   });
 }
 
+GridFile read_checked_legacy(const std::filesystem::path& path) {
+  check_legacy_vtk(path);
+  return read_grid_by_library(path);
+}
+
+GridFile read_checked_xml(const std::filesystem::path& path) {
+  check_vtk_xml(path);
+  return read_grid_by_library(path);
+}
+
 }  // namespace
 
 void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
@@ -107,6 +117,32 @@ void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
   ImportSink import(request, sink);
   import.begin(volume, wide ? array.type + " samples are read as float32" : "");
   send(array, volume.stored, import);
+}
+
+InputFormat vtr_format() {
+  return {.name = "VTK XML rectilinear grid",
+          .endings = ".vtr",
+          .read_grid = read_checked_xml,
+          .find_volume = import_grid,
+          .several_arrays = true};
+}
+
+InputFormat legacy_vtk_format() {
+  return {.name = "legacy VTK",
+          .endings = ".vtk",
+          .shown_by = [](std::string_view bytes) { return bytes.starts_with("# vtk DataFile"); },
+          .read_grid = read_checked_legacy,
+          .find_volume = import_grid,
+          .several_arrays = true};
+}
+
+InputFormat vtk_picture_format() {
+  return {.name = "picture that VTK reads",
+          .endings = ".slc",
+          .more_endings = ".bmp .pgm .pnm .ppm .jpg .jpeg .tga .pic",
+          .read_grid = read_grid_by_library,
+          .find_volume = import_grid,
+          .several_arrays = true};
 }
 
 VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions& options,

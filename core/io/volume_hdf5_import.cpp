@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/io/hdf5_handle.h"
 #include "core/io/input_file.h"
+#include "core/io/input_formats.h"
 #include "core/io/volume_import.h"
 
 namespace adamas {
@@ -165,6 +166,15 @@ void send_hdf5_volume(const ReaderRequest& request, ByteSink& sink) {
   if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", name);
   ImportSink import(request, sink);
   DataSet(name, file.id(), chosen_set(name, file.id(), request.array)).send(import);
+}
+
+InputFormat hdf5_format() {
+  return {.name = "HDF5",
+          .endings = ".h5",
+          .more_endings = ".hdf5 .he5",
+          .shown_by = [](std::string_view bytes) { return bytes.starts_with("\x89HDF\r\n\x1a\n"); },
+          .find_volume = import_hdf5,
+          .several_arrays = true};
 }
 
 VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions& options,

@@ -10,7 +10,7 @@
 #include "core/data/anatomical_space.h"
 #include "core/io/nifti_header.h"
 #include "core/io/stored_type.h"
-#include "core/io/xml_text.h"
+#include "core/io/xml_file.h"
 
 namespace adamas {
 

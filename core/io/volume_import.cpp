@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/io/sample_sink.h"
+#include "core/io/volume_unpacking.h"
 
 namespace adamas {
 
@@ -46,7 +46,7 @@ VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& op
   read_in_child(request, [&](ByteSource& bytes) {
     VolumeSource source = checked_source(request, bytes.get<ImportedVolume>());
     source.remark = bytes.get_string();
-    SampleSink sink(source, options.scratch_folder, progress);
+    SampleSink sink(source, FileHandle::scratch(options.scratch_folder), progress);
     std::vector<std::byte> piece;
     while (sink.found() < sink.expected()) {
       piece.resize(static_cast<std::size_t>(std::min(kPiece, sink.expected() - sink.found())));

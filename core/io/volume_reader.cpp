@@ -38,7 +38,7 @@ Sample converted(Stored value) {
 
 VolumeReader::VolumeReader(VolumeSource source) : source_(std::move(source)) {
   ADAMAS_ASSERT(!source_.packed());
-  source_.grid.check(source_.name);
+  source_.check_size();
   file_ = source_.scratch ? source_.scratch : FileHandle::open(source_.file);
   find_samples();
 }
@@ -131,6 +131,10 @@ void VolumeReader::read_plane(std::uint64_t k, std::span<std::byte> samples) {
   was_read_.resize(volume.dimensions[2]);
   if (was_read_[k]) changed_ = changed_before;
   was_read_[k] = true;
+}
+
+void VolumeReader::read_stored(std::uint64_t first, std::span<std::byte> numbers) {
+  read_as_stored(begin_ + first * stored_bytes(source_.stored), numbers);
 }
 
 std::string VolumeReader::note() const {

@@ -41,6 +41,9 @@ class VolumeReader {
   /// Reads the samples of plane k, grid().plane_bytes() of them. Throws Error where they cannot be read.
   void read_plane(std::uint64_t k, std::span<std::byte> samples);
 
+  /// Reads numbers as the file has them, in the machine's byte order, from the number `first` of all on.
+  void read_stored(std::uint64_t first, std::span<std::byte> numbers);
+
   /// How many samples of the planes that were read are other numbers than in the file, and by how much at
   /// most.
   [[nodiscard]] std::uint64_t changed() const { return changed_; }

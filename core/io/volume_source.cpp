@@ -23,4 +23,17 @@ void VolumeSource::set_axes(const GridAxes& axes) {
   grid.check(name);
 }
 
+void VolumeSource::check_size() const {
+  grid.check(name);
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 62;
+  const std::uint64_t sample = components * stored_bytes(stored);
+  if (components == 0 || components > 1'000'000 || grid.samples() > kMost / sample) {
+    const auto& n = grid.dimensions;
+    fail(
+        "{}: expected one to a million numbers per sample, and no more than a file can hold, found {} for {} "
+        "x {} x {}",
+        name, components, n[0], n[1], n[2]);
+  }
+}
+
 }  // namespace adamas

@@ -5,15 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "core/data/volume.h"
 #include "core/io/file_handle.h"
 #include "core/io/grid_axes.h"
 #include "core/io/stored_type.h"
-#include "core/io/xml_skeleton.h"
 
 namespace adamas {
 
@@ -26,17 +24,19 @@ enum class SamplePacking : std::uint8_t {
   kVtkBlocks,  ///< numbers and sizes of blocks, then a zlib stream for each
 };
 
-/// What the header of a volume comes to: where its samples lie, and how.
+/// Where the samples of one array of a file lie, and how.
 struct VolumeSource {
   std::string name;  ///< for messages
   std::filesystem::path file;
-  std::uint64_t header_bytes = 0;  ///< at the file's beginning
-  std::uint64_t skip_lines = 0;    ///< behind them, and
-  std::uint64_t skip_bytes = 0;    ///< behind those, of the decompressed bytes where they are compressed
-  bool at_end = false;             ///< instead: the samples are the file's last bytes
-  bool exact = false;              ///< nothing may follow the samples
-  std::size_t count_bytes = 0;     ///< of an unsigned number before them, how many bytes they take
+  std::vector<std::filesystem::path> more_files;  ///< whose bytes follow those of `file`; mostly none
+  std::uint64_t header_bytes = 0;                 ///< at the file's beginning
+  std::uint64_t skip_lines = 0;                   ///< behind them, and
+  std::uint64_t skip_bytes = 0;  ///< behind those, of the decompressed bytes where they are compressed
+  bool at_end = false;           ///< instead: the samples are the file's last bytes
+  bool exact = false;            ///< nothing may follow the samples
+  std::size_t count_bytes = 0;   ///< of an unsigned number before them, how many bytes they take
   StoredType stored = StoredType::kUint8;
+  std::size_t components = 1;  ///< numbers per sample, which follow each other; a volume has one
   bool big_endian = false;
   SamplePacking coding = SamplePacking::kRaw;
   bool base64 = false;      ///< the coded bytes are written as base64
@@ -47,25 +47,16 @@ struct VolumeSource {
   std::string remark;               ///< what the header says and nobody follows; mostly empty
   VolumeGrid grid;                  ///< with the type that the samples become
 
-  [[nodiscard]] std::uint64_t sample_file_bytes() const { return grid.samples() * stored_bytes(stored); }
-  [[nodiscard]] bool packed() const { return coding != SamplePacking::kRaw || base64; }
+  [[nodiscard]] std::uint64_t values() const { return grid.samples() * components; }
+  [[nodiscard]] std::uint64_t sample_file_bytes() const { return values() * stored_bytes(stored); }
+  [[nodiscard]] bool packed() const { return coding != SamplePacking::kRaw || base64 || !more_files.empty(); }
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   void set_stored(StoredType type);
   /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error where a step has
   /// no length or the axes lie in one plane.
   void set_axes(const GridAxes& axes);
+  /// Throws Error where the numbers of all samples take more bytes than can be counted.
+  void check_size() const;
 };
-
-/// The text of a header, which begins the file `path`, as a source; sizes of files are not looked at. Throws
-/// Error, with the path, at anything but one value per sample.
-VolumeSource nrrd_source(std::string_view text, const std::filesystem::path& path);
-VolumeSource meta_image_source(std::string_view text, const std::filesystem::path& path);
-/// Of the point array of that name or, where it is empty, the active scalars or the only array.
-VolumeSource vti_source(const XmlSkeleton& skeleton, const std::filesystem::path& path,
-                        const std::string& array);
-/// NIfTI-1 and NIfTI-2. The samples of a pair lie in the .img beside. Of several times, `time` is the number
-/// of the one to read, from 0 on.
-VolumeSource nifti_source(std::string_view text, const std::filesystem::path& path,
-                          std::optional<std::uint64_t> time = {});
 
 }  // namespace adamas

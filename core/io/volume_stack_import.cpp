@@ -1,13 +1,15 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
+#include "core/io/input_formats.h"
 #include "core/io/png_image.h"
 #include "core/io/tiff_pages.h"
-#include "core/io/volume_format.h"
 #include "core/io/volume_import.h"
 
 namespace adamas {
 
 namespace {
+
+constexpr std::string_view kTiff = "TIFF", kPng = "PNG";
 
 struct PlaneKind {
   std::uint64_t width = 0, height = 0;
@@ -26,15 +28,13 @@ class StackReader {
 
   void run() {
     for (const auto& path : paths_) {
-      switch (find_volume_format(path)) {
-        case VolumeFormat::kTiff:
-          read_tiff(path);
-          break;
-        case VolumeFormat::kPng:
-          read_png_plane(path);
-          break;
-        default:
-          fail("{}: expected a picture, TIFF or PNG, found another format", path.string());
+      const InputFormat* format = find_input_format(path);
+      if (format != nullptr && format->name == kTiff) {
+        read_tiff(path);
+      } else if (format != nullptr && format->name == kPng) {
+        read_png_plane(path);
+      } else {
+        fail("{}: expected a picture, TIFF or PNG, found another format", path.string());
       }
     }
   }
@@ -85,9 +85,37 @@ class StackReader {
   PlaneKind kind_;
 };
 
+VolumeSource import_picture(const std::filesystem::path& path, const VolumeOptions& options,
+                            Progress& progress) {
+  return import_stack({path}, {1, 1, 1}, {}, options, progress);
+}
+
+bool is_tiff(std::string_view bytes) {
+  // The last two are of files larger than 4 GiB.
+  return bytes.starts_with(std::string_view("II*\0", 4)) || bytes.starts_with(std::string_view("MM\0*", 4)) ||
+         bytes.starts_with(std::string_view("II+\0", 4)) || bytes.starts_with(std::string_view("MM\0+", 4));
+}
+
 }  // namespace
 
 void send_stack_volume(const ReaderRequest& request, ByteSink& sink) { StackReader(request, sink).run(); }
+
+InputFormat tiff_format() {
+  return {.name = kTiff,
+          .endings = ".tif",
+          .more_endings = ".tiff",
+          .shown_by = is_tiff,
+          .read_grid = read_grid_by_library,
+          .find_volume = import_picture};
+}
+
+InputFormat png_format() {
+  return {.name = kPng,
+          .endings = ".png",
+          .shown_by = [](std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); },
+          .read_grid = read_grid_by_library,
+          .find_volume = import_picture};
+}
 
 VolumeSource import_stack(const std::vector<std::filesystem::path>& paths, const Vec3& spacing,
                           const Vec3& origin, const VolumeOptions& options, Progress& progress) {

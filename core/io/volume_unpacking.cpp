@@ -6,25 +6,29 @@
 #include <charconv>
 #include <cstring>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/io/bunzip_stream.h"
 #include "core/io/byte_supply.h"
-#include "core/io/inflate_stream.h"
-#include "core/io/printable.h"
-#include "core/io/sample_sink.h"
+#include "core/io/decompression.h"
+#include "core/io/header_text.h"
 
 namespace adamas {
 
 namespace {
 
+constexpr std::string_view kStage = "unpacking";
+/// Bytes from one report to the next.
+constexpr std::uint64_t kStep = std::uint64_t{1} << 22;
+
 class Unpacker {
  public:
-  Unpacker(const VolumeSource& source, ByteSupply supply, SampleSink& sink)
-      : source_(source), name_(source.name), bytes_(std::move(supply)), sink_(sink) {}
+  Unpacker(const VolumeSource& source, ByteSupply supply)
+      : source_(source), name_(source.name), bytes_(std::move(supply)) {}
 
-  void run() {
+  void run(SampleSink& sink) {
+    sink_ = &sink;
     switch (source_.coding) {
       case SamplePacking::kRaw:
         return copy_counted();
@@ -36,6 +40,20 @@ class Unpacker {
       case SamplePacking::kVtkBlocks:
         return inflate_blocks();
     }
+  }
+
+  std::uint64_t measure() {
+    if (source_.coding == SamplePacking::kText) {
+      std::uint64_t words = 0;
+      while (!word().empty()) ++words;
+      return words * stored_bytes(source_.stored);
+    }
+    if (source_.coding != SamplePacking::kVtkBlocks) return count();
+    const std::uint64_t blocks = count(), size = count(), last = count();
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 31;
+    if (blocks > kMost || size > kMost || last > size || (blocks == 0 && last > 0))
+      fail("{}: expected compressed blocks, found {} of {} bytes", name_, blocks, size);
+    return last > 0 ? (blocks - 1) * size + last : blocks * size;
   }
 
  private:
@@ -51,12 +69,12 @@ class Unpacker {
   }
 
   void copy_counted() {
-    const std::uint64_t size = count();
-    if (size != sink_.expected()) {
-      fail("{}: expected an array of {} bytes, found one of {}", name_, sink_.expected(), size);
+    const std::uint64_t size = source_.count_bytes > 0 ? count() : sink_->expected();
+    if (size != sink_->expected()) {
+      fail("{}: expected an array of {} bytes, found one of {}", name_, sink_->expected(), size);
     }
     const ByteSupply part = bytes_.part(size);
-    for (std::string_view piece = part(); !piece.empty(); piece = part()) sink_.take(piece);
+    for (std::string_view piece = part(); !piece.empty(); piece = part()) sink_->take(piece);
   }
 
   void decompress_all() {
@@ -64,7 +82,7 @@ class Unpacker {
     const auto take = [&](std::string_view piece) {
       const std::size_t skipped = static_cast<std::size_t>(std::min<std::uint64_t>(skip, piece.size()));
       skip -= skipped;
-      sink_.take(piece.substr(skipped));
+      sink_->take(piece.substr(skipped));
     };
     const ByteSupply all = bytes_.part(~std::uint64_t{0});
     if (source_.coding == SamplePacking::kBzip2) {
@@ -77,8 +95,8 @@ class Unpacker {
   void inflate_blocks() {
     const std::uint64_t blocks = count(), size = count(), last = count();
     // What a header may say without a product that overflows.
-    const std::uint64_t expected = sink_.expected(), full = last > 0 ? blocks - 1 : blocks;
-    if (blocks == 0 || last > size || size > expected || full > expected / std::max<std::uint64_t>(size, 1) ||
+    const std::uint64_t expected = sink_->expected(), full = last > 0 ? blocks - 1 : blocks;
+    if (blocks == 0 || last > size || full > expected / std::max<std::uint64_t>(size, 1) ||
         full * size + last != expected) {
       fail("{}: expected compressed blocks for {} bytes, found {} of {} bytes with {} in the last", name_,
            expected, blocks, size, last > 0 ? last : size);
@@ -95,7 +113,7 @@ class Unpacker {
     inflate_stream(part, name, [&](std::string_view piece) {
       found += piece.size();
       if (found > size) fail("{}: expected {} bytes, found more", name, size);
-      sink_.take(piece);
+      sink_->take(piece);
     });
     if (found != size) fail("{}: expected {} bytes, found {}", name, size, found);
     // What the stream did not need.
@@ -133,7 +151,7 @@ class Unpacker {
 
   template <class Stored>
   void read_numbers() {
-    const std::uint64_t count = source_.grid.samples();
+    const std::uint64_t count = source_.values();
     std::vector<Stored> values;
     for (std::uint64_t i = 0; i < count; ++i) {
       const std::string_view text = word();
@@ -146,7 +164,7 @@ class Unpacker {
       }
       values.push_back(value);
       if (values.size() * sizeof(Stored) < kPiece && i + 1 < count) continue;
-      sink_.take(std::as_bytes(std::span(values)));
+      sink_->take(std::as_bytes(std::span(values)));
       values.clear();
     }
   }
@@ -156,7 +174,7 @@ class Unpacker {
   const VolumeSource& source_;
   const std::string& name_;
   ByteTaker bytes_;
-  SampleSink& sink_;
+  SampleSink* sink_ = nullptr;
   std::string_view text_;
   std::string word_;
 };
@@ -171,10 +189,8 @@ void check_size(const VolumeSource& source, std::uint64_t left) {
        n[0], n[1], n[2], stored_name(source.stored), left);
 }
 
-}  // namespace
-
-VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& folder, Progress& progress) {
-  source.grid.check(source.name);
+/// What is to be unpacked, with base64 decoded; sets how many bytes of files are left for it.
+ByteSupply packed_bytes(const VolumeSource& source, std::uint64_t& left) {
   const auto file = FileHandle::open(source.file);
   // Behind a tag, an offset leads into text, where blanks count as characters.
   std::uint64_t begin = file->behind_lines(source.header_bytes, source.skip_lines, source.name);
@@ -182,16 +198,73 @@ VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& fol
       source.coding != SamplePacking::kText) {
     begin += std::min(source.skip_bytes, file->size());
   }
-  check_size(source, file->size() - std::min(begin, file->size()));
+  left = file->size() - std::min(begin, file->size());
   ByteSupply bytes = supply_file(file, begin);
+  for (const auto& path : source.more_files) {
+    const auto more = FileHandle::open(path);
+    left += more->size();
+    bytes = supply_both(std::move(bytes), supply_file(more, 0));
+  }
   if (source.before_tag) bytes = supply_before(std::move(bytes), '<');
   if (source.base64) bytes = supply_base64(std::move(bytes), source.name);
-  SampleSink sink(source, folder, progress);
-  Unpacker(source, std::move(bytes), sink).run();
+  return bytes;
+}
+
+}  // namespace
+
+SampleSink::SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> scratch, Progress& progress)
+    : source_(source), progress_(progress), file_(std::move(scratch)), expected_(source.sample_file_bytes()) {
+  progress_.step(kStage, 0);
+}
+
+void SampleSink::take(std::span<const std::byte> bytes) {
+  progress_.check();
+  const std::uint64_t left = expected_ - found();
+  file_->append(bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(left, bytes.size()))));
+  if (found() - reported_ < kStep) return;
+  reported_ = found();
+  progress_.report(kStage, static_cast<double>(found()) / static_cast<double>(expected_));
+}
+
+VolumeSource SampleSink::finish() const {
+  if (found() != expected_) {
+    const auto& n = source_.grid.dimensions;
+    fail("{}: expected {} bytes for {} x {} x {} samples of {}, found {} unpacked", source_.name, expected_,
+         n[0], n[1], n[2], stored_name(source_.stored), found());
+  }
+  VolumeSource result = source_;
+  result.scratch = file_;
+  result.more_files.clear();
+  result.header_bytes = result.skip_lines = result.skip_bytes = 0;
+  result.count_bytes = 0;
+  result.at_end = result.base64 = result.before_tag = false;
+  result.exact = true;
+  result.coding = SamplePacking::kRaw;
+  progress_.report(kStage, 1);
+  return result;
+}
+
+VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& folder, Progress& progress) {
+  return unpack_into(FileHandle::scratch(folder), source, progress);
+}
+
+VolumeSource unpack_into(std::shared_ptr<FileHandle> scratch, const VolumeSource& source,
+                         Progress& progress) {
+  source.check_size();
+  std::uint64_t left = 0;
+  ByteSupply bytes = packed_bytes(source, left);
+  check_size(source, left);
+  SampleSink sink(source, std::move(scratch), progress);
+  Unpacker(source, std::move(bytes)).run(sink);
   VolumeSource result = sink.finish();
   // Numbers in text were stored as this machine has them.
   if (source.coding == SamplePacking::kText) result.big_endian = false;
   return result;
+}
+
+std::uint64_t measure_vtk_array(const VolumeSource& source) {
+  std::uint64_t left = 0;
+  return Unpacker(source, packed_bytes(source, left)).measure();
 }
 
 }  // namespace adamas

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "core/data/volume.h"
-#include "core/io/gzip_stream.h"
 #include "core/io/output_stream.h"
 
 namespace adamas {

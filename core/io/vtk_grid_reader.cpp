@@ -1,15 +1,11 @@
-#include "core/io/vtk_grid_reader.h"
-
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSetReader.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
+#include <vtkImageReader2.h>
 #include <vtkImageReader2Factory.h>
 #include <vtkMatrix3x3.h>
-#include <vtkMatrix4x4.h>
-#include <vtkMetaImageReader.h>
-#include <vtkNIFTIImageReader.h>
 #include <vtkPointData.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkSmartPointer.h>
@@ -17,16 +13,12 @@
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 
-#include <cmath>
-#include <limits>
-#include <optional>
-
 #include "core/base/error.h"
 #include "core/io/grid_axes.h"
+#include "core/io/grid_file.h"
 #include "core/io/input_file.h"
-#include "core/io/meta_image_check.h"
-#include "core/io/tiff_reader.h"
-#include "core/io/vtk_messages.h"
+#include "core/io/tiff_pages.h"
+#include "core/io/vtk_support.h"
 
 namespace adamas {
 
@@ -150,9 +142,7 @@ void add_axes(vtkRectilinearGrid& grid, GridFile& file) {
   }
 }
 
-/// `axes`: where those of an image are, if its reader does not say so.
-void add_data(const std::string& name, vtkDataObject* data, ArrayPlaces places, GridFile& file,
-              const std::optional<GridAxes>& axes = {}) {
+void add_data(const std::string& name, vtkDataObject* data, ArrayPlaces places, GridFile& file) {
   auto* image = vtkImageData::SafeDownCast(data);
   if (image != nullptr) {
     add_axes(*image, places, file);
@@ -170,7 +160,7 @@ void add_data(const std::string& name, vtkDataObject* data, ArrayPlaces places, 
   for (vtkIdType i = 0; names != nullptr && i < names->GetNumberOfValues(); ++i) {
     file.material_names.push_back(names->GetValue(i));
   }
-  if (image != nullptr) lay_out(axes.value_or(axes_of(*image)), file);
+  if (image != nullptr) lay_out(axes_of(*image), file);
 }
 
 template <class Reader>
@@ -188,60 +178,6 @@ vtkSmartPointer<vtkDataObject> run_if_readable(const std::string& name, const ch
   const auto reader = vtkSmartPointer<Reader>::New();
   if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected {}, found something else", name, kind);
   return run(*reader, name, messages);
-}
-
-void scale_nifti(vtkNIFTIImageReader& reader, GridFile& file) {
-  const double slope = reader.GetRescaleSlope(), intercept = reader.GetRescaleIntercept();
-  if (slope == 0 || (slope == 1 && intercept == 0)) return;
-  for (GridArray& array : file.arrays) {
-    std::vector<float> values = array.take_floats();
-    for (float& v : values) v = static_cast<float>(slope * static_cast<double>(v) + intercept);
-    array.values = std::move(values);
-  }
-}
-
-/// What the header's matrices say; VTK keeps them apart from the image. They fit its order of slices and
-/// spacing.
-std::optional<GridAxes> nifti_axes(vtkNIFTIImageReader& reader) {
-  vtkMatrix4x4* matrix =
-      reader.GetSFormMatrix() != nullptr ? reader.GetSFormMatrix() : reader.GetQFormMatrix();
-  if (matrix == nullptr) return {};
-  GridAxes axes;
-  for (int row = 0; row < 3; ++row) {
-    axes.origin[row] = matrix->GetElement(row, 3);
-    for (int column = 0; column < 3; ++column) {
-      axes.directions[static_cast<std::size_t>(column)][row] = matrix->GetElement(row, column);
-    }
-  }
-  return axes;
-}
-
-GridFile read_nifti(const std::string& name, const VtkMessages& messages) {
-  GridFile file;
-  file.kind = "NIfTI";
-  const auto reader = vtkSmartPointer<vtkNIFTIImageReader>::New();
-  if (reader->CanReadFile(name.c_str()) == 0) fail("{}: expected NIfTI, found something else", name);
-  const auto data = run(*reader, name, messages);
-  const auto axes = nifti_axes(*reader);
-  if (axes) file.space = "RAS";
-  add_data(name, data, ArrayPlaces::kSamples, file, axes);
-  scale_nifti(*reader, file);
-  return file;
-}
-
-GridFile read_meta_image(const std::filesystem::path& path, const VtkMessages& messages) {
-  GridFile file;
-  file.kind = "MetaImage";
-  const std::string name = path.string();
-  const auto data = run_if_readable<vtkMetaImageReader>(name, "MetaImage", messages);
-  std::optional<GridAxes> axes;
-  if (auto* image = vtkImageData::SafeDownCast(data)) {
-    axes = axes_of(*image);
-    if (const auto directions = meta_image_directions(path)) axes->directions = *directions;
-    file.space = meta_image_space(path);
-  }
-  add_data(name, data, ArrayPlaces::kSamples, file, axes);
-  return file;
 }
 
 GridFile read_legacy(const std::string& name, const VtkMessages& messages) {
@@ -270,22 +206,12 @@ GridFile read_image(const std::filesystem::path& path, const std::string& extens
                     const VtkMessages& messages) {
   const std::string name = path.string();
   GridFile file;
-  vtkSmartPointer<vtkDataObject> data;
-  if (extension == ".mhd" || extension == ".mha") {
-    file = read_meta_image(path, messages);
-  } else if (extension == ".nii" || extension == ".nii.gz") {
-    file = read_nifti(name, messages);
-  } else if (extension == ".tif" || extension == ".tiff") {
-    return read_tiff_stack(path);
-  } else {
-    const auto reader = vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(name.c_str()));
-    // Some readers claim files of any kind: the extension has to agree as well.
-    if (reader == nullptr || !lists_extension(reader->GetFileExtensions(), extension))
-      fail("{}: expected a grid or image format that is known, found none", name);
-    file.kind = reader->GetDescriptiveName();
-    data = run(*reader, name, messages);
-  }
-  if (data != nullptr) add_data(name, data, ArrayPlaces::kSamples, file);
+  const auto reader = vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(name.c_str()));
+  // Some readers claim files of any kind: the extension has to agree as well.
+  if (reader == nullptr || !lists_extension(reader->GetFileExtensions(), extension))
+    fail("{}: expected a grid or image format that is known, found none", name);
+  file.kind = reader->GetDescriptiveName();
+  add_data(name, run(*reader, name, messages), ArrayPlaces::kSamples, file);
   if (file.arrays.size() == 1) file.arrays[0].name = file_stem(path);
   return file;
 }
@@ -306,6 +232,8 @@ GridFile read_grid_with_vtk(const std::filesystem::path& path) {
              ArrayPlaces::kStated, file);
   } else if (extension == ".vtk") {
     file = read_legacy(name, messages);
+  } else if (extension == ".tif" || extension == ".tiff") {
+    file = read_tiff_stack(path);
   } else {
     file = read_image(path, extension, messages);
   }

@@ -1,5 +1,3 @@
-#include "core/io/vtk_xml_check.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -8,11 +6,9 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/io/header_text.h"
 #include "core/io/input_file.h"
-#include "core/io/number_list.h"
-#include "core/io/printable.h"
-#include "core/io/xml_skeleton.h"
-#include "core/io/xml_tags.h"
+#include "core/io/vtk_checks.h"
 
 namespace adamas {
 
@@ -54,20 +50,18 @@ double values_per_byte(std::string_view compressor) {
   return kBits * (compressor == "vtkZLibDataCompressor" ? kDeflate : kOthers);
 }
 
-class Checker {
+class XmlChecker {
  public:
-  Checker(const std::filesystem::path& path, std::uint64_t size) : name_(path.string()), size_(size) {}
+  XmlChecker(const std::filesystem::path& path, std::uint64_t size) : name_(path.string()), size_(size) {}
 
-  void run(const XmlSkeleton& skeleton) {
-    XmlTags tags(skeleton.text, name_);
-    while (const auto tag = tags.next()) {
-      if (tag->name == "PointData" || tag->name == "CellData") in_data_ = !tag->closing && !tag->empty;
-      if (tag->closing) continue;
-      if (tag->name == "VTKFile") values_per_byte_ = values_per_byte(tag->value("compressor"));
-      if (tag->name == "ImageData" || tag->name == "RectilinearGrid") read_whole(*tag);
-      if (tag->name == "Piece") read_piece(*tag);
-      if (tag->name == "DataArray") read_array(*tag);
-      if (tag->name == "AppendedData") break;
+  void run(const std::vector<XmlTag>& tags) {
+    for (const XmlTag& tag : tags) {
+      if (tag.name == "PointData" || tag.name == "CellData") in_data_ = !tag.closing;
+      if (tag.closing) continue;
+      if (tag.name == "VTKFile") values_per_byte_ = values_per_byte(tag.value("compressor"));
+      if (tag.name == "ImageData" || tag.name == "RectilinearGrid") read_whole(tag);
+      if (tag.name == "Piece") read_piece(tag);
+      if (tag.name == "DataArray") read_array(tag);
     }
     if (!whole_) return;
     if (pieces_ > 0 && cells_ != whole_->cells()) {
@@ -146,10 +140,12 @@ class Checker {
 
 }  // namespace
 
+void check_vtk_xml(const std::vector<XmlTag>& tags, const std::filesystem::path& path) {
+  XmlChecker(path, check_input_file(path)).run(tags);
+}
+
 void check_vtk_xml(const std::filesystem::path& path) {
-  const std::uint64_t size = check_input_file(path);
-  const std::string name = path.string();
-  Checker(path, size).run(read_xml_skeleton(supply_file(FileHandle::open(path), 0), name));
+  check_vtk_xml(read_xml_tags(supply_file(FileHandle::open(path), 0), path.string()), path);
 }
 
 }  // namespace adamas

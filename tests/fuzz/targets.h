@@ -8,15 +8,16 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/io/bunzip_stream.h"
-#include "core/io/inflate_stream.h"
-#include "core/io/legacy_vtk_check.h"
-#include "core/io/meta_image_check.h"
+#include "core/io/decompression.h"
+#include "core/io/grid_file.h"
+#include "core/io/meta_image.h"
 #include "core/io/network_ply.h"
 #include "core/io/network_text.h"
+#include "core/io/nifti_header.h"
 #include "core/io/nrrd_header.h"
 #include "core/io/volume_reader.h"
-#include "core/io/volume_source.h"
+#include "core/io/vti_header.h"
+#include "core/io/vtk_checks.h"
 #include "interfaces/reference/mesher_messages.h"
 #include "tests/fuzz/require.h"
 
@@ -101,31 +102,38 @@ inline void legacy_vtk(std::string_view bytes) {
   check_legacy_vtk(file.path());
 }
 
+/// A MetaImage whole, with its samples, as a grid.
 inline void meta_image(std::string_view bytes) {
   const TemporaryFile file(bytes, ".mha");
-  check_meta_image(file.path());
-  meta_image_directions(file.path());
+  const GridFile grid = read_grid_file(file.path());
+  require(grid.arrays.size() == 1, "no array");
 }
 
-inline void volume_source(const VolumeSource& source) {
+inline void image(const ImageHeader& header) {
+  const VolumeSource source = volume_of(header, "", {});
   source.grid.check("fuzz");
   require(source.sample_file_bytes() >= source.grid.samples(), "more samples than bytes");
 }
 
-inline void nrrd_volume(std::string_view bytes) { volume_source(nrrd_source(bytes, "fuzz.nrrd")); }
+inline void nrrd_volume(std::string_view bytes) { image(nrrd_image(bytes, "fuzz.nrrd")); }
 
-inline void meta_image_volume(std::string_view bytes) { volume_source(meta_image_source(bytes, "fuzz.mha")); }
+inline void meta_image_volume(std::string_view bytes) { image(adamas::meta_image(bytes, "fuzz.mha")); }
 
 inline void vti_volume(std::string_view bytes) {
-  const XmlSkeleton skeleton = read_xml_skeleton(supply_text(bytes), "fuzz");
-  require(skeleton.text.size() <= bytes.size(), "a skeleton longer than the text");
-  for (const auto& [here, there] : skeleton.places) require(here <= there, "a place before its own");
-  const VolumeSource source = vti_source(skeleton, "fuzz.vti", "");
-  volume_source(source);
-  require(source.header_bytes <= bytes.size(), "header longer than the text");
+  const std::vector<XmlTag> tags = read_xml_tags(supply_text(bytes), "fuzz");
+  std::uint64_t before = 0;
+  for (const XmlTag& tag : tags) {
+    require(before <= tag.end && tag.end <= bytes.size(), "a tag at no place behind the one before");
+    require(!tag.text || (tag.end <= *tag.text && *tag.text <= bytes.size()), "a text before its tag");
+    before = tag.end;
+  }
+  const ImageHeader header = vti_header(tags, "fuzz.vti");
+  image(header);
+  for (const ImageArray& array : header.arrays)
+    require(array.source.header_bytes <= bytes.size(), "header longer than the text");
 }
 
-inline void nifti_volume(std::string_view bytes) { volume_source(nifti_source(bytes, "fuzz.nii")); }
+inline void nifti_volume(std::string_view bytes) { image(nifti_image(bytes, "fuzz.nii")); }
 
 /// A .vti whole, with the unpacking of what is encoded or compressed in it.
 inline void packed_vti(std::string_view bytes) {

@@ -264,7 +264,7 @@ TEST(BadInput, HugeSizesAreErrors) {
       scratch / "b.mha",
       "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL");
   EXPECT_TRUE(
-      says(error_of([&] { read_grid_file(scratch / "b.mha"); }), "expected 8 bytes of data, found 0"));
+      says(error_of([&] { read_grid_file(scratch / "b.mha"); }), "expected 8 bytes for 2 x 2 x 2 samples of uint8"));
 }
 
 TEST(BadInput, OneWholeNumberArraySaysWhatToPass) {

@@ -32,7 +32,7 @@ OWNED = {
     r"CGAL/.*": ["core/io", "interfaces", "tests"],
     r"Eigen/.*": ["interfaces", "tests"],
     r"OpenMesh/.*": ["interfaces", "tests"],
-    r"tiffio\.h|zlib\.h|bzlib\.h|png\.h|hdf5\.h": ["core/io", "tests"],
+    r"tiffio\.h|zlib\.h|bzlib\.h|png\.h|hdf5\.h|expat\.h": ["core/io", "tests"],
     r"CLI/.*": ["cli", "tests"],
     r"nlohmann/.*": ["cli", "tests"],
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -8,6 +9,17 @@
 #include "core/io/byte_supply.h"
 
 namespace adamas {
+
+/// Decompresses a zlib stream, or a gzip stream and those that follow it, and hands it out piece by piece.
+/// Throws Error with `name` where it is corrupt or ends early; what follows its end is left alone. Returns
+/// its size once decompressed.
+std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
+                             const std::function<void(std::string_view)>& receive);
+std::size_t inflate_stream(std::string_view compressed, const std::string& name,
+                           const std::function<void(std::string_view)>& receive);
+
+/// No compressed stream is longer once decompressed than this many times itself.
+inline constexpr std::uint64_t kGreatestInflation = 1032;
 
 /// Decompresses a bzip2 stream and those that follow it, and hands them out piece by piece. Throws Error with
 /// `name` where one is corrupt or ends early; what follows their end is left alone. Returns their size once

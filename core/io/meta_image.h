@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
+
+#include "core/io/image_header.h"
 
 namespace adamas {
 
@@ -23,5 +26,9 @@ struct MetaImageFields {
 
 /// Throws Error with `name` where the text does not begin with such a header.
 MetaImageFields parse_meta_image_fields(std::string_view text, const std::string& name);
+
+/// The header that begins the file `path` as that of an image; sizes of files are not looked at. Throws
+/// Error, with the path, where it is none of one to three axes.
+ImageHeader meta_image(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace adamas

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +25,13 @@ std::optional<std::vector<T>> parse_number_list(std::string_view text) {
     numbers.push_back(value);
     text.remove_prefix(word.size());
   }
+}
+
+/// The beginning of what a file holds, for messages: one line of at most `most` characters.
+inline std::string printable(std::string_view text, std::size_t most) {
+  std::string result;
+  for (const char c : text.substr(0, most)) result += c >= ' ' && c <= '~' ? c : '?';
+  return result;
 }
 
 }  // namespace adamas

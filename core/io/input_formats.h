@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/io/grid_file.h"
+#include "core/io/image_header.h"
+#include "core/io/volume_reader.h"
+
+namespace adamas {
+
+/// What a file holds.
+enum class InputKind : std::uint8_t {
+  kGrid,      ///< data on a grid, an image or a volume
+  kMesh,      ///< tetrahedra
+  kPolygons,  ///< polygons or lines, which may have materials on both sides
+  kNetwork,   ///< triangles between labelled regions
+  kSurface    ///< polygons without materials
+};
+
+/// A format of files that are read. A new one is a function that gives it, in the file of its reader, and a
+/// line in input_formats.cpp.
+struct InputFormat {
+  std::string_view name;  ///< "NRRD"
+  InputKind kind = InputKind::kGrid;
+  std::string_view endings;       ///< of names of files that have it, as ".nrrd .nhdr"; help texts list them
+  std::string_view more_endings;  ///< further ones, which nobody lists
+  /// Whether the first bytes of a file show that it is one; null where they never do.
+  bool (*shown_by)(std::string_view beginning) = nullptr;
+
+  // Of grids, what reads them. A format with a header of its own says what is in the file, and needs no more.
+  ImageHeader (*read_header)(const std::filesystem::path& path) = nullptr;
+  /// Reads a grid where there is no such header, or where it is not enough; null: no grids of materials.
+  GridFile (*read_grid)(const std::filesystem::path& path) = nullptr;
+  /// Finds the samples of a volume, where there is no header; null: no volumes.
+  VolumeSource (*find_volume)(const std::filesystem::path& path, const VolumeOptions& options,
+                              Progress& progress) = nullptr;
+  /// The files beside it that a header names or means, whether they exist or not; null where it cannot.
+  std::vector<std::filesystem::path> (*referred_files)(const std::filesystem::path& path) = nullptr;
+  bool several_arrays = false;  ///< whether a file may have several, of which a volume is one by its name
+  bool several_times = false;
+
+  [[nodiscard]] bool gives_grids() const { return read_header != nullptr || read_grid != nullptr; }
+  [[nodiscard]] bool gives_volumes() const { return read_header != nullptr || find_volume != nullptr; }
+  [[nodiscard]] bool has_ending(std::string_view ending) const;
+};
+
+/// All of them, in the order in which they are listed.
+std::span<const InputFormat> input_formats();
+
+/// The format that a file's name ends in or, where that says nothing, that its first bytes show; null where
+/// neither does.
+const InputFormat* find_input_format(const std::filesystem::path& path);
+/// The format that a file's name ends in; null where there is none.
+const InputFormat* find_format_by_name(const std::filesystem::path& path);
+/// What a file holds by the ending of its name, and by its header where that may be a surface or a network
+/// (.ply); a grid where nobody knows the ending.
+InputKind input_kind(const std::filesystem::path& path);
+/// The format of a volume, as find_input_format finds it. Throws Error that lists what is known where there
+/// is none.
+const InputFormat& find_volume_format(const std::filesystem::path& path);
+
+/// The endings of formats, as ".vti, .vtr or .vtk" with "or" as the last word between them.
+std::string list_grid_endings(std::string_view last);
+std::string list_volume_endings(std::string_view last);
+std::string list_endings(InputKind kind, std::string_view last);
+
+}  // namespace adamas

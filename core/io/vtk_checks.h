@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/io/xml_file.h"
+
+namespace adamas {
+
+// What VTK does not report about the files that it reads.
+
+/// Walks through a legacy binary VTK file on an image or rectilinear grid and throws Error where one of its
+/// arrays reaches beyond the file's end. Files of other kinds, and text ones, pass.
+void check_legacy_vtk(const std::filesystem::path& path);
+
+/// Of a .vti or .vtr: throws Error where the pieces' extents are not within the whole one or leave some of it
+/// out, where the extents are of more points than the file's bytes can be values of, and where an array lies
+/// at no place of the file.
+void check_vtk_xml(const std::filesystem::path& path);
+/// The same where the tags are known.
+void check_vtk_xml(const std::vector<XmlTag>& tags, const std::filesystem::path& path);
+
+}  // namespace adamas

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/io/byte_supply.h"
+
+namespace adamas {
+
+/// A tag of an XML file. <name/> is two tags, one that opens and one that closes.
+struct XmlTag {
+  std::string name;
+  bool closing = false;                                        ///< </name>
+  std::map<std::string, std::string, std::less<>> attributes;  ///< in UTF-8, with references resolved
+  std::uint64_t end = 0;                                       ///< the place in the file behind the tag
+  /// Where the text between this tag and its closing tag begins, of which blanks, and the text of elements
+  /// within, are no part; nothing where there is none. Of a tag AppendedData: behind the underscore.
+  std::optional<std::uint64_t> text;
+
+  [[nodiscard]] bool has(std::string_view attribute) const { return attributes.contains(attribute); }
+  /// Empty where there is none.
+  [[nodiscard]] std::string_view value(std::string_view attribute) const;
+};
+
+/// The tags of an XML file, in order; texts of any length between them take no memory. What follows an
+/// opening tag AppendedData, which is no XML, is not looked at. Throws Error with `name` where the file is
+/// not well-formed, where its characters are no superset of ASCII, where it has a document type, whose
+/// entities could stand for texts of any length, and where its tags together are longer than any header.
+std::vector<XmlTag> read_xml_tags(const ByteSupply& bytes, const std::string& name);
+
+/// A name as the value of an XML attribute: markup and control characters as references, bytes that are not
+/// UTF-8 taken for Latin-1, characters that XML does not know as '?'. (VTK's writers put names into files as
+/// they are.)
+std::string xml_attribute(const std::string& name);
+
+}  // namespace adamas
