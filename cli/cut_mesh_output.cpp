@@ -22,11 +22,7 @@ namespace {
 constexpr double kVolumesRestored = 1e-9;
 
 double tolerance_of(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error) {
-  if (output.error.empty()) {
-    // A mesh of planes alone has no error to go by.
-    const double least = 1e-4 * mesh.box.diagonal();
-    return std::max(kCutTolerance * interface_error, least);
-  }
+  if (output.error.empty()) return default_cut_tolerance(mesh, interface_error);
   const InputFacts facts{mesh.source, mesh.box, mesh.fields, 0};
   return interface_error_of("--cut-error", parse_error_target("--cut-error", output.error), facts);
 }
