@@ -46,6 +46,7 @@ SLOW = {r"CLI/.*": ["cli/command.cpp", "cli/command_line.cpp", "cli/config_file.
 CONVERSIONS = ["interfaces/simplification/openmesh_patches.h"]
 FOLDERS = ["include", "core", "interfaces", "isosurface", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
 ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
+LIBRARY_PAGE = "docs/library.md"
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
 MOST_LINES = 400
@@ -155,6 +156,21 @@ def check_text(path, text):
             yield f"line {number} cites {document.group()}, which is no document of the repository"
 
 
+def check_examples(root):
+    """The library's page shows parts of the consumer programs, which the tests build and run."""
+    folder = os.path.join(root, "tests", "install_consumer", "consumer")
+    if not os.path.exists(os.path.join(root, LIBRARY_PAGE)):
+        return
+    programs = []
+    for name in sorted(os.listdir(folder)):
+        with open(os.path.join(folder, name), encoding="utf-8") as file:
+            programs.append("".join(file.read().split()))
+    with open(os.path.join(root, LIBRARY_PAGE), encoding="utf-8") as file:
+        for example in re.findall(r"```cpp\n(.*?)```", file.read(), re.DOTALL):
+            if not any("".join(example.split()) in program for program in programs):
+                yield f"{LIBRARY_PAGE}: the example that begins with '{example.split(chr(10))[0]}' is in no consumer program"
+
+
 def breaches(root):
     """All breaches as lines of text."""
     for path in sources(root):
@@ -172,6 +188,7 @@ def breaches(root):
             found += check_code(root, path, text)
         for breach in found:
             yield f"{path}: {breach}"
+    yield from check_examples(root)
     for module in MAY_INCLUDE:
         if os.path.isdir(os.path.join(root, module)) and not os.path.exists(os.path.join(root, module, "README.md")):
             yield f"{module}: has no README.md"
