@@ -42,6 +42,8 @@ class SiteArray {
   T* end() { return own().data() + own_.size(); }
   void resize(std::size_t count) { own().resize(count); }
   void push_back(T value) { own().push_back(value); }
+  void clear() { *this = {}; }
+  void reserve(std::size_t count) { own().reserve(count); }
   void assign(std::size_t count, T value) { *this = std::vector<T>(count, value); }
 
   friend bool operator==(const SiteArray& a, const SiteArray& b) {

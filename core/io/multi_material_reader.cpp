@@ -254,7 +254,7 @@ class Reader {
            distinct.size());
     }
     data_.grid.centering = array.centering;
-    data_.labels.own().reserve(values.size());
+    data_.labels.reserve(values.size());
     for (const std::int32_t v : values) {
       const auto at = std::lower_bound(distinct.begin(), distinct.end(), v);
       data_.labels.push_back(static_cast<std::uint16_t>(at - distinct.begin()));

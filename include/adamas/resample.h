@@ -133,4 +133,11 @@ class AdaptiveMesh {
 AdaptiveMesh resample(const GridData& data, const ResampleOptions& options = {},
                       Progress& progress = SilentProgress::instance());
 
+/// The same of given interfaces in a domain, without fields. Gaps of up to a millionth of the domain's
+/// diagonal are closed, triangles that are turned the wrong way or are there twice are mended, in a copy.
+/// Throws Error too at arrays that do not fit each other, a domain without volume or apart from the
+/// interfaces, materials that do not match round an edge, and triangles that intersect.
+AdaptiveMesh resample(const InterfaceTriangles& interfaces, const Box3& domain,
+                      const ResampleOptions& options = {}, Progress& progress = SilentProgress::instance());
+
 }  // namespace adamas

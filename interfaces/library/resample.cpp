@@ -5,7 +5,11 @@
 
 #include "core/base/error.h"
 #include "core/data/grid_data.h"
+#include "core/data/interface_mesh.h"
+#include "core/geometry/length_limits.h"
 #include "interfaces/library/adaptive_mesh.h"
+#include "interfaces/network/check.h"
+#include "interfaces/network/mending.h"
 #include "interfaces/resampling/output.h"
 #include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/shortfall.h"
@@ -46,6 +50,8 @@ ResamplingOptions to_resampling_options(const ResampleOptions& options, const Re
     fail("{}: expected an interface error above 0 and less than the domain's diagonal, {:.6g}, found {}",
          source.name, whole, result.interface_error);
   }
+  if (options.conserve && source.body_volumes.empty() && !source.network->triangles().empty())
+    fail("{}: expected interfaces that enclose volumes, to conserve these, found open ones", source.name);
   result.field_errors = field_errors(options, source);
   result.max_tetrahedra = options.max_tetrahedra;
   result.ghost = options.ghost;
@@ -110,11 +116,7 @@ ResampleReport report_of(const Resampler& resampler, const Progress& progress) {
   return report;
 }
 
-}  // namespace
-
-AdaptiveMesh resample(const GridData& data, const ResampleOptions& options, Progress& progress) {
-  const MultiMaterialData taken = to_multi_material_data(data);
-  const ResamplingSource source = make_grid_source(taken, {.smooth_labels = options.smooth_labels}, progress);
+AdaptiveMesh resample(const ResamplingSource& source, const ResampleOptions& options, Progress& progress) {
   Resampler resampler(source, to_resampling_options(options, source), progress);
   resampler.refine();
   progress.step("measuring", -1);
@@ -124,6 +126,29 @@ AdaptiveMesh resample(const GridData& data, const ResampleOptions& options, Prog
   contents->tetrahedra.reserve(contents->mesh.cells.size());
   for (const auto& cell : contents->mesh.cells) contents->tetrahedra.push_back(cell.vertices);
   return AdaptiveMesh(std::move(contents));
+}
+
+}  // namespace
+
+AdaptiveMesh resample(const GridData& data, const ResampleOptions& options, Progress& progress) {
+  const MultiMaterialData taken = to_multi_material_data(data);
+  return resample(make_grid_source(taken, {.smooth_labels = options.smooth_labels}, progress), options,
+                  progress);
+}
+
+AdaptiveMesh resample(const InterfaceTriangles& interfaces, const Box3& domain,
+                      const ResampleOptions& options, Progress& progress) {
+  InterfaceMesh mesh = to_interface_mesh(interfaces, "interfaces");
+  if (options.smooth_labels) fail("{}: expected labels to smooth, found given interfaces", mesh.source);
+  check_lengths(mesh.source, domain);
+  check_interface_arrays(mesh);
+  Box3 found;
+  for (const Vec3& p : mesh.points) found.extend(p);
+  if (!found.touches(domain))
+    fail("{}: expected interfaces in the domain, found them beside it", mesh.source);
+  mend_interface_mesh(mesh, &domain);
+  check_interface_mesh(mesh, &domain);
+  return resample(make_mesh_source(mesh, domain, nullptr, progress), options, progress);
 }
 
 }  // namespace adamas

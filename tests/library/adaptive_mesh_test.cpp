@@ -150,6 +150,29 @@ TEST_F(AdaptiveMeshOfAScene, ReconstructionsAreTheSame) {
   EXPECT_EQ(simple.mesh.materials, found.mesh.materials);
 }
 
+TEST_F(AdaptiveMeshOfAScene, GivenInterfacesAreResampledToo) {
+  const InterfaceTriangles given = reconstruct(data()).mesh;
+  const Box3 domain{{0, 0, 0}, {1, 1, 1}};
+  ResampleOptions coarse;
+  coarse.interface_error = 0.06;
+  const AdaptiveMesh found = resample(given, domain, coarse);
+  EXPECT_EQ(found.report().materials.size(), 10u);
+  EXPECT_LE(found.report().interface_error->certified, 0.06);
+  for (const auto& material : found.report().materials)
+    EXPECT_NEAR(material.volume_mesh, *material.volume_input, 0.01);
+  const auto has = [](const std::string& message, const char* text) {
+    EXPECT_NE(message.find(text), std::string::npos) << message;
+  };
+  has(test::error_of([&] { resample(given, {{2, 2, 2}, {3, 3, 3}}); }), "beside it");
+  has(test::error_of([&] { resample(given, Box3()); }), "interfaces");
+  InterfaceTriangles wrong = given;
+  wrong.points[3].y = std::nan("");
+  has(test::error_of([&] { resample(wrong, domain); }), "finite");
+  wrong = given;
+  wrong.triangles[3][1] = static_cast<std::uint32_t>(wrong.points.size());
+  has(test::error_of([&] { resample(wrong, domain); }), "expected points below");
+}
+
 TEST_F(AdaptiveMeshOfAScene, WrongOptionsAreToldInALine) {
   const auto error_with = [](const auto& change) {
     ResampleOptions wrong;
