@@ -87,8 +87,9 @@ std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
 /// The labels of an input; empty where it has fractions or interfaces instead of labels.
 std::optional<LabelImage> label_image(const Input& input) {
   if (!input.data || input.data->labels.empty()) return std::nullopt;
-  const RectilinearGrid& grid = input.data->grid;
-  return LabelImage{walls_of(grid, 0), walls_of(grid, 1), walls_of(grid, 2), input.data->labels};
+  const MultiMaterialData& data = *input.data;
+  return LabelImage{walls_of(data.grid, 0), walls_of(data.grid, 1), walls_of(data.grid, 2),
+                    {data.labels.begin(), data.labels.end()}};
 }
 
 /// Says in which files the rows are that were finished before the user stopped the run.

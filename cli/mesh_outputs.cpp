@@ -27,11 +27,7 @@ namespace {
 constexpr double kVolumesRestored = 1e-9;
 
 double tolerance_of(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error) {
-  if (output.error.empty()) {
-    // The interface error of a mesh of planes is 0, so that half of it would be no target.
-    const double least = 1e-4 * mesh.box.diagonal();
-    return std::max(kCutTolerance * interface_error, least);
-  }
+  if (output.error.empty()) return default_cut_tolerance(mesh, interface_error);
   const InputFacts facts{mesh.source, mesh.box, mesh.fields, 0};
   return interface_error_of("--cut-error", parse_error_target("--cut-error", output.error), facts);
 }

@@ -1,26 +1,63 @@
-# Flags and helpers shared by every target of the project.
+# Components, flags and helpers shared by every target of the project.
 
-add_library(adamas_flags INTERFACE)
-add_library(adamas::flags ALIAS adamas_flags)
-target_compile_features(adamas_flags INTERFACE cxx_std_20)
-# One rounding per operation: the same input gives the same bytes everywhere.
-target_compile_options(adamas_flags INTERFACE -ffp-contract=off)
-set(ADAMAS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Werror)
-target_compile_options(adamas_flags INTERFACE "$<BUILD_INTERFACE:${ADAMAS_WARNINGS}>")
-# g++ 12 sees overlaps in std::string's operator+ that are not there (its bug 105651).
-target_compile_options(adamas_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
-if(ADAMAS_SANITIZE)
-  target_compile_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE} -fno-omit-frame-pointer)
-  target_link_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE})
-  if(ADAMAS_SANITIZE MATCHES "undefined")
-    target_compile_options(adamas_flags INTERFACE -fno-sanitize-recover=undefined)
+# Throws out what is no component, and sets ADAMAS_TESTS_BY_DEFAULT.
+function(adamas_check_components)
+  foreach(component IN LISTS ADAMAS_COMPONENTS)
+    if(NOT component IN_LIST ADAMAS_LIBRARIES AND NOT component STREQUAL "program")
+      message(FATAL_ERROR "ADAMAS_COMPONENTS: expected some of ${ADAMAS_LIBRARIES};program, found '${component}'")
+    endif()
+  endforeach()
+  set(tests ${PROJECT_IS_TOP_LEVEL})
+  foreach(component IN LISTS ADAMAS_LIBRARIES ITEMS program)
+    if(component STREQUAL "core" OR component IN_LIST ADAMAS_COMPONENTS)
+      continue()
+    endif()
+    set(tests OFF)
+    if("program" IN_LIST ADAMAS_COMPONENTS OR ADAMAS_BUILD_TESTS OR ADAMAS_BUILD_BENCHMARKS OR ADAMAS_BUILD_FUZZERS)
+      message(FATAL_ERROR "ADAMAS_COMPONENTS: the program, the tests, the benchmarks and the fuzz targets need all "
+                          "components, found none of the name '${component}'")
+    endif()
+  endforeach()
+  set(ADAMAS_TESTS_BY_DEFAULT ${tests} PARENT_SCOPE)
+endfunction()
+
+# adamas_add_component(name folder): the folder, where the component is wanted.
+function(adamas_add_component name folder)
+  if(name STREQUAL "core" OR name IN_LIST ADAMAS_COMPONENTS)
+    add_subdirectory(${folder})
   endif()
-endif()
+endfunction()
 
-# adamas_library(name folder... [EXCEPT folder] [INTERNAL]): the library adamas_<name> (alias adamas::<name>) of all sources
-# in the folders; INTERNAL: it is not installed.
+# What our own sources are compiled with, and nobody else's: warnings, and the root of the project as a folder of headers.
+# Warnings are errors where CMAKE_COMPILE_WARNING_AS_ERROR says so, as the presets do.
+macro(adamas_set_flags)
+  set(ADAMAS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow)
+  foreach(warning IN ITEMS -Wnon-virtual-dtor -Wold-style-cast)
+    list(APPEND ADAMAS_WARNINGS $<$<COMPILE_LANGUAGE:CXX>:${warning}>)
+  endforeach()
+  # g++ 12 sees overlaps in std::string's operator+ that are not there (its bug 105651).
+  list(APPEND ADAMAS_WARNINGS $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  # One rounding per operation: the same input gives the same bytes everywhere.
+  add_compile_options(${ADAMAS_WARNINGS} -ffp-contract=off)
+  include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
+
+  # What those who link to us need too.
+  add_library(adamas_flags INTERFACE)
+  add_library(adamas::flags ALIAS adamas_flags)
+  target_compile_features(adamas_flags INTERFACE cxx_std_20)
+  if(ADAMAS_SANITIZE)
+    target_compile_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE})
+    if(ADAMAS_SANITIZE MATCHES "undefined")
+      target_compile_options(adamas_flags INTERFACE -fno-sanitize-recover=undefined)
+    endif()
+  endif()
+endmacro()
+
+# adamas_library(name folder... [EXCEPT folder] HEADERS header... | INTERNAL): the library adamas_<name> (alias adamas::<name>)
+# of all sources in the folders. HEADERS: those of include/adamas that it stands behind; INTERNAL: it is not installed.
 function(adamas_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 library INTERNAL EXCEPT "")
+  cmake_parse_arguments(PARSE_ARGV 1 library INTERNAL EXCEPT HEADERS)
   set(sources)
   foreach(folder IN LISTS library_UNPARSED_ARGUMENTS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp
@@ -33,10 +70,11 @@ function(adamas_library name)
   add_library(adamas_${name} STATIC ${sources})
   add_library(adamas::${name} ALIAS adamas_${name})
   set_target_properties(adamas_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  target_include_directories(adamas_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                   $<INSTALL_INTERFACE:include/adamas>)
+  target_include_directories(adamas_${name} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                      $<INSTALL_INTERFACE:include>)
   target_link_libraries(adamas_${name} PUBLIC adamas_flags)
   if(NOT library_INTERNAL)
-    set_property(GLOBAL APPEND PROPERTY ADAMAS_LIBRARIES adamas_${name})
+    set_property(TARGET adamas_${name} PROPERTY ADAMAS_HEADERS ${library_HEADERS})
+    set_property(GLOBAL APPEND PROPERTY ADAMAS_INSTALLED adamas_${name})
   endif()
 endfunction()

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/generate.h"  // scene_names
 #include "core/base/typed_id.h"
 #include "core/geometry/vec3.h"
 #include "datasets/scene_function.h"
@@ -106,9 +107,6 @@ class Scene {
 struct SceneOptions {
   Box3 box{{0, 0, 0}, {1, 1, 1}};
 };
-
-/// Names make_scene knows.
-std::vector<std::string> scene_names();
 
 /// A named scene. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`;
 /// other scenes ignore it. Lengths scale with the shortest side of the box. Throws Error for an unknown name

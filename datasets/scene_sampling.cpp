@@ -40,12 +40,12 @@ class Sampler {
  public:
   Sampler(const Scene& scene, MultiMaterialData& data, bool fields) : scene_(scene), data_(data) {
     const std::size_t count = data.grid.site_count();
-    data.fractions.assign(scene.materials().size(), std::vector<float>(count));
+    data.fractions.assign(scene.materials().size(), SiteArray<float>(count));
     if (!fields) return;
     for (const auto& [field, name] : scene_fields()) {
       Field own;
       own.name = name;
-      own.material_values.assign(scene.materials().size(), std::vector<float>(count));
+      own.material_values.assign(scene.materials().size(), SiteArray<float>(count));
       data.fields.push_back(std::move(own));
     }
     for (const auto& [field, name] : scene_fields()) {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "adamas/progress.h"  // set_thread_limit
+
 namespace adamas {
 
 /// Runs `body(begin, end)` over disjoint chunks of [0, count) on the threads allowed by set_thread_limit, at
@@ -20,9 +22,6 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
-
-/// Bounds the number of threads of all later parallel loops; 0 means all cores.
-void set_thread_limit(unsigned threads);
 
 /// Has later threads of parallel loops leave signals to the thread that calls this. For the program's own
 /// use, once, before the first loop.

@@ -1,40 +1,4 @@
 #pragma once
 
-#include <string_view>
-
+#include "adamas/progress.h"
 #include "core/base/error.h"
-
-namespace adamas {
-
-/// Receives the progress of long work and can stop it. Calls come from one thread at a time.
-class Progress {
- public:
-  virtual ~Progress() = default;
-  /// `fraction` in [0, 1], or negative where the amount of work is not known; `stage` names what is being
-  /// done.
-  virtual void report(std::string_view stage, double fraction) = 0;
-  [[nodiscard]] virtual bool cancelled() const { return false; }
-
-  /// Throws Cancelled where the user asked to stop.
-  void check() const {
-    if (cancelled()) throw Cancelled();
-  }
-  /// The same, and reports.
-  void step(std::string_view stage, double fraction) {
-    check();
-    report(stage, fraction);
-  }
-};
-
-/// Reports to nobody, never cancels.
-class SilentProgress final : public Progress {
- public:
-  void report(std::string_view, double) override {}
-  /// An instance for default arguments.
-  static SilentProgress& instance() {
-    static SilentProgress silent;
-    return silent;
-  }
-};
-
-}  // namespace adamas

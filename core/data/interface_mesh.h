@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "adamas/meshes.h"
 #include "core/base/typed_id.h"
 #include "core/geometry/vec3.h"
 
@@ -29,5 +30,10 @@ struct InterfaceMesh {
     return (1.0 / 3) * (points[p[0]] + points[p[1]] + points[p[2]]);
   }
 };
+
+/// What users of the library get; points and names are moved.
+InterfaceTriangles to_interface_triangles(InterfaceMesh&& mesh);
+/// What they give. Throws Error, which begins with `name`, where arrays do not fit each other.
+InterfaceMesh to_interface_mesh(const InterfaceTriangles& mesh, const std::string& name);
 
 }  // namespace adamas

@@ -1,7 +1,10 @@
 #include "core/data/multi_material_data.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/geometry/length_limits.h"
@@ -35,7 +38,7 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
   }
 }
 
-void check_array(const std::string& source, const std::string& name, const std::vector<float>& values,
+void check_array(const std::string& source, const std::string& name, std::span<const float> values,
                  std::size_t expected) {
   if (values.size() != expected) {
     fail("{}: array '{}': expected {} values, found {}", source, name, expected, values.size());
@@ -125,10 +128,16 @@ void MultiMaterialData::normalise(double tolerance) {
   report = {};
   const std::size_t count = grid.site_count();
   bool first = true;
+  const auto at = [this](MaterialId m, std::size_t site) { return std::as_const(fractions)[m][site]; };
+  // What stays as it is may be borrowed.
+  const auto set = [&](MaterialId m, std::size_t site, float value) {
+    if (std::bit_cast<std::uint32_t>(at(m, site)) != std::bit_cast<std::uint32_t>(value))
+      fractions[m].own()[site] = value;
+  };
   for (std::size_t site = 0; site < count; ++site) {
     double sum = 0;
     for (MaterialId m(0); m.value < fractions.size(); ++m.value) {
-      float& f = fractions[m][site];
+      const float f = at(m, site);
       if (!std::isfinite(f)) {
         fail("{}: volume fraction of '{}': expected a number in [0, 1], found {} in {}", source, materials[m],
              f, site_name(grid, site));
@@ -136,7 +145,7 @@ void MultiMaterialData::normalise(double tolerance) {
       sum += static_cast<double>(f);
       if (f < 0) ++report.negative;
       if (f > 0 && f < kFractionTrace) ++report.traces;
-      if (f < kFractionTrace) f = 0;
+      if (f < kFractionTrace) set(m, site, 0);
     }
     report.sum_min = first ? sum : std::min(report.sum_min, sum);
     report.sum_max = first ? sum : std::max(report.sum_max, sum);
@@ -146,21 +155,23 @@ void MultiMaterialData::normalise(double tolerance) {
            sum, site_name(grid, site), scale_hint(*this));
     }
     double kept = 0;
-    float* sole = nullptr;
-    for (auto& f : fractions) {
-      if (f[site] > 0) sole = kept > 0 ? nullptr : &f[site];
-      kept += static_cast<double>(f[site]);
+    MaterialId sole;
+    for (MaterialId m(0); m.value < fractions.size(); ++m.value) {
+      const float f = at(m, site);
+      if (f > 0) sole = kept > 0 ? MaterialId() : m;
+      kept += static_cast<double>(f);
     }
     if (!(kept > 0)) {
       fail("{}: volume fractions: expected a material, found none in {}", source, site_name(grid, site));
     }
     if (std::abs(kept - 1) <= static_cast<double>(kFractionTrace)) {
       // What is left alone fills the cell: what it shared it with was a trace.
-      if (sole != nullptr) *sole = 1;
+      if (sole.valid()) set(sole, site, 1);
       continue;
     }
     if (std::abs(kept - 1) > kRoundOff) ++report.renormalised;
-    for (auto& f : fractions) f[site] = static_cast<float>(static_cast<double>(f[site]) / kept);
+    for (MaterialId m(0); m.value < fractions.size(); ++m.value)
+      set(m, site, static_cast<float>(static_cast<double>(at(m, site)) / kept));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/typed_id.h"
 #include "core/data/rectilinear_grid.h"
+#include "core/data/site_array.h"
 
 namespace adamas {
 
@@ -17,9 +18,9 @@ struct Field {
   std::string unit;  ///< empty where the source states none
   int components = 1;
   /// Mixed: `values[site * components + c]`. Empty for a field per material.
-  std::vector<float> values;
+  SiteArray<float> values;
   /// Per material: the same layout for each material; empty for a material that has no such field.
-  IdVector<MaterialId, std::vector<float>> material_values;
+  IdVector<MaterialId, SiteArray<float>> material_values;
 
   [[nodiscard]] bool per_material() const { return values.empty(); }
 };
@@ -36,15 +37,15 @@ struct FractionReport {
 };
 
 /// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a
-/// label per site, and fields.
+/// label per site, and fields. Its arrays may be borrowed from someone who outlives it.
 struct MultiMaterialData {
   std::string source;  ///< the file or generator, for messages
   RectilinearGrid grid;
   IdVector<MaterialId, std::string> materials;
   /// `fractions[m][site]` in [0, 1], adding up to 1 at each site; empty where `labels` is given.
-  IdVector<MaterialId, std::vector<float>> fractions;
+  IdVector<MaterialId, SiteArray<float>> fractions;
   /// Index of the one material at each site; empty where `fractions` is given.
-  std::vector<std::uint16_t> labels;
+  SiteArray<std::uint16_t> labels;
   std::vector<Field> fields;
   FractionReport report;
 

@@ -16,6 +16,19 @@ double extent(const std::vector<double>& nodes, Centering centering, std::size_t
 
 }  // namespace
 
+RectilinearGrid RectilinearGrid::uniform(const std::array<std::size_t, 3>& sites, const Vec3& origin,
+                                         const Vec3& spacing, Centering centering) {
+  RectilinearGrid grid;
+  grid.centering = centering;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    grid.nodes[a].resize(sites[a] + (centering == Centering::kCells ? 1 : 0));
+    for (std::size_t i = 0; i < grid.nodes[a].size(); ++i)
+      grid.nodes[a][i] = origin[axis] + static_cast<double>(i) * spacing[axis];
+  }
+  return grid;
+}
+
 double RectilinearGrid::least_spacing() const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& x : nodes) {

@@ -111,4 +111,31 @@ void VolumeGrid::check(const std::string& name) const {
   }
 }
 
+namespace {
+
+template <class Sample>
+constexpr SampleType kTypeOf = SampleType::kFloat32;
+template <>
+constexpr SampleType kTypeOf<std::uint8_t> = SampleType::kUint8;
+template <>
+constexpr SampleType kTypeOf<std::uint16_t> = SampleType::kUint16;
+template <>
+constexpr SampleType kTypeOf<std::int16_t> = SampleType::kInt16;
+
+}  // namespace
+
+template <class Sample>
+std::span<const Sample> Volume::as() const {
+  if (grid.type != kTypeOf<Sample>)
+    fail("expected samples of type {}, found {}", sample_name(kTypeOf<Sample>), sample_name(grid.type));
+  // Memory from operator new is aligned for any of them.
+  return {static_cast<const Sample*>(static_cast<const void*>(samples.data())),
+          samples.size() / sizeof(Sample)};
+}
+
+template std::span<const std::uint8_t> Volume::as() const;
+template std::span<const std::uint16_t> Volume::as() const;
+template std::span<const std::int16_t> Volume::as() const;
+template std::span<const float> Volume::as() const;
+
 }  // namespace adamas

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,15 +8,6 @@
 #include "core/geometry/vec3.h"
 
 namespace adamas {
-
-/// A plane in space: a point of it and a vector at right angles to it, of any length.
-struct Plane {
-  Vec3 origin;
-  Vec3 normal;
-
-  /// The axis that the normal is parallel to (0, 1, 2), if there is one.
-  [[nodiscard]] std::optional<int> axis() const;
-};
 
 /// A plane at right angles to an axis from text like "x=6" or "z = -1.5e3". Throws Error for anything else.
 Plane parse_plane(std::string_view text);

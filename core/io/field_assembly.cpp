@@ -168,9 +168,9 @@ void make_intensive(const std::string& name, MultiMaterialData& data) {
         }
       }
     };
-    divide(field.values, [](std::size_t) { return 1.0; });
+    divide(field.values.own(), [](std::size_t) { return 1.0; });
     for (MaterialId m(0); m.value < field.material_values.size(); ++m.value) {
-      divide(field.material_values[m],
+      divide(field.material_values[m].own(),
              [&data, m](std::size_t site) { return static_cast<double>(data.fraction(m, site)); });
     }
   }
@@ -200,7 +200,7 @@ void crop(const std::array<double, 6>& box, MultiMaterialData& data) {
                               nodes + static_cast<std::ptrdiff_t>(last));
   }
   const auto cut = [&](auto& values) {
-    if (!values.empty()) values = cropped(values, grid, begin, end);
+    if (!values.empty()) values = cropped(values.own(), grid, begin, end);
   };
   cut(data.labels);
   for (auto& values : data.fractions) cut(values);

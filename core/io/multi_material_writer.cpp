@@ -24,8 +24,8 @@ namespace adamas {
 namespace {
 
 void add(vtkDataSetAttributes& target, const std::string& name, int components,
-         const std::vector<float>& values) {
-  target.AddArray(to_vtk({name, components, values}));
+         std::span<const float> values) {
+  target.AddArray(to_vtk({name, components, std::vector<float>(values.begin(), values.end())}));
 }
 
 void add_arrays(const MultiMaterialData& data, vtkDataSet& set) {

@@ -45,10 +45,10 @@ MultiMaterialData flow_data(const FlowSolver<N>& flow, const std::string& source
   data.source = source;
   data.grid = flow_grid(flow.problem().box, cells);
   for (const FlowMaterial& material : flow.problem().materials) data.materials.push_back(material.name);
-  data.fractions.assign(N, std::vector<float>(count));
+  data.fractions.assign(N, SiteArray<float>(count));
   data.fields.resize(3);
   data.fields[0] = {"density", units.density, 1, {}, {}};
-  data.fields[0].material_values.assign(N, std::vector<float>(count));
+  data.fields[0].material_values.assign(N, SiteArray<float>(count));
   data.fields[1] = {"pressure", units.pressure, 1, std::vector<float>(count), {}};
   data.fields[2] = {"velocity", units.velocity, 3, std::vector<float>(3 * count), {}};
   parallel_for(cells[2], 1, [&](std::size_t k) {

@@ -95,7 +95,7 @@ class GridSection {
 
   [[nodiscard]] double stated(MaterialId material, std::size_t site) const {
     std::vector<double> row(components(), std::nan(""));
-    const auto copy = [&](const std::vector<float>& values) {
+    const auto copy = [&](std::span<const float> values) {
       for (std::size_t c = 0; c < row.size() && !values.empty(); ++c)
         row[c] = static_cast<double>(values[site * row.size() + c]);
     };

@@ -56,6 +56,12 @@ std::vector<Vec3> far_places(InterfaceComparison& comparison, const InterfaceMes
 
 }  // namespace
 
+double default_cut_tolerance(const ResampledMesh& mesh, double interface_error) {
+  // A mesh of planes alone has no error to go by.
+  const double least = 1e-4 * mesh.box.diagonal();
+  return std::max(kCutTolerance * interface_error, least);
+}
+
 ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& progress) {
   ExtractedInterfaces wanted = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
   wanted.mesh.materials = mesh.materials;

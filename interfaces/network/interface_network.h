@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "adamas/resample.h"  // DistanceMode
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
@@ -27,11 +28,6 @@ struct NearInterface {
   /// The sign is that of a sheet continued beyond an open border, for the point lies in neither of the
   /// bodies.
   bool flagged = false;
-};
-
-enum class DistanceMode {
-  kExact,          ///< to the closest point of the interface
-  kNearestVertex,  ///< to the nearest vertex of its mesh (D 3.4.1)
 };
 
 /// The interfaces of a mesh, each between two bodies, ready for questions about points: which body a point

@@ -51,7 +51,7 @@ double plane_distance(const Vec3& towards, const Vec3& size, double f) {
 
 /// The gradient of a material's fractions at a site by least squares with Youngs' weights, one-sided at the
 /// border.
-Vec3 gradient(const GridSites& sites, std::size_t site, const std::vector<float>& fractions) {
+Vec3 gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions) {
   const Vec3 centre = sites.position(site);
   const auto value = static_cast<double>(fractions[site]);
   std::array<double, 6> a{};  // xx, yy, zz, xy, xz, yz

@@ -152,7 +152,7 @@ class RegionSearch {
 
   /// The cells of the box that two sites beside each other span hold together so much of a material.
   [[nodiscard]] double held_between(std::size_t site, const Vec3& d, std::uint16_t material) const {
-    const std::vector<float>& fractions = data_.fractions[values_.material(material)];
+    const SiteArray<float>& fractions = data_.fractions[values_.material(material)];
     double sum = static_cast<double>(fractions[site]);
     grid_sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
       const auto within = [](int step, double end) { return step == 0 || static_cast<double>(step) == end; };

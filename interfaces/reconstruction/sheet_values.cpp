@@ -100,8 +100,8 @@ std::vector<SheetValues::Side> SheetValues::sides(const SheetPlace& place, doubl
 bool SheetValues::is_on_side(const SheetPlace& place, std::uint32_t region, std::uint16_t material) const {
   if (region != place.regions[0] && region != place.regions[1]) return false;
   const double side = region == place.regions[0] ? 1 : -1;
-  const std::vector<float>& fractions = data_.fractions[values_.material(material)];
-  const std::vector<float>& sheet = data_.fractions[values_.material(place.material)];
+  const SiteArray<float>& fractions = data_.fractions[values_.material(material)];
+  const SiteArray<float>& sheet = data_.fractions[values_.material(place.material)];
   double sum = 0;
   const auto add = [&](std::size_t site, int di, int dj, int dk) {
     const double height =

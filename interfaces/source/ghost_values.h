@@ -3,18 +3,11 @@
 #include <span>
 #include <vector>
 
+#include "adamas/resample.h"  // GhostMode
 #include "interfaces/ownership/cell_ownership.h"
 #include "interfaces/source/resampling_source.h"
 
 namespace adamas {
-
-/// How a material's field is continued to vertices outside of the material (docs/method.md, Fields and ghost
-/// values).
-enum class GhostMode {
-  kConstant,      ///< the value at the closest point of the material's interfaces (D 3.5.1)
-  kLinear,        ///< that, plus the one-sided gradient there times the offset
-  kLeastSquares,  ///< a linear fit to the material's native data round that point
-};
 
 /// What the resampled mesh knows at one vertex.
 struct VertexRecord {

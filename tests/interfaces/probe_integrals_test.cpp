@@ -90,7 +90,8 @@ TEST(ProbeIntegrals, OfGridsAreSumsOverSites) {
     for (std::size_t s = 0; s < count; ++s) {
       data.fractions[MaterialId(0)][s] = s % 2 == 0 ? 1.0f : 0.25f;
       data.fractions[MaterialId(1)][s] = s % 2 == 0 ? 0.0f : 0.75f;
-      mixed.values.insert(mixed.values.end(), {2.0f, static_cast<float>(s)});
+      mixed.values.push_back(2);
+      mixed.values.push_back(static_cast<float>(s));
       own.material_values[MaterialId(0)].push_back(5);
     }
     data.fields = {mixed, own};

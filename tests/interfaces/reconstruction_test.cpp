@@ -66,7 +66,7 @@ double reconstruction_error(bool turn_x, bool turn_y) {
   const Scene scene = make_scene("tjunction");
   MultiMaterialData data = sample_scene(scene, {3, 5, 7}, {3, false});
   for (auto& fractions : data.fractions) {
-    const std::vector<float> given = fractions;
+    const SiteArray<float> given = fractions;
     for (std::size_t site = 0; site < given.size(); ++site) {
       const std::size_t i = site % 3, j = site / 3 % 5, k = site / 15;
       fractions[data.grid.site_index(turn_x ? 2 - i : i, turn_y ? 4 - j : j, k)] = given[site];

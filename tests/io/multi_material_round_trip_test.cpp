@@ -99,7 +99,7 @@ TEST(MultiMaterialOptions, ScaleDividesFractions) {
   MultiMaterialData percent = data;
   percent.fields.clear();
   for (MaterialId m(0); m.value < 3; ++m.value) {
-    std::vector<float> values = data.fractions[m];
+    SiteArray<float> values = data.fractions[m];
     for (float& v : values) v *= 100;
     percent.fields.push_back({"share " + std::to_string(m.value), "", 1, values, {}});
   }

@@ -5,6 +5,9 @@ import os
 import re
 import sys
 
+# The headers that are installed, which are included as "adamas/...": all modules may include them, and they only each other
+# and those of the standard library.
+PUBLIC = "include/adamas"
 # What each module may include, beside itself. A file belongs to the longest name that its path begins with.
 MAY_INCLUDE = {
     "core": [],
@@ -20,8 +23,8 @@ MAY_INCLUDE = {
 FOLDER_ORDER = {
     "core": ["base", "geometry", "lattice", "data", "refinement"],
     "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
-                   "probe", "cross_section", "cutting", "simplification", "reference"],
-    "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction"],
+                   "probe", "cross_section", "cutting", "simplification", "library", "reference"],
+    "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "library"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.
@@ -41,8 +44,9 @@ LIGHT = [r"CLI/.*", r"nlohmann/.*"]
 SLOW = {r"CLI/.*": ["cli/command.cpp", "cli/command_line.cpp", "cli/config_file.cpp", "cli/help.cpp"]}
 # Headers that are there to convert to the types of a library: for .cpp files of every folder.
 CONVERSIONS = ["interfaces/simplification/openmesh_patches.h"]
-FOLDERS = ["core", "interfaces", "isosurface", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
+FOLDERS = ["include", "core", "interfaces", "isosurface", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
 ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
+LIBRARY_PAGE = "docs/library.md"
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
 MOST_LINES = 400
@@ -69,7 +73,15 @@ def sources(root):
             yield name
 
 
+def check_public_header(root, quote, target):
+    of_standard_library = quote == "<" and re.fullmatch(r"[a-z_]+", target)
+    if not of_standard_library and not (quote == '"' and os.path.exists(os.path.join(root, "include", target))):
+        yield f"includes {target}: installed headers include each other and the standard library alone"
+
+
 def check_project_include(root, path, target):
+    if os.path.exists(os.path.join(root, "include", target)):
+        return
     if not any(os.path.exists(os.path.join(root, target + end)) for end in ("", ".in")):
         # Tests and fuzz targets may include what lies beside them.
         beside = os.path.join(os.path.dirname(path), target)
@@ -109,6 +121,9 @@ def check_code(root, path, text):
     if path.startswith("tests/") and bool(TEST.search(text)) != path.endswith("_test.cpp"):
         yield "files with tests, and no others, have names that end in _test.cpp"
     for quote, target in INCLUDE.findall(text):
+        if path.startswith(PUBLIC):
+            yield from check_public_header(root, quote, target)
+            continue
         for pattern, modules in OWNED.items():
             if not re.fullmatch(pattern, target):
                 continue
@@ -141,6 +156,21 @@ def check_text(path, text):
             yield f"line {number} cites {document.group()}, which is no document of the repository"
 
 
+def check_examples(root):
+    """The library's page shows parts of the consumer programs, which the tests build and run."""
+    folder = os.path.join(root, "tests", "install_consumer", "consumer")
+    if not os.path.exists(os.path.join(root, LIBRARY_PAGE)):
+        return
+    programs = []
+    for name in sorted(os.listdir(folder)):
+        with open(os.path.join(folder, name), encoding="utf-8") as file:
+            programs.append("".join(file.read().split()))
+    with open(os.path.join(root, LIBRARY_PAGE), encoding="utf-8") as file:
+        for example in re.findall(r"```cpp\n(.*?)```", file.read(), re.DOTALL):
+            if not any("".join(example.split()) in program for program in programs):
+                yield f"{LIBRARY_PAGE}: the example that begins with '{example.split(chr(10))[0]}' is in no consumer program"
+
+
 def breaches(root):
     """All breaches as lines of text."""
     for path in sources(root):
@@ -154,10 +184,11 @@ def breaches(root):
             yield f"{path}: is no UTF-8 text"
             continue
         found = list(check_text(path, text))
-        if extension in CODE and module_of(path):
+        if extension in CODE and (module_of(path) or path.startswith(PUBLIC)):
             found += check_code(root, path, text)
         for breach in found:
             yield f"{path}: {breach}"
+    yield from check_examples(root)
     for module in MAY_INCLUDE:
         if os.path.isdir(os.path.join(root, module)) and not os.path.exists(os.path.join(root, module, "README.md")):
             yield f"{module}: has no README.md"

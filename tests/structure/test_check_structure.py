@@ -49,6 +49,21 @@ class StructureTest(unittest.TestCase):
         self.expect({"core/base/a.h": '#pragma once\n#include "core/data/grid.h"\n'}, "below core/data")
         self.expect({"interfaces/a.h": '#pragma once\n#include "source.h"\n'}, "no file of the project")
 
+    def test_installed_headers(self):
+        public = {"include/adamas/volume.h": "#pragma once\n#include <vector>\n"}
+        include = '#pragma once\n#include "adamas/volume.h"\n'
+        self.expect({**public, "core/data/a.h": include, "include/adamas/store.h": include}, None)
+        self.expect({"include/adamas/volume.h": '#pragma once\n#include "core/base/error.h"\n'}, "each other")
+        self.expect({"include/adamas/volume.h": "#pragma once\n#include <fmt/format.h>\n"}, "each other")
+        self.expect({"core/data/a.h": include}, "no file of the project")
+
+    def test_examples(self):
+        page = {"docs/library.md": "```cpp\nf(1);\n```\n"}
+        program = "tests/install_consumer/consumer/a.cpp"
+        readme = {"tests/README.md": "# tests\n"}
+        self.expect({**page, **readme, program: "int main() {\n  f(1);\n}\n"}, None)
+        self.expect({**page, **readme, program: "int main() {\n  f(2);\n}\n"}, "begins with 'f(1);'")
+
     def test_order_of_folders(self):
         mesh = {"interfaces/mesh/mesh.h": "#pragma once\n"}
         include = '#pragma once\n#include "interfaces/mesh/mesh.h"\n'

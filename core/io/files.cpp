@@ -1,0 +1,117 @@
+#include "adamas/files.h"
+
+#include <cctype>
+
+#include "core/base/error.h"
+#include "core/data/interface_mesh.h"
+#include "core/data/multi_material_data.h"
+#include "core/data/solver_mesh.h"
+#include "core/io/input_file.h"
+#include "core/io/interface_mesh_io.h"
+#include "core/io/multi_material_reader.h"
+#include "core/io/solver_mesh_io.h"
+#include "core/io/surface_writer.h"
+#include "core/io/unstructured_mesh_io.h"
+#include "core/io/volume_reader.h"
+#include "core/io/volume_writer.h"
+
+namespace adamas {
+
+namespace {
+
+NamedArray to_named_array(const ArrayView& view) {
+  NamedArray array{std::string(view.name), view.components, {}};
+  std::visit([&array](const auto& values) { array.values = std::vector(values.begin(), values.end()); },
+             view.values);
+  return array;
+}
+
+std::vector<NamedArray> to_named_arrays(const std::vector<ArrayView>& views) {
+  std::vector<NamedArray> arrays;
+  for (const ArrayView& view : views) arrays.push_back(to_named_array(view));
+  return arrays;
+}
+
+UnstructuredMesh to_unstructured_mesh(const TetrahedraView& view) {
+  UnstructuredMesh mesh;
+  mesh.points.assign(view.points.begin(), view.points.end());
+  mesh.connectivity.reserve(4 * view.tetrahedra.size());
+  for (const auto& t : view.tetrahedra) {
+    mesh.connectivity.insert(mesh.connectivity.end(), t.begin(), t.end());
+    mesh.offsets.push_back(mesh.connectivity.size());
+  }
+  mesh.point_arrays = to_named_arrays(view.point_arrays);
+  mesh.cell_arrays = to_named_arrays(view.cell_arrays);
+  mesh.field_arrays = to_named_arrays(view.mesh_arrays);
+  return mesh;
+}
+
+}  // namespace
+
+OwnedGridData read_grid_data(const std::filesystem::path& path, const MaterialDataOptions& options,
+                             Progress& progress) {
+  check_input_file(path);
+  return OwnedGridData(
+      std::make_unique<MultiMaterialData>(read_multi_material_data(path, options, progress)));
+}
+
+Volume read_volume(const std::filesystem::path& path, const std::string& array, Progress& progress) {
+  VolumeOptions options;
+  options.array = array;
+  VolumeReader reader = open_volume(path, options, progress);
+  Volume volume{reader.grid(), {}};
+  volume.grid.check(path.string());
+  volume.samples.resize(volume.grid.bytes());
+  const std::size_t plane = volume.grid.plane_bytes();
+  for (std::uint64_t k = 0; k < volume.grid.dimensions[2]; ++k) {
+    progress.check();
+    reader.read_plane(k, std::span(volume.samples).subspan(k * plane, plane));
+  }
+  return volume;
+}
+
+void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
+                  std::span<const std::byte> samples) {
+  grid.check(path.string());
+  if (samples.size() != grid.bytes())
+    fail("{}: expected {} bytes of samples, found {}", path.string(), grid.bytes(), samples.size());
+  VolumeWriter writer(path, grid);
+  const std::size_t plane = grid.plane_bytes();
+  for (std::uint64_t k = 0; k < grid.dimensions[2]; ++k)
+    writer.write_plane(samples.subspan(k * plane, plane));
+  writer.finish();
+}
+
+InterfaceTriangles read_interfaces(const std::filesystem::path& path) {
+  check_input_file(path);
+  return to_interface_triangles(read_interface_mesh(path));
+}
+
+void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mesh) {
+  write_interface_mesh(path, to_interface_mesh(mesh, path.string()));
+}
+
+void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh) { write_surface(path, mesh); }
+
+void write_mesh(const std::filesystem::path& path, const MaterialTetrahedra& mesh) {
+  if (file_extension(path.string()) == ".vtu") {
+    const std::vector<std::int32_t> materials(mesh.tetrahedron_materials.begin(),
+                                              mesh.tetrahedron_materials.end());
+    TetrahedraView view{mesh.points, mesh.tetrahedra, {}, {}, {}};
+    view.cell_arrays.push_back({"material", 1, std::span(materials)});
+    view.mesh_arrays.push_back({"material_names", 1, std::span(mesh.materials)});
+    return write_mesh(path, view);
+  }
+  SolverMesh solver;
+  solver.points = mesh.points;
+  solver.tetrahedra = mesh.tetrahedra;
+  solver.block = mesh.tetrahedron_materials;
+  solver.blocks = mesh.materials;
+  write_solver_mesh(path, solver);
+}
+
+void write_mesh(const std::filesystem::path& path, const TetrahedraView& mesh) {
+  write_unstructured_mesh(path, to_unstructured_mesh(mesh));
+}
+
+}  // namespace adamas

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adamas/grid_data.h"
+#include "adamas/meshes.h"
+#include "adamas/progress.h"
+#include "adamas/volume.h"
+
+namespace adamas {
+
+// Files of other programs; docs/file_formats.md lists them. All calls throw Error, with the file's name,
+// where a file is missing, corrupt, of a format that is not known, or cannot be written in full. A file that
+// is written gets its name when it is whole, and equal contents give equal bytes.
+
+/// How to read a file as multi-material data. FILE-or-ARRAY names an array of the main file, or else a file
+/// on the same grid that holds one array.
+struct MaterialDataOptions {
+  /// Materials and their volume fractions: NAME, FILE-or-ARRAY. Where empty, every array whose name contains
+  /// "volume fraction" is a material.
+  std::vector<std::pair<std::string, std::string>> fractions;
+  double fraction_scale = 1;  ///< what a volume fraction of 1 is stored as (255, 100)
+  std::string rest;           ///< one more material, of what the others leave of 1
+  /// FILE-or-ARRAY of whole numbers that name the material of a site. Where neither it nor `fractions` is
+  /// given and no array is a volume fraction, an array "labels" of a file with material names is taken.
+  std::string labels;
+  /// Further fields: NAME, FILE-or-ARRAY.
+  std::vector<std::pair<std::string, std::string>> fields;
+  /// Fields, by name, whose values are amounts per cell: they are divided by their material's volume there,
+  /// and are zero where it has none.
+  std::vector<std::string> extensive;
+  /// x0, x1, y0, y1, z0, z1: only the sites in this box are kept.
+  std::optional<std::array<double, 6>> region;
+  /// What the values are on, whatever the files say.
+  std::optional<Centering> centering;
+  /// Where nothing is a material, all of the grid is one, kPlainMaterial, with all arrays as fields.
+  bool plain = false;
+  /// Told in a line what was assumed that the files do not say.
+  std::function<void(const std::string&)> note;
+};
+
+/// Reads volume fractions or labels, and fields, on an image or a rectilinear grid: `.vti`, `.vtr`, `.vtk`,
+/// `.nrrd`, `.mha`, `.nii`, `.tif` and others.
+OwnedGridData read_grid_data(const std::filesystem::path& path, const MaterialDataOptions& options = {},
+                             Progress& progress = SilentProgress::instance());
+
+/// Reads a volume of one value per sample into memory: the formats above and `.h5`. Types that volumes have
+/// not become int16 or float. `array`: which one, of a file with several.
+Volume read_volume(const std::filesystem::path& path, const std::string& array = {},
+                   Progress& progress = SilentProgress::instance());
+
+/// Writes `.vti`, `.nrrd`, `.nhdr`, `.mha`, `.mhd`, `.nii`, `.nii.gz` or `.raw`. Throws Error too where there
+/// are not grid.bytes() of samples.
+void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
+                  std::span<const std::byte> samples);
+
+/// Reads interfaces with their materials: `.vtp` and `.ply` from write_mesh(), `.arec`, `.txt`.
+InterfaceTriangles read_interfaces(const std::filesystem::path& path);
+
+/// Writes interfaces: `.vtp`, `.ply`, `.obj`, `.off`, `.stl`, `.arec` or `.txt`.
+void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mesh);
+/// Writes a surface: `.ply`, `.stl`, `.obj`, `.vtp`, `.glb` or `.gltf`.
+void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh);
+/// Writes tetrahedra and their materials: `.vtu`, `.msh` or `.exo`.
+void write_mesh(const std::filesystem::path& path, const MaterialTetrahedra& mesh);
+/// Writes tetrahedra and all their arrays: `.vtu`. AdaptiveMesh::view() becomes the file of `adamas
+/// resample`.
+void write_mesh(const std::filesystem::path& path, const TetrahedraView& mesh);
+
+}  // namespace adamas

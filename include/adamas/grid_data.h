@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "adamas/geometry.h"
+
+namespace adamas {
+
+/// Where the values of a grid live.
+enum class Centering { kCells, kPoints };
+
+/// A rectilinear grid: ascending node coordinates per axis. Its *sites* are what values belong to: the cell
+/// centres or the nodes. Sites are numbered x fastest.
+struct RectilinearGrid {
+  std::array<std::vector<double>, 3> nodes;
+  Centering centering = Centering::kCells;
+
+  /// A grid of so many sites along x, y and z, `spacing` apart. `origin`: the lower corner of the first cell,
+  /// or the first point.
+  static RectilinearGrid uniform(const std::array<std::size_t, 3>& sites, const Vec3& origin,
+                                 const Vec3& spacing, Centering centering = Centering::kCells);
+
+  /// Number of sites along an axis.
+  [[nodiscard]] std::size_t sites(int axis) const {
+    const std::size_t n = nodes[static_cast<std::size_t>(axis)].size();
+    return centering == Centering::kPoints || n == 0 ? n : n - 1;
+  }
+  [[nodiscard]] std::size_t site_count() const { return sites(0) * sites(1) * sites(2); }
+  [[nodiscard]] std::size_t site_index(std::size_t i, std::size_t j, std::size_t k) const {
+    return i + sites(0) * (j + sites(1) * k);
+  }
+  /// Coordinate of site i along an axis.
+  [[nodiscard]] double site_coordinate(int axis, std::size_t i) const {
+    const auto& n = nodes[static_cast<std::size_t>(axis)];
+    return centering == Centering::kPoints ? n[i] : 0.5 * (n[i] + n[i + 1]);
+  }
+  [[nodiscard]] Vec3 site(std::size_t i, std::size_t j, std::size_t k) const {
+    return {site_coordinate(0, i), site_coordinate(1, j), site_coordinate(2, k)};
+  }
+  /// The box spanned by the nodes.
+  [[nodiscard]] Box3 domain() const {
+    return {{nodes[0].front(), nodes[1].front(), nodes[2].front()},
+            {nodes[0].back(), nodes[1].back(), nodes[2].back()}};
+  }
+  /// The least distance of neighbouring nodes along any axis.
+  [[nodiscard]] double least_spacing() const;
+  /// Volume that site (i, j, k) stands for: its cell, or the part of the domain nearer to it than to other
+  /// sites along each axis.
+  [[nodiscard]] double site_volume(std::size_t i, std::size_t j, std::size_t k) const;
+};
+
+/// Numbers of an array of yours, which are read where they are; the array must last while they are used.
+using NumberSpan = std::variant<std::span<const float>, std::span<const double>,
+                                std::span<const std::uint8_t>, std::span<const std::int16_t>,
+                                std::span<const std::uint16_t>, std::span<const std::int32_t>>;
+
+/// A field on the sites of a grid: scalar or vector; mixed, with one value for a site whatever its materials,
+/// or with values of its own for each material. Give one of both.
+struct GridField {
+  std::string name;
+  std::string unit{};  ///< for texts; may be empty
+  int components = 1;
+  /// Mixed: component c at site s is `values[s * components + c]`.
+  NumberSpan values{};
+  /// Per material: the same for each material; empty for those that have no such field.
+  std::vector<NumberSpan> material_values{};
+};
+
+/// Simulation data of several materials on a rectilinear grid. The arrays remain yours: a call reads them
+/// where they are and keeps nothing of them. These alone are copied: floating-point fractions that do not add
+/// up to 1 within a millionth at each site, which are scaled; and what is not in the type that is computed
+/// with, float for fractions and fields, uint16 for labels.
+struct GridData {
+  std::string name = "data";  ///< for messages
+  RectilinearGrid grid;
+  std::vector<std::string> materials;
+  /// Volume fractions: one array per material, one number in [0, 1] per site. Their sums may be off by 5%.
+  std::vector<NumberSpan> fractions{};
+  /// In place of fractions: the number of the one material at each site, in an array of whole numbers.
+  NumberSpan labels{};
+  std::vector<GridField> fields{};
+};
+
+/// Throws Error, in one line that begins with the data's name, at the first thing that is wrong: a grid
+/// without volume, coordinates that do not ascend, arrays of the wrong length, numbers that are not finite,
+/// labels beyond the materials, both labels and fractions or none, fractions that do not add up to 1.
+void check(const GridData& data);
+
+/// The volume of each material, as fractions or labels say, in the cube of the unit of length. Throws Error
+/// as check() does.
+std::vector<double> material_volumes(const GridData& data);
+
+struct MultiMaterialData;
+
+/// GridData that own their arrays: what is read from files and made from scenes.
+class OwnedGridData {
+ public:
+  explicit OwnedGridData(std::unique_ptr<MultiMaterialData> data);
+  OwnedGridData(OwnedGridData&&) noexcept;
+  OwnedGridData& operator=(OwnedGridData&&) noexcept;
+  ~OwnedGridData();
+
+  /// The data, whose spans are valid as long as this object.
+  [[nodiscard]] GridData view() const;
+
+ private:
+  std::unique_ptr<MultiMaterialData> data_;
+};
+
+}  // namespace adamas

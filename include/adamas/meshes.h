@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "adamas/geometry.h"
+
+namespace adamas {
+
+// What calls return. The vectors are yours to look at or to move away.
+
+/// A surface of triangles on shared points, without materials: what isosurfaces are exported as.
+struct TriangleSurface {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of points, counterclockwise from outside
+  std::vector<Vec3> normals;                            ///< none, or of each point: a unit vector or zero
+  std::vector<float> values;                            ///< none, or of each point
+  std::string value_name = "value";                     ///< what the values are, in files that have names
+
+  /// Throws Error with `name` where there are normals or values but not one for each point, a number is not
+  /// finite, or a triangle has a point that is not there.
+  void check(const std::string& name) const;
+};
+
+/// Interfaces between materials: triangles on shared points, three or more of which may meet at an edge.
+struct InterfaceTriangles {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of points
+  /// The materials in front of each triangle, where its right-hand normal points to, and behind it.
+  std::vector<std::array<std::uint32_t, 2>> sides;
+  std::vector<std::string> materials;  ///< their names, by number
+};
+
+/// Tetrahedra of one material each, for solvers: neighbours share their points, and interfaces are faces.
+struct MaterialTetrahedra {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented
+  std::vector<std::uint32_t> tetrahedron_materials;
+  std::vector<std::string> materials;  ///< their names, by number
+};
+
+/// What a plane cuts out of data or of a mesh: convex polygons, each in one cell and of one material.
+struct Slice {
+  Plane plane;
+  std::vector<Vec3> points;             ///< corners, counterclockwise as seen from where the normal points to
+  std::vector<std::size_t> offsets{0};  ///< polygon p has the points offsets[p] to offsets[p + 1] - 1
+  std::vector<std::uint32_t> polygon_materials;
+  std::vector<std::size_t> polygon_cells;  ///< the number of the mesh's cell or of the grid's site
+  std::string field;                       ///< name and unit of the field that `values` are of; empty: none
+  std::vector<double> values;          ///< of each point, linear over polygons; NaN: the material has none
+  std::vector<std::string> materials;  ///< their names, by number
+  std::vector<double> material_areas;  ///< in the square of the unit of length
+  std::vector<std::array<Vec3, 2>> cell_edges;       ///< lines between cells
+  std::vector<std::array<Vec3, 2>> interface_edges;  ///< lines between materials; of data on a grid none
+};
+
+/// A named array of a mesh, which owns it: `components` values for each point or cell.
+struct ArrayView {
+  std::string_view name;
+  int components = 1;
+  std::variant<std::span<const double>, std::span<const float>, std::span<const std::int32_t>,
+               std::span<const std::uint8_t>, std::span<const std::string>>
+      values;
+};
+
+/// The arrays of a mesh of tetrahedra, which owns them.
+struct TetrahedraView {
+  std::span<const Vec3> points;
+  std::span<const std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented
+  std::vector<ArrayView> point_arrays, cell_arrays;          ///< of points and of tetrahedra
+  std::vector<ArrayView> mesh_arrays;                        ///< of the mesh as a whole
+};
+
+}  // namespace adamas

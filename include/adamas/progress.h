@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string_view>
+
+#include "adamas/error.h"
+
+namespace adamas {
+
+/// Receives the progress of long work and can stop it. Calls come from one thread at a time.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  /// `fraction` in [0, 1], or negative where the amount of work is not known; `stage` names what is being
+  /// done.
+  virtual void report(std::string_view stage, double fraction) = 0;
+  [[nodiscard]] virtual bool cancelled() const { return false; }
+
+  /// Throws Cancelled where the user asked to stop.
+  void check() const {
+    if (cancelled()) throw Cancelled();
+  }
+  /// The same, and reports.
+  void step(std::string_view stage, double fraction) {
+    check();
+    report(stage, fraction);
+  }
+};
+
+/// Reports to nobody, never cancels.
+class SilentProgress final : public Progress {
+ public:
+  void report(std::string_view, double) override {}
+  /// An instance for default arguments.
+  static SilentProgress& instance() {
+    static SilentProgress silent;
+    return silent;
+  }
+};
+
+/// Bounds the number of threads that all later calls of this process take; 0 means all cores. Results do not
+/// depend on it.
+void set_thread_limit(unsigned threads);
+
+}  // namespace adamas

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adamas/geometry.h"
+
+namespace adamas {
+
+enum class SampleType : std::uint8_t { kUint8, kUint16, kInt16, kFloat32 };
+
+/// Size of one sample.
+constexpr std::size_t sample_bytes(SampleType type) {
+  switch (type) {
+    case SampleType::kUint8:
+      return 1;
+    case SampleType::kUint16:
+    case SampleType::kInt16:
+      return 2;
+    case SampleType::kFloat32:
+      return 4;
+  }
+  return 0;
+}
+
+/// "uint8", "uint16", "int16", "float32".
+const char* sample_name(SampleType type);
+
+/// What a volume is, its samples apart: a regular grid of samples, i running fastest.
+struct VolumeGrid {
+  static constexpr std::array<Vec3, 3> kStraight{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+  std::array<std::uint64_t, 3> dimensions{};  ///< samples per axis
+  SampleType type = SampleType::kUint8;
+  Vec3 spacing{1, 1, 1};  ///< between neighbouring samples; positive
+  Vec3 origin;            ///< the place of the sample (0, 0, 0)
+  /// Unit vectors along which i, j and k ascend; not in one plane, and right-handed or not.
+  std::array<Vec3, 3> directions = kStraight;
+  /// What the coordinates of places are: "RAS", "LAS", "LPS" (what x, y and z ascend to: right or left,
+  /// anterior or posterior, superior), or another name of NRRD; empty where nothing says.
+  std::string space{};
+
+  [[nodiscard]] std::uint64_t plane_samples() const { return dimensions[0] * dimensions[1]; }
+  [[nodiscard]] std::uint64_t samples() const { return plane_samples() * dimensions[2]; }
+  /// Of one plane of equal k.
+  [[nodiscard]] std::uint64_t plane_bytes() const { return plane_samples() * sample_bytes(type); }
+  [[nodiscard]] std::uint64_t bytes() const { return plane_bytes() * dimensions[2]; }
+
+  /// Whether i, j and k ascend along x, y and z.
+  [[nodiscard]] bool is_straight() const { return directions == kStraight; }
+  /// Whether they run along x, y and z at all, in some order and sense.
+  [[nodiscard]] bool is_along_axes() const;
+  /// Whether they are left-handed: what turns to the left in the frame turns to the right in space.
+  [[nodiscard]] bool is_left_handed() const;
+
+  // The *frame* of a grid is the space in which it would be straight, with its first sample where it is:
+  // there one computes; what goes in and out is in space.
+  [[nodiscard]] Vec3 in_space(const Vec3& in_frame) const;
+  [[nodiscard]] Vec3 in_frame(const Vec3& in_space) const;
+  /// How much longer than in the frame a distance may be in space: 1 where the directions are orthogonal.
+  [[nodiscard]] double greatest_stretch() const;
+
+  /// From the first sample to the last, in the frame.
+  [[nodiscard]] Box3 frame_box() const;
+  /// The least box round all samples in space.
+  [[nodiscard]] Box3 box() const;
+
+  /// Throws Error with `name` where there is no sample, the samples take more bytes than can be counted (at
+  /// eight bytes each), a spacing is not positive, a place is not finite, or directions are no unit vectors
+  /// or lie in one plane.
+  void check(const std::string& name) const;
+};
+
+/// A volume that owns its samples.
+struct Volume {
+  VolumeGrid grid;
+  /// grid.bytes() of them, i running fastest, then j, in the machine's byte order.
+  std::vector<std::byte> samples;
+
+  /// The samples as numbers of the grid's type: std::uint8_t, std::uint16_t, std::int16_t or float. Throws
+  /// Error where the grid has another type.
+  template <class Sample>
+  [[nodiscard]] std::span<const Sample> as() const;
+};
+
+}  // namespace adamas

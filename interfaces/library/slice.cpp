@@ -1,0 +1,55 @@
+#include "adamas/slice.h"
+
+#include "core/data/grid_data.h"
+#include "interfaces/cross_section/cross_section.h"
+#include "interfaces/library/adaptive_mesh.h"
+
+namespace adamas {
+
+namespace {
+
+Slice to_slice(CrossSection&& section, const Plane& plane, const std::vector<std::string>& materials) {
+  Slice slice;
+  slice.plane = plane;
+  slice.materials = materials;
+  for (const SectionPiece& piece : section.pieces) {
+    slice.points.insert(slice.points.end(), piece.corners.begin(), piece.corners.end());
+    slice.offsets.push_back(slice.points.size());
+    slice.polygon_materials.push_back(piece.material.value);
+    slice.polygon_cells.push_back(piece.cell);
+    slice.values.insert(slice.values.end(), piece.values.begin(), piece.values.end());
+  }
+  slice.material_areas = std::move(section.material_area);
+  slice.cell_edges = std::move(section.cell_edges);
+  slice.interface_edges = std::move(section.interface_edges);
+  return slice;
+}
+
+std::optional<FieldChoice> chosen(const std::vector<FieldInfo>& fields, const SliceFieldOptions& options,
+                                  const std::string& source) {
+  if (options.field.empty()) return {};
+  return find_field(fields, options.field, source);
+}
+
+}  // namespace
+
+Slice slice(const AdaptiveMesh& mesh, const Plane& plane, const SliceFieldOptions& options) {
+  const ResampledMesh& cut = mesh.contents().mesh;
+  const auto field = chosen(cut.fields, options, cut.source);
+  Slice result = to_slice(
+      cross_section(cut, plane, field, options.plain ? SectionMode::kPlain : SectionMode::kPerMaterial),
+      plane, cut.materials);
+  if (field) result.field = field_label(cut.fields, *field);
+  return result;
+}
+
+Slice slice(const GridData& data, const Plane& plane, const SliceFieldOptions& options) {
+  const MultiMaterialData cut = to_multi_material_data(data);
+  const std::vector<FieldInfo> fields = field_infos(cut);
+  const auto field = chosen(fields, options, cut.source);
+  Slice result = to_slice(cross_section(cut, plane, field), plane, cut.materials);
+  if (field) result.field = field_label(fields, *field);
+  return result;
+}
+
+}  // namespace adamas

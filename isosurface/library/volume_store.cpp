@@ -1,0 +1,232 @@
+#include "adamas/volume_store.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/base/output_file.h"
+#include "core/data/volume_placement.h"
+#include "isosurface/extraction/surface_extractor.h"
+#include "isosurface/extraction/surface_normals.h"
+#include "isosurface/storage/restore.h"
+#include "isosurface/storage/sample_range.h"
+#include "isosurface/storage/store_builder.h"
+
+namespace adamas {
+
+namespace {
+
+/// Calls `work`, whose errors name the store.
+template <class Work>
+auto naming(const std::string& name, Work&& work) {
+  try {
+    return work();
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {
+    if (std::string_view(e.what()).starts_with(name)) throw;
+    fail("{}: {}", name, e.what());
+  }
+}
+
+std::string box_text(const Box3& box) {
+  const auto& [low, high] = box;
+  return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", low.x, high.x, low.y, high.y, low.z,
+                     high.z);
+}
+
+/// Throws Error where no surface can be.
+void check_request(const VolumeGrid& grid, const IsosurfaceRequest& request) {
+  if (!std::isfinite(request.isovalue)) fail("expected a finite isovalue, found {}", request.isovalue);
+  if (!std::isfinite(request.error) || request.error < 0)
+    fail("expected an isosurface error of at least 0, found {}", request.error);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.dimensions[axis] < 2)
+      fail("expected two samples or more along each axis, found {} along {}", grid.dimensions[axis],
+           "xyz"[axis]);
+  }
+  const Box3 box = grid.frame_box();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(box.min[axis] < box.max[axis])) {
+      fail("expected samples at places that differ, found all at {} along {}", box.min[axis], "xyz"[axis]);
+    }
+  }
+}
+
+/// The request in the grid's frame.
+SurfaceRequest to_surface_request(const VolumeGrid& grid, const IsosurfaceRequest& request) {
+  check_request(grid, request);
+  SurfaceRequest result;
+  result.isovalue = request.isovalue;
+  result.error = request.error / grid.greatest_stretch();
+  result.max_triangles = request.max_triangles;
+  result.strict = request.strict;
+  result.others_follow = true;
+  if (!request.region) return result;
+  FrameRegion region = region_in_frame(grid, *request.region);
+  const Box3 box = grid.frame_box();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (region.box.min[axis] < box.max[axis] && region.box.max[axis] > box.min[axis]) continue;
+    fail("expected a region in {}, found {}", box_text(grid.box()), box_text(*request.region));
+  }
+  result.region = region.box;
+  result.sides = std::move(region.sides);
+  return result;
+}
+
+}  // namespace
+
+/// A store that is open, whatever the type of its samples.
+class VolumeStore::Contents {
+ public:
+  Contents(std::unique_ptr<StoreFile> file, std::size_t memory) : file_(std::move(file)), memory_(memory) {}
+  virtual ~Contents() = default;
+
+  StoreFile& file() { return *file_; }
+  [[nodiscard]] std::size_t memory() const { return memory_; }
+  [[nodiscard]] const VolumeGrid& grid() const { return file_->header().grid; }
+
+  virtual std::optional<std::array<double, 2>> range() = 0;
+  virtual Isosurface isosurface(const IsosurfaceRequest& request, Progress& progress) = 0;
+
+ private:
+  std::unique_ptr<StoreFile> file_;
+  std::size_t memory_;
+};
+
+template <class Sample>
+class VolumeStore::ContentsOf final : public Contents {
+ public:
+  using Contents::Contents;
+
+  std::optional<std::array<double, 2>> range() override {
+    const auto found = sample_range<Sample>(open().pages);
+    if (!found) fail("expected to find the range of the samples, found the directory damaged");
+    return (*found)[0] <= (*found)[1] ? found : std::nullopt;
+  }
+
+  Isosurface isosurface(const IsosurfaceRequest& request, Progress& progress) override {
+    const SurfaceRequest wanted = to_surface_request(grid(), request);
+    try {
+      return extract(wanted, request.normals, progress);
+    } catch (...) {
+      // What was half done is not for the next call.
+      opened_.reset();
+      throw;
+    }
+  }
+
+ private:
+  struct Opened {
+    explicit Opened(Contents& of) : pages(of.file(), 0, of.memory()), extractor(pages) {}
+    StoredPages<OrderedWord<Sample>> pages;
+    SurfaceExtractor<Sample> extractor;
+  };
+
+  Opened& open() {
+    if (!opened_) opened_ = std::make_unique<Opened>(*this);
+    return *opened_;
+  }
+
+  Isosurface extract(const SurfaceRequest& wanted, bool normals, Progress& progress) {
+    auto& [pages, extractor] = open();
+    ExtractedSurface found = extractor.extract(wanted, progress);
+    Isosurface result;
+    result.max_error = grid().greatest_stretch() * found.max_error;
+    result.tetrahedra = found.tetrahedra;
+    result.diamonds = found.diamonds;
+    if (normals) {
+      SurfaceNormals own = surface_normals<Sample>(pages, found.contour, progress);
+      if (wanted.strict && !own.lost.empty())
+        fail("{} is damaged, on which normals depend", page_name(own.lost.front()));
+      result.surface.normals = std::move(own.normals);
+      for (const PageId& page : own.lost) {
+        if (std::find(found.lost.begin(), found.lost.end(), page) == found.lost.end())
+          found.lost.push_back(page);
+      }
+    }
+    result.damaged_pages = found.lost.size();
+    result.surface.points = std::move(found.contour.points);
+    result.surface.triangles = std::move(found.contour.triangles);
+    place_in_space(grid(), result.surface);
+    return result;
+  }
+
+  std::unique_ptr<Opened> opened_;  ///< none before anything is asked for
+};
+
+VolumeStore::VolumeStore(std::unique_ptr<Contents> contents) : contents_(std::move(contents)) {}
+VolumeStore::VolumeStore(VolumeStore&&) noexcept = default;
+VolumeStore& VolumeStore::operator=(VolumeStore&&) noexcept = default;
+VolumeStore::~VolumeStore() = default;
+
+VolumeStore VolumeStore::open(const std::filesystem::path& path, const OpenOptions& options) {
+  auto file = std::make_unique<StoreFile>(path, options.mapped ? Paging::kMap : Paging::kRead);
+  return with_sample_type(file->header().grid.type, [&](auto sample) {
+    return VolumeStore(std::make_unique<ContentsOf<decltype(sample)>>(std::move(file), options.memory));
+  });
+}
+
+void VolumeStore::build(const std::filesystem::path& path, const VolumeGrid& grid, const PlaneSource& planes,
+                        const BuildOptions& options, Progress& progress) {
+  grid.check(path.string());
+  constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n > kMost) fail("{}: expected at most {} samples along each axis, found {}", path.string(), kMost, n);
+  }
+  if (options.subtree_depth < 0 || options.subtree_depth > 2)
+    fail("{}: expected a depth of subtrees from 0 to 2, found {}", path.string(), options.subtree_depth);
+  StoreOptions how;
+  how.coding = options.by_split_edges ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
+  how.subtree_depth = options.subtree_depth;
+  how.gradients = options.gradients;
+  if (!options.scratch.empty()) how.scratch = options.scratch;
+  OutputFile file(path);
+  build_store(file.temporary(), path.string(), grid, planes, how, progress);
+  file.commit();
+}
+
+void VolumeStore::build(const std::filesystem::path& path, const VolumeGrid& grid,
+                        std::span<const std::byte> samples, const BuildOptions& options, Progress& progress) {
+  grid.check(path.string());
+  if (samples.size() != grid.bytes())
+    fail("{}: expected {} bytes of samples, found {}", path.string(), grid.bytes(), samples.size());
+  const std::size_t plane = grid.plane_bytes();
+  const auto copy = [samples, plane](std::uint64_t k, std::span<std::byte> to) {
+    std::memcpy(to.data(), samples.data() + k * plane, plane);
+  };
+  build(path, grid, copy, options, progress);
+}
+
+const VolumeGrid& VolumeStore::grid() const { return contents_->grid(); }
+
+int VolumeStore::levels() const { return contents_->file().grid().top() + 1; }
+
+std::uint64_t VolumeStore::file_bytes() const { return contents_->file().size(); }
+
+std::optional<std::array<double, 2>> VolumeStore::range() {
+  return naming(contents_->file().name(), [&] { return contents_->range(); });
+}
+
+Isosurface VolumeStore::isosurface(const IsosurfaceRequest& request, Progress& progress) {
+  return naming(contents_->file().name(), [&] { return contents_->isosurface(request, progress); });
+}
+
+Volume VolumeStore::restore(const std::optional<Box3>& region, int level, Progress& progress) {
+  std::optional<Box3> in_frame;
+  if (region) in_frame = region_in_frame(grid(), *region).box;
+  const std::string& name = contents_->file().name();
+  const RestoredPart part = restored_part(grid(), level, in_frame, name);
+  Volume volume{part.grid, {}};
+  volume.samples.reserve(part.grid.bytes());
+  const auto append = [&volume](std::span<const std::byte> plane) {
+    volume.samples.insert(volume.samples.end(), plane.begin(), plane.end());
+  };
+  naming(name, [&] { adamas::restore(contents_->file(), 0, part, contents_->memory(), append, progress); });
+  return volume;
+}
+
+}  // namespace adamas
