@@ -1,4 +1,4 @@
-#include "interfaces/cutting/cell_division.h"
+#include "interfaces/cutting/cutting_steps.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -5,11 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "interfaces/cutting/cell_division.h"
-#include "interfaces/cutting/drop_specks.h"
+#include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/cutting/local_changes.h"
-#include "interfaces/cutting/mesh_improvement.h"
-#include "interfaces/cutting/restore_volumes.h"
 #include "interfaces/resampling/body_comparison.h"
 #include "interfaces/resampling/interface_comparison.h"
 

@@ -1,8 +1,7 @@
-#include "interfaces/cutting/drop_specks.h"
-
 #include <algorithm>
 #include <map>
 
+#include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/network/disjoint_sets.h"
 
 namespace adamas {

@@ -1,7 +1,6 @@
-#include "interfaces/cutting/mesh_improvement.h"
-
 #include <algorithm>
 
+#include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/cutting/local_changes.h"
 
 namespace adamas {

@@ -1,10 +1,9 @@
-#include "interfaces/cutting/restore_volumes.h"
-
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/cutting/local_changes.h"
 
 namespace adamas {

@@ -1,4 +1,4 @@
-#include "interfaces/network/coincident_triangles.h"
+#include "interfaces/network/mending.h"
 
 #include <algorithm>
 #include <array>

@@ -77,4 +77,8 @@ class EdgeFans {
   std::vector<std::uint32_t> starts_;  ///< edge i has the half edges starts_[i] to starts_[i + 1]
 };
 
+/// The edges of a welded interface mesh round which three materials or more meet, each once, by its lower and
+/// its higher point.
+std::vector<std::array<std::uint32_t, 2>> junction_lines(const InterfaceMesh& mesh);
+
 }  // namespace adamas

@@ -1,4 +1,4 @@
-#include "interfaces/network/gap_closing.h"
+#include "interfaces/network/mending.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #include "interfaces/network/mending.h"
 
 #include "interfaces/network/check.h"
-#include "interfaces/network/sheet_orientation.h"
 
 namespace adamas {
 

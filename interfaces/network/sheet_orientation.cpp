@@ -1,4 +1,4 @@
-#include "interfaces/network/sheet_orientation.h"
+#include "interfaces/network/mending.h"
 
 #include <algorithm>
 #include <array>

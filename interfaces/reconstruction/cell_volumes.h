@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "core/data/rectilinear_grid.h"
+#include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/positive_part.h"
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
-#include "interfaces/reconstruction/tetrahedron_pieces.h"
 
 namespace adamas {
 

@@ -7,7 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/plane.h"
-#include "interfaces/reconstruction/box_part.h"
+#include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_values.h"
 
@@ -34,7 +34,7 @@ double plane_distance(const Vec3& towards, const Vec3& size, double f) {
   int kept = 0;
   for (int step = 0; step < 60 && high - low > 1e-15 * size.x; ++step) {
     middle = low + (high - low) * below / (below - above);
-    const double value = part_below(m, middle) - f;
+    const double value = box_volume_below(m, middle) - f;
     if (std::abs(value) < 1e-15) break;
     if (value < 0) {
       low = middle, below = value;

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/label_faces.h"
 
 namespace adamas {
 
@@ -15,6 +16,116 @@ namespace {
 /// Taubin's steps: forward and back. Waves of more than some forty voxels, for which the two cancel, stay.
 constexpr int kRounds = 24;
 constexpr double kForward = 0.6, kBack = -0.611;
+
+/// The faces between voxels of different labels, each twice: once for the voxel on either side. The faces of
+/// one side are a surface, in which each has a neighbour across each of its edges, but for edges on the
+/// domain's boundary. Where only two opposite ones of the four voxels round an edge share a label, the
+/// surface bends round each of them.
+class LabelFaces {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  /// A direction is 2 * axis, and one more where it points down the axis.
+  static constexpr int kDirections = 6;
+  struct Face {
+    std::uint32_t site;  ///< whose face it is
+    int direction;       ///< of the way out of the site's voxel
+  };
+
+  explicit LabelFaces(const MultiMaterialData& data);
+
+  [[nodiscard]] std::size_t size() const { return faces_.size(); }
+  [[nodiscard]] const Face& at(std::size_t face) const { return faces_[face]; }
+  /// The number of a site's face in a direction, kNone where the site has none there.
+  [[nodiscard]] std::uint32_t find(std::size_t site, int direction) const {
+    const unsigned mask = mask_[site], bit = 1u << static_cast<unsigned>(direction);
+    if ((mask & bit) == 0) return kNone;
+    return first_[site] + static_cast<std::uint32_t>(std::popcount(mask & (bit - 1)));
+  }
+  /// The faces across the edges: up and down the first other axis (in the cyclic order of axes), and up and
+  /// down the second.
+  [[nodiscard]] std::array<std::uint32_t, 4> neighbours(std::size_t face) const;
+  /// The middle of a face: halfway to the other site along its axis for data of points.
+  [[nodiscard]] Vec3 middle(std::size_t face) const;
+
+ private:
+  /// The site next to another one in a direction; the number of sites where there is none.
+  [[nodiscard]] std::size_t step(std::size_t site, int direction) const;
+  [[nodiscard]] std::array<std::size_t, 3> place(std::size_t site) const {
+    return {site % n_[0], site / n_[0] % n_[1], site / (n_[0] * n_[1])};
+  }
+
+  const MultiMaterialData& data_;
+  std::array<std::size_t, 3> n_;
+  std::vector<std::uint8_t> mask_;    // by site: bits of the directions of its faces
+  std::vector<std::uint32_t> first_;  // by site: its first face
+  std::vector<Face> faces_;
+};
+
+LabelFaces::LabelFaces(const MultiMaterialData& data)
+    : data_(data), n_{data.grid.sites(0), data.grid.sites(1), data.grid.sites(2)} {
+  const std::size_t count = data.grid.site_count();
+  mask_.resize(count);
+  parallel_for(count, 1 << 14, [&](std::size_t site) {
+    unsigned mask = 0;
+    for (int d = 0; d < kDirections; ++d) {
+      const std::size_t other = step(site, d);
+      if (other < count && data.labels[other] != data.labels[site]) mask |= 1u << static_cast<unsigned>(d);
+    }
+    mask_[site] = static_cast<std::uint8_t>(mask);
+  });
+  std::uint64_t total = 0;
+  first_.resize(count);
+  for (std::size_t site = 0; site < count; ++site) {
+    first_[site] = static_cast<std::uint32_t>(total);
+    total += static_cast<std::uint64_t>(std::popcount(unsigned{mask_[site]}));
+    if (total >= kNone) fail("{}: expected fewer faces between labels, found too many", data.source);
+  }
+  faces_.resize(total);
+  parallel_for(count, 1 << 14, [&](std::size_t site) {
+    for (int d = 0; d < kDirections; ++d) {
+      const std::uint32_t face = find(site, d);
+      if (face != kNone) faces_[face] = {static_cast<std::uint32_t>(site), d};
+    }
+  });
+}
+
+std::size_t LabelFaces::step(std::size_t site, int direction) const {
+  const auto axis = static_cast<std::size_t>(direction / 2);
+  const std::size_t at = place(site)[axis], stride = axis == 0 ? 1 : axis == 1 ? n_[0] : n_[0] * n_[1];
+  if (direction % 2 == 0) return at + 1 < n_[axis] ? site + stride : n_[0] * n_[1] * n_[2];
+  return at > 0 ? site - stride : n_[0] * n_[1] * n_[2];
+}
+
+std::array<std::uint32_t, 4> LabelFaces::neighbours(std::size_t face) const {
+  const auto [site, out] = faces_[face];
+  const std::uint16_t label = data_.labels[site];
+  std::array<std::uint32_t, 4> result{};
+  for (int e = 0; e < 4; ++e) {
+    const int axis = (out / 2 + 1 + e / 2) % 3, along = 2 * axis + e % 2, back = along ^ 1;
+    const std::size_t beside = step(site, along);
+    auto& found = result[static_cast<std::size_t>(e)];
+    if (beside >= mask_.size()) {
+      found = kNone;
+    } else if (data_.labels[beside] != label) {
+      found = find(site, along);  // round the voxel
+    } else {
+      const std::size_t ahead = step(beside, out);
+      found = data_.labels[ahead] == label ? find(ahead, back) : find(beside, out);
+    }
+  }
+  return result;
+}
+
+Vec3 LabelFaces::middle(std::size_t face) const {
+  const auto [site, out] = faces_[face];
+  const std::array<std::size_t, 3> p = place(site);
+  Vec3 result = data_.grid.site(p[0], p[1], p[2]);
+  const int axis = out / 2;
+  const std::size_t i = p[static_cast<std::size_t>(axis)], low = out % 2 == 0 ? i : i - 1;
+  const auto& x = data_.grid.nodes[static_cast<std::size_t>(axis)];
+  result[axis] = data_.grid.centering == Centering::kCells ? x[low + 1] : 0.5 * (x[low] + x[low + 1]);
+  return result;
+}
 
 /// The faces between labels, with places that are smooth and the normals of these.
 class SmoothFaces {

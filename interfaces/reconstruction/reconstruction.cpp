@@ -7,7 +7,6 @@
 #include "core/data/contact_mesh.h"
 #include "interfaces/reconstruction/flakes.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/total_closing.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
 namespace adamas {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interfaces/reconstruction/box_part.h"
+#include "interfaces/reconstruction/cut_volumes.h"
 
 namespace adamas {
 
@@ -49,7 +49,7 @@ std::array<Vec3, 2> across(const Vec3& n) {
 double Slab::part_of_cell(const Vec3& centre) const {
   const Sides sides(normal);
   const double y = height(centre);
-  return part_below(sides.m, 0.5 * thickness - y) - part_below(sides.m, -0.5 * thickness - y);
+  return box_volume_below(sides.m, 0.5 * thickness - y) - box_volume_below(sides.m, -0.5 * thickness - y);
 }
 
 std::optional<Slab> guess_sheet(const SheetWindow& window) {
@@ -90,7 +90,7 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
     const double w = weight(p), y = slab.height(p);
     if (w == 0 || window.known[c] == 0 || std::abs(y) > kFarthest) continue;
     held += w * static_cast<double>(window.fraction[c]);
-    area += w * (part_below(sides.m, 0.05 - y) - part_below(sides.m, -0.05 - y)) / 0.1;
+    area += w * (box_volume_below(sides.m, 0.05 - y) - box_volume_below(sides.m, -0.05 - y)) / 0.1;
   }
   if (!(area > 0)) return {};
   slab.thickness = held / area;

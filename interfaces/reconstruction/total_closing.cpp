@@ -1,5 +1,3 @@
-#include "interfaces/reconstruction/total_closing.h"
-
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -11,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/volume_correction.h"
 
 namespace adamas {
 

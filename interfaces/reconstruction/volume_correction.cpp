@@ -9,7 +9,6 @@
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/linear_system.h"
-#include "interfaces/reconstruction/total_closing.h"
 
 namespace adamas {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interfaces/network/junction_lines.h"
+#include "interfaces/network/edge_fans.h"
 #include "interfaces/network/network_mesh.h"
 
 namespace adamas {

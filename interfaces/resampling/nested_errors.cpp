@@ -2,11 +2,92 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
-#include "interfaces/resampling/tree_errors.h"
+#include "core/base/parallel.h"
 
 namespace adamas {
+
+namespace {
+
+/// All tetrahedra of the tree.
+std::vector<TetrahedronId> all_tetrahedra(const HierarchyTopology& hierarchy) {
+  std::vector<TetrahedronId> result = hierarchy.roots();
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (hierarchy.is_leaf(result[i])) continue;
+    for (const TetrahedronId child : hierarchy.children(result[i])) result.push_back(child);
+  }
+  return result;
+}
+
+/// Errors of all fields in one tetrahedron by itself.
+std::vector<FieldError> field_errors(const Resampler& resampler, TetrahedronId t) {
+  const ResamplingSource& source = resampler.source();
+  std::vector<FieldError> errors(source.fields->fields().size());
+  const auto elements = resampler.elements(t);
+  if (elements.empty()) return errors;
+  const auto cell = make_tree_cell(resampler, t);
+  const auto displaced = measure_field_errors(source, cell->view, elements, errors);
+  const std::vector<double> limits(errors.size(), 0.0);
+  measure_displaced_errors(
+      source, cell->view, displaced, resampler.displacement(),
+      [&](const Box3&, MaterialId, const auto& visit) { visit(cell->view); }, limits, errors,
+      NoPartNear::kHasNoValue);
+  return errors;
+}
+
+}  // namespace
+
+std::unique_ptr<TreeCell> make_tree_cell(const Resampler& resampler, TetrahedronId t) {
+  CellOwnership owners;
+  resampler.ownership(t, owners);
+  if (!owners.pure()) keep_owners(owners.problem);
+  auto cell = std::make_unique<TreeCell>(TreeCell{{}, {resampler.frame(t), owners, {}, {}}});
+  const auto v = resampler.hierarchy().vertices(t);
+  for (std::size_t i = 0; i < 4; ++i) {
+    cell->view.vertices[i] = &cell->vertices[i];
+    for (const auto& candidate : owners.problem.candidates) {
+      const BodyId body(candidate.owner);
+      cell->vertices[i].rows.push_back({body, resampler.row(v[i], body)});
+    }
+  }
+  partition_cell(cell->view.owners, cell->view.parts);
+  return cell;
+}
+
+std::vector<double> interface_errors_of_tree(const Resampler& resampler) {
+  const auto& hierarchy = resampler.hierarchy();
+  const InterfaceNetwork& network = *resampler.source().network;
+  const std::vector<TetrahedronId> all = all_tetrahedra(hierarchy);
+  std::vector<double> errors(hierarchy.tetrahedron_slots(), 0.0);
+  parallel_for(all.size(), 16, [&](std::size_t i) {
+    const Tetrahedron cell = resampler.frame(all[i]);
+    Box3 box;
+    for (const Vec3& corner : cell.corners) box.extend(corner);
+    std::vector<std::uint32_t> triangles;
+    network.tree().overlapping(box, triangles);
+    std::erase_if(triangles, [&](std::uint32_t t) {
+      const auto& corners = network.triangle_corners(t);
+      return !meets(cell, corners[0], corners[1], corners[2]);
+    });
+    CellOwnership owners;
+    resampler.ownership(all[i], owners);
+    const double all_of_them = std::numeric_limits<double>::max();
+    const InterfaceError error = estimate_interface_error(network, cell, owners, triangles, all_of_them,
+                                                          hierarchy.payload(all[i]).trusted);
+    errors[all[i].value] = std::min(error.distance, cell.diameter());
+  });
+  return errors;
+}
+
+std::vector<std::vector<FieldError>> field_errors_of_tree(const Resampler& resampler) {
+  const std::vector<TetrahedronId> all = all_tetrahedra(resampler.hierarchy());
+  std::vector<std::vector<FieldError>> errors(resampler.hierarchy().tetrahedron_slots());
+  parallel_for(all.size(), 16,
+               [&](std::size_t i) { errors[all[i].value] = field_errors(resampler, all[i]); });
+  return errors;
+}
 
 std::vector<DiamondId> diamonds_in_order(const HierarchyTopology& hierarchy) {
   struct Ranked {

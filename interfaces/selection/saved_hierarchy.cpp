@@ -6,7 +6,6 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "interfaces/resampling/nested_errors.h"
-#include "interfaces/resampling/tree_errors.h"
 
 namespace adamas {
 

@@ -7,13 +7,12 @@
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/network/body_topology.h"
 #include "interfaces/network/network_mesh.h"
+#include "interfaces/network/triangle_contacts.h"
 #include "interfaces/resampling/output.h"
 #include "interfaces/simplification/line_shortening.h"
 #include "interfaces/simplification/openmesh_patches.h"
-#include "interfaces/simplification/patch_decimater.h"
-#include "interfaces/simplification/patch_improvement.h"
+#include "interfaces/simplification/patch_changes.h"
 #include "interfaces/simplification/surface_guard.h"
-#include "interfaces/network/triangle_contacts.h"
 
 namespace adamas {
 

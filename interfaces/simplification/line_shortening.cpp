@@ -5,7 +5,7 @@
 #include <queue>
 
 #include "interfaces/simplification/openmesh_patches.h"
-#include "interfaces/simplification/patch_decimater.h"
+#include "interfaces/simplification/patch_changes.h"
 #include "interfaces/simplification/surface_guard.h"
 
 namespace adamas {

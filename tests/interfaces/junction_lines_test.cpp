@@ -1,7 +1,6 @@
-#include "interfaces/network/junction_lines.h"
-
 #include <gtest/gtest.h>
 
+#include "interfaces/network/edge_fans.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {

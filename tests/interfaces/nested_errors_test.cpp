@@ -5,7 +5,6 @@
 #include <memory>
 #include <random>
 
-#include "interfaces/resampling/tree_errors.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/ownership_problems.h"
 

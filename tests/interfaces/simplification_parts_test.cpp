@@ -6,7 +6,7 @@
 #include "interfaces/network/triangle_contacts.h"
 #include "interfaces/simplification/near_field.h"
 #include "interfaces/simplification/openmesh_patches.h"
-#include "interfaces/simplification/patch_improvement.h"
+#include "interfaces/simplification/patch_changes.h"
 #include "interfaces/simplification/surface_guard.h"
 #include "tests/interfaces/network_meshes.h"
 

@@ -5,7 +5,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/network/body_topology.h"
 #include "interfaces/network/check.h"
-#include "interfaces/network/junction_lines.h"
+#include "interfaces/network/edge_fans.h"
 #include "interfaces/network/network_measures.h"
 #include "interfaces/network/triangle_contacts.h"
 #include "tests/interfaces/simplification_scenes.h"

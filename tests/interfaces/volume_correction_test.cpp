@@ -11,7 +11,7 @@
 #include "datasets/scene.h"
 #include "datasets/scene_sampling.h"
 #include "interfaces/reconstruction/cell_volumes.h"
-#include "interfaces/reconstruction/positive_part.h"
+#include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/reconstruction/site_cell.h"
 #include "tests/support/half_space_fractions.h"

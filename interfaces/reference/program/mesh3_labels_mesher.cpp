@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "interfaces/reference/program/mesh3_reply.h"
 #include "interfaces/reference/program/meshers.h"
 
 namespace adamas::reference {
@@ -69,7 +68,7 @@ MesherReply run_mesh3_labels(const MesherRequest& request) {
                           cell_radius_edge_ratio = c.radius_edge_ratio);
   const auto complex = CGAL::make_mesh_3<Complex>(domain, criteria, no_perturb(), no_exude());
   reply.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  take(complex, reply);
+  take_complex(complex, reply);
   if (reply.tetrahedra.empty()) reply.failure = "Mesh_3 made no tetrahedra";
   return reply;
 }

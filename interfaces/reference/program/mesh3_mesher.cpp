@@ -15,7 +15,6 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "interfaces/reference/program/mesh3_reply.h"
 #include "interfaces/reference/program/meshers.h"
 
 namespace adamas::reference {
@@ -110,7 +109,7 @@ MesherReply run_mesh3(const MesherRequest& request) {
     CGAL::exude_mesh_3(complex);
   }
   reply.seconds = seconds_since(start);
-  take(complex, reply);
+  take_complex(complex, reply);
   if (reply.tetrahedra.empty()) reply.failure = "Mesh_3 made no tetrahedra";
   return reply;
 }

@@ -1,4 +1,4 @@
-#include "interfaces/reconstruction/tetrahedron_pieces.h"
+#include "interfaces/reconstruction/cut_volumes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,32 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
+
+#include "core/geometry/partition.h"
 
 namespace adamas {
+
+/// The volume, in relation to the whole, of what lies below the plane x + y + z = s in a box round the origin
+/// with the sides m, which ascend (Scardovelli and Zaleski, Analytical relations connecting linear interfaces
+/// and volume fractions in rectangular grids, 2000).
+inline double box_volume_below(const std::array<double, 3>& m, double s) {
+  const double total = m[0] + m[1] + m[2], alpha = s + 0.5 * total;
+  if (alpha <= 0) return 0;
+  if (alpha >= total) return 1;
+  // From the nearer corner, where nothing cancels.
+  if (alpha > 0.5 * total) return 1 - box_volume_below(m, -s);
+  if (m[1] <= 1e-9 * m[2]) return alpha / m[2];
+  if (m[0] <= 1e-6 * m[2]) {
+    const double a = alpha;
+    const double area = a < m[1] ? a * a / 2 : m[1] * (a - m[1] / 2);
+    return area / (m[1] * m[2]);
+  }
+  const auto cube = [](double x) { return x > 0 ? x * x * x : 0; };
+  return (cube(alpha) - cube(alpha - m[0]) - cube(alpha - m[1]) - cube(alpha - m[2]) +
+          cube(alpha - m[0] - m[1])) /
+         (6 * m[0] * m[1] * m[2]);
+}
 
 /// The part of a tetrahedron where a linear function with these values at its corners is positive.
 struct PositivePart {
@@ -70,5 +94,20 @@ inline PositivePart positive_part(const std::array<double, 4>& v) {
   g[o[3]] = by_q * a * ad * ad + by_t * b * bd * bd;
   return result;
 }
+
+/// A tetrahedron in another one, by the weights of its corners there, and its volume in relation to it.
+struct TetrahedronPiece {
+  std::array<Weights, 4> corners;
+  double volume;
+};
+
+/// The other one itself.
+inline constexpr TetrahedronPiece kWholeTetrahedron{
+    {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, 1};
+
+/// Leaves of the pieces what lies where the linear function with these values at the corners is positive.
+/// `scratch` is room to work in.
+void keep_positive(const std::array<double, 4>& values, std::vector<TetrahedronPiece>& pieces,
+                   std::vector<TetrahedronPiece>& scratch);
 
 }  // namespace adamas
