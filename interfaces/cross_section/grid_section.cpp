@@ -107,7 +107,7 @@ class GridSection {
     return choice_->scalar(row);
   }
 
-  /// Trilinear between the points of a grid.
+  /// The value at a point by trilinear interpolation between the points of the grid.
   [[nodiscard]] double interpolated(const Vec3& p) const {
     Site low{};
     std::array<double, 3> t{};

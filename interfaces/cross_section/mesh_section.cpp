@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;
 
-/// What is cut, and how; shared by all threads.
+/// The mesh, the plane and the chosen field, which all threads read.
 struct Job {
   const ResampledMesh& mesh;
   PlaneSides sides;
@@ -49,15 +49,16 @@ class CellCutter {
     }
     keep_owners(ownership_.problem);
     if (has_area) divide_polygon();
-    // Also of cells that touch the plane with an edge: the interface may lie in the face between two such.
+    // Cells that touch the plane with an edge only count as well: the interface may lie in the face between
+    // two of them.
     contacts_.clear();
     contact_polygons(ownership_.problem, contacts_);
     for (const ContactPolygon& contact : contacts_) add_contact(contact);
   }
 
  private:
-  /// The corners of the plane's part of the cell as weights, in a round; false where the cell lies on one
-  /// side. Fewer than three where it only touches the plane.
+  /// Finds the corners of the plane's part of the cell as weights, in cyclic order; there are fewer than
+  /// three where the cell only touches the plane. Returns false where the cell lies on one side.
   bool find_polygon(const std::array<std::uint32_t, 4>& vertices) {
     std::array<std::size_t, 4> up{}, down{};
     std::size_t ups = 0, downs = 0;

@@ -8,7 +8,7 @@ namespace adamas {
 
 namespace {
 
-/// Of a convex polygon, in either direction.
+/// Whether a convex polygon, whichever way it runs, contains a point.
 bool contains(const std::vector<PlanePoint>& polygon, const PlanePoint& p) {
   bool left = false, right = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -35,8 +35,7 @@ CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std
   for (const Segment& s : section_edges(network_mesh(network, {}, source), plane, box))
     lines.push_back({frame.coordinates(s[0]), frame.coordinates(s[1])});
 
-  // The frame's origin lies on the plane's normal, but not in the plane where that is at right angles to an
-  // axis.
+  // Where the plane is at right angles to an axis, the frame's origin lies on its normal but not in it.
   const Vec3& normal = sides.normal();
   const Vec3 base = frame.origin + dot(normal, plane.origin - frame.origin) * normal;
   const bool mirrored = dot(cross(frame.right, frame.up), plane.normal) < 0;

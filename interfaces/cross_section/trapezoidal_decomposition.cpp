@@ -149,7 +149,7 @@ std::vector<Trapezoid> Sweep::run() {
   auto edge = graph_.edges.begin();
   for (std::uint32_t v = 0; v < graph_.exact.size(); ++v) {
     const auto [first, last] = active_.equal_range(v);
-    // What is open round the vertex ends there, and what begins is open from there.
+    // The trapezoids round the vertex end there, and others begin.
     const auto before = first == active_.begin() ? first : std::prev(first);
     for (auto bottom = before; bottom != last && std::next(bottom) != active_.end(); ++bottom)
       close(*bottom, *std::next(bottom), v);

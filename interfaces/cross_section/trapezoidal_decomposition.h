@@ -10,8 +10,8 @@ namespace adamas {
 using PlanePoint = std::array<double, 2>;
 using PlaneSegment = std::array<PlanePoint, 2>;
 
-/// What is bounded by two segments and by two lines along the second axis; a triangle where the segments
-/// meet.
+/// The part of the plane between two segments, from one line along the second axis to another; a triangle
+/// where the segments meet.
 struct Trapezoid {
   std::vector<PlanePoint> corners;  ///< three or four, counter-clockwise
   /// The mean of the corners, which lies inside.

@@ -1,10 +1,9 @@
-#include "interfaces/cutting/cutting_steps.h"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <map>
 
 #include "core/geometry/divider.h"
+#include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/network/domain_faces.h"
 
 namespace adamas {
@@ -181,14 +180,14 @@ class Division {
     if (like(c[0]) == 3) return divide_three_and_one(v(0), v(1), v(2), v(3));
     if (like(c[0]) == 1) return divide_four(cell);
     if (like(c[2]) == 1) return divide_two_and_two_others(cell, c);
-    // Two and two: the others of the first one's owner next.
+    // With two corners each, the other corner of the first one's owner comes next.
     if (owner_at(c[1]) != owner_at(c[0])) std::swap(c[1], owner_at(c[2]) == owner_at(c[0]) ? c[2] : c[3]);
     if (v(2) > v(3)) std::swap(c[2], c[3]);
     divide_two_and_two(v(0), v(1), v(2), v(3));
   }
 
-  /// a < b < c of one owner, d of another: the prism in three tetrahedra, with the diagonals from the
-  /// vertices of lower number.
+  /// Divides a cell whose corners a < b < c have one owner and d another: the prism becomes three tetrahedra,
+  /// with the diagonals from the vertices of lower number.
   void divide_three_and_one(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     const std::uint32_t ad = cut(a, d), bd = cut(b, d), cd = cut(c, d);
     add(d, ad, bd, cd, owner(d));
@@ -197,10 +196,10 @@ class Division {
     add(a, ad, bd, cd, owner(a));
   }
 
-  /// a < b of one owner, c < d of another.
+  /// Divides a cell whose corners a < b have one owner, and c < d another.
   void divide_two_and_two(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     const std::uint32_t ac = cut(a, c), ad = cut(a, d), bc = cut(b, c), bd = cut(b, d);
-    // The interface's diagonal, the shorter one.
+    // The interface is divided along its shorter diagonal.
     const bool straight = squared_norm(result_.point(ac) - result_.point(bd)) <=
                           squared_norm(result_.point(ad) - result_.point(bc));
     const std::array<std::array<std::uint32_t, 3>, 2> faces =
@@ -214,7 +213,8 @@ class Division {
     add(c, d, ad, bd, owner(c));
   }
 
-  /// Corners 0 and 1, in the order of their numbers, of one owner, the others of two more.
+  /// Divides a cell whose corners 0 and 1, in the order of their numbers, have one owner, and the others one
+  /// each.
   void divide_two_and_two_others(const BisectedCells::Cell& cell, const std::array<std::size_t, 4>& corners) {
     const std::uint32_t a = cell.vertices[corners[0]], b = cell.vertices[corners[1]],
                         c = cell.vertices[corners[2]], d = cell.vertices[corners[3]];

@@ -16,16 +16,17 @@ namespace {
 
 /// The angle between faces that cells are improved to, in degrees.
 constexpr double kWantedAngle = 12;
-/// The same, that coarsening keeps to.
+/// The angle between faces, in degrees, that coarsening keeps to.
 constexpr double kCoarsenedAngle = 15;
-/// Where cells stay below the first of these angles, more of them are improved, to the others: that makes
-/// room.
+/// Where cells stay below the first of these angles, cells below the others are improved as well, which makes
+/// room for them.
 constexpr double kLowAngle = 8;
 constexpr std::array<double, 3> kHigherAngles{16, 20, 25};
-/// Moves that restore volumes leave so much of the least quality, and angles above this one as they are.
+/// Moves that restore volumes keep this part of the least quality, or this angle in degrees where that is
+/// better.
 constexpr double kKeptQuality = 0.9, kKeptAngle = 5.5;
 constexpr int kMostRounds = 10;
-/// Pieces that the mesh has not are left out if they are no larger than so many tolerances.
+/// Pieces of bodies that the mesh does not have are dropped if they are no larger than so many tolerances.
 constexpr double kSpeck = 4;
 
 double sine_of(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
@@ -76,7 +77,7 @@ ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& p
   drop_specks(cut, body_topology(wanted, mesh.table.body_count(), mesh.box), kSpeck * tolerance);
   const double wanted_quality = sine_of(kWantedAngle);
   improve_mesh(cut, target, wanted_quality, progress);
-  // Coarsening leaves the mesh's own vertices, for its fields want them.
+  // Coarsening leaves the mesh's own vertices, since they carry its fields.
   coarsen_mesh(cut, target, static_cast<std::uint32_t>(mesh.points.size()), sine_of(kCoarsenedAngle),
                progress);
   improve_mesh(cut, target, wanted_quality, progress);

@@ -11,7 +11,7 @@
 
 namespace adamas {
 
-/// What a cut mesh is worth, and what of the mesh that was cut it does not have.
+/// The quality and the distances of a cut mesh, and what it lacks of the mesh that was cut.
 struct CutMeshReport {
   DihedralRange dihedral;
   InterfaceCertificate distance;  ///< from the interfaces of the mesh that was cut, both ways

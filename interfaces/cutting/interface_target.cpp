@@ -37,7 +37,7 @@ InterfaceTarget::InterfaceTarget(const ExtractedInterfaces& interfaces, double t
       }
     }
   }
-  // Lines and points are triangles whose last corners are one.
+  // Lines and points are stored as triangles whose last corners coincide.
   for (const auto& [key, bodies] : at_edge) {
     const auto a = static_cast<std::uint32_t>(key >> 32), b = static_cast<std::uint32_t>(key);
     if (bodies.size() >= 3) parts_[bodies].triangles.push_back({a, b, b});
@@ -55,7 +55,7 @@ std::optional<Vec3> InterfaceTarget::closest(const LabelledMesh::Sides& sides, c
   const std::size_t bodies = sides.bodies();
   const auto found =
       parts_.find(BodySet(sides.values.begin(), sides.values.begin() + static_cast<std::ptrdiff_t>(bodies)));
-  // What the interfaces do not have, a contact in a corner of a cell say, may be at any of them.
+  // A contact that the interfaces do not have, say in a corner of a cell, may be at any of them.
   const ClosestPointTree& tree = found == parts_.end() ? all_ : found->second.tree;
   const auto hit = tree.closest(p, within);
   if (!hit) return std::nullopt;

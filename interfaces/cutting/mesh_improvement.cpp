@@ -49,7 +49,7 @@ class Improvement {
     }
   }
 
-  /// The best change of the cell's edges and faces, else of its vertices' places.
+  /// Makes the best change of the cell's edges and faces, or else moves its vertices.
   bool improve(std::uint32_t c) {
     const LabelledMesh::Tetrahedron v = mesh_.cell(c).vertices;
     has_best_ = false;
@@ -93,7 +93,7 @@ class Improvement {
     return giving_away_ = false;
   }
 
-  /// The best division at an edge.
+  /// Makes the best division at an edge of the cell.
   bool split(const LabelledMesh::Tetrahedron& v) {
     if (giving_away_) return false;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -116,7 +116,7 @@ class Improvement {
   bool giving_away_ = false;  ///< a cell's body has been changed, to see whether that helps
 };
 
-/// The vertices round one, each once, in ascending order.
+/// Finds the vertices that share a cell with v, each once, in ascending order.
 void find_vertices_round(const LabelledMesh& mesh, std::uint32_t v, std::vector<std::uint32_t>& result) {
   result.clear();
   for (const std::uint32_t c : mesh.star(v)) {

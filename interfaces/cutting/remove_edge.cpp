@@ -138,7 +138,7 @@ bool remove_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std::u
   change.added.clear();
   const std::size_t bodies = sides.bodies();
   if (bodies == 1) {
-    // Of an edge on the box, the polygon of the ring is closed along the box.
+    // Where the edge lies on the box, the polygon of its ring is closed along the box.
     if (ring.closed == (sides.count == 2) || ring.vertices.size() < 3) return false;
     const BestTriangulation best(mesh, a, b, ring.vertices);
     change.quality = best.quality();

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kMostSteps = 40, kMostHalvings = 3;
 constexpr double kEnough = 1e-11;  ///< of the whole volume
-/// What is added to the diagonal of the equations, as a part of the greatest of their terms.
+/// This part of the greatest term is added to the diagonal of the equations, so that they can be solved.
 constexpr double kRegular = 1e-9;
-/// Steps end where as much is missing as this part of what was before.
+/// Steps end where more than this part of what was missing before is still missing.
 constexpr double kStill = 0.999;
 
 /// How the volumes of the bodies round a vertex change with its place.
@@ -79,7 +79,7 @@ class Restoration {
     Slopes slopes{v, 0, {}};
     for (const std::uint32_t c : mesh_.star(v)) {
       LabelledMesh::Tetrahedron t = mesh_.cell(c).vertices;
-      // The face opposite, such that with v as its apex the volume is positive.
+      // The face opposite to v is ordered so that the volume with v as its apex is positive.
       const auto place = std::find(t.begin(), t.end(), v) - t.begin();
       if (place % 2 == 0)
         std::swap(t[static_cast<std::size_t>(place + 1) % 4], t[static_cast<std::size_t>(place + 2) % 4]);
@@ -107,7 +107,7 @@ class Restoration {
     return slopes;
   }
 
-  /// One step; none where no vertex is left that could move.
+  /// Makes one step; returns whether there was a vertex that could move.
   bool move(const Eigen::VectorXd& missing) {
     std::vector<Slopes> slopes;
     std::vector<Eigen::Triplet<double>> entries;

@@ -49,7 +49,7 @@ class Smoothing {
     return result;
   }
 
-  /// The place on what the vertex lies on that is closest to p, more or less.
+  /// The place closest to p, nearly, on the interface or the line that the vertex lies on.
   std::optional<Vec3> placed(const Vec3& p) const {
     Vec3 q = p;
     for (int round = 0; round < (bodies_ > 1 ? 2 : 1); ++round) {
@@ -103,7 +103,7 @@ class Smoothing {
       directions.push_back(normalized(directions[0] + second));
     }
     const Vec3 p = mesh_.point(v_);
-    // First along the interface, then away from it.
+    // The vertex moves along its interface first, and away from it only where that does not help.
     for (stays_ = true;; stays_ = false) {
       for (const double step : {0.3, 0.1, 0.03}) {
         for (const Vec3& direction : directions) {
@@ -115,7 +115,7 @@ class Smoothing {
     }
   }
 
-  /// Mean of the vertices round it.
+  /// The mean of the vertices round this one.
   Vec3 middle() const {
     Vec3 sum;
     double count = 0;

@@ -10,9 +10,10 @@ namespace adamas {
 namespace {
 
 constexpr int kSweeps = 3;
-/// Moves of less than so much of the tolerance gain nothing.
+/// Vertices that would move by less than this part of the tolerance stay.
 constexpr double kNothing = 1e-3;
-/// Cells round a vertex keep so much of the least quality that they had, or this quality.
+/// The cells round a vertex that moves keep this part of the least quality that they had, or have this
+/// quality.
 constexpr double kKept = 0.3, kGood = 0.1;
 
 }  // namespace

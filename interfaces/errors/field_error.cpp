@@ -59,7 +59,7 @@ class Measurer {
       if (good || reach >= half_width_) break;
     }
     for (std::size_t f = 0; f < fields.size(); ++f) {
-      // Where none of a place's own material is left nothing approximates the value.
+      // Where the mesh has nothing left of a place's own material, nothing approximates the value.
       if (least[f] == kNone && element.kind != ElementKind::kMinority &&
           no_part == NoPartNear::kCountsAsRange)
         least[f] = std::max(native_size(fields[f]), fields[f].max - fields[f].min);
@@ -113,7 +113,7 @@ class Measurer {
     const Vec3 reach{half_width, half_width, half_width};
     const Box3 box{element.position - reach, element.position + reach};
     cells_in_box_(box, element.material, [&](const CellView& cell) {
-      // Of the owner of the last piece looked at; pieces of an owner follow each other.
+      // The body whose piece was looked at last, and its values; the pieces of one owner follow each other.
       BodyId body;
       Rows rows;
       bool useful = false;

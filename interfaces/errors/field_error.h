@@ -54,7 +54,7 @@ struct FieldError {
   }
   /// Elements that count.
   [[nodiscard]] std::size_t count() const { return std::size_t{counts[0]} + counts[1] + counts[2]; }
-  /// 0 without elements.
+  /// The mean error; 0 without elements.
   [[nodiscard]] double mean() const { return count() > 0 ? sum / static_cast<double>(count()) : 0; }
 };
 
@@ -80,7 +80,7 @@ std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, 
                                                 std::span<const std::uint32_t> elements,
                                                 std::span<FieldError> errors);
 
-/// What counts where the mesh has no part of a displaced element's material that near.
+/// What an element counts as where the mesh has no part of its material that near.
 enum class NoPartNear {
   kCountsAsRange,  ///< as much as the field's range or the value itself; minorities have no value then
   kHasNoValue,     ///< nothing: the element is one of those without a value

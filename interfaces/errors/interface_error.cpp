@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kCrowd = 64;
 /// From this many triangles on, a first look takes some of them only.
 constexpr std::size_t kManyTriangles = 256;
-/// Where nothing tells the distance.
+/// The distance where nothing tells it.
 constexpr double kFar = std::numeric_limits<double>::max();
 
 class Estimator {
@@ -84,7 +84,8 @@ class Estimator {
   }
 
  private:
-  /// The same in whatever order the triangles and their corners are listed.
+  /// A number of a triangle that does not depend on the order in which triangles and their corners are
+  /// listed.
   [[nodiscard]] std::uint64_t digest(std::uint32_t triangle) const {
     std::uint64_t bits = 0;
     for (const Vec3& p : network_.triangle_corners(triangle)) {

@@ -8,7 +8,7 @@
 
 namespace adamas {
 
-/// For hierarchies whose vertices or tetrahedra carry nothing; takes no memory.
+/// The payload of vertices or tetrahedra that carry nothing; it takes no memory.
 struct NoPayload {};
 
 /// The pointer-based and generalized hierarchy (D 2): tetrahedra that are split and merged by
@@ -46,7 +46,7 @@ class Hierarchy : public HierarchyTopology {
     merge_diamond(d);
   }
 
-  /// Memory held, with the payloads themselves but not what they point to.
+  /// Bytes of memory held, with the payloads themselves but not what they point to.
   [[nodiscard]] std::size_t bytes() const {
     return HierarchyTopology::bytes() + vertex_payloads_.bytes() + tetrahedron_payloads_.bytes();
   }

@@ -32,9 +32,9 @@ class HierarchyTopology {
   [[nodiscard]] LatticePoint lattice(VertexId v) const { return vertices_[v.value].point; }
   [[nodiscard]] Vec3 position(VertexId v) const { return domain_.position(lattice(v)); }
 
-  /// Six for each root cube; cubes by x, then y, then z.
+  /// The roots, six for each root cube; cubes ascend by x, then y, then z.
   [[nodiscard]] const std::vector<TetrahedronId>& roots() const { return roots_; }
-  /// Positively oriented; the split edge comes first.
+  /// The corners of a tetrahedron, positively oriented; the split edge comes first.
   [[nodiscard]] std::array<VertexId, 4> vertices(TetrahedronId t) const { return node(t).vertices; }
   [[nodiscard]] std::array<LatticePoint, 4> corners(TetrahedronId t) const {
     const auto v = vertices(t);
@@ -44,9 +44,9 @@ class HierarchyTopology {
     return {node(t).vertices[0], node(t).vertices[1]};
   }
   [[nodiscard]] bool is_leaf(TetrahedronId t) const { return node(t).children == kNoPair; }
-  /// Invalid for a root.
+  /// The parent of a tetrahedron; invalid for a root.
   [[nodiscard]] TetrahedronId parent(TetrahedronId t) const { return pairs_[t.value / 2].parent; }
-  /// Of a tetrahedron that is no leaf; the first keeps the first end of the split edge.
+  /// The children of a tetrahedron that is no leaf; the first keeps the first end of the split edge.
   [[nodiscard]] std::array<TetrahedronId, 2> children(TetrahedronId t) const {
     ADAMAS_ASSERT(!is_leaf(t));
     return tetrahedra_of(node(t).children);
@@ -55,20 +55,20 @@ class HierarchyTopology {
   [[nodiscard]] DiamondId diamond(TetrahedronId t) const { return node(t).diamond; }
   [[nodiscard]] int level(TetrahedronId t) const { return kRootBits - 1 - record(diamond(t)).bits; }
   [[nodiscard]] int phase(TetrahedronId t) const { return record(diamond(t)).type().phase; }
-  /// Whether the lattice is deep enough.
+  /// Whether the lattice is deep enough to bisect the tetrahedron.
   [[nodiscard]] bool can_split(TetrahedronId t) const {
     return record(diamond(t)).bits >= kRootBits - domain_.depth();
   }
 
   [[nodiscard]] LatticePoint lattice(DiamondId d) const { return record(d).point; }
   [[nodiscard]] bool is_split(DiamondId d) const { return record(d).vertex.valid(); }
-  /// Invalid for a diamond that is not split.
+  /// The vertex that splits the diamond; invalid where it is not split.
   [[nodiscard]] VertexId split_vertex(DiamondId d) const { return record(d).vertex; }
-  /// Whether all its tetrahedra are there, that is, all its parents are split.
+  /// Whether all tetrahedra of the diamond are in the tree, that is, whether all its parents are split.
   [[nodiscard]] bool is_complete(DiamondId d) const { return record(d).count == record(d).full_count; }
-  /// Those that are there, leaves or, in a split diamond, bisected.
+  /// The tetrahedra of the diamond that are in the tree: leaves or, in a split diamond, bisected.
   [[nodiscard]] SmallList<TetrahedronId, 8> tetrahedra(DiamondId d) const;
-  /// Whether it is split and none of its children is.
+  /// Whether the diamond is split and none of its child diamonds is.
   [[nodiscard]] bool can_merge(DiamondId d) const;
 
   /// The diamond at a lattice point; invalid where it has no tetrahedron in the tree.
@@ -82,7 +82,7 @@ class HierarchyTopology {
   }
 
   [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
-  /// Of all tetrahedra of the tree.
+  /// The number of all tetrahedra of the tree, leaves or not.
   [[nodiscard]] std::size_t tetrahedron_count() const { return 2 * pairs_.size(); }
   [[nodiscard]] std::size_t vertex_count() const { return vertices_.size(); }
   [[nodiscard]] std::size_t diamond_count() const { return diamonds_.size(); }
@@ -90,7 +90,7 @@ class HierarchyTopology {
   [[nodiscard]] std::size_t vertex_slots() const { return vertices_.slots(); }
   /// Tetrahedron ids are below this.
   [[nodiscard]] std::size_t tetrahedron_slots() const { return std::size_t{2} * pairs_.slots(); }
-  /// Memory held, payloads apart.
+  /// Bytes of memory held, payloads apart.
   [[nodiscard]] std::size_t bytes() const;
 
   /// Calls fn(TetrahedronId) for the leaves, depth first from the roots: the same order for the same mesh,
@@ -111,7 +111,7 @@ class HierarchyTopology {
   /// Throws std::logic_error that names the first broken law of the mesh (D 2): links, orientation, diamonds
   /// complete where split, no hanging vertex, integer volumes that add up to the domain's.
   void validate() const;
-  /// Of the mesh of leaves alone: the same whatever the order of elements and the history of ids.
+  /// A checksum of the mesh of leaves alone: the same whatever the order of elements and the history of ids.
   [[nodiscard]] std::uint64_t checksum() const;
 
  protected:
@@ -171,7 +171,8 @@ class HierarchyTopology {
   void attach(TetrahedronId t, DiamondId d, std::uint8_t slot);
   void detach(TetrahedronId t);
   void split_complete(DiamondId d, std::vector<Split>& done);
-  /// Points of the child diamonds. They lie all over memory: asks for them before they are needed.
+  /// The points of the child diamonds, whose records lie all over memory: this asks for them before they are
+  /// needed.
   std::array<LatticePoint, 8> prefetch_children(const Record& diamond) const;
   void link_children(const Record& diamond, const std::array<LatticePoint, 8>& points,
                      const std::array<std::uint32_t, 8>& pairs);

@@ -30,13 +30,14 @@ struct DihedralRange {
   void add(const std::array<Vec3, 4>& corners);
 };
 
-/// Of all tetrahedra of a mesh.
+/// The range of the angles of all tetrahedra of a mesh.
 DihedralRange dihedral_range(const ConformingMesh& mesh);
 
 /// The faces between two bodies, each once.
 std::vector<ClosestPointTree::Triangle> interface_faces(const ConformingMesh& mesh);
 
-/// The same with the bodies in front and behind, on points of their own. Names are left to the caller.
+/// The faces between two bodies with the bodies in front and behind, on points of their own. Names are left
+/// to the caller.
 ExtractedInterfaces interfaces_of(const ConformingMesh& mesh, const InterfaceTable& table);
 
 /// Volume of each of so many bodies, in the cube of the unit of length.

@@ -26,7 +26,7 @@ class ArrayReader {
       if (const auto* values = std::get_if<Values>(&array.values)) return *values;
       fail("{}: array '{}{}': expected another type of values", source_, prefix_, name);
     }
-    // Writers leave out arrays without values.
+    // The values of an array that the writer left out because it had none.
     static const Values kNone;
     return kNone;
   }
@@ -61,8 +61,8 @@ class ArrayReader {
 /// bodies, interfaces, fields, and the distances and rows of its vertices. The vertices' bodies are left out.
 void add_knowledge(const ResampledMesh& mesh, const std::string& prefix, std::vector<NamedArray>& arrays);
 
-/// The same back, into a mesh that has its points. `bodies`: of the vertices. Throws Error where arrays are
-/// missing, of the wrong length, or point outside.
+/// Reads what add_knowledge() has written, into a mesh that has its points. `bodies`: of the vertices. Throws
+/// Error where arrays are missing, of the wrong length, or point outside.
 void read_knowledge(const ArrayReader& arrays, const std::vector<std::int32_t>& bodies, ResampledMesh& mesh);
 
 }  // namespace adamas

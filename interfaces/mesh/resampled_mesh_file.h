@@ -15,8 +15,8 @@ UnstructuredMesh to_unstructured_mesh(const ResampledMesh& mesh);
 /// Whether the file was made by to_unstructured_mesh.
 bool is_resampled_mesh(const UnstructuredMesh& mesh);
 
-/// The mesh back. Throws Error, naming `source`, where arrays are missing, of the wrong length, or point
-/// outside.
+/// The mesh that a file holds. Throws Error, naming `source`, where arrays are missing, of the wrong length,
+/// or point outside.
 ResampledMesh from_unstructured_mesh(const UnstructuredMesh& mesh, const std::string& source);
 
 }  // namespace adamas

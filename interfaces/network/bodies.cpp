@@ -106,8 +106,8 @@ std::size_t join_by_rays(const InterfaceMesh& mesh, const std::vector<char>& col
   return inconsistent;
 }
 
-/// Between triangles without area lie parts without volume: joined to a part of the same material that they
-/// touch.
+/// Parts without volume, which lie between triangles without area, are joined to a part of the same material
+/// that they touch.
 void join_flat_parts(const InterfaceMesh& mesh, const EdgeFans& fans, const std::vector<char>& collapsed,
                      DisjointSets& sets) {
   const auto count = static_cast<std::uint32_t>(2 * mesh.triangles.size());

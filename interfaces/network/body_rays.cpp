@@ -37,7 +37,8 @@ double exit_of(const Box3& box, const Vec3& origin, const Vec3& direction) {
   return leave;
 }
 
-/// A little inside, where the ends of the sheets at the boundary cannot be missed by round-off.
+/// A point moved a little into the box, where rays cannot miss the ends of sheets at its boundary by
+/// round-off.
 Vec3 pulled_inside(const Box3& box, Vec3 p) {
   for (int axis = 0; axis < 3; ++axis) {
     const double pull = 1e-9 * box.size()[axis];

@@ -8,7 +8,7 @@
 
 namespace adamas {
 
-/// What is odd about an interface mesh, yet can be used.
+/// What is odd about an interface mesh that can be used all the same.
 struct InterfaceMeshReport {
   std::size_t points = 0;     ///< distinct ones that triangles use
   std::size_t triangles = 0;  ///< with an area

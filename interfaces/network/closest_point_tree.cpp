@@ -108,7 +108,7 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
       for (unsigned hits = children_within(node, low, high, bound, distances); hits != 0; hits &= hits - 1) {
         const auto i = static_cast<unsigned>(__builtin_ctz(hits));
         if (node.count[i] == kEmptySlot) continue;
-        // Kept with the farthest first.
+        // Entries are kept with the farthest first.
         std::size_t place = top++;
         for (; place > base && stack[place - 1].squared_distance < distances[i]; --place) {
           stack[place] = stack[place - 1];

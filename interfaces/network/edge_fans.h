@@ -39,7 +39,7 @@ class EdgeFans {
   struct Fan {
     std::vector<Blade>
         blades;  ///< ascending angles, but for ties that fit the materials in another order only
-    /// Wedge i lies between blade i and the next one round; this one has the outside of the domain in it.
+    /// Wedge i lies between blade i and the next one round; the outside of the domain is in this one.
     std::size_t outside_wedge = kNone;
     bool consistent = true;  ///< both sides of each wedge inside the domain have the same material
     static constexpr std::size_t kNone = static_cast<std::size_t>(-1);

@@ -98,7 +98,7 @@ double covering_radius(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::min(circumscribed, 2 / std::sqrt(3.0) * half_longest);
 }
 
-/// A piece, and the bound of it in the making.
+/// Works out the bound of the distance over one piece.
 class PieceMeasure {
  public:
   PieceMeasure(const Polygon& polygon, const ClosestPointTree& to) : polygon_(polygon), to_(to) {
@@ -112,7 +112,7 @@ class PieceMeasure {
     result_.upper = std::min(result_.upper, result_.lower + radius);
   }
 
-  /// The closest point to the middle is looked for as well.
+  /// Looks for the closest point to the middle of the piece as well.
   void look_closer() {
     Vec3 center;
     for (std::size_t i = 0; i < polygon_.count; ++i) center += polygon_.corners[i];

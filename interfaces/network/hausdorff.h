@@ -20,11 +20,11 @@ struct HausdorffOptions {
   /// Triangles within this distance are not looked at more closely; 0 stands for 1e-4 of the size of the
   /// target.
   double accept = 0;
-  /// Bounds each triangle's own distance that well, not the greatest of all alone.
+  /// Whether the distance of each triangle is bounded that well, not only the greatest of all.
   bool each = false;
-  /// Only what lies inside counts.
+  /// Only what lies inside this box counts.
   std::optional<Box3> domain;
-  /// Bounds the work; what is left by then keeps the looser bound it has.
+  /// So many pieces are looked at, at most; triangles that are not finished by then keep a looser bound.
   std::size_t most_pieces = 50'000'000;
 };
 

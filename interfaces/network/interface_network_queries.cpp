@@ -12,11 +12,11 @@ namespace adamas {
 
 namespace {
 
-/// Points closer to each other than this part of the size of the network are one where flat triangles are
-/// about.
+/// Where there are flat triangles, points closer to each other than this part of the size of the network are
+/// one.
 constexpr double kTouch = 1e-10;
 
-/// Winding numbers from here on leave no doubt.
+/// From here on a winding number leaves no doubt.
 constexpr double kSure = 0.75;
 
 double corner_angle(const Vec3& at, const Vec3& b, const Vec3& c) {
@@ -133,7 +133,8 @@ bool InterfaceNetwork::find_touching(const ClosestPointTree& tree, std::uint32_t
   return border;
 }
 
-/// Winding numbers where they leave no doubt, else `continued`, the body that the sheet at the border tells.
+/// The body that winding numbers tell where they leave no doubt, else `continued`, the body that the sheet at
+/// the border tells.
 BodyId InterfaceNetwork::body_beyond_border(const Vec3& p, BodyId continued, bool* flagged) const {
   std::call_once(on_demand_->winding_built, [this] { on_demand_->winding.emplace(*this, domain_); });
   const BodyWinding::Answer answer = on_demand_->winding->at(p);
@@ -200,7 +201,7 @@ std::optional<ClosestPoint> InterfaceNetwork::closest_of_body(BodyId body, const
                                                               double max_distance) const {
   std::optional<ClosestPoint> best;
   for (const auto& [other, i] : table_.neighbours(body)) {
-    // Wider than the bound itself, since squares of roots are not exact.
+    // The search goes farther than the bound itself, since squares of roots are not exact.
     const double bound = best ? std::sqrt(best->squared_distance) * (1 + 1e-15) : max_distance;
     if (squared_distance(interfaces_[i].bounds, p) > bound * bound) continue;
     auto closest = tree(i).closest(p, bound);
@@ -231,7 +232,7 @@ void InterfaceNetwork::near_interfaces(const Vec3& p, double radius, BodyId body
   }
 }
 
-/// As the closest point of an interface: a corner of one of its triangles.
+/// The nearest vertex of an interface in the form of a closest point: as a corner of one of its triangles.
 std::optional<ClosestPoint> InterfaceNetwork::nearest_vertex(InterfaceId i, const Vec3& p,
                                                              double radius) const {
   const OnDemand::Vertices& vertices = on_demand_->vertices[i];

@@ -7,7 +7,7 @@
 
 namespace adamas {
 
-/// How often something was mended, and where the first time.
+/// How often something was mended, and where for the first time.
 struct Mended {
   std::size_t count = 0;
   Vec3 place;

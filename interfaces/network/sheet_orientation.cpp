@@ -1,5 +1,3 @@
-#include "interfaces/network/mending.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "interfaces/network/edge_fans.h"
+#include "interfaces/network/mending.h"
 
 namespace adamas {
 
@@ -109,7 +108,7 @@ FanOrientations orientations(const EdgeFans& fans, const EdgeFans::Fan& fan) {
   return result;
 }
 
-/// Triangles of a sheet that are as its first one, 0, and turned against it, 1.
+/// How many triangles of a sheet are turned as its first one is (0), and against it (1).
 struct Tally {
   std::array<std::size_t, 2> triangles{}, votes{};  ///< votes: edges that call these triangles right
 };

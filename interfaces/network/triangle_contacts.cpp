@@ -80,7 +80,7 @@ bool in_contact(const PlacedTriangle& a, const PlacedTriangle& b) {
     case 0:
       return CGAL::do_intersect(first, second);
     case 1:
-      // What they have in common beside the corner reaches the opposite edge of one of them.
+      // Beside the corner, what they have in common reaches the edge of one of them that is opposite to it.
       return CGAL::do_intersect(first, Segment(pair.of_b[0], pair.of_b[1])) ||
              CGAL::do_intersect(second, Segment(pair.of_a[0], pair.of_a[1]));
     case 2:

@@ -25,8 +25,8 @@ class WindingTree {
   /// Points must be finite, indices within range.
   WindingTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
 
-  /// As a part of the whole sphere, within about 0.01 of the exact sum: of a closed surface with normals
-  /// outwards 1 inside and 0 outside.
+  /// The solid angle as a part of the whole sphere, within about 0.01 of the exact sum: for a closed surface
+  /// with normals outwards it is 1 inside and 0 outside.
   [[nodiscard]] double at(const Vec3& p) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace adamas {
 
-/// What is known at a point.
+/// The material, the field values and the distance from an interface at a point.
 struct ProbeSample {
   Vec3 point;
   bool inside = false;  ///< in the domain; if not, material and body are invalid and the values NaN

@@ -175,7 +175,7 @@ void CellVolumes::find_contenders() {
   }
 }
 
-/// What two rows own of the cell where no other owns any.
+/// The volumes that two rows own of the cell where no other row owns any.
 template <bool kGrowth>
 void CellVolumes::measure_two(std::size_t m, std::size_t n) {
   std::array<double, SiteCell::kNeighbours> above;
@@ -213,7 +213,7 @@ void CellVolumes::measure_two(std::size_t m, std::size_t n) {
   }
 }
 
-/// Values at the corners of parts, and whose is the greatest.
+/// Finds the values at the corners of the cell's parts, and whose is the greatest there.
 void CellVolumes::find_nodes() {
   const std::size_t nodes = cell_->nodes.size();
   owner_of_node_.assign(nodes, 0);
@@ -298,7 +298,7 @@ void CellVolumes::measure_part(const SiteCell::Part& part) {
   volumes_[owner] += part.volume;
 }
 
-/// A part that is not one material's alone, of many.
+/// Shares out a part of the cell that does not belong to one material alone.
 void CellVolumes::share(const SiteCell::Part& part) {
   // Those that may own something: their greatest value is not below what another has everywhere.
   double sure = -std::numeric_limits<double>::infinity();

@@ -43,8 +43,8 @@ class CellVolumes {
   [[nodiscard]] std::size_t material_of(std::size_t row) const { return material_of_[row]; }
   /// Keeps the site's values as they are, for move().
   void keep();
-  /// Sets the site's values of a material, here alone, to those kept and so much more, at most so far from
-  /// zero; not those in regions that hold nothing of it here.
+  /// Sets the site's values of a material, in this object alone, to the kept ones plus `by`, but no farther
+  /// than `most` from zero. Values in regions that hold nothing of the material here stay.
   void move(std::size_t m, double by, double most);
   /// The volumes as parts of the cell's; with `growth` pairs() are found too.
   const std::vector<double>& measure(bool growth = false);
@@ -55,7 +55,7 @@ class CellVolumes {
   /// there.
   [[nodiscard]] std::uint32_t entry(std::size_t row, std::size_t n) const { return entry_[row][n]; }
   [[nodiscard]] std::size_t rows() const { return count_; }
-  /// The site's value of a row, as it is here.
+  /// The site's value of a row, as this object has it.
   [[nodiscard]] double own(std::size_t row) const { return round_[row][SiteCell::kSelf]; }
   static constexpr std::uint32_t kNone = 0xffffffffu;
 

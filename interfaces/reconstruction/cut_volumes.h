@@ -101,12 +101,12 @@ struct TetrahedronPiece {
   double volume;
 };
 
-/// The other one itself.
+/// The tetrahedron that pieces lie in, as a piece of itself.
 inline constexpr TetrahedronPiece kWholeTetrahedron{
     {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, 1};
 
-/// Leaves of the pieces what lies where the linear function with these values at the corners is positive.
-/// `scratch` is room to work in.
+/// Cuts off from the pieces what lies where the linear function with these values at the corners is not
+/// positive. `scratch` is room to work in.
 void keep_positive(const std::array<double, 4>& values, std::vector<TetrahedronPiece>& pieces,
                    std::vector<TetrahedronPiece>& scratch);
 

@@ -12,10 +12,10 @@ namespace adamas {
 
 namespace {
 
-/// A flake has no more volume, in cells, and no more triangles.
+/// A flake has at most this volume, in cells, and so many triangles.
 constexpr double kMostVolume = 0.05;
 constexpr std::size_t kMostTriangles = 200;
-/// Flakes have together no more than this part of what the cells hold that hang together with theirs.
+/// Together, flakes have at most this part of what is held by the cells that hang together with theirs.
 constexpr double kMostOfHeld = 0.01;
 
 class FlakeSearch {
@@ -104,7 +104,7 @@ class FlakeSearch {
     Vec3 origin = box.center();
     for (int axis = 0; axis < 3; ++axis) {
       const unsigned ends = faces >> (2 * axis) & 3u;
-      // From one side of the domain to the other: no flake.
+      // What reaches from one side of the domain to the other is no flake.
       if (ends == 3) return {body, {}, 0, std::numeric_limits<double>::infinity()};
       if (ends != 0) origin[axis] = ends == 1 ? domain_.min[axis] : domain_.max[axis];
     }
@@ -166,7 +166,7 @@ IdVector<BodyId, BodyId> drop_flakes(const std::vector<Flake>& flakes, Interface
     numbers[body] = kept.next_id();
     kept.push_back(body_materials[body]);
   }
-  // Neighbours are no flakes.
+  // No neighbour is a flake itself.
   for (const Flake& flake : flakes) numbers[flake.body] = numbers[flake.neighbour];
   body_materials = std::move(kept);
   std::size_t count = 0;

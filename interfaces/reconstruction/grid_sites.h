@@ -15,7 +15,7 @@ class GridSites {
   explicit GridSites(const RectilinearGrid& grid)
       : grid_(grid), n_{grid.sites(0), grid.sites(1), grid.sites(2)} {}
 
-  /// Calls visit(site, di, dj, dk) for those of the 26 round a site that there are.
+  /// Calls visit(site, di, dj, dk) for those of the 26 neighbours of a site that exist.
   template <class Visit>
   void for_each_neighbour(std::size_t site, Visit&& visit) const {
     const std::array<std::size_t, 3> p = place(site);

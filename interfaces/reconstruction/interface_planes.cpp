@@ -18,7 +18,7 @@ namespace {
 /// Gradients below this, in fractions per cell, say nothing of where the material lies.
 constexpr double kLeastGradient = 0.05;
 constexpr int kMostRounds = 12;
-/// A normal rests when neither it nor one beside it has turned by more.
+/// A normal has settled when neither it nor one beside it has turned by more than this.
 constexpr double kSettled = 1e-6;
 /// A piece belongs to another surface where its normal differs by more than the angle of this cosine.
 constexpr double kAlike = 0.7;
@@ -143,7 +143,7 @@ class PlaneFit {
       last_.swap(turned);
       if (*std::max_element(last_.begin(), last_.end()) <= kSettled) break;
     }
-    // Of two materials each has the other's plane, from its other side.
+    // Where two materials share a cell, each has the plane of the other, seen from the other side.
     for (const std::uint32_t site : values_.mixed()) {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(site, &twin);
@@ -175,7 +175,7 @@ class PlaneFit {
     return two[0];
   }
 
-  /// Calls visit(site, entry) for those that need a plane of their own.
+  /// Calls visit(site, entry) for the entries that need a plane of their own.
   template <class Visit>
   void for_each_entry(const Visit& visit) const {
     const auto& mixed = values_.mixed();

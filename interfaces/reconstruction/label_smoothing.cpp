@@ -158,7 +158,8 @@ class SmoothFaces {
       const auto& around = neighbours_[f];
       Vec3 sum;
       double count = 0;
-      // Of two neighbours opposite each other both or none, so that planes stay planes at the border.
+      // Two neighbours opposite each other count both or not at all, so that planes stay planes at the
+      // border.
       for (std::size_t e = 0; e < 4; e += 2) {
         if (around[e] == LabelFaces::kNone || around[e + 1] == LabelFaces::kNone) continue;
         sum += places_[around[e]] + places_[around[e + 1]];

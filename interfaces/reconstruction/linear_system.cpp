@@ -8,7 +8,7 @@ namespace adamas {
 namespace {
 
 constexpr int kMostSteps = 60;
-/// The squared gradient, scaled, falls to this part.
+/// Conjugate gradients end when the squared gradient, scaled, has fallen to this part.
 constexpr double kSolved = 1e-5;
 /// Rows that miss more than this, as a part of a cell, weigh less than others, down to the least weight.
 constexpr double kSmall = 2e-3, kLeastWeight = 0.05;
@@ -51,7 +51,7 @@ void LinearSystem::add_gains(const Block& block, const std::vector<double>& move
   }
 }
 
-/// The transposed of that.
+/// Adds the product with the transposed matrix of a block: what the rows mean for the unknowns.
 void LinearSystem::add_gradients(const Block& block, const std::vector<double>& rows,
                                  std::vector<double>& gradient) {
   for (const Exchange& exchange : block.exchanges) {

@@ -17,7 +17,7 @@ struct LinearSystem {
     std::uint32_t unknown;
     float by;
   };
-  /// What a number of cells say.
+  /// The equations of a number of cells.
   struct Block {
     std::vector<Exchange> exchanges;
     std::vector<Coefficient> coefficients;
@@ -28,7 +28,7 @@ struct LinearSystem {
   std::vector<double> missing;  ///< by row
 
   [[nodiscard]] std::size_t cells_off() const;
-  /// What is to become least: the sum of cost_of() over all rows.
+  /// The cost that is to become least: the sum of cost_of() over all rows.
   [[nodiscard]] double cost() const;
   /// The shortest move of the unknowns that gives what is missing, nearly: conjugate gradients for the normal
   /// equations, in which rows that miss much weigh less, as cost() has it; damped and stopped early, so that

@@ -12,7 +12,7 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// In cells: what a group holds at least, and what counts as nothing.
+/// In cells: a group counts that holds at least the first, and what is below the second is nothing.
 constexpr double kLeastHeld = 1e-3, kNothing = 1e-12;
 
 class LostBodySearch {
@@ -25,7 +25,7 @@ class LostBodySearch {
     for (const std::uint32_t site : values_.mixed()) {
       for (const Entry& entry : values_.at(site)) {
         const MaterialId material = values_.material(entry.material);
-        // Of regions one stands for the material.
+        // Of several regions of a material one stands for it.
         if (&entry != held_.find(site, material) || held_.group(site, material) != HeldCells::kNone) continue;
         held_.collect(site, material, group_);
         double held = 0;
@@ -37,8 +37,8 @@ class LostBodySearch {
   }
 
  private:
-  /// Whether a material owns a part of a cell of the group; whose a site is is asked first, for most show
-  /// there.
+  /// Whether a material owns a part of a cell of the group. The owners of the sites are asked first, since
+  /// most materials show there.
   bool shows(MaterialId material) {
     const bool at_site = std::any_of(group_.begin(), group_.end(), [&](const auto& member) {
       const auto own = values_.at(member.first);

@@ -13,12 +13,12 @@ namespace adamas {
 
 namespace {
 
-/// How often totals are closed again where flakes are given to neighbours, and how right they are to be, as a
-/// part of the domain.
+/// Where flakes are given to neighbours, totals are closed again so often at most, until they are right to
+/// this part of the domain.
 constexpr int kMostClosings = 3;
 constexpr double kTotalTolerance = 5e-10;
 
-/// The greatest difference of volumes, but for one that all have.
+/// The greatest difference of volumes beyond the mean of all differences.
 double greatest_difference(const IdVector<MaterialId, double>& a, const IdVector<MaterialId, double>& b) {
   double mean = 0, greatest = 0;
   for (MaterialId m(0); m.value < a.size(); ++m.value) mean += (a[m] - b[m]) / static_cast<double>(a.size());
@@ -66,14 +66,14 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   mesh_.source = data.source;
   mesh_.materials = data.materials;
   extract(data, progress);
-  // Labels that are smoothed have no flakes.
+  // Smoothed labels have no flakes.
   std::vector<VolumeMove> moves;
   if (values.least() == 0) moves = give_flakes_to_neighbours(data, values, cells, progress);
   agreement_ = volume_agreement(data, values, cells, moves);
   lost_bodies_ = find_lost_bodies(data, values, cells);
 }
 
-/// Totals are closed again, until they are right with what neighbours get. Returns that.
+/// Closes totals again until they are right together with what neighbours get, and returns what they get.
 std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMaterialData& data,
                                                                   SiteValues& values, const SiteCells& cells,
                                                                   Progress& progress) {
@@ -95,7 +95,7 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
       volume_reconstructed_ = given;
       break;
     }
-    // Flakes that come and go with the offsets stay.
+    // Flakes that come and go with the offsets are left as they are.
     const bool give_up = closings == kMostClosings;
     if (give_up) flakes.clear(), moves.clear(), wanted = volume_input_;
     close_totals(data, wanted, values, cells, progress);
@@ -115,7 +115,7 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
   const std::uint32_t layers = lattice_.points(2) - 1;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);
-  // As many as numbers suffice for.
+  // A tetrahedron gets eight numbers for inner parts where there are enough of them, else four.
   slots_ = 0xffffffffu / lattice_.point_count() > 6 * 8 + 1 ? 8 : 4;
   join_points();
   constexpr std::uint32_t kBatch = 8;

@@ -37,7 +37,7 @@ class Reconstruction {
   /// Bodies in front and behind each triangle of the mesh.
   [[nodiscard]] const std::vector<std::array<BodyId, 2>>& bodies() const { return bodies_; }
   [[nodiscard]] const IdVector<BodyId, MaterialId>& body_materials() const { return body_materials_; }
-  /// The mesh and its triangles' bodies, for those who do not ask again.
+  /// Moves the mesh out, or the bodies of its triangles: it is for those who do not ask again.
   [[nodiscard]] InterfaceMesh take_mesh() { return std::move(mesh_); }
   [[nodiscard]] std::vector<std::array<BodyId, 2>> take_bodies() { return std::move(bodies_); }
   /// The body that owns a point, as the tetrahedron of fractions round it says.

@@ -82,7 +82,7 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
   const Eigen::Vector3d n = found.eigenvectors().col(0);
   Slab slab{{n[0], n[1], n[2]}, 0, 0};
   slab.offset = dot(slab.normal, middle);
-  // As thick as the volume near the middle says.
+  // The thickness is what the volume near the middle says.
   double held = 0, area = 0;
   const Sides sides(slab.normal);
   for (std::size_t c = 0; c < SheetWindow::kCells; ++c) {

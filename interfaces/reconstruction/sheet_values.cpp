@@ -7,10 +7,10 @@ namespace adamas {
 
 namespace {
 
-/// What a value differs from zero by at least, in cells, where its sign is known, and what lies on the other
-/// side of a sheet is less than what there is most of.
+/// In cells: a value whose sign is known differs from zero by at least this, and what lies on the other side
+/// of a sheet has a value less by this than what there is most of.
 constexpr double kLeastValue = 0.25;
-/// How much less is what a side does not hold, in relation to that.
+/// The value of what a side does not hold is less by so many times as much.
 constexpr double kFarBelow = 6;
 /// How much of a material the cells on a side hold together where it is there, in cells.
 constexpr double kLeastPresent = 1e-3;

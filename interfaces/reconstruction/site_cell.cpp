@@ -11,16 +11,16 @@ namespace adamas {
 
 namespace {
 
-/// Beyond so many different cells none is kept.
+/// At most so many different cells are kept.
 constexpr std::size_t kMostCells = 4096;
 
-/// Numbers that differ by round-off only become the same.
+/// A number rounded so that numbers which differ by round-off alone become the same.
 double rounded(double x) {
   constexpr double kSteps = 0x1p36;
   return std::round(x * kSteps) / kSteps;
 }
 
-/// What is smaller, as a part of its cell, is round-off.
+/// A part that is smaller than this part of its cell is round-off.
 constexpr double kLeastVolume = 1e-13;
 
 /// Leaves what lies where a linear function with these values at the tetrahedron's corners is positive;

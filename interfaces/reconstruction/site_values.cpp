@@ -50,7 +50,7 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
                                                   std::min({size.x, size.y, size.z});
     }
   });
-  // Beside them: the mean of what their planes say, on the right side.
+  // Sites beside mixed cells get the mean of what the planes round them say, on the right side of zero.
   parallel_for(data.grid.site_count(), 4096, [&](std::size_t site) {
     if (first_[site] == first_[site + 1]) return;
     const Vec3 centre = sites.position(site), size = sites.cell(site).size();

@@ -49,16 +49,16 @@ class SiteValues {
     return parents_.empty() ? number : parents_[number];
   }
   [[nodiscard]] bool has_regions() const { return !parents_.empty(); }
-  /// How many numbers there are.
+  /// How many numbers there are, those of regions included.
   [[nodiscard]] std::size_t number_count() const { return by_name_.size(); }
   /// The number of the one material of a site that has no values.
   [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_[site]; }
   /// The value of a material that has none near a site: less than any that counts.
   [[nodiscard]] double far() const { return far_; }
-  /// What no value is greater than.
+  /// No value is greater than this.
   [[nodiscard]] double greatest() const { return -far_ / 8; }
-  /// What no value of labels that are smoothed may be nearer to zero than, so that sites keep their labels; 0
-  /// of other data.
+  /// No value of smoothed labels is nearer to zero than this, so that sites keep their labels; 0 for other
+  /// data.
   [[nodiscard]] double least() const { return least_; }
   /// A place in a thin sheet of a mixed site, by its entries: it holds together as long as the sheet's value
   /// is above the mean of the greatest on either side.

@@ -14,17 +14,18 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Cells where a sheet and what is on its sides are less than this are left out of its fit.
+/// Cells of which a sheet and what is on its sides take less than this part are left out of its fit.
 constexpr double kLeastOfThree = 0.97;
 /// Rings of sites round those with a fit of their own, to which sheets are continued.
 constexpr int kRings = 2;
 /// Layers are continuations of each other where their normals agree at least so well, by the cosine, and
 /// their heights differ by no more cells.
 constexpr double kLeastCosine = 0.7, kMostStep = 0.5;
-/// A sheet may end where the places that continue it to a cell lie to one side, their middle by more cells.
+/// A sheet may end at a cell where the places that continue it lie to one side: their middle is farther away
+/// than this, in cells.
 constexpr double kAside = 0.4;
-/// There it does where the cell should hold so much of it and has none; where it has less than this part of
-/// it the layer is as much thinner.
+/// It ends there where the cell should hold so much of it and has none. Where the cell has less than the
+/// second part of what it should hold, the layer is as much thinner.
 constexpr double kMissing = 0.1, kHalf = 0.5;
 
 class SheetSearch {
@@ -112,7 +113,8 @@ class SheetSearch {
     return place;
   }
 
-  /// What there is most of before and behind a layer; the layer's own where there is nothing else.
+  /// The materials that there is most of before a layer and behind it; the layer's own where there is nothing
+  /// else.
   [[nodiscard]] std::array<std::uint16_t, 2> sides_of(const SheetPlace& place, const Slab& slab) const {
     std::vector<std::uint16_t> near;
     for (const Entry& entry : values_.at(place.site)) near.push_back(entry.material);

@@ -20,12 +20,12 @@ using Entry = SiteValues::Entry;
 constexpr int kMostRounds = 12;
 /// Derivatives stay as they are where a round leaves less than this part of what was missing.
 constexpr double kFast = 0.01;
-/// Of the domain.
+/// Totals are right that differ by no more than this part of the domain.
 constexpr double kTotalTolerance = 2e-11;
 /// What is missing may go to all mixed cells alike where it is no more than this part of each.
 constexpr double kLittle = 2e-4;
-/// Otherwise, an offset's share at sites round which no mixed cell is off; the power of the part of those
-/// that are.
+/// Otherwise sites round which no mixed cell is off have the least share of an offset; it grows with this
+/// power of the part of the mixed cells that are off.
 constexpr double kLeastShare = 1e-4;
 constexpr int kSharePower = 4;
 /// Values move by at most this part of the grid's spacing in a round.
@@ -100,7 +100,7 @@ class TotalClosing {
     return missing;
   }
 
-  /// By how many of the mixed cells round a site are off, as they were measured last.
+  /// Finds each site's share by how many of the mixed cells round it were off when they were measured last.
   void find_shares() {
     std::vector<char> is_mixed(is_off_.size(), 0);
     for (const std::uint32_t site : values_.mixed()) is_mixed[site] = 1;

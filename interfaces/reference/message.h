@@ -37,7 +37,7 @@ class MessageWriter {
   std::vector<char> bytes_;
 };
 
-/// Takes them apart again. What is read is not trusted: after the first value that is not there all are
+/// Reads the values of a message. The bytes are not trusted: after the first value that is not there all are
 /// empty, and `complete` is false.
 class MessageReader {
  public:
@@ -51,7 +51,7 @@ class MessageReader {
   void operator()(std::vector<T>& values) { get_list(values); }
   void operator()(std::string& text) { get_list(text); }
 
-  /// Everything was there, and nothing is left.
+  /// Whether everything was there, and nothing is left.
   [[nodiscard]] bool complete() const { return good_ && position_ == bytes_.size(); }
 
  private:
@@ -89,7 +89,7 @@ std::vector<char> encode(const Message& message) {
   return writer.bytes();
 }
 
-/// None for bytes that are no whole message of this kind.
+/// The message that the bytes are; none where they are no whole message of this kind.
 template <class Message>
 std::optional<Message> decode(std::vector<char> bytes) {
   MessageReader reader(std::move(bytes));

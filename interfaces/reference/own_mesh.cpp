@@ -18,7 +18,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Resamples, for the time alone.
+/// The seconds that resampling takes, and nothing else of it.
 double seconds_to_refine(const ResamplingSource& source, const ResamplingOptions& options,
                          Progress& progress) {
   const auto start = Clock::now();

@@ -9,7 +9,7 @@ namespace adamas {
 class PeakMemory {
  public:
   PeakMemory();
-  /// Bytes at most so far.
+  /// The greatest rise so far, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -72,7 +72,7 @@ void BodyComparison::find_touching() {
   at_points.erase(std::unique(at_points.begin(), at_points.end()), at_points.end());
   for (std::size_t first = 0, last = 0; first < at_points.size(); first = last) {
     while (last < at_points.size() && at_points[last].first == at_points[first].first) ++last;
-    // Points of one interface alone are the most, and are known by the table.
+    // Most points are on one interface alone, which the table knows.
     if (last - first <= 2) continue;
     for (std::size_t i = first; i < last; ++i) {
       for (std::size_t j = i + 1; j < last; ++j)

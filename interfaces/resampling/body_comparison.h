@@ -46,7 +46,7 @@ class BodyComparison {
   [[nodiscard]] const std::vector<std::uint32_t>& contact_triangles() const { return contact_triangles_; }
   /// Diagonal of a body's bounding box.
   [[nodiscard]] double size(BodyId body) const { return sizes_[body]; }
-  /// What is wrong with bodies larger than so.
+  /// What is wrong with the bodies that are larger than this.
   [[nodiscard]] BodyFaults faults(double size) const;
 
  private:

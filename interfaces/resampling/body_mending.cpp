@@ -43,7 +43,7 @@ std::optional<Resampler::Raise> Resampler::raise_at(const ThinPlace& place) cons
       owners.problem.value(candidates[other], at) - owners.problem.value(candidates[own], at);
   for (const CellOwnership::Interface& interface : owners.interfaces) {
     const auto& [a, b] = source_.network->table().sides(interface.id);
-    // One rises and the other sinks.
+    // The one body rises by this, and the other sinks by as much.
     const double by = 0.5 * below + kMargin * place.thickness;
     if (a == place.body && b == owner) return Raise{leaf, interface.id, by};
     if (b == place.body && a == owner) return Raise{leaf, interface.id, -by};
@@ -127,8 +127,8 @@ void Resampler::move_back(const Distances& originals, const std::vector<VertexId
 /// whether it did.
 bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
   const BodyFaults before = bodies_->faults(options_.interface_error);
-  // Interfaces that conservation moves too, or that distances to vertices displace, could be moved so far that
-  // no cell is within the target.
+  // Interfaces that conservation moves too, or that distances to vertices displace, could be moved so far
+  // that no cell is within the target.
   const bool moved_otherwise = options_.conserve || options_.distance != DistanceMode::kExact;
   if (before.torn == 0 || moved_otherwise || mending_is_hopeless_) return false;
   const bool within = comparison_->within();

@@ -82,7 +82,7 @@ Resampler::TornLeaves Resampler::torn_leaves() const {
     largest = std::max(largest, t.diameter);
     if (t.given_away) ++result.places;
   }
-  // Larger cells first: what they tear is often all there is.
+  // Larger cells go first, since what they tear is often all that is torn.
   for (const Torn& t : torn) {
     if (t.diameter > 0 && t.diameter >= kLargeCells * largest) result.leaves.push_back(t.leaf);
   }

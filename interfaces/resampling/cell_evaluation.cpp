@@ -12,7 +12,7 @@ namespace {
 /// Signed distances are rounded to this many binary places below the radius, so that those that differ only
 /// by the order of a sum are equal, and ties are told from the rest.
 constexpr int kPlaces = 40;
-/// They come one cube after the other, round its diagonal, so that each has the cube's bounding box.
+/// The roots of a cube follow each other round its diagonal, so that each has the cube's bounding box.
 constexpr std::size_t kRootsOfCube = 6;
 
 double rounded(double distance, double radius) {
@@ -191,7 +191,7 @@ void Resampler::undo(const std::vector<Split>& splits) {
     for (const TetrahedronId t : hierarchy_.tetrahedra(diamond)) collect(t);
     hierarchy_.merge(diamond, restored);
   }
-  // Some of those are gone again by now.
+  // Some of the leaves that came back are gone again by now.
   restored = leaves();
   std::erase_if(restored, [&](TetrahedronId t) { return hierarchy_.payload(t).evaluated; });
   parallel_for(restored.size(), 16, [&](std::size_t i) { evaluate_interface(restored[i]); });

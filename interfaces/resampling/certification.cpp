@@ -16,7 +16,7 @@ namespace {
 /// Measuring and refining again usually ends after two or three rounds; the bound is for what cannot be
 /// mended.
 constexpr int kMostRounds = 20;
-/// Rounds for the sake of bodies that make nothing better.
+/// So many rounds for the sake of bodies may make nothing better before they end.
 constexpr int kMostPatience = 3;
 /// Torn bodies are mended before cells are split for them where that leaves one fault of so many, and
 /// in the end where it leaves one of fewer.

@@ -80,7 +80,7 @@ IdVector<BodyId, double> solve(std::size_t bodies, const std::vector<Exchange>& 
     if (touches(b)) sum += missing[b], ++count;
   }
   for (BodyId b(0); b.value < bodies; ++b.value) {
-    // What all miss together can be given to none.
+    // What all bodies miss together can be given to none of them.
     if (touches(b)) right[index(b)] = missing[b] - sum / count;
     entries.emplace_back(index(b), index(b), diagonal[b.value] + kDamping * greatest);
   }
@@ -110,7 +110,7 @@ IdVector<BodyId, double> Resampler::missing_volumes() const {
   return missing;
 }
 
-/// Of all contacts of the leaves, summed for each pair of bodies.
+/// The exchanges at all contacts of the leaves, summed for each pair of bodies.
 std::vector<Exchange> Resampler::exchanges() const {
   const std::vector<TetrahedronId> all = leaves();
   constexpr std::size_t kChunk = 2048;

@@ -17,11 +17,11 @@ constexpr double kSharp = 0.005;
 constexpr double kTight = 0.03;
 /// Distances below this part of the target need not be told apart.
 constexpr double kSmall = 0.01;
-/// Of a distance, in relation to the domain's diagonal.
+/// The round-off of a distance, in relation to the domain's diagonal.
 constexpr double kRoundOff = 1e-15;
-/// Of materials without interfaces.
+/// The part of a material without interfaces.
 constexpr std::uint32_t kNoPart = 0xffffffffu;
-/// Points of a line that are looked at, at most.
+/// At most so many points of a line are looked at.
 constexpr double kMostPoints = 64;
 
 std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
@@ -55,7 +55,7 @@ InterfaceComparison::InterfaceComparison(InterfaceMesh input, const Box3& box, b
   for (MaterialId m(0); m.value < used.size(); ++m.value) {
     if (used[m] != 0) part_of_[m] = parts++;
   }
-  // All triangles are of both materials' boundaries.
+  // Of two materials or fewer, every triangle is in the boundary of each.
   if (parts <= 2) std::fill(part_of_.begin(), part_of_.end(), 0u);
   material_parts_ = parts <= 2 ? 1 : parts;
   input_ = take_apart(mesh_);

@@ -43,14 +43,15 @@ struct NestedErrors {
 /// on the history of ids.
 std::vector<DiamondId> diamonds_in_order(const HierarchyTopology& hierarchy);
 
-/// From the direct error of every tetrahedron of the tree, leaf or not; zero for ids that are not in use.
+/// The nested errors of direct errors, which are given for every tetrahedron of the tree, leaf or not, and
+/// are zero for ids that are not in use.
 NestedErrors nest_errors(const HierarchyTopology& hierarchy,
                          const std::function<double(TetrahedronId)>& direct);
 
-/// Of the estimated distances of the interfaces (interface_errors_of_tree).
+/// The nested errors of the estimated distances of the interfaces (interface_errors_of_tree).
 NestedErrors nest_interface_errors(const Resampler& resampler);
 
-/// Of the errors of one field of the source (field_errors_of_tree).
+/// The nested errors of one field of the source (field_errors_of_tree).
 NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field);
 
 /// Nested errors of one field by vertex corrections (D 3.1), for comparison: the greater of the children's,
@@ -62,7 +63,7 @@ struct CorrectedErrors {
   std::size_t undefined = 0;
 };
 
-/// From the leaves' greatest errors and the fields at vertices, complete_fields() among them.
+/// Corrects the leaves' greatest errors by the fields at vertices, those of complete_fields() among them.
 CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t field);
 
 }  // namespace adamas

@@ -7,7 +7,7 @@
 
 namespace adamas {
 
-/// The leaves of a resampler that has refined.
+/// The leaves of a resampler that has refined, as a mesh on its own.
 ResampledMesh resampled_mesh(const Resampler& resampler);
 
 /// The interfaces that the leaves of a resampler show, between materials.

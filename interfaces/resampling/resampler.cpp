@@ -80,10 +80,10 @@ CellSet Resampler::cells() const {
 
 Resampler::Priority Resampler::priority(TetrahedronId t) const {
   const CellRecord& cell = hierarchy_.payload(t);
-  // Near a corner of a small cell there need be no vertex of the input's triangles: what distances to vertices
-  // lose there, they would lose in smaller cells too.
-  const bool too_small = options_.distance == DistanceMode::kNearestVertex &&
-                         frame(t).diameter() <= options_.interface_error;
+  // Near a corner of a small cell there need be no vertex of the input's triangles: what distances to
+  // vertices lose there, they would lose in smaller cells too.
+  const bool too_small =
+      options_.distance == DistanceMode::kNearestVertex && frame(t).diameter() <= options_.interface_error;
   if (cell.interface.distance > estimate_target() && !too_small) {
     return {cell.interface.lost ? 2 : 1, cell.interface.distance / estimate_target()};
   }
@@ -124,7 +124,7 @@ std::vector<TetrahedronId> Resampler::refine_in_rounds(std::vector<TetrahedronId
 
 void Resampler::refine_greedily(const std::vector<TetrahedronId>& cells) {
   using Entry = std::pair<Priority, std::uint32_t>;
-  // Of equal priorities the smaller id first.
+  // Of equal priorities that with the smaller id comes first.
   const auto later = [](const Entry& a, const Entry& b) {
     return a.first != b.first ? a.first < b.first : a.second > b.second;
   };

@@ -67,7 +67,7 @@ class Resampler {
   Resampler(const ResamplingSource& source, ResamplingOptions options,
             Progress& progress = SilentProgress::instance());
 
-  /// To be called once. Throws Cancelled where the progress says so.
+  /// Refines the hierarchy; it is to be called once. Throws Cancelled where the progress says so.
   void refine();
 
   [[nodiscard]] const MeshHierarchy& hierarchy() const { return hierarchy_; }

@@ -18,7 +18,7 @@ constexpr const char* kDeep = "the hierarchy is as deep there as it can be";
 std::optional<Shortfall> interface_shortfall(const Resampler& resampler, const InterfaceDistance& distance) {
   if (distance.upper <= resampler.options().interface_error) return {};
   const InterfaceNetwork& network = *resampler.source().network;
-  // Without approximated interfaces every point of the input's is as far.
+  // Where no interfaces are approximated, all points of the input's are equally far.
   const Vec3 place =
       std::isfinite(distance.lower) ? distance.worst : network.points()[network.triangles()[0][0]];
   switch (resampler.interface_end()) {

@@ -13,10 +13,12 @@ struct Shortfall {
   Vec3 place;
 };
 
-/// Of the interface error, for one of the distances of the certificate; none where that is within it.
+/// The shortfall of the interface error, for one of the distances of the certificate; none where that is
+/// within it.
 std::optional<Shortfall> interface_shortfall(const Resampler& resampler, const InterfaceDistance& distance);
 
-/// Of a field's error, given its errors in the whole mesh; none where it was reached, or not wanted.
+/// The shortfall of a field's error, given its errors in the whole mesh; none where it was reached, or not
+/// wanted.
 std::optional<Shortfall> field_shortfall(const Resampler& resampler, std::size_t field,
                                          const FieldError& errors);
 
