@@ -57,8 +57,9 @@ CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
                            const std::optional<FieldChoice>& field);
 
 /// The section of given interfaces in a box, as trapezoids and triangles between the lines in which the plane
-/// cuts them, which is exact (trapezoidal_decomposition); without cells and interface edges. `source`: for
-/// messages. Throws Error as PlaneSides does.
+/// cuts them, by exact predicates (trapezoidal_decomposition); without cells and interface edges. Where
+/// interfaces end in the box, bodies go on as if they went on straight. `source`: for messages. Throws Error
+/// as PlaneSides does.
 CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std::size_t materials,
                            const Plane& plane, const std::string& source);
 

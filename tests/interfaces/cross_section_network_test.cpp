@@ -36,7 +36,7 @@ TEST(CrossSectionNetwork, PiecesFillThePlaneAndBelongToTheirOwner) {
         Vec3 middle;
         for (const Vec3& p : piece.corners) {
           EXPECT_NEAR(dot(p - plane.origin, normal), 0, 1e-9);
-          middle += (1.0 / 3) * p;
+          middle += 1.0 / static_cast<double>(piece.corners.size()) * p;
         }
         if (norm(turn) < 1e-6) continue;
         // The truth, but for where the triangles approximate it, and in planes that hold interfaces.
@@ -72,6 +72,35 @@ TEST(CrossSectionNetwork, InterfacesMayLeaveTheBoxAndCross) {
   const SceneSphere& sphere = scene.spheres()[0];
   const double quarter = 0.25 * std::numbers::pi * sphere.radius * sphere.radius;
   EXPECT_NEAR(section.material_area[sphere.inside], quarter, 0.02 * quarter);
+}
+
+/// Bodies beyond the ends of their interfaces are those that the network tells point by point.
+TEST(CrossSectionNetwork, InterfacesThatEndInTheBoxGoOnStraight) {
+  const Box3 larger{{-0.06, -0.05, -0.04}, {1.03, 1.05, 1.08}};
+  for (const char* name : {"tjunction", "reflex", "voronoi10"}) {
+    const Scene scene = make_scene(name);
+    const InterfaceNetwork network(scene_interfaces(scene, 0.05), larger);
+    const std::size_t materials = scene.materials().size();
+    for (const char* text : {"x=0.52", "y=0.25", "z=0.73"}) {
+      const Plane plane = parse_plane(text);
+      const PlaneFrame frame = plane_frame(plane);
+      const CrossSection section = cross_section(network, larger, materials, plane, name);
+      IdVector<MaterialId, double> sampled;
+      sampled.assign(materials, 0);
+      const double right = dot(frame.right, larger.size()), up = dot(frame.up, larger.size());
+      constexpr int kSamples = 300;
+      for (int i = 0; i < kSamples; ++i) {
+        for (int j = 0; j < kSamples; ++j) {
+          Vec3 p = larger.min + ((i + 0.5) / kSamples * right) * frame.right +
+                   ((j + 0.5) / kSamples * up) * frame.up;
+          p[*plane.axis()] = plane.origin[*plane.axis()];
+          sampled[network.table().material(network.body_at(p))] += right * up / (kSamples * kSamples);
+        }
+      }
+      for (MaterialId m(0); m.value < materials; ++m.value)
+        EXPECT_NEAR(section.material_area[m], sampled[m], 2e-3) << name << " " << text << " " << m.value;
+    }
+  }
 }
 
 }  // namespace
