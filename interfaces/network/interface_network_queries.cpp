@@ -236,9 +236,9 @@ void InterfaceNetwork::near_interfaces(const Vec3& p, double radius, BodyId body
 std::optional<ClosestPoint> InterfaceNetwork::nearest_vertex(InterfaceId i, const Vec3& p,
                                                              double radius) const {
   const OnDemand::Vertices& vertices = on_demand_->vertices[i];
-  const auto nearest = vertices.tree.nearest(p, radius);
+  const auto nearest = vertices.tree.closest(p, radius);
   if (!nearest) return std::nullopt;
-  const OnDemand::Corner& corner = vertices.corners[nearest->index];
+  const OnDemand::Corner& corner = vertices.corners[nearest->triangle];
   return ClosestPoint{triangle_corners(corner.triangle)[feature_index(corner.feature)],
                       nearest->squared_distance, corner.triangle - interfaces_[i].first, corner.feature};
 }
@@ -293,12 +293,12 @@ void InterfaceNetwork::build_vertex_trees() const {
       for (unsigned k = 0; k < 3; ++k)
         corners.try_emplace(triangles_[t][k], OnDemand::Corner{t, vertex_feature(k)});
     }
-    std::vector<Vec3> vertices;
+    std::vector<ClosestPointTree::Triangle> vertices;
     for (const auto& [point, corner] : corners) {
-      vertices.push_back(points_[point]);
+      vertices.push_back({point, point, point});
       trees[InterfaceId(i)].corners.push_back(corner);
     }
-    trees[InterfaceId(i)].tree = VertexTree(vertices);
+    trees[InterfaceId(i)].tree = ClosestPointTree(points_, vertices);
   });
 }
 

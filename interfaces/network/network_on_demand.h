@@ -7,7 +7,6 @@
 #include "core/base/typed_id.h"
 #include "interfaces/network/body_winding.h"
 #include "interfaces/network/interface_network.h"
-#include "interfaces/network/vertex_tree.h"
 
 namespace adamas {
 
@@ -18,10 +17,11 @@ struct InterfaceNetwork::OnDemand {
     std::uint32_t triangle;
     TriangleFeature feature;
   };
-  /// For distances to the nearest vertex of an interface.
+  /// For distances to the nearest vertex of an interface: each vertex is a triangle of the tree, which has it
+  /// as all of its corners.
   struct Vertices {
-    std::vector<Corner> corners;  ///< of the vertex of each index in the tree
-    VertexTree tree;
+    std::vector<Corner> corners;  ///< by triangle of the tree
+    ClosestPointTree tree;
   };
   std::once_flag vertices_built;
   IdVector<InterfaceId, Vertices> vertices;

@@ -1,15 +1,27 @@
-#include "interfaces/network/vertex_tree.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
+#include "interfaces/network/closest_point_tree.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
 namespace {
+
+/// Points as triangles without area.
+ClosestPointTree tree_of(const std::vector<Vec3>& points) {
+  test::Triangles triangles;
+  for (std::uint32_t i = 0; i < points.size(); ++i) triangles.push_back({i, i, i});
+  return {points, triangles};
+}
+
+struct NearestVertex {
+  std::uint32_t index;
+  double squared_distance;
+};
 
 /// Looks at every point in order.
 std::optional<NearestVertex> by_brute_force(const std::vector<Vec3>& points, const Vec3& q, double reach) {
@@ -23,14 +35,14 @@ std::optional<NearestVertex> by_brute_force(const std::vector<Vec3>& points, con
 
 void compare(const std::vector<Vec3>& points, const Vec3& q, double reach) {
   const auto expected = by_brute_force(points, q, reach);
-  const auto found = VertexTree(points).nearest(q, reach);
+  const auto found = tree_of(points).closest(q, reach);
   ASSERT_EQ(found.has_value(), expected.has_value());
   if (!found) return;
-  EXPECT_EQ(found->index, expected->index);
+  EXPECT_EQ(found->triangle, expected->index);
   EXPECT_EQ(found->squared_distance, expected->squared_distance);
 }
 
-TEST(VertexTree, AgreesWithLookingAtAllPoints) {
+TEST(ClosestVertex, AgreesWithLookingAtAllPoints) {
   std::mt19937_64 random(1);
   for (const std::size_t count : {0u, 1u, 2u, 11u, 300u}) {
     std::vector<Vec3> points;
@@ -43,7 +55,7 @@ TEST(VertexTree, AgreesWithLookingAtAllPoints) {
 }
 
 /// Of equally near points the first one counts.
-TEST(VertexTree, TiesOnALattice) {
+TEST(ClosestVertex, TiesOnALattice) {
   std::vector<Vec3> points;
   for (int i = 0; i < 6 * 6 * 6; ++i)
     points.push_back({1.0 * (i * 5 % 6), 1.0 * (i / 6 % 6), 1.0 * (i / 36)});
@@ -54,11 +66,11 @@ TEST(VertexTree, TiesOnALattice) {
   compare(sphere, {0, 0, 0}, 2);
 }
 
-TEST(VertexTree, NothingIsNearWhatIsNotFinite) {
-  const VertexTree tree(std::vector<Vec3>{{0, 0, 0}});
-  EXPECT_FALSE(tree.nearest({std::numeric_limits<double>::quiet_NaN(), 0, 0}, 1));
-  EXPECT_FALSE(tree.nearest({std::numeric_limits<double>::infinity(), 0, 0}, 1));
-  EXPECT_TRUE(tree.nearest({1, 0, 0}, 1));
+TEST(ClosestVertex, NothingIsNearWhatIsNotFinite) {
+  const ClosestPointTree tree = tree_of({{0, 0, 0}});
+  EXPECT_FALSE(tree.closest({std::numeric_limits<double>::quiet_NaN(), 0, 0}, 1));
+  EXPECT_FALSE(tree.closest({std::numeric_limits<double>::infinity(), 0, 0}, 1));
+  EXPECT_TRUE(tree.closest({1, 0, 0}, 1));
 }
 
 }  // namespace
