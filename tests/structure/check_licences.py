@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Checks that no source of a library that is installed includes a header under the GPL or the AGPL:
-check_licences.py NINJA BUILD_FOLDER TARGET... looks at all that has been built. Prints every breach; exits 1 where there is
-one. The LGPL, and the GPL with an exception for those who include a header, are no breach."""
+check_licences.py NINJA BUILD_FOLDER TARGET... looks at all objects of the targets that have been built, and there have to be
+some. Prints every breach; exits 1 where there is one. The LGPL, and the GPL with an exception for those who include a
+header, are no breach."""
 
 import functools
 import re
@@ -51,13 +52,15 @@ def dependencies(ninja, build_folder):
 
 def breaches(found, targets):
     """All breaches as lines of text: of the objects of these targets, given the files each is made from."""
-    for name, files in sorted(found.items()):
-        if not any(f"CMakeFiles/{target}.dir/" in name for target in targets):
-            continue
-        for path in files:
-            licence = strict_licence_of(path) if path.startswith("/") else None
-            if licence:
-                yield f"{name}: includes {path}, which is under {licence}"
+    for target in targets:
+        objects = [name for name in sorted(found) if f"CMakeFiles/{target}.dir/" in name]
+        if not objects:
+            yield f"{target}: nothing of it has been built"
+        for name in objects:
+            for path in found[name]:
+                licence = strict_licence_of(path) if path.startswith("/") else None
+                if licence:
+                    yield f"{name}: includes {path}, which is under {licence}"
 
 
 def main():

@@ -130,7 +130,8 @@ class LicencesTest(unittest.TestCase):
             with open(header, "w", encoding="utf-8") as file:
                 file.write("// SPDX-License-Identifier: GPL-3.0-or-later\n")
             found = {"a/CMakeFiles/one.dir/a.cpp.o": ["own.h", header], "a/CMakeFiles/two.dir/a.cpp.o": [header]}
-            self.assertEqual(list(check_licences.breaches(found, ["three"])), [])
+            self.assertEqual(list(check_licences.breaches({"CMakeFiles/three.dir/b.o": ["own.h"]}, ["three"])), [])
+            self.assertIn("nothing", list(check_licences.breaches(found, ["three"]))[0])
             (breach,) = check_licences.breaches(found, ["one"])
             self.assertIn(header, breach)
             self.assertIn("one.dir", breach)
