@@ -135,9 +135,18 @@ inline void vti_volume(std::string_view bytes) {
 
 inline void nifti_volume(std::string_view bytes) { image(nifti_image(bytes, "fuzz.nii")); }
 
-/// A .vti whole, with the unpacking of what is encoded or compressed in it.
+/// A .vti whole, as a grid and as a volume, with the unpacking of what is encoded or compressed in it.
 inline void packed_vti(std::string_view bytes) {
   const TemporaryFile file(bytes, ".vti");
+  try {
+    const ImageHeader header = vti_header(read_xml_tags(supply_text(bytes), "fuzz"), file.path());
+    if (!header.arrays.empty()) {
+      const GridFile grid = grid_of(header, file.path());
+      require(grid.arrays.size() == header.arrays.size(), "arrays from nowhere");
+    }
+  } catch (const Error&) {
+    // The volume is one array, which may be whole where others are not.
+  }
   VolumeReader reader = open_volume(file.path());
   require(reader.grid().bytes() <= (bytes.size() + 1) * 8 * kGreatestInflation, "samples from nowhere");
   std::vector<std::byte> plane(reader.grid().plane_bytes());
