@@ -1,6 +1,6 @@
 #include "adamas/files.h"
 
-#include <cctype>
+#include <cstdlib>
 
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
@@ -9,6 +9,7 @@
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_reader.h"
+#include "core/io/reader_program.h"
 #include "core/io/solver_mesh_io.h"
 #include "core/io/surface_writer.h"
 #include "core/io/unstructured_mesh_io.h"
@@ -47,6 +48,11 @@ UnstructuredMesh to_unstructured_mesh(const TetrahedraView& view) {
 }
 
 }  // namespace
+
+void set_reader_program(const std::filesystem::path& program) {
+  if (::setenv(kReaderVariable, program.c_str(), 1) != 0)
+    fail("{}: expected a path of adamas-reader that can be kept", program.string());
+}
 
 OwnedGridData read_grid_data(const std::filesystem::path& path, const MaterialDataOptions& options,
                              Progress& progress) {

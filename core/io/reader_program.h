@@ -31,6 +31,9 @@ struct ReaderRequest {
   Vec3 spacing{1, 1, 1}, origin{};   ///< of a stack
 };
 
+/// The environment variable that says where adamas-reader is.
+inline constexpr const char* kReaderVariable = "ADAMAS_READER_PROGRAM";
+
 /// Has adamas-reader run the reader, with its memory and time limited, and calls `consume` here on what it
 /// sends, while it sends it. What goes wrong there, a crash of a library included, is thrown here as an Error
 /// that begins with the request's name; Cancelled where a signal that asks programs to end has ended it.

@@ -121,7 +121,7 @@ TEST(MultiMaterialOptions, ScaleDividesFractions) {
 TEST(MultiMaterialOptions, FractionsAndFieldsFromOtherFilesNeedTheSameGrid) {
   const test::Scratch scratch;
   const MultiMaterialData data = test::sample_data(Centering::kCells);
-  const auto single = [&](const char* name, std::vector<float> values, double shift) {
+  const auto single = [&](const char* name, SiteArray<float> values, double shift) {
     MultiMaterialData one = data;
     for (double& x : one.grid.nodes[0]) x += shift;
     one.materials = {"m"};

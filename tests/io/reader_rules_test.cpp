@@ -151,7 +151,7 @@ TEST(Labels, WrittenOnesAreTakenWithoutBeingNamed) {
   const test::Scratch scratch;
   MultiMaterialData data = two_materials();
   data.fractions.clear();
-  data.labels = {0, 1, 0, 1, 1, 1, 0, 0, 0, 1, 1, 0};
+  data.labels = std::vector<std::uint16_t>{0, 1, 0, 1, 1, 1, 0, 0, 0, 1, 1, 0};
   data.fields.push_back({"p", "", 1, std::vector<float>(12, 2.0f), {}});
   write_multi_material_data(scratch / "a.vti", data);
   const MultiMaterialData read = read_multi_material_data(scratch / "a.vti");
