@@ -5,9 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "isosurface/compression/activity_context.h"
 #include "isosurface/compression/context_tables.h"
-#include "isosurface/compression/interpolation_cells.h"
+#include "isosurface/compression/interpolation_prediction.h"
 #include "isosurface/compression/residual_tokens.h"
 #include "isosurface/compression/sample_codec.h"
 

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "isosurface/compression/activity_context.h"
-#include "isosurface/compression/interpolation_cells.h"
 #include "isosurface/compression/interpolation_prediction.h"
 #include "isosurface/compression/residual_tokens.h"
 #include "isosurface/volume/page.h"

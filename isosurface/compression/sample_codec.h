@@ -7,10 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "isosurface/compression/sample_ranks.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas {
+
+class SampleRanks;
 
 /// How the samples of pages are coded; the numbers are those in files.
 enum class SampleCoding : std::uint8_t {
