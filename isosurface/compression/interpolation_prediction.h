@@ -13,8 +13,8 @@
 
 namespace adamas {
 
-/// How samples are computed with when they are predicted: those from 0 to kGreatest, kCentre less, as numbers
-/// that are wide enough for sums of a few of them.
+/// How samples are represented while they are predicted: a word less kCentre, as a number that is wide enough
+/// for the sums of a prediction where the word is from 0 to kGreatest.
 template <class SampleWord, class Number, int kSampleBits, SampleWord kGreatestSample, SampleWord kMiddle>
 struct SampleDepth {
   using Word = SampleWord;
@@ -33,7 +33,8 @@ using WholeDepth =
 using Depth8 = WholeDepth<std::uint8_t, std::int16_t>;
 using Depth16 = WholeDepth<std::uint16_t, std::int32_t>;
 using Depth32 = WholeDepth<std::uint32_t, std::int64_t>;
-/// So many that sums of twelve, and of eight halves besides, fit in 16 bits. Others are coded too, badly.
+/// Of samples up to 4094, whose sums (twelve of them, and eight halves) fit in 16 bits. Greater ones are
+/// coded without loss too, but badly.
 using Depth12 = SampleDepth<std::uint16_t, std::int16_t, 12, 4094, 2047>;
 
 /// That of all samples of a type.
@@ -50,14 +51,14 @@ struct InterpolationCells {
   using Cells = ParityCells<Value>;
   static constexpr int kCells = std::tuple_size_v<Cells>;
 
-  /// Samples by parity; predictions where the point is another page's.
+  /// Samples by parity, and predictions in place of the samples of other pages.
   std::array<Cells, 8> values;
-  /// By parity: magnitudes of the residuals of the samples.
+  /// The magnitudes of the residuals of the samples, by parity.
   std::array<Cells, 7> residuals;
-  /// Of the parities that are at work: how much the samples vary round the point.
+  /// How much the samples vary round each point, of the parities of the set at work.
   std::array<Cells, 3> activity;
-  /// For the edges: by axis, the difference between each even point and the next; and their sum round a
-  /// point.
+  /// By axis, the difference between each even point and the next, without sign; and the sum of the six of
+  /// them round a point. Edges need both.
   std::array<Cells, 3> gradients;
   Cells steps;
 

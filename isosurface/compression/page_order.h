@@ -15,10 +15,10 @@
 
 namespace adamas {
 
-/// The samples from whose mean that at p is predicted (D 4.11): the ends of the split edge of its diamond. A
-/// coordinate beyond the data is mirrored at p, where there always is a sample, and a coarser one: an LOD
-/// depends on coarser LODs only. Coordinates count samples; p has one that is not 0, and `dimensions` are
-/// those of the data.
+/// The samples from whose mean that at p is predicted (the dissertation (D), section 4.11): the ends of the
+/// split edge of its diamond. A coordinate beyond the data is mirrored at p, where there always is a sample,
+/// and a coarser one: an LOD depends on coarser LODs only. Coordinates count samples; p has one that is not
+/// 0, and `dimensions` are those of the data.
 constexpr std::array<LatticePoint, 2> predictors(LatticePoint p,
                                                  const std::array<std::int32_t, 3>& dimensions) {
   const int bits = trailing_zeros(p);

@@ -57,16 +57,18 @@ std::vector<std::uint8_t> package_merge(std::span<const std::uint64_t> counts, i
   std::vector<std::uint64_t> weights;
   for (const std::size_t s : symbols) weights.push_back(counts[s]);
   // From the smallest denomination, 2^-limit, to 1/2.
-  std::vector<Coins> lods;
-  for (int lod = 0; lod < limit; ++lod) {
-    lods.push_back(merged_with_pairs(weights, lods.empty() ? Coins{} : lods.back()));
+  std::vector<Coins> denominations;
+  for (int n = 0; n < limit; ++n) {
+    denominations.push_back(
+        merged_with_pairs(weights, denominations.empty() ? Coins{} : denominations.back()));
   }
   // The lightest coins of 1/2 that are worth n - 1 make the code. Pairs are taken in order, and are made of
-  // the first coins of the LOD below; each time that a symbol is taken its word grows by one bit.
+  // the first coins of the next smaller denomination; each time that a symbol is taken its word grows by one
+  // bit.
   std::size_t taken = 2 * (symbols.size() - 1);
-  for (auto lod = lods.rbegin(); lod != lods.rend(); ++lod) {
-    ADAMAS_ASSERT(taken <= lod->is_symbol.size());
-    const auto begin = lod->is_symbol.begin();
+  for (auto coins = denominations.rbegin(); coins != denominations.rend(); ++coins) {
+    ADAMAS_ASSERT(taken <= coins->is_symbol.size());
+    const auto begin = coins->is_symbol.begin();
     const auto taken_symbols =
         static_cast<std::size_t>(std::count(begin, begin + static_cast<std::ptrdiff_t>(taken), true));
     for (std::size_t n = 0; n < taken_symbols; ++n) ++lengths[symbols[n]];

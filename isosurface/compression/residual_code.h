@@ -88,9 +88,10 @@ class ResidualStatistics {
   std::vector<std::uint64_t> counts_;
 };
 
-/// The entropy code of a page of residuals of one component (D 4): the position of a residual's leading 1
-/// by a canonical Huffman code, which the position before chooses (0 at the start of a page), then its sign
-/// and the bits below. Codewords have at most 12 bits. A code may be used by several threads at once.
+/// The entropy code of a page of residuals of one component (the dissertation (D), chapter 4): the position
+/// of a residual's leading 1 by a canonical Huffman code, which the position before chooses (0 at the start
+/// of a page), then its sign and the bits below. Codewords have at most 12 bits. A code may be used by
+/// several threads at once.
 class ResidualCode {
  public:
   /// The best code for pages with these statistics. It codes what they count, and nothing else.
@@ -113,8 +114,8 @@ class ResidualCode {
   void encode(std::span<const std::uint32_t> residuals, std::vector<std::byte>& out) const;
 
   /// Fills `residuals`, with numbers below 2^bits, from a page of so many. Returns false, and leaves anything
-  /// in `residuals`, unless `encode` of some residuals gives just these bytes: who calls knows the file and
-  /// the page that are to be named.
+  /// in `residuals`, unless `encode` of some residuals gives just these bytes: the caller knows the file and
+  /// the page that an error has to name.
   [[nodiscard]] bool decode(std::span<const std::byte> page, std::span<std::uint32_t> residuals) const;
 
  private:
@@ -123,7 +124,7 @@ class ResidualCode {
 
   ResidualCode(LeadOne lead_one, std::vector<CanonicalHuffman> codes);
   [[nodiscard]] Entry entry_of(int previous, std::uint32_t window) const;
-  /// Both return false where the stream has bits that are no codeword; the end is for who calls to see.
+  /// Both return false where the stream has bits that are no codeword; the caller checks where it ends.
   bool decode_most(BitReader& reader, int& previous, std::span<std::uint32_t>& residuals) const;
   bool decode_one(BitReader& in, int& previous, std::uint32_t& residual) const;
 
