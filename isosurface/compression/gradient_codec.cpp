@@ -22,7 +22,7 @@ struct ComponentPage {
     });
   }
 
-  /// `around` is left undefined where the page is complete, as who calls may have left it.
+  /// `around` is not filled where the page is complete, since the caller need not have filled its own then.
   void take_around(std::size_t component, const PageShape& shape, const GradientCodesAround& codes) {
     if (!shape.complete) take(component, codes, around);
   }

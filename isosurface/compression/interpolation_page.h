@@ -6,10 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "isosurface/compression/activity_context.h"
-#include "isosurface/compression/interpolation_cells.h"
 #include "isosurface/compression/interpolation_prediction.h"
-#include "isosurface/compression/residual_token.h"
+#include "isosurface/compression/residual_tokens.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas {
@@ -27,8 +25,8 @@ class InterpolationPage {
   static constexpr std::size_t kMostInSet = 3 * 512;
 
   InterpolationPage(LatticePoint count, const Around& around) : count_(count) {
-    // Loops run over cells without a point too, whose sums nobody uses, but have to be those of numbers: of
-    // all that is read these alone may not have been written.
+    // Loops also run over cells without a point. Their results are not used, but memory that was never
+    // written must not be read, and `steps` is the only such array.
     cells_.steps.fill(0);
     for (std::size_t n = 0; n < around.size(); ++n) cells_.values[0][n] = Depth::value(around[n]);
     for (typename Cells::Cells& residuals : cells_.residuals) residuals.fill(0);
@@ -75,10 +73,10 @@ class InterpolationPage {
   void apply(int set, const Word* folded) {
     for (int n = 0; n < Cells::parities(set); ++n) {
       Value* const values = cells_.values[parity(set, n)].data();
-      // There is nothing that needs those of the centres.
+      // Those of centres, parity 7, go to a place from which none are read.
       Value* const magnitudes = cells_.residuals[parity(set, n) % 7].data();
       box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
-        // By way of arrays that are no part of others: so that no step waits for another.
+        // Separate arrays let the compiler see that no step depends on another.
         std::array<Value, 8> sums, sizes;
         for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
           const Word word = folded[before + i];

@@ -2,11 +2,71 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
 
-#include "isosurface/compression/interpolation_cells.h"
+#include "isosurface/compression/parity_cells.h"
 #include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
+
+/// How samples are represented while they are predicted: a word less kCentre, as a number that is wide enough
+/// for the sums of a prediction where the word is from 0 to kGreatest.
+template <class SampleWord, class Number, int kSampleBits, SampleWord kGreatestSample, SampleWord kMiddle>
+struct SampleDepth {
+  using Word = SampleWord;
+  using Value = Number;
+  static constexpr int kBits = kSampleBits;
+  static constexpr Word kGreatest = kGreatestSample, kCentre = kMiddle;
+
+  static constexpr Value value(Word word) { return static_cast<Value>(static_cast<Word>(word - kCentre)); }
+  static constexpr Word word(Value value) { return static_cast<Word>(static_cast<Word>(value) + kCentre); }
+};
+
+template <class Word, class Value>
+using WholeDepth =
+    SampleDepth<Word, Value, std::numeric_limits<Word>::digits, std::numeric_limits<Word>::max(), 0>;
+
+using Depth8 = WholeDepth<std::uint8_t, std::int16_t>;
+using Depth16 = WholeDepth<std::uint16_t, std::int32_t>;
+using Depth32 = WholeDepth<std::uint32_t, std::int64_t>;
+/// Of samples up to 4094, whose sums (twelve of them, and eight halves) fit in 16 bits. Greater ones are
+/// coded without loss too, but badly.
+using Depth12 = SampleDepth<std::uint16_t, std::int16_t, 12, 4094, 2047>;
+
+/// That of all samples of a type.
+template <class Word>
+using DepthOf =
+    std::conditional_t<sizeof(Word) == 1, Depth8, std::conditional_t<sizeof(Word) == 2, Depth16, Depth32>>;
+
+/// A page and what is round it, by the parity of the coordinates.
+template <class Depth>
+struct InterpolationCells {
+  using Value = typename Depth::Value;
+  static constexpr std::array<int, 3> kStride = kCellStrides;
+  static constexpr int kPlane = kStride[2];
+  using Cells = ParityCells<Value>;
+  static constexpr int kCells = std::tuple_size_v<Cells>;
+
+  /// Samples by parity, and predictions in place of the samples of other pages.
+  std::array<Cells, 8> values;
+  /// The magnitudes of the residuals of the samples, by parity.
+  std::array<Cells, 7> residuals;
+  /// How much the samples vary round each point, of the parities of the set at work.
+  std::array<Cells, 3> activity;
+  /// By axis, the difference between each even point and the next, without sign; and the sum of the six of
+  /// them round a point. Edges need both.
+  std::array<Cells, 3> gradients;
+  Cells steps;
+
+  static constexpr int kSets = 3;
+  /// The parities of a set, which are predicted together: edges, faces, centres.
+  static constexpr std::array<std::array<int, 3>, kSets> kParities{{{1, 2, 4}, {3, 5, 6}, {7, 0, 0}}};
+  static constexpr int parities(int set) { return set == 2 ? 1 : 3; }
+};
 
 /// Predicts the samples of a page from those of the next coarser LOD, in three sets: points on edges by
 /// cubic interpolation along them, then those on faces, then those in centres, from all round them. Loops run
@@ -149,6 +209,30 @@ class InterpolationPrediction {
       to[n] = within(least, value(four >> 2), most);
       const Value errors = value(rjk[n] + rjk[n + kI] + rik[n] + rik[n + kJ] + rij[n] + rij[n + kK]);
       activity[n] = value(2 * (most - least + errors));
+    }
+  }
+};
+
+/// The context of an activity (InterpolationCells): its logarithm, in steps of half an octave, or of one
+/// where the samples have 32 bits.
+template <class Depth>
+struct ActivityContext {
+  static constexpr bool kHalves = Depth::kBits < 32;
+  /// Activities are below 2^(bits + 4).
+  static constexpr int kBits = Depth::kBits + 4;
+  static constexpr int kContexts = 1 + (kHalves ? 2 : 1) * kBits;
+
+  /// Of 16-bit numbers the highest bit, too, belongs to the activity.
+  static constexpr std::uint8_t of(typename Depth::Value activity) {
+    const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(activity);
+    if constexpr (kHalves) {
+      // The exponent and the highest bit below the leading 1 of what a float holds exactly; 253 is before
+      // that of 1. Without branches, so that a processor works at many at once.
+      const auto upper =
+          std::bit_cast<std::uint32_t>(static_cast<float>(static_cast<std::int32_t>(number))) >> 22;
+      return static_cast<std::uint8_t>(std::max(static_cast<std::int32_t>(upper) - 253, 0));
+    } else {
+      return static_cast<std::uint8_t>(std::bit_width(number));
     }
   }
 };

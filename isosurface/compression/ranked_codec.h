@@ -1,14 +1,72 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/compression/sample_ranks.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
+
+/// The different samples of a volume that has few, as words (OrderedWord), and the rank of each: how many are
+/// less.
+class SampleRanks {
+ public:
+  static constexpr std::size_t kMost = std::size_t{1} << 16;
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  /// 1 to kMost values, each greater than the one before.
+  explicit SampleRanks(std::vector<std::uint32_t> values);
+  /// What `write` has written, of words of so many bits. Throws Error, which begins with `name`.
+  static SampleRanks read(std::span<const std::byte> bytes, int bits, std::string_view name);
+
+  [[nodiscard]] std::vector<std::byte> write() const;
+  [[nodiscard]] std::span<const std::uint32_t> values() const { return values_; }
+  /// kNone where there is no such value.
+  [[nodiscard]] std::uint32_t rank(std::uint32_t value) const {
+    if (value < values_.front() || value > values_.back()) return kNone;
+    std::uint32_t rank = first_[(value - values_.front()) >> shift_];
+    while (values_[rank] < value) ++rank;
+    return values_[rank] == value ? rank : kNone;
+  }
+  /// That of each value.
+  template <class Word>
+  void ranks(std::span<const Word> values, std::uint32_t* ranks) const;
+
+ private:
+  std::vector<std::uint32_t> values_;
+  /// By the upper bits of how far a value is above the least: the rank of the first one with these bits or
+  /// greater ones.
+  std::vector<std::uint32_t> first_;
+  int shift_ = 0;
+};
+
+/// Collects the different samples of a volume.
+template <class Word>
+class SampleCensus {
+ public:
+  /// Takes in the page's own points.
+  void add(const PageShape& shape, const PagePoints<Word>& samples);
+  /// Null where there are too many for ranks to pay.
+  [[nodiscard]] std::shared_ptr<const SampleRanks> ranks() const;
+
+ private:
+  /// Beyond these a volume's samples are coded as they are. Of 16 bits fewer have to be saved to gain
+  /// anything.
+  static constexpr std::size_t kMost = sizeof(Word) == 1 ? 0 : sizeof(Word) == 2 ? 4095 : SampleRanks::kMost;
+  /// So many samples of each value pay for the bytes that tell it.
+  static constexpr std::uint64_t kLeastOfEach = 32;
+
+  std::unordered_set<std::uint32_t> values_;  ///< at most one more than kMost
+  std::uint64_t samples_ = 0;
+  Word last_ = 0;
+};
 
 /// Codes samples by their ranks (SampleRanks), with a codec of words that need not be wider than the ranks. A
 /// page with a sample that has no rank is stored raw; in what a page is predicted from such a sample counts

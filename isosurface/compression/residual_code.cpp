@@ -6,7 +6,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
-#include "isosurface/compression/package_merge.h"
+#include "isosurface/compression/prefix_code.h"
 
 namespace adamas {
 namespace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "isosurface/compression/residual_code.h"
-#include "isosurface/compression/residual_statistics.h"
 #include "isosurface/compression/sample_codec.h"
 
 namespace adamas {

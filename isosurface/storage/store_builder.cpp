@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/compression/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/preprocessing/preprocess.h"

@@ -14,7 +14,7 @@
 
 #include "core/picture/plot.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/residual_statistics.h"
+#include "isosurface/compression/residual_code.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/direction_code.h"
 #include "isosurface/gradients/gradient_smoothing.h"

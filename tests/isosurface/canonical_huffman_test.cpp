@@ -1,11 +1,10 @@
-#include "isosurface/compression/canonical_huffman.h"
+#include "isosurface/compression/prefix_code.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "core/base/error.h"
-#include "isosurface/compression/package_merge.h"
 
 namespace adamas {
 namespace {

@@ -1,4 +1,4 @@
-#include "isosurface/compression/lead_one.h"
+#include "isosurface/compression/residual_code.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "isosurface/compression/package_merge.h"
+#include "isosurface/compression/prefix_code.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "isosurface/compression/sample_ranks.h"
+#include "isosurface/compression/ranked_codec.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/compression/page_order.h"
 
 #include <gtest/gtest.h>
 

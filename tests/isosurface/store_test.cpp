@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "isosurface/compression/split_edge_prediction.h"
+#include "isosurface/compression/page_order.h"
 #include "isosurface/storage/verify.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/volume_store.h"

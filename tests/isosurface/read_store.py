@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""Reads the samples of stores by docs/file_formats.md alone, to see that the text says all that is needed.
+
+usage: read_store.py ADAMAS
+
+Makes small volumes, stores each with the program ADAMAS in every coding, and compares the samples that are
+decoded here with those of the volume.
+"""
+import math
+import os
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+
+from store_codecs import Bytes, Page, codec_of, width
+
+
+class Store:
+    """A store, of which words of samples can be read."""
+
+    def __init__(self, data):
+        self.data = data
+        prologue = Bytes(data)
+        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 2
+        root_offset, root_size = prologue.number("Q"), prologue.number("Q")
+        root = Bytes(data[root_offset:root_offset + root_size])
+        self.bytes = (1, 2, 2, 4)[root.number("B")]
+        self.size = [root.number("Q") for _ in range(3)]
+        root.take(8 * 15)
+        root.sized()
+        self.coding = root.number("B")
+        root.take(2 + 4 + 24)
+        tables = [root.sized() for _ in range(3)]
+        self.codec = codec_of(self.coding, tables[0], 8 * self.bytes)
+        self.last = [n - 1 for n in self.size]
+        self.depth = width(max(max(self.last) - 1, 0))
+        self.top = max(self.depth, 3) - 3
+        self.pages = {}
+        for _ in range(root.varint()):
+            root.take(4)
+            first, offset, size, at, _ = (root.varint() for _ in range(5))
+            root.take(4)
+            self.read_chunk(Bytes(data[offset:offset + size]), first, at)
+
+    def extent(self, level):
+        if level == self.top and self.depth > 0:
+            step = 1 << self.depth - 1
+            return [(m + step - 1) // step * step >> level for m in self.last]
+        return [(m + (1 << level) - 1) >> level for m in self.last]
+
+    def block(self, number):
+        steps = (width(number) - 1) // 3
+        z = number - (1 << 3 * steps)
+        return self.top - steps, tuple(sum((z >> 3 * t + axis & 1) << t for t in range(20)) for axis in range(3))
+
+    def read_chunk(self, chunk, first, at):
+        for number in range(max(first, 1), first + 512):
+            level, block = self.block(number)
+            if level < 0:
+                break
+            count = [e - 16 * b + 1 for e, b in zip(self.extent(level), block)]
+            if min(count) < 1 or (level < self.top and max(count) == 1):
+                continue
+            size = chunk.varint()
+            chunk.take(4)
+            low, high = (int.from_bytes(chunk.take(self.bytes), "little") for _ in range(2))
+            error = chunk.take(1)[0]
+            if error > 0 and high > low:
+                s = 0
+                while (high - low - 1 >> s) + 1 > 32:
+                    s += 1
+                chunk.take(((high - low - 1 >> s) + 2) // 2)
+            self.pages[level, block] = self.data[at:at + size]
+            at += size
+        assert chunk.at == len(chunk.data)
+
+    def samples(self):
+        """The words of all levels, by coordinates in samples; those of the finest have all."""
+        known = {}
+        for (level, block), payload in sorted(self.pages.items(), reverse=True):
+            extent = self.extent(level)
+            count = [min(e - 16 * b + 1, 16) for e, b in zip(extent, block)]
+            around = {}
+            if level < self.top:
+                coarser = self.extent(level + 1)
+                for q in ((i, j, k) for k in range(-2, 20, 2) for j in range(-2, 20, 2) for i in range(-2, 20, 2)):
+                    p = [min(max(8 * b + x // 2, 0), e) << level + 1 for b, x, e in zip(block, q, coarser)]
+                    around[q] = known[tuple(p)]
+            page = Page(count, level == self.top, around)
+            part = Bytes(Bytes(payload).sized())
+            kind = part.number("B")
+            if kind in (0, 3):
+                words = {q: int.from_bytes(part.take(self.bytes), "little") for q in page.own()}
+            else:
+                words = self.codec.decode(kind, part.rest(), page)
+            for q, word in words.items():
+                known[tuple((16 * b + x) << level for b, x in zip(block, q))] = word
+        i, j, k = self.size
+        return [known[x, y, z] for z in range(k) for y in range(j) for x in range(i)]
+
+
+def ordered(sample, form):
+    """A sample as a word."""
+    if form == "h":
+        return sample + 32768
+    if form != "f":
+        return sample
+    bits = struct.unpack("<I", struct.pack("<f", sample))[0]
+    return bits ^ 0xffffffff if bits >> 31 else bits ^ 0x80000000
+
+
+def volumes():
+    """Name, type, size and samples: smooth and noisy ones, few and many values, sides of all kinds."""
+    rng = random.Random(3)
+
+    def field(size, f):
+        return [f(x, y, z) for z in range(size[2]) for y in range(size[1]) for x in range(size[0])]
+
+    def wave(x, y, z):
+        return math.sin(x / 5.1) * math.cos(y / 3.7 + z / 9) + math.sin(z / 4)
+
+    for size in ((37, 18, 21), (17, 1, 33), (9, 9, 9), (1, 1, 1)):
+        yield "uint8", "B", size, field(size, lambda *p: int(120 + 55 * wave(*p)))
+        yield "uint8", "B", size, field(size, lambda *p: rng.randrange(256))
+        yield "int16", "h", size, field(size, lambda *p: int(9000 * wave(*p)) + rng.randrange(40))
+        yield "uint16", "H", size, field(size, lambda *p: 100 * int(20 + 9 * wave(*p)))
+        yield "float32", "f", size, field(size, lambda *p: struct.unpack("f", struct.pack("f", wave(*p)))[0])
+    size = (40, 33, 30)
+    yield "uint16", "H", size, field(size, lambda *p: 7 * int(1000 + 280 * wave(*p)))
+    yield "float32", "f", size, field(size, lambda *p: float(int(90 * wave(*p))))
+
+
+def main(adamas):
+    codings = set()
+    with tempfile.TemporaryDirectory() as folder:
+        raw, store = os.path.join(folder, "volume.raw"), os.path.join(folder, "volume.adm")
+        for name, form, size, samples in volumes():
+            with open(raw, "wb") as file:
+                file.write(struct.pack(f"<{len(samples)}{form}", *samples))
+            for coding in ("split-edge", "interpolation"):
+                if os.path.exists(store):
+                    os.remove(store)
+                subprocess.run([adamas, "store", raw, "--dimensions", ",".join(map(str, size)), "--type", name,
+                                "--coding", coding, "-q", "-o", store], check=True)
+                with open(store, "rb") as file:
+                    found = Store(file.read())
+                codings.add(found.coding)
+                if found.samples() != [ordered(sample, form) for sample in samples]:
+                    sys.exit(f"{name} {size} {coding}: expected the samples of the volume, found others")
+    if codings != {0, 1, 2}:
+        sys.exit(f"expected stores of all codings, found {sorted(codings)}")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])
