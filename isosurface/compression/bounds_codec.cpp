@@ -6,9 +6,9 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/base/simd.h"
 #include "isosurface/compression/bit_stream.h"
 #include "isosurface/compression/bounds_symbols.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
@@ -130,7 +130,7 @@ class BoundsReader {
                                                      const ParityCells<Word>& known,
                                                      const ParityCells<Word>& bounds,
                                                      ParityCells<Word>& words, bool& any_open) {
-    using Lanes = WideLanes<Word, Bytes>;
+    using Lanes = Simd<Word, Bytes>;
     using Numbers = typename Lanes::Numbers;
     using Symbols [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
     Numbers bad{}, greatest{};
@@ -253,7 +253,7 @@ BoundsCodec<Word> BoundsCodec<Word>::parse(std::span<const std::byte> tables, co
   ContextCoder coder =
       ContextCoder::read(in, BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols, name);
   if (!in.at_end()) fail("{}: expected the end after the tables of values, found more data", name);
-  return BoundsCodec(ErrorGeometry(spacing), std::move(coder));
+  return BoundsCodec(OwnErrorGeometry(spacing), std::move(coder));
 }
 
 template <class Word>

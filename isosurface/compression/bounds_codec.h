@@ -8,7 +8,7 @@
 
 #include "core/geometry/vec3.h"
 #include "isosurface/compression/context_coder.h"
-#include "isosurface/compression/known_errors.h"
+#include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas {
@@ -26,11 +26,11 @@ class BoundsSurvey {
   /// Adds what another survey has counted. The order of pages and of merging does not matter.
   void merge(const BoundsSurvey& other) { counts_.merge(other.counts_); }
 
-  [[nodiscard]] const ErrorGeometry& geometry() const { return geometry_; }
+  [[nodiscard]] const OwnErrorGeometry& geometry() const { return geometry_; }
   [[nodiscard]] const ContextCounts& counts() const { return counts_; }
 
  private:
-  ErrorGeometry geometry_;
+  OwnErrorGeometry geometry_;
   ContextCounts counts_;
 };
 
@@ -62,10 +62,10 @@ class BoundsCodec {
                             PageBounds<Word>& values) const;
 
  private:
-  BoundsCodec(const ErrorGeometry& geometry, ContextCoder coder)
+  BoundsCodec(const OwnErrorGeometry& geometry, ContextCoder coder)
       : geometry_(geometry), coder_(std::move(coder)) {}
 
-  ErrorGeometry geometry_;
+  OwnErrorGeometry geometry_;
   ContextCoder coder_;
 };
 

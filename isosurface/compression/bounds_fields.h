@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-#include "isosurface/compression/height_grid.h"
 #include "isosurface/compression/parity_cells.h"
+#include "isosurface/preprocessing/own_errors.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas {
@@ -22,6 +22,9 @@ struct BoundsFields {
   void load_values(const PageShape& shape, const PageBounds<Word>& page);
   /// Gives all own points the same error.
   void fill_errors(const PageShape& shape, std::uint8_t code);
+  /// Makes `predicted` the own errors that follow from the samples, which are found on the finest LOD alone:
+  /// what those of a coarse LOD tell is not worth working out.
+  void predict_errors(const PageShape& shape, const OwnErrorGeometry& geometry);
   /// The values of all places of the page.
   void store_values(const PageShape& shape, PageBounds<Word>& page) const;
 
@@ -34,8 +37,9 @@ struct BoundsFields {
   /// By cube: 63 less the greatest code that the least error of these parents lets a point have; 0 where that
   /// is not known.
   ParityCells<std::uint8_t> cube_error_room;
-  /// Of the finest LOD alone: finite; what is not known is mirrored.
-  HeightGrid heights;
+  /// The page's samples and those round it as numbers, on the finest LOD alone; those that are not known are
+  /// like others that are, and none is infinite.
+  SampleBlock<float> numbers;
 
   // What stages work with, of the points of one parity; the predictions of errors of all.
   std::array<ParityCells<Word>, 2> known;   ///< what RangeStages expects
@@ -45,7 +49,7 @@ struct BoundsFields {
  private:
   void load_points(const PageShape& shape, const PageSamples<Word>& page);
   void load_whole(const PageSamples<Word>& page);
-  void load_heights(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
+  void load_numbers(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
   void load_coarser(const Surroundings<Word>& around);
   void load_parents(const PageShape& shape, const Surroundings<Word>& around);
   template <int Axis>

@@ -29,7 +29,7 @@ template <class F>
 }
 
 /// The greatest numbers of the cubes that points are in or on; `cube`: that whose centre is in the same cell
-/// as the first point. Lanes: see WideLanes.
+/// as the first point. Lanes: see Simd.
 template <int Parity, class Lanes, class T>
 [[gnu::always_inline]] inline typename Lanes::Numbers greatest_of_cubes(const T* cube) {
   typename Lanes::Numbers greatest = Lanes::load(cube);

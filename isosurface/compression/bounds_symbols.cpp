@@ -40,7 +40,7 @@ void BoundsSummary::add_ranges(const PageShape& shape, const BoundsFields<Word>&
 }
 
 template <class Word>
-BoundsSymbols<Word>::BoundsSymbols(const ErrorGeometry& geometry, const PageShape& shape,
+BoundsSymbols<Word>::BoundsSymbols(const OwnErrorGeometry& geometry, const PageShape& shape,
                                    const Surroundings<Word>& around, const Page<Word>& page)
     : shape_(shape), fields_(std::make_unique_for_overwrite<BoundsFields<Word>>()) {
   fields_->load(shape, around, page);
@@ -53,7 +53,7 @@ BoundsSymbols<Word>::BoundsSymbols(const ErrorGeometry& geometry, const PageShap
 }
 
 template <class Word>
-void BoundsSymbols<Word>::collect(const ErrorGeometry& geometry, BoundsTrust trust) {
+void BoundsSymbols<Word>::collect(const OwnErrorGeometry& geometry, BoundsTrust trust) {
   summary_.any_other = false;
   stages_.clear();
   range_stages_.clear();

@@ -57,7 +57,7 @@ struct BoundsSummary {
 template <class Word>
 class BoundsSymbols {
  public:
-  BoundsSymbols(const ErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
+  BoundsSymbols(const OwnErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
                 const Page<Word>& page);
 
   struct Stage {
@@ -82,7 +82,7 @@ class BoundsSymbols {
   void range(std::size_t side, const BoundsStage& stage);
 
  private:
-  void collect(const ErrorGeometry& geometry, BoundsTrust trust);
+  void collect(const OwnErrorGeometry& geometry, BoundsTrust trust);
   void leave_out_what_modes_tell();
   /// Adds the stage, with the symbols that symbol(cell) gives of the points that are coded. Returns whether
   /// any other point is not as expected.

@@ -9,7 +9,6 @@
 #include "isosurface/compression/bounds_fields.h"
 #include "isosurface/compression/bounds_stage.h"
 #include "isosurface/compression/error_stage.h"
-#include "isosurface/compression/known_errors.h"
 #include "isosurface/compression/range_stage.h"
 #include "isosurface/compression/range_token.h"
 
@@ -36,16 +35,11 @@ struct BoundsTrust {
 /// and a decoder fills those of the stage's parity, as predicted where they are not coded. The fields are
 /// loaded.
 template <class Word, class Port>
-void walk_values(BoundsFields<Word>& fields, const ErrorGeometry& geometry, const PageShape& shape,
+void walk_values(BoundsFields<Word>& fields, const OwnErrorGeometry& geometry, const PageShape& shape,
                  BoundsTrust trust, Port& port) {
   std::array<BoundsStage, 2> stages;
   if (port.needs_errors()) {
-    if (shape.lod == 0) {
-      known_errors(fields.heights, geometry, shape, fields.predicted);
-    } else {
-      // What the samples of a coarse LOD tell of its errors is not worth working out.
-      for (auto& cells : fields.predicted) cells.fill(0);
-    }
+    fields.predict_errors(shape, geometry);
     for (const int parity : kCodedParities) {
       ErrorStages<Word>::make(fields, shape, parity, trust.errors, stages[0]);
       port.errors(stages[0]);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 
 namespace adamas {
 namespace {
@@ -31,7 +31,7 @@ constexpr CellNeighbour child(int parity, std::size_t number) {
 template <int Parity, std::size_t Bytes>
 [[gnu::always_inline]] inline void predict(const AllCells<std::uint8_t>& errors, const Codes& cube_room,
                                            Codes& predicted, Codes& parts) {
-  using Lanes = WideLanes<std::uint8_t, Bytes>;
+  using Lanes = Simd<std::uint8_t, Bytes>;
   using Numbers = typename Lanes::Numbers;
   for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
     Numbers least{};

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/simd.h"
 #include "isosurface/compression/interpolation_cells.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 

@@ -2,10 +2,10 @@
 #include <array>
 
 #include "core/base/assert.h"
+#include "core/base/simd.h"
 #include "isosurface/compression/interpolation_codec.h"
 #include "isosurface/compression/interpolation_page.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 

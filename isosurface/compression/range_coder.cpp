@@ -8,7 +8,7 @@
 #endif
 
 #include "core/base/assert.h"
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 
 namespace adamas {
 namespace {

@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 
 namespace adamas {
 namespace {
@@ -64,7 +64,7 @@ inline void to_bit_widths(std::uint8_t*) {}
 template <class Word, int Parity, std::size_t Bytes>
 class RangeLanes {
  public:
-  using Lanes = WideLanes<Word, Bytes>;
+  using Lanes = Simd<Word, Bytes>;
   using Numbers = typename Lanes::Numbers;
   /// Whether bits are those of numbers as they are until to_bit_widths.
   static constexpr bool kBitsFollow = sizeof(Word) == 1 && Bytes == 32;
@@ -138,7 +138,7 @@ class RangeLanes {
 template <class Word, std::size_t Bytes>
 [[gnu::always_inline]] inline void find_contexts(int base, const Bits& errors, const Bits& spread_bits,
                                                  const Bits& room_bits, Bits& contexts) {
-  using Lanes = WideLanes<std::uint8_t, Bytes>;
+  using Lanes = Simd<std::uint8_t, Bytes>;
   using Numbers = typename Lanes::Numbers;
   constexpr std::uint8_t kErrorClasses = RangeStages<Word>::kErrorClasses;
   constexpr int kStep = std::countr_zero(sizeof(Word));

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/base/assert.h"
+#include "core/base/simd.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {

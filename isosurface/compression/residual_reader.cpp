@@ -7,8 +7,8 @@
 #endif
 
 #include "core/base/assert.h"
+#include "core/base/simd.h"
 #include "isosurface/compression/row_bytes.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 

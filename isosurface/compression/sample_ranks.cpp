@@ -6,10 +6,10 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "core/base/simd.h"
 #include "isosurface/compression/bit_stream.h"
 #include "isosurface/compression/elias_codes.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 #include "isosurface/storage/sample_range.h"
 #include "isosurface/volume/error_scale.h"
 
@@ -23,7 +23,7 @@ Domain domain_of(const VolumeGrid& volume, int depth) {
 template <class Word>
 void select_crossed(const PageBounds<Word>& page, Word least, PagePoints<std::uint8_t>& codes) {
   with_wide_lanes([&](auto bytes) {
-    using Lanes = WideLanes<Word, bytes()>;
+    using Lanes = Simd<Word, bytes()>;
     using Codes [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
     for (std::size_t n = 0; n < PageGrid::kPoints; n += Lanes::kCount) {
       const auto crossed =

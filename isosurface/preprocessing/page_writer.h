@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "isosurface/preprocessing/coarse_samples.h"
 #include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/volume/samples.h"

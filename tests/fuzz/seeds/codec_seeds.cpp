@@ -147,7 +147,7 @@ struct Expectations {
 template <class Word>
 void make_values(const std::filesystem::path& folder, const std::string& name, const PageShape& shape,
                  std::uint8_t seed, bool trust) {
-  const ErrorGeometry geometry({1, 1, 1});
+  const OwnErrorGeometry geometry({1, 1, 1});
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
   seeded_page(seed, *page, *around);
