@@ -50,16 +50,16 @@ class BoundsCodec {
   [[nodiscard]] static BoundsCodec parse(std::span<const std::byte> tables, const Vec3& spacing,
                                          std::string_view name);
 
-  /// Appends the values of the page's own points, in whole bytes. `around` is not read where the page is
+  /// Appends the bounds of the page's own points, in whole bytes. `around` is not read where the page is
   /// complete; of `page` only places that have points are read.
   void encode(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page,
               std::vector<std::byte>& out) const;
   /// Fills the errors and ranges of all places that have points, those of coarser LODs from `around`; the
-  /// samples are those with which the page was encoded. Returns false, and leaves anything in `values`, where
+  /// samples are those with which the page was encoded. Returns false, and leaves anything in `bounds`, where
   /// the bytes are not what `encode` of some page gives.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape,
                             const Surroundings<Word>& around, const PageSamples<Word>& samples,
-                            PageBounds<Word>& values) const;
+                            PageBounds<Word>& bounds) const;
 
  private:
   BoundsCodec(const OwnErrorGeometry& geometry, ContextCoder coder)

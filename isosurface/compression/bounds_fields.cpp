@@ -114,7 +114,7 @@ void BoundsFields<Word>::load(const PageShape& shape, const Surroundings<Word>& 
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t parity = 0; parity < 8; ++parity) {
         samples[side][parity].fill(kUnknown);
-        values[side][parity].fill(kUnknown);
+        ranges[side][parity].fill(kUnknown);
       }
     }
     for (auto& cells : errors) cells.fill(0);
@@ -169,7 +169,7 @@ template <class Word>
 void BoundsFields<Word>::load_coarser(const Surroundings<Word>& around) {
   Word* const least = samples[0][0].data();
   Word* const greatest = samples[1][0].data();
-  Word* const high = values[1][0].data();
+  Word* const high = ranges[1][0].data();
   ADAMAS_INDEPENDENT
   for (std::size_t n = 0; n < around.samples.size(); ++n) {
     const Word word = around.samples[n];
@@ -177,7 +177,7 @@ void BoundsFields<Word>::load_coarser(const Surroundings<Word>& around) {
     greatest[n] = is_finite(word) ? static_cast<Word>(~word) : kUnknown;
     high[n] = static_cast<Word>(~around.high[n]);
   }
-  values[0][0] = around.low;
+  ranges[0][0] = around.low;
   errors[0] = around.errors;
 }
 
@@ -247,7 +247,7 @@ void BoundsFields<Word>::mirror(const PageShape& shape) {
 template <class Word>
 void BoundsFields<Word>::load_parents(const PageShape& shape, const Surroundings<Word>& around) {
   using Words = EightLanes<Word>;
-  for (auto& cells : cube_bounds) cells.fill(0);
+  for (auto& cells : cube_limits) cells.fill(0);
   cube_error_room.fill(0);
   const ParityBox box = ParityBox::of(shape.count, 7);
   std::int32_t j = 1, k = 1;
@@ -258,8 +258,8 @@ void BoundsFields<Word>::load_parents(const PageShape& shape, const Surroundings
       lanes.store(row.data());
       std::copy_n(row.begin(), static_cast<int>(count), cells.begin() + static_cast<std::ptrdiff_t>(cell));
     };
-    store(rows.find(around.low.data(), Words::greatest), cube_bounds[0]);
-    store(rows.find(around.high.data(), Words::least).inverted(), cube_bounds[1]);
+    store(rows.find(around.low.data(), Words::greatest), cube_limits[0]);
+    store(rows.find(around.high.data(), Words::least).inverted(), cube_limits[1]);
     store(error_room_of(rows.find(around.errors.data(), Codes::least)), cube_error_room);
     j += 2;
     if (j > 2 * box.nj) j = 1, k += 2;
@@ -285,13 +285,13 @@ void BoundsFields<Word>::predict_errors(const PageShape& shape, const OwnErrorGe
 }
 
 template <class Word>
-void BoundsFields<Word>::load_values(const PageShape& shape, const PageBounds<Word>& page) {
+void BoundsFields<Word>::load_bounds(const PageShape& shape, const PageBounds<Word>& page) {
   for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
     const auto p = static_cast<std::size_t>(parity);
     for_each_row(shape, parity, [&](std::size_t cell, std::size_t place, int count) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        values[0][p][cell + i] = page.low[place + 2 * i];
-        values[1][p][cell + i] = static_cast<Word>(~page.high[place + 2 * i]);
+        ranges[0][p][cell + i] = page.low[place + 2 * i];
+        ranges[1][p][cell + i] = static_cast<Word>(~page.high[place + 2 * i]);
         errors[p][cell + i] = page.errors[place + 2 * i];
       }
     });
@@ -309,7 +309,7 @@ void BoundsFields<Word>::fill_errors(const PageShape& shape, std::uint8_t code) 
 }
 
 template <class Word>
-void BoundsFields<Word>::store_values(const PageShape& shape, PageBounds<Word>& page) const {
+void BoundsFields<Word>::store_bounds(const PageShape& shape, PageBounds<Word>& page) const {
   with_wide_lanes([&](auto) {
     for (std::int32_t k = 0; k < shape.count.k; ++k) {
       for (std::int32_t j = 0; j < shape.count.j; ++j) {
@@ -321,8 +321,8 @@ void BoundsFields<Word>::store_values(const PageShape& shape, PageBounds<Word>& 
                                 change(Lanes::load(all[even + 1].data() + cell)), row + to);
         };
         const auto same = [](const auto& lanes) { return lanes; };
-        join(values[0], page.low.data(), same);
-        join(values[1], page.high.data(), [](const auto& lanes) { return lanes.inverted(); });
+        join(ranges[0], page.low.data(), same);
+        join(ranges[1], page.high.data(), [](const auto& lanes) { return lanes.inverted(); });
         join(errors, page.errors.data(), same);
       }
     }

@@ -8,7 +8,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/simd.h"
-#include "isosurface/compression/row_bytes.h"
+#include "isosurface/compression/parity_cells.h"
 
 namespace adamas {
 

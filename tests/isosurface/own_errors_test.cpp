@@ -19,16 +19,16 @@ namespace {
 using Dimensions = std::array<std::uint64_t, 3>;
 constexpr Dimensions kDimensions{39, 35, 33};
 
-/// Calls check(cell, coordinates in the page) for the points of a parity whose errors are sure.
+/// Calls check(cell, coordinates in the page) for the points of a parity whose errors are determined.
 template <class Check>
-void for_each_sure(const PageShape& shape, int parity, Check check) {
-  const SurePoints sure(shape, parity, SurePoints::Of::kErrors);
+void for_each_determined(const PageShape& shape, int parity, Check check) {
+  const DeterminedPoints determined(shape, parity, DeterminedPoints::Of::kErrors);
   const ParityBox box = ParityBox::of(shape.count, parity);
   const LatticePoint odd{parity & 1, parity >> 1 & 1, parity >> 2};
   std::size_t count = 0;
   for (std::int32_t n = 0; n < box.size(); ++n) {
     const LatticePoint c{n % box.ni, n / box.ni % box.nj, n / box.ni / box.nj};
-    if ((sure.row(static_cast<std::size_t>(n / box.ni)) >> 8 * c.i & 1) == 0) continue;
+    if ((determined.row(static_cast<std::size_t>(n / box.ni)) >> 8 * c.i & 1) == 0) continue;
     ++count;
     check(kFirstCell + static_cast<std::size_t>(c.i + 11 * (c.j + 11 * c.k)), 2 * c + odd);
   }
@@ -58,7 +58,7 @@ void expect_found_again(const Dimensions& dimensions, const std::function<Sample
     fields->load(shape, volume.around(id), page);
     fields->predict_errors(shape, geometry);
     for (const int parity : kCodedParities) {
-      for_each_sure(shape, parity, [&](std::size_t cell, LatticePoint q) {
+      for_each_determined(shape, parity, [&](std::size_t cell, LatticePoint q) {
         int code = fields->predicted[static_cast<std::size_t>(parity)][cell];
         for (int axis = 0; phase_of(parity) < 2 && axis < 3; ++axis) {
           if (q[axis] % 2 == 0) continue;
