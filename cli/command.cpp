@@ -1,6 +1,9 @@
 #include "cli/command.h"
 
-#include <memory>
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
 
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
@@ -13,24 +16,43 @@ namespace {
 /// More threads than this is a slip of the hand.
 constexpr std::size_t kMostThreads = 4096;
 
+/// "a, b or c".
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  }
+  return text;
+}
+
+/// A check whose description says which words are allowed, as "{a,b}".
+CLI::Validator word_check(const std::vector<std::string>& words) {
+  return {[words](std::string& value) {
+            return std::find(words.begin(), words.end(), value) != words.end()
+                       ? std::string()
+                       : fmt::format("expected {}, found '{}'", listed(words), value);
+          },
+          "{" + fmt::format("{}", fmt::join(words, ",")) + "}"};
+}
+
 /// The options of the root that a subcommand's `--config FILE` is handed to.
 CLI::App& root_of(CLI::App& app) { return app.get_parent() == nullptr ? app : root_of(*app.get_parent()); }
 
-void add_common_options(CLI::App& command, Session& session) {
+void add_common_options(const Command& command, Session& session) {
   command.add_option("--json", session.json, "Write the figures of the run: .json")
-      ->type_name("FILE")
-      ->group("Common");
+      .type_name("FILE")
+      .group("Common");
   command.add_option("--threads", session.threads, "Number of threads (default: all cores)")
-      ->type_name("N")
-      ->group("Common");
+      .type_name("N")
+      .group("Common");
   command
       .add_flag("--quiet,-q", session.console.quiet,
                 "Print nothing but errors and what is missing of a damaged input")
-      ->group("Common");
+      .group("Common");
   command.add_flag("--verbose,-v", session.console.verbose, "Print a line per stage of the work")
-      ->group("Common");
-  CLI::Option* config = root_of(command).get_config_ptr();
-  command
+      .group("Common");
+  CLI::Option* config = root_of(command.app()).get_config_ptr();
+  command.app()
       .add_option_function<std::string>(
           "--config,-c",
           [config, &session](const std::string& file) {
@@ -42,7 +64,6 @@ void add_common_options(CLI::App& command, Session& session) {
       ->configurable(false)
       ->type_name("FILE")
       ->group("Common");
-  command.set_help_flag("--help,-h", "Print this and stop")->group("Common");
 }
 
 }  // namespace
@@ -58,12 +79,73 @@ void Session::begin() {
   outputs.declare("--json", json, {".json"});
 }
 
-CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
-                      const std::string& description, const std::string& example, std::function<void()> run) {
-  CLI::App* command = app.add_subcommand(name, description);
+CommandOption CommandOption::required() {
+  option_->required();
+  return *this;
+}
+
+CommandOption CommandOption::type_name(const std::string& name) {
+  option_->type_name(name);
+  return *this;
+}
+
+CommandOption CommandOption::group(const std::string& name) {
+  option_->group(name);
+  return *this;
+}
+
+CommandOption CommandOption::one_value_each() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
+CommandOption CommandOption::show_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+CommandOption CommandOption::one_of(const std::vector<std::string>& words) {
+  option_->check(word_check(words));
+  return *this;
+}
+
+CommandOption Command::add_option(const std::string& name, std::string& value,
+                                  const std::string& description) const {
+  return CommandOption(*app_->add_option(name, value, description));
+}
+
+CommandOption Command::add_option(const std::string& name, std::vector<std::string>& values,
+                                  const std::string& description) const {
+  return CommandOption(*app_->add_option(name, values, description));
+}
+
+CommandOption Command::add_flag(const std::string& name, bool& value, const std::string& description) const {
+  return CommandOption(*app_->add_flag(name, value, description));
+}
+
+Command Command::add_command(const std::string& name, const std::string& description,
+                             const std::string& example, std::function<void()> chosen) const {
+  CLI::App* command = app_->add_subcommand(name, description);
+  command->set_help_flag("--help,-h", "Print this and stop");
   command->footer("Example:\n  " + example);
-  add_common_options(*command, session);
-  command->final_callback([&session, run = std::move(run)] { session.run = run; });
+  if (chosen) command->final_callback(std::move(chosen));
+  return Command(*command);
+}
+
+Command Command::add_command_group(const std::string& name, const std::string& description,
+                                   const std::string& example) const {
+  const Command group = add_command(name, description, example, nullptr);
+  group.app().require_subcommand(1);
+  return group;
+}
+
+Command add_command(const Command& parent, Session& session, const std::string& name,
+                    const std::string& description, const std::string& example, std::function<void()> run) {
+  const Command command =
+      parent.add_command(name, description, example, [&session, run = std::move(run)] { session.run = run; });
+  add_common_options(command, session);
+  // Added again, so that it comes last among the common options.
+  command.app().set_help_flag("--help,-h", "Print this and stop")->group("Common");
   return command;
 }
 

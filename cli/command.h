@@ -1,11 +1,17 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "cli/console.h"
 #include "cli/output_set.h"
+
+// CLI11's headers take seconds to compile, so the files of the commands see only the handles below.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace adamas {
 
@@ -24,38 +30,73 @@ struct Session {
   void begin();
 };
 
-/// What a newcomer types first: data to try, what is in them, a mesh, a look at it, more about a command.
-inline constexpr const char* kFirstSteps =
-    "First steps:\n"
-    "  adamas generate scene voronoi10 --dimensions 48 -o cells.vtr\n"
-    "  adamas info cells.vtr\n"
-    "  adamas resample cells.vtr --interface-error 1% -o mesh.vtu\n"
-    "  adamas slice mesh.vtu --plane z=0.5 -o slice.png\n"
-    "  adamas resample --help";
+/// A handle of an option or of a positional argument, for its properties.
+class CommandOption {
+ public:
+  explicit CommandOption(CLI::Option& option) : option_(&option) {}
+  CommandOption required();
+  /// What stands for the value in --help, as "FILE".
+  CommandOption type_name(const std::string& name);
+  /// The heading that --help lists the option under.
+  CommandOption group(const std::string& name);
+  /// One value per mention of the option.
+  CommandOption one_value_each();
+  /// --help tells the value that the variable has now.
+  CommandOption show_default();
+  /// Only these words are values.
+  CommandOption one_of(const std::vector<std::string>& words);
 
-/// A subcommand with the common options. `example` is shown by --help. `run` is called for the command that
-/// was chosen; it may throw UsageError, Error and Cancelled.
-CLI::App* add_command(CLI::App& app, Session& session, const std::string& name,
-                      const std::string& description, const std::string& example, std::function<void()> run);
+ private:
+  CLI::Option* option_;
+};
+
+/// A handle of a command, or of the whole command line, for its options and the commands below it. Variables
+/// that take values have to outlive the command line.
+class Command {
+ public:
+  explicit Command(CLI::App& app) : app_(&app) {}
+  /// An option with a value ("--name,-n"), or a positional argument ("name").
+  CommandOption add_option(const std::string& name, std::string& value, const std::string& description) const;
+  CommandOption add_option(const std::string& name, std::vector<std::string>& values,
+                           const std::string& description) const;
+  /// An option without a value.
+  CommandOption add_flag(const std::string& name, bool& value, const std::string& description) const;
+  /// A command without options; `chosen` is called where the command line names it.
+  Command add_command(const std::string& name, const std::string& description, const std::string& example,
+                      std::function<void()> chosen) const;
+  /// A command that needs one of those below it, as "generate" needs "scene".
+  Command add_command_group(const std::string& name, const std::string& description,
+                            const std::string& example) const;
+  [[nodiscard]] CLI::App& app() const { return *app_; }
+
+ private:
+  CLI::App* app_;
+};
+
+/// A command with the options that all have. `example` is shown by --help. `run` is called for the command
+/// that was chosen; it may throw UsageError, Error and Cancelled.
+Command add_command(const Command& parent, Session& session, const std::string& name,
+                    const std::string& description, const std::string& example, std::function<void()> run);
 
 // One function per command, in the file of its name.
-void add_generate(CLI::App& app, Session& session);
-void add_info(CLI::App& app, Session& session);
-void add_reconstruct(CLI::App& app, Session& session);
-void add_resample(CLI::App& app, Session& session);
-void add_select(CLI::App& app, Session& session);
-void add_compare(CLI::App& app, Session& session);
-void add_slice(CLI::App& app, Session& session);
-void add_probe(CLI::App& app, Session& session);
-void add_experiment(CLI::App& app, Session& session);
-void add_store(CLI::App& app, Session& session);
-void add_restore(CLI::App& app, Session& session);
-void add_verify(CLI::App& app, Session& session);
-void add_isosurface(CLI::App& app, Session& session);
-void add_completion(CLI::App& app, Session& session);
-void add_man(CLI::App& app, Session& session);
-
-/// The whole command line.
-void add_all_commands(CLI::App& app, Session& session);
+void add_generate(const Command& root, Session& session);
+void add_info(const Command& root, Session& session);
+void add_reconstruct(const Command& root, Session& session);
+void add_resample(const Command& root, Session& session);
+void add_select(const Command& root, Session& session);
+void add_compare(const Command& root, Session& session);
+void add_slice(const Command& root, Session& session);
+void add_probe(const Command& root, Session& session);
+void add_experiment(const Command& root, Session& session);
+void add_store(const Command& root, Session& session);
+void add_restore(const Command& root, Session& session);
+void add_verify(const Command& root, Session& session);
+void add_isosurface(const Command& root, Session& session);
+void add_completion(const Command& root, Session& session);
+void add_man(const Command& root, Session& session);
+// The kinds of data that `adamas generate` makes, each in the file of its name too.
+void add_generate_scene(const Command& generate, Session& session);
+void add_generate_impact(const Command& generate, Session& session);
+void add_generate_buckyball(const Command& generate, Session& session);
 
 }  // namespace adamas

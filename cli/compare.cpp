@@ -1,4 +1,3 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -155,52 +154,52 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_compare(CLI::App& app, Session& session) {
+void add_compare(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(
+  const Command command = add_command(
       app, session, "compare", "The mesh beside meshes of other generators at equal interface error",
       "adamas compare cells.vtr --interface-error 2% --interface-error 1% -o comparison.png",
       [options, &session] { run(*options, session); });
   command
-      ->add_option(
+      .add_option(
           "input", options->input.path,
           std::string("What to mesh: ") + kGridFiles + ", or a labelled network (.vtp, .ply, .arec, .txt)")
-      ->type_name("FILE");
+      .type_name("FILE");
   command
-      ->add_option("--interface-error", options->interface_errors,
-                   "Greatest distance between the interfaces and their approximation: a length, in % of the "
-                   "domain's diagonal, or in voxels of the input's grid; repeatable, a group of rows each "
-                   "(default: 1%)")
-      ->type_name("E|E%|Evoxels")
-      ->allow_extra_args(false);
-  add_other_resampling_options(*command, options->text);
+      .add_option("--interface-error", options->interface_errors,
+                  "Greatest distance between the interfaces and their approximation: a length, in % of the "
+                  "domain's diagonal, or in voxels of the input's grid; repeatable, a group of rows each "
+                  "(default: 1%)")
+      .type_name("E|E%|Evoxels")
+      .one_value_each();
+  add_other_resampling_options(command, options->text);
   command
-      ->add_option("--reference", options->references,
-                   std::string("Other generators: tetgen, mesh3 or both") +
-                       (ADAMAS_WITH_TETGEN ? "" : " (this build is without TetGen)"))
-      ->type_name("NAME,NAME")
-      ->capture_default_str();
-  command->add_option("--tetgen-switches", options->tetgen_switches, "How TetGen meshes; z and p are needed")
-      ->type_name("SWITCHES")
-      ->capture_default_str();
+      .add_option("--reference", options->references,
+                  std::string("Other generators: tetgen, mesh3 or both") +
+                      (ADAMAS_WITH_TETGEN ? "" : " (this build is without TetGen)"))
+      .type_name("NAME,NAME")
+      .show_default();
+  command.add_option("--tetgen-switches", options->tetgen_switches, "How TetGen meshes; z and p are needed")
+      .type_name("SWITCHES")
+      .show_default();
   command
-      ->add_option("--time-limit", options->time_limit,
-                   "Seconds that one mesh of another generator may take, all trials together")
-      ->type_name("S")
-      ->capture_default_str();
+      .add_option("--time-limit", options->time_limit,
+                  "Seconds that one mesh of another generator may take, all trials together")
+      .type_name("S")
+      .show_default();
   command
-      ->add_option("--memory-limit", options->memory_limit,
-                   "Address space in bytes that another generator may take")
-      ->type_name("BYTES")
-      ->capture_default_str();
+      .add_option("--memory-limit", options->memory_limit,
+                  "Address space in bytes that another generator may take")
+      .type_name("BYTES")
+      .show_default();
   command
-      ->add_option("-o,--output", options->picture,
-                   "Tetrahedra and seconds against measured distance: .png, .svg or .pdf")
-      ->type_name("FILE");
-  command->add_option("--csv", options->csv, "The table: .csv")->type_name("FILE");
-  add_material_options(*command, options->input);
-  add_smoothing_option(*command, options->input);
-  add_interface_options(*command, options->input);
+      .add_option("-o,--output", options->picture,
+                  "Tetrahedra and seconds against measured distance: .png, .svg or .pdf")
+      .type_name("FILE");
+  command.add_option("--csv", options->csv, "The table: .csv").type_name("FILE");
+  add_material_options(command, options->input);
+  add_smoothing_option(command, options->input);
+  add_interface_options(command, options->input);
 }
 
 }  // namespace adamas

@@ -1,10 +1,9 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
 #include <string>
 
 #include "cli/command.h"
-#include "cli/option_checks.h"
+#include "cli/help.h"
 
 namespace adamas {
 
@@ -13,26 +12,26 @@ namespace {
 /// The case of one command, and those of its own commands: `options` are offered where a word begins with
 /// '-', `words` elsewhere, and behind an option that takes a value only what that may be. Where nothing is
 /// offered, the shell completes names of files.
-void append_cases(const CLI::App& command, const std::string& name, std::string& script) {
+void append_cases(const CommandDescription& command, const std::string& name, std::string& script) {
   std::string options, words, values, others;
-  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; })) {
-    words += sub->get_name() + " ";
-    append_cases(*sub, name + " " + sub->get_name(), script);
+  for (const CommandDescription& inner : command.commands) {
+    words += inner.name + " ";
+    append_cases(inner, name + " " + inner.name, script);
   }
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->get_group().empty()) continue;
-    const std::string list = CLI::detail::join(choices(*option), " ");
+  for (const OptionDescription& option : command.options) {
+    if (option.group.empty()) continue;
+    const std::string list = fmt::format("{}", fmt::join(option.words, " "));
     std::string names;
-    for (const std::string& long_name : option->get_lnames()) {
+    for (const std::string& long_name : option.long_names) {
       options += "--" + long_name + " ";
       names += (names.empty() ? "--" : "|--") + long_name;
     }
-    for (const std::string& short_name : option->get_snames()) names += "|-" + short_name;
-    if (option->get_positional()) {
+    for (const std::string& short_name : option.short_names) names += "|-" + short_name;
+    if (option.positional) {
       if (!list.empty()) words += list + " ";
     } else if (!list.empty()) {
       values += "        " + names + ") options=\"\" words=\"" + list + "\" ;;\n";
-    } else if (option->get_type_size() != 0) {
+    } else if (option.takes_value) {
       others += (others.empty() ? "" : "|") + names;
     }
   }
@@ -43,17 +42,17 @@ void append_cases(const CLI::App& command, const std::string& name, std::string&
 }
 
 /// Patterns of a case: all commands, as "adamas generate scene".
-std::string command_patterns(const CLI::App& command, const std::string& name) {
+std::string command_patterns(const CommandDescription& command, const std::string& name) {
   std::string patterns;
-  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; })) {
-    const std::string full = name + " " + sub->get_name();
-    const std::string inner = command_patterns(*sub, full);
+  for (const CommandDescription& sub : command.commands) {
+    const std::string full = name + " " + sub.name;
+    const std::string inner = command_patterns(sub, full);
     patterns += (patterns.empty() ? "\"" : "|\"") + full + "\"" + (inner.empty() ? "" : "|" + inner);
   }
   return patterns;
 }
 
-std::string bash_script(const CLI::App& root) {
+std::string bash_script(const CommandDescription& root) {
   std::string cases;
   append_cases(root, "adamas", cases);
   return "# bash completion of adamas; made by: adamas completion bash\n"
@@ -82,17 +81,13 @@ std::string bash_script(const CLI::App& root) {
 
 }  // namespace
 
-void add_completion(CLI::App& app, Session& session) {
-  const std::string example = "Example:\n  source <(adamas completion bash)";
-  CLI::App* parent = app.add_subcommand("completion", "Print a script that completes command lines");
-  parent->require_subcommand(1);
-  parent->set_help_flag("--help,-h", "Print this and stop");
-  parent->footer(example);
-  CLI::App* bash = parent->add_subcommand("bash", "Completion for bash");
-  bash->set_help_flag("--help,-h", "Print this and stop");
-  bash->footer(example);
-  bash->final_callback(
-      [&app, &session] { session.run = [&app, &session] { session.console.write(bash_script(app)); }; });
+void add_completion(const Command& root, Session& session) {
+  const std::string example = "source <(adamas completion bash)";
+  const Command group =
+      root.add_command_group("completion", "Print a script that completes command lines", example);
+  group.add_command("bash", "Completion for bash", example, [root, &session] {
+    session.run = [root, &session] { session.console.write(bash_script(describe(root))); };
+  });
 }
 
 }  // namespace adamas

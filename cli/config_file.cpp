@@ -1,5 +1,6 @@
 #include "cli/config_file.h"
 
+#include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <sstream>
 #include <string>
@@ -67,7 +68,14 @@ std::string with_arrays_in_lines(std::istream& input) {
   return result;
 }
 
-}  // namespace
+class ConfigFile final : public CLI::ConfigBase {
+ public:
+  explicit ConfigFile(CLI::App& root) : root_(root) {}
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override;
+
+ private:
+  CLI::App& root_;
+};
 
 std::vector<CLI::ConfigItem> ConfigFile::from_config(std::istream& input) const {
   std::istringstream lines(with_arrays_in_lines(input));
@@ -96,5 +104,9 @@ std::vector<CLI::ConfigItem> ConfigFile::from_config(std::istream& input) const 
   }
   return result;
 }
+
+}  // namespace
+
+std::shared_ptr<CLI::Config> config_file(CLI::App& root) { return std::make_shared<ConfigFile>(root); }
 
 }  // namespace adamas

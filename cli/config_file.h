@@ -1,19 +1,17 @@
 #pragma once
 
-#include <CLI/App.hpp>
+#include <memory>
+
+namespace CLI {
+class App;
+class Config;
+}  // namespace CLI
 
 namespace adamas {
 
 /// Reads files of `--config`: lines "NAME = VALUE" are options of the command that is run; those in a section
 /// "[COMMAND]" are for that command alone, so that one file can serve several. Throws CLI::ConfigError at
-/// names that the command has not.
-class ConfigFile final : public CLI::ConfigBase {
- public:
-  explicit ConfigFile(CLI::App& root) : root_(root) {}
-  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override;
-
- private:
-  CLI::App& root_;
-};
+/// names that the command has not. `root` is the whole command line and has to outlive the result.
+std::shared_ptr<CLI::Config> config_file(CLI::App& root);
 
 }  // namespace adamas

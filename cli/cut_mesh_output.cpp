@@ -116,17 +116,17 @@ void CutMeshOutput::declare(OutputSet& outputs) const {
   (void)parse_error_target("--cut-error", error);
 }
 
-void add_cut_mesh_options(CLI::App& command, CutMeshOutput& output) {
+void add_cut_mesh_options(const Command& command, CutMeshOutput& output) {
   command
       .add_option("--cut-mesh", output.file,
                   "The mesh cut along its interfaces, for solvers: .vtu, .msh (Gmsh) or .exo (ExodusII)")
-      ->type_name("FILE");
+      .type_name("FILE");
   command
       .add_option(
           "--cut-error", output.error,
           "How far the cut mesh's faces between materials may be from the mesh's interfaces: a length, "
           "or in % of the domain's diagonal (default: half the interface error)")
-      ->type_name("E|E%");
+      .type_name("E|E%");
 }
 
 Figures write_cut_mesh(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error,

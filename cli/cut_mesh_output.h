@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,7 @@ struct CutMeshOutput {
   void declare(OutputSet& outputs) const;
 };
 
-void add_cut_mesh_options(CLI::App& command, CutMeshOutput& output);
+void add_cut_mesh_options(const Command& command, CutMeshOutput& output);
 
 /// Cuts, measures, prints, and writes; returns the figures for `--json`, null where no cut mesh is wanted.
 /// `interface_error`: of the mesh, a length. `source`: what the mesh was made of, null where that is not

@@ -1,4 +1,3 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -271,12 +270,12 @@ void run(const ExperimentOptions& options, Session& session) {
 
 }  // namespace
 
-void add_experiment(CLI::App& app, Session& session) {
+void add_experiment(const Command& app, Session& session) {
   const auto options = std::make_shared<ExperimentOptions>();
-  CLI::App* command = add_command(
+  const Command command = add_command(
       app, session, "experiment", "A resampling experiment from one file, with pictures and a report",
       "adamas experiment -c datasets/impact.toml -o impact", [options, &session] { run(*options, session); });
-  add_experiment_options(*command, *options);
+  add_experiment_options(command, *options);
 }
 
 }  // namespace adamas

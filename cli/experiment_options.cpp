@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "cli/figures.h"
-#include "cli/option_checks.h"
 #include "cli/usage_error.h"
 #include "interfaces/cross_section/cross_section.h"
 
@@ -39,48 +38,48 @@ bool same_letters(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-void add_experiment_options(CLI::App& command, ExperimentOptions& options) {
+void add_experiment_options(const Command& command, ExperimentOptions& options) {
   command.add_option("input", options.input.path, std::string("What to resample: ") + kGridFiles)
-      ->type_name("FILE");
+      .type_name("FILE");
   command.add_option("--generate", options.generate, "Make the input: a scene of adamas generate, or impact")
-      ->type_name("NAME")
-      ->check(one_of(generated_names()));
+      .type_name("NAME")
+      .one_of(generated_names());
   command.add_option("--dimensions", options.dimensions, "Numbers of cells of generated data")
-      ->type_name("X,Y,Z");
+      .type_name("X,Y,Z");
   command.add_option("--seed", options.seed, "Which of the scenes of a kind (voronoi10, random)")
-      ->type_name("N");
+      .type_name("N");
   command.add_option("-o,--output", options.output, "A folder for all outputs")
-      ->required()
-      ->type_name("FOLDER");
+      .required()
+      .type_name("FOLDER");
   command.add_flag("--overwrite", options.overwrite, "Replace the folder of an earlier experiment");
-  command.add_option("--title", options.title, "The heading of the report")->type_name("TEXT");
+  command.add_option("--title", options.title, "The heading of the report").type_name("TEXT");
   command
       .add_option("--show", options.show,
                   "The field in slices and tables, or NAME:x for a component; without it, slices show the "
                   "materials")
-      ->type_name("NAME");
+      .type_name("NAME");
   command.add_option("--plane", options.planes, "A plane of a slice; repeatable")
-      ->type_name("x=N|y=N|z=N")
-      ->allow_extra_args(false);
+      .type_name("x=N|y=N|z=N")
+      .one_value_each();
   command.add_option("--detail", options.detail, "A part of the first plane to show enlarged too")
-      ->type_name("a0,a1,b0,b1");
+      .type_name("a0,a1,b0,b1");
   command
       .add_option("--curve", options.curve,
                   "An interface error of the curve of error against tetrahedra; repeatable (default: 8, 4, 2 "
                   "and 1 times --interface-error)")
-      ->type_name("E|E%|Evoxels")
-      ->allow_extra_args(false);
+      .type_name("E|E%|Evoxels")
+      .one_value_each();
   command
       .add_option("--density", options.density,
                   "The field whose integral is mass in the ledger (default: one named density)")
-      ->type_name("NAME");
+      .type_name("NAME");
   command.add_option("--published-by", options.published_by, "Where the published figures are from")
-      ->type_name("TEXT");
+      .type_name("TEXT");
   command
       .add_option("--published", options.published,
                   "A published figure to set beside: 'tetrahedra=5390', 'triangles A | B=38'; repeatable")
-      ->type_name("NAME=X")
-      ->allow_extra_args(false);
+      .type_name("NAME=X")
+      .one_value_each();
   add_surface_picture_options(command, options.pictures, false);
   add_resampling_options(command, options.resampling);
   add_material_options(command, options.input);

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cli/command.h"
 #include "cli/generated_data.h"
 #include "cli/input_options.h"
 #include "cli/resampling_setup.h"
@@ -26,7 +26,7 @@ struct ExperimentOptions {
   bool overwrite = false;
 };
 
-void add_experiment_options(CLI::App& command, ExperimentOptions& options);
+void add_experiment_options(const Command& command, ExperimentOptions& options);
 
 /// The options with their values checked, before the input is known.
 struct ExperimentWishes {

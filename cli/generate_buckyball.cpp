@@ -1,11 +1,9 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/generate_commands.h"
-#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/volume_output.h"
 #include "datasets/buckyball.h"
@@ -57,19 +55,19 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_generate_buckyball(CLI::App& generate, Session& session) {
+void add_generate_buckyball(const Command& generate, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       add_command(generate, session, "buckyball", "A volume of Gaussians at the 60 atoms of a buckyball",
                   "adamas generate buckyball --dimensions 256 -o ball.nhdr",
                   [options, &session] { run(*options, session); });
-  command->add_option("--dimensions", options->dimensions, "Numbers of samples, or one for all axes")
-      ->required()
-      ->type_name("X,Y,Z");
-  command->add_option("--type", options->type, "Of the samples, whose values fill its range; float32: 0 to 1")
-      ->check(one_of(type_names()))
-      ->capture_default_str();
-  add_volume_output(*command, options->output);
+  command.add_option("--dimensions", options->dimensions, "Numbers of samples, or one for all axes")
+      .required()
+      .type_name("X,Y,Z");
+  command.add_option("--type", options->type, "Of the samples, whose values fill its range; float32: 0 to 1")
+      .one_of(type_names())
+      .show_default();
+  add_volume_output(command, options->output);
 }
 
 }  // namespace adamas

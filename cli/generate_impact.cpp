@@ -1,10 +1,9 @@
-#include <CLI/App.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/flow_series.h"
-#include "cli/generate_commands.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "datasets/flow/impact.h"
@@ -73,34 +72,34 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_generate_impact(CLI::App& generate, Session& session) {
+void add_generate_impact(const Command& generate, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(
+  const Command command = add_command(
       generate, session, "impact", "A projectile strikes a block: a flow of three materials",
       "adamas generate impact --steps 21 -o impact.pvd", [options, &session] { run(*options, session); });
-  command->add_option("--dimensions", options->dimensions, "Numbers of cells (default 32,32,52)")
-      ->type_name("X,Y,Z");
+  command.add_option("--dimensions", options->dimensions, "Numbers of cells (default 32,32,52)")
+      .type_name("X,Y,Z");
   command
-      ->add_option("--box", options->box,
-                   "The domain in cm (default 0,12,0,12,-16,4.8); where x or y begins with 0, the flow is "
-                   "symmetric there")
-      ->type_name("x0,x1,y0,y1,z0,z1");
+      .add_option("--box", options->box,
+                  "The domain in cm (default 0,12,0,12,-16,4.8); where x or y begins with 0, the flow is "
+                  "symmetric there")
+      .type_name("x0,x1,y0,y1,z0,z1");
   command
-      ->add_option("--end-time", options->end_time,
-                   fmt::format("Time of the last data in microseconds (default {})", kImpactTime))
-      ->type_name("T");
+      .add_option("--end-time", options->end_time,
+                  fmt::format("Time of the last data in microseconds (default {})", kImpactTime))
+      .type_name("T");
   command
-      ->add_option(
+      .add_option(
           "--speed", options->speed,
           fmt::format("Speed of the projectile in cm per microsecond (default {})", ImpactOptions().speed))
-      ->type_name("V");
+      .type_name("V");
   command
-      ->add_option("--steps", options->steps,
-                   "How many data sets a series has, the first at the start (default 11)")
-      ->type_name("N");
-  command->add_option("-o,--output", options->output, "The last data: .vtr or .vti; or a series: .pvd")
-      ->required()
-      ->type_name("FILE");
+      .add_option("--steps", options->steps,
+                  "How many data sets a series has, the first at the start (default 11)")
+      .type_name("N");
+  command.add_option("-o,--output", options->output, "The last data: .vtr or .vti; or a series: .pvd")
+      .required()
+      .type_name("FILE");
 }
 
 }  // namespace adamas

@@ -1,10 +1,8 @@
-#include <CLI/App.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/generate_commands.h"
-#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
@@ -106,30 +104,27 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_generate_scene(CLI::App& generate, Session& session) {
+void add_generate_scene(const Command& generate, Session& session) {
   const std::string example = "adamas generate scene voronoi10 --dimensions 32,32,32 --seed 7 -o cells.vtr";
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       add_command(generate, session, "scene", "Analytic materials with known volumes, and fields", example,
                   [options, &session] { run(*options, session); });
-  command->add_option("name", options->name, "The scene")
-      ->required()
-      ->type_name("NAME")
-      ->check(one_of(scene_names()));
-  command->add_option("--dimensions", options->dimensions, "Numbers of cells")->type_name("X,Y,Z");
-  command->add_option("--seed", options->seed, "Which of the scenes of a kind (voronoi10, random)")
-      ->type_name("N");
-  command->add_option("--box", options->box, "Where the scene lies (default: the unit cube)")
-      ->type_name("x0,x1,y0,y1,z0,z1");
+  command.add_option("name", options->name, "The scene").required().type_name("NAME").one_of(scene_names());
+  command.add_option("--dimensions", options->dimensions, "Numbers of cells").type_name("X,Y,Z");
+  command.add_option("--seed", options->seed, "Which of the scenes of a kind (voronoi10, random)")
+      .type_name("N");
+  command.add_option("--box", options->box, "Where the scene lies (default: the unit cube)")
+      .type_name("x0,x1,y0,y1,z0,z1");
   command
-      ->add_option("--interfaces", options->interfaces,
-                   "Write the true interfaces too (.vtp, .ply, .obj, .off, .stl, .arec)")
-      ->type_name("FILE");
+      .add_option("--interfaces", options->interfaces,
+                  "Write the true interfaces too (.vtp, .ply, .obj, .off, .stl, .arec)")
+      .type_name("FILE");
   command
-      ->add_option("--resolution", options->resolution,
-                   "Size of their triangles on curved interfaces (default: a cell)")
-      ->type_name("H");
-  command->add_option("-o,--output", options->output, "The data: .vtr or .vti")->type_name("FILE");
+      .add_option("--resolution", options->resolution,
+                  "Size of their triangles on curved interfaces (default: a cell)")
+      .type_name("H");
+  command.add_option("-o,--output", options->output, "The data: .vtr or .vti").type_name("FILE");
 }
 
 }  // namespace adamas

@@ -1,4 +1,3 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -267,24 +266,24 @@ void run(const Options& given, Session& session) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Session& session) {
+void add_info(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(app, session, "info", "What is in a file", "adamas info cth.vtr",
-                                  [options, &session] { run(*options, session); });
+  const Command command = add_command(app, session, "info", "What is in a file", "adamas info cth.vtr",
+                                      [options, &session] { run(*options, session); });
   command
-      ->add_option(
+      .add_option(
           "input", options->input.path,
           std::string("Any file that can be read: ") + kGridFiles +
               ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .ply, .arec, .txt), a surface "
               "(.obj, .off, .ply, .stl) or a store (.adm)")
-      ->type_name("FILE");
-  add_material_options(*command, options->input);
+      .type_name("FILE");
+  add_material_options(command, options->input);
   command
-      ->add_option("--region-names", options->input.region_names,
-                   "Names of a network's labels, LABEL NAME a line")
-      ->type_name("FILE")
-      ->group("Input");
-  add_volume_options(*command, options->volume, "--origin,--first-sample");
+      .add_option("--region-names", options->input.region_names,
+                  "Names of a network's labels, LABEL NAME a line")
+      .type_name("FILE")
+      .group("Input");
+  add_volume_options(command, options->volume, "--origin,--first-sample");
 }
 
 }  // namespace adamas

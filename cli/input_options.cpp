@@ -52,9 +52,9 @@ void check_extensive(const InputOptions& options, const MultiMaterialData& data)
   }
 }
 
-CLI::Option* add_repeatable(CLI::App& command, const char* name, std::vector<std::string>& values,
-                            const char* description) {
-  return command.add_option(name, values, description)->allow_extra_args(false)->group("Input");
+CommandOption add_repeatable(const Command& command, const char* name, std::vector<std::string>& values,
+                             const char* description) {
+  return command.add_option(name, values, description).one_value_each().group("Input");
 }
 
 }  // namespace
@@ -96,43 +96,42 @@ InputKind input_kind(const std::string& path) {
   return InputKind::kGrid;
 }
 
-void add_material_options(CLI::App& command, InputOptions& options, const char* field,
+void add_material_options(const Command& command, InputOptions& options, const char* field,
                           const char* field_type) {
   add_repeatable(command, "--fraction", options.fractions,
                  "A material and where its volume fractions are; repeatable (default: all arrays named "
                  "\"Volume Fraction\")")
-      ->type_name("NAME=FILE-or-ARRAY");
+      .type_name("NAME=FILE-or-ARRAY");
   command.add_option("--fraction-scale", options.fraction_scale, "What a volume fraction of 1 is stored as")
-      ->type_name("S")
-      ->group("Input");
+      .type_name("S")
+      .group("Input");
   command.add_option("--rest", options.rest, "One more material, of what the others leave of 1")
-      ->type_name("NAME")
-      ->group("Input");
-  command
-      .add_option("--labels", options.labels, "Whole numbers that name the material of each cell or point")
-      ->type_name("FILE-or-ARRAY")
-      ->group("Input");
-  add_repeatable(command, "--field", options.fields, field)->type_name(field_type);
+      .type_name("NAME")
+      .group("Input");
+  command.add_option("--labels", options.labels, "Whole numbers that name the material of each cell or point")
+      .type_name("FILE-or-ARRAY")
+      .group("Input");
+  add_repeatable(command, "--field", options.fields, field).type_name(field_type);
   add_repeatable(command, "--extensive", options.extensive,
                  "A field of amounts per cell, to be divided by the material's volume there; repeatable")
-      ->type_name("NAME");
+      .type_name("NAME");
   command
       .add_flag("--cells", options.cells,
                 "The values are of cells, whatever the file says (default, where it says nothing, for labels "
                 "and volume fractions)")
-      ->group("Input");
+      .group("Input");
   command.add_flag("--points", options.points, "The values are of points, whatever the file says")
-      ->group("Input");
+      .group("Input");
   command.add_option("--region", options.region, "Keep what lies in this box")
-      ->type_name("x0,x1,y0,y1,z0,z1")
-      ->group("Input");
+      .type_name("x0,x1,y0,y1,z0,z1")
+      .group("Input");
 }
 
-void add_smoothing_option(CLI::App& command, InputOptions& options) {
+void add_smoothing_option(const Command& command, InputOptions& options) {
   command
       .add_flag("--smooth-labels", options.smooth_labels,
                 "Smooth the staircase of labels, within half a voxel along each axis; volumes stay")
-      ->group("Input");
+      .group("Input");
 }
 
 ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data) {
@@ -141,34 +140,33 @@ ReconstructionOptions reconstruction_options(const InputOptions& options, const 
   return {.smooth_labels = options.smooth_labels};
 }
 
-void add_interface_options(CLI::App& command, InputOptions& options, bool resampled) {
+void add_interface_options(const Command& command, InputOptions& options, bool resampled) {
   add_repeatable(command, "--interface", options.interfaces,
                  "A surface (.obj, .off, .ply, .stl) between two materials, the first where its normals "
                  "point to; repeatable")
-      ->type_name("FILE=FRONT,BACK");
-  command
-      .add_option("--region-names", options.region_names, "Names of a network's labels, LABEL NAME a line")
-      ->type_name("FILE")
-      ->group("Input");
+      .type_name("FILE=FRONT,BACK");
+  command.add_option("--region-names", options.region_names, "Names of a network's labels, LABEL NAME a line")
+      .type_name("FILE")
+      .group("Input");
   if (!resampled) return;
   command
       .add_option(
           "--box", options.box,
           "The domain of given interfaces (default: that of the grid, else their own box and 5% more)")
-      ->type_name("x0,x1,y0,y1,z0,z1")
-      ->group("Input");
+      .type_name("x0,x1,y0,y1,z0,z1")
+      .group("Input");
   command
       .add_option(
           "--weld", options.weld,
           "Close gaps of given interfaces that are at most so wide: a length, or a part of the domain's "
           "diagonal; 0 for none (default: 0.0001%)")
-      ->type_name("W|W%")
-      ->group("Input");
+      .type_name("W|W%")
+      .group("Input");
   command
       .add_flag("--tolerant", options.tolerant,
                 "Take given interfaces that intersect, contradict each other or do not match, instead of "
                 "refusing them")
-      ->group("Input");
+      .group("Input");
 }
 
 void protect_inputs(const InputOptions& options, const std::string& base, OutputSet& outputs) {

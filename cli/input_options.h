@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/command.h"
 #include "cli/console.h"
 #include "cli/output_set.h"
 #include "core/data/interface_mesh.h"
@@ -48,15 +48,15 @@ InputKind input_kind(const std::string& path);
 
 /// Options for volume fractions, labels and fields on a grid. `field` describes `--field`, whose meaning some
 /// commands widen.
-void add_material_options(CLI::App& command, InputOptions& options,
+void add_material_options(const Command& command, InputOptions& options,
                           const char* field = "One more field, and where its values are; repeatable",
                           const char* field_type = "NAME=FILE-or-ARRAY");
 /// The option that smooths labels, for commands that reconstruct interfaces.
-void add_smoothing_option(CLI::App& command, InputOptions& options);
+void add_smoothing_option(const Command& command, InputOptions& options);
 /// What the options ask of the reconstruction. Throws UsageError where the data have no labels to smooth.
 ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data);
 /// Options for given interface meshes; `resampled`: those too that say what to make of them.
-void add_interface_options(CLI::App& command, InputOptions& options, bool resampled = true);
+void add_interface_options(const Command& command, InputOptions& options, bool resampled = true);
 
 /// Keeps outputs off all files that the options name; `base`: the file that others may lie beside.
 void protect_inputs(const InputOptions& options, const std::string& base, OutputSet& outputs);

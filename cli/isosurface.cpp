@@ -1,15 +1,12 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/isosurface_figures.h"
 #include "cli/isosurface_picture.h"
-#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/store_input.h"
 #include "cli/usage_error.h"
@@ -185,35 +182,34 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_isosurface(CLI::App& app, Session& session) {
+void add_isosurface(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(app, session, "isosurface", "A closed surface of equal value from a store",
-                                  "adamas isosurface head.adm --isovalue 1150 --error 0.7voxels -o skull.ply",
-                                  [options, &session] { run(*options, session); });
-  add_store_input(*command, options->input);
+  const Command command =
+      add_command(app, session, "isosurface", "A closed surface of equal value from a store",
+                  "adamas isosurface head.adm --isovalue 1150 --error 0.7voxels -o skull.ply",
+                  [options, &session] { run(*options, session); });
+  add_store_input(command, options->input);
   command
-      ->add_option("--isovalue", options->isovalues,
-                   "The value; repeatable, for several surfaces in one file")
-      ->required()
-      ->type_name("V")
-      ->allow_extra_args(false);
+      .add_option("--isovalue", options->isovalues, "The value; repeatable, for several surfaces in one file")
+      .required()
+      .type_name("V")
+      .one_value_each();
   command
-      ->add_option("--error", options->error,
-                   "The greatest isosurface error: in units of length, of voxels (the least spacing) or of "
-                   "the data's diagonal; default 0: all that the samples say")
-      ->type_name("E|Evoxels|E%");
+      .add_option("--error", options->error,
+                  "The greatest isosurface error: in units of length, of voxels (the least spacing) or of "
+                  "the data's diagonal; default 0: all that the samples say")
+      .type_name("E|Evoxels|E%");
   command
-      ->add_option("--max-triangles", options->max_triangles,
-                   "Never more triangles for an isovalue, whatever the error: the greatest errors are "
-                   "refined first")
-      ->type_name("N");
-  command->add_option("--region", options->region, "Only the surface in a box")
-      ->type_name("x0,x1,y0,y1,z0,z1");
-  command->add_flag("--no-normals", options->no_normals, "Points without the normals of gradients");
-  command->add_flag("--strict", options->strict, "Stop at damaged pages, instead of going on coarser there");
-  command->add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")
-      ->type_name("FILE");
-  add_picture_options(*command, options->picture, "it");
+      .add_option("--max-triangles", options->max_triangles,
+                  "Never more triangles for an isovalue, whatever the error: the greatest errors are "
+                  "refined first")
+      .type_name("N");
+  command.add_option("--region", options->region, "Only the surface in a box").type_name("x0,x1,y0,y1,z0,z1");
+  command.add_flag("--no-normals", options->no_normals, "Points without the normals of gradients");
+  command.add_flag("--strict", options->strict, "Stop at damaged pages, instead of going on coarser there");
+  command.add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")
+      .type_name("FILE");
+  add_picture_options(command, options->picture, "it");
 }
 
 }  // namespace adamas

@@ -1,16 +1,12 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
 
-#include "cli/command.h"
+#include "cli/command_line.h"
 #include "cli/exit_status.h"
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
-#include "cli/usage_message.h"
 #include "core/base/visible_text.h"
 
 namespace {
@@ -47,29 +43,24 @@ void run_command(adamas::Session& session) {
   }
 }
 
-int run(CLI::App& app, adamas::Session& session, int argc, char** argv) {
+int run(adamas::CommandLine& command_line, adamas::Session& session, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
-    session.begin();
-    run_command(session);
-    session.console.clear();
+    if (command_line.parse(argc, argv)) {
+      session.begin();
+      run_command(session);
+      session.console.clear();
+    }
     session.console.flush();
     return session.console.damage_noted() ? kIncomplete : kDone;
-  } catch (const CLI::Success& e) {
-    const int status = app.exit(e);
-    session.console.flush();
-    return status;
-  } catch (const CLI::ParseError& e) {
-    return usage_status(adamas::usage_message(e, app, {argv, argv + argc}), adamas::named_command(app));
   } catch (const adamas::UsageError& e) {
-    return usage_status(e.what(), adamas::named_command(app));
+    return usage_status(e.what(), command_line.named_command());
   }
 }
 
 /// All ways a run can end.
-int run_to_the_end(CLI::App& app, adamas::Session& session, int argc, char** argv) {
+int run_to_the_end(adamas::CommandLine& command_line, adamas::Session& session, int argc, char** argv) {
   try {
-    return run(app, session, argc, argv);
+    return run(command_line, session, argc, argv);
   } catch (const adamas::Cancelled&) {
     session.console.clear();
     std::fputs("adamas: cancelled\n", stderr);
@@ -92,7 +83,6 @@ int run_to_the_end(CLI::App& app, adamas::Session& session, int argc, char** arg
 int main(int argc, char** argv) {
   adamas::catch_signals();
   adamas::Session session;
-  CLI::App app("Adaptive tetrahedral meshes of multi-material data, with sharp interfaces.", "adamas");
-  adamas::add_all_commands(app, session);
-  return run_to_the_end(app, session, argc, argv);
+  adamas::CommandLine command_line(session);
+  return run_to_the_end(command_line, session, argc, argv);
 }

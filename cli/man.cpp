@@ -1,12 +1,10 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/exit_status.h"
-#include "cli/help_formatter.h"
+#include "cli/help.h"
 #include "cli/version.h"
 
 namespace adamas {
@@ -31,9 +29,8 @@ std::string roff(const std::string& text) {
   return result;
 }
 
-void append_option(const CLI::Option& option, bool positional, std::string& page) {
-  page += ".TP\n.B " + roff(option_head(option, positional)) + "\n" + roff(option_text(option, positional)) +
-          "\n";
+void append_option(const OptionDescription& option, std::string& page) {
+  page += ".TP\n.B " + roff(option.head) + "\n" + roff(option.text) + "\n";
 }
 
 /// A paragraph for examples, line by line as they stand.
@@ -41,31 +38,37 @@ void append_lines(const std::string& text, std::string& page) {
   page += ".PP\n.nf\n" + roff(text) + "\n.fi\n";
 }
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App*) { return true; });
-}
-
 /// A command's section: what it does, its options but for those that all have, its example.
-void append_command(const CLI::App& command, const std::string& name, std::string& page) {
-  page += ".SS " + roff(name) + "\n" + roff(command.get_description()) + ".\n";
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->get_positional()) append_option(*option, true, page);
+void append_command(const CommandDescription& command, const std::string& name, std::string& page) {
+  page += ".SS " + roff(name) + "\n" + roff(command.description) + ".\n";
+  for (const OptionDescription& option : command.options) {
+    if (option.positional) append_option(option, page);
   }
-  for (const std::string& group : option_groups(command)) {
-    if (group.empty() || group == "Common") continue;
-    for (const CLI::Option* option : command.get_options()) {
-      if (option->get_group() == group && option->nonpositional() &&
-          option->get_lnames() != std::vector<std::string>{"help"})
-        append_option(*option, false, page);
+  for (const std::string& group : command.groups()) {
+    if (group.empty() || group == kCommonGroup) continue;
+    for (const OptionDescription& option : command.options) {
+      if (option.group == group && !option.positional &&
+          option.long_names != std::vector<std::string>{"help"})
+        append_option(option, page);
     }
   }
-  if (commands_of(command).empty() && !command.get_footer().empty()) append_lines(command.get_footer(), page);
-  for (const CLI::App* sub : commands_of(command)) append_command(*sub, name + " " + sub->get_name(), page);
+  if (command.commands.empty() && !command.footer.empty()) append_lines(command.footer, page);
+  for (const CommandDescription& inner : command.commands) {
+    append_command(inner, name + " " + inner.name, page);
+  }
 }
 
-std::string man_page(const CLI::App& app) {
+/// The options that all commands have, as any of them has them.
+void append_common_options(const CommandDescription& any, std::string& page) {
+  page += ".SH COMMON OPTIONS\n";
+  for (const OptionDescription& option : any.options) {
+    if (option.group == kCommonGroup) append_option(option, page);
+  }
+}
+
+std::string man_page(const CommandDescription& app) {
   std::string page = std::string(".TH ADAMAS 1 \"\" \"adamas ") + kVersion + "\" \"User Commands\"\n.ad l\n";
-  page += ".SH NAME\nadamas \\- " + roff(app.get_description()) + "\n";
+  page += ".SH NAME\nadamas \\- " + roff(app.description) + "\n";
   page += ".SH SYNOPSIS\n.B adamas\n.I COMMAND\n[\n.I INPUT\n\\&... ] [\n.I options\n]\n";
   page += ".SH DESCRIPTION\n" +
           roff(
@@ -73,14 +76,13 @@ std::string man_page(const CLI::App& app) {
               "their names "
               "when they are whole. Errors are absolute by default, or parts with %.") +
           "\n";
-  append_lines(app.get_footer(), page);
+  append_lines(app.footer, page);
   page += ".SH COMMANDS\n";
-  for (const CLI::App* command : commands_of(app)) append_command(*command, command->get_name(), page);
-  page += ".SH COMMON OPTIONS\n";
-  const CLI::App* any = app.get_subcommand("info");
-  for (const CLI::Option* option : any->get_options()) {
-    if (option->get_group() == "Common") append_option(*option, false, page);
-  }
+  for (const CommandDescription& command : app.commands) append_command(command, command.name, page);
+  append_common_options(
+      *std::find_if(app.commands.begin(), app.commands.end(),
+                    [](const CommandDescription& command) { return command.name == "info"; }),
+      page);
   page += ".SH EXIT STATUS\n";
   for (const auto& [status, meaning] : kExitStatuses)
     page += ".TP\n.B " + std::to_string(status) + "\n" + roff(meaning) + "\n";
@@ -94,12 +96,10 @@ std::string man_page(const CLI::App& app) {
 
 }  // namespace
 
-void add_man(CLI::App& app, Session& session) {
-  CLI::App* man = app.add_subcommand("man", "Print the manual page");
-  man->set_help_flag("--help,-h", "Print this and stop");
-  man->footer("Example:\n  adamas man | man -l -");
-  man->final_callback(
-      [&app, &session] { session.run = [&app, &session] { session.console.write(man_page(app)); }; });
+void add_man(const Command& root, Session& session) {
+  root.add_command("man", "Print the manual page", "adamas man | man -l -", [root, &session] {
+    session.run = [root, &session] { session.console.write(man_page(describe(root))); };
+  });
 }
 
 }  // namespace adamas

@@ -18,17 +18,17 @@ void MeshOutputs::declare(OutputSet& outputs) const {
   outputs.declare("--picture", picture.camera.file, {".png", ".svg", ".pdf"});
 }
 
-void add_mesh_output_options(CLI::App& command, MeshOutputs& outputs) {
-  command.add_option("-o,--output", outputs.mesh, "The mesh: .vtu")->type_name("FILE");
+void add_mesh_output_options(const Command& command, MeshOutputs& outputs) {
+  command.add_option("-o,--output", outputs.mesh, "The mesh: .vtu").type_name("FILE");
   command
       .add_option("--interfaces-out", outputs.interfaces,
                   "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
-      ->type_name("FILE");
+      .type_name("FILE");
   add_cut_mesh_options(command, outputs.cut);
   command
       .add_option("--ledger", outputs.ledger,
                   "Volumes and integrals of fields per material, of the input and of what is written: .csv")
-      ->type_name("FILE");
+      .type_name("FILE");
   outputs.picture.triangle_edges = true;
   add_surface_picture_options(command, outputs.picture);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 
@@ -25,7 +24,7 @@ struct MeshOutputs {
   void declare(OutputSet& outputs) const;
 };
 
-void add_mesh_output_options(CLI::App& command, MeshOutputs& outputs);
+void add_mesh_output_options(const Command& command, MeshOutputs& outputs);
 
 /// Interfaces and their picture.
 void write_interfaces(const MeshOutputs& outputs, const InterfaceMesh& interfaces, const Box3& box,

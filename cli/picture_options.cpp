@@ -1,6 +1,5 @@
 #include "cli/picture_options.h"
 
-#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 
@@ -40,27 +39,27 @@ void PictureOptions::check() const {
   static_cast<void>(sizes());
 }
 
-void add_picture_options(CLI::App& command, PictureOptions& options, const std::string& subject,
+void add_picture_options(const Command& command, PictureOptions& options, const std::string& subject,
                          bool own_file) {
   options.own_file = own_file;
   if (own_file)
     command.add_option("--picture", options.file, "A picture of " + subject + ": .png, .svg or .pdf")
-        ->type_name("FILE");
+        .type_name("FILE");
   command.add_option("--direction", options.direction, "The way that the picture's camera looks; z is up")
-      ->type_name("x,y,z")
-      ->group("Picture")
-      ->capture_default_str();
+      .type_name("x,y,z")
+      .group("Picture")
+      .show_default();
   command.add_option("--focus", options.focus, "What the picture shows as large as it can (default: all)")
-      ->type_name("x0,x1,y0,y1,z0,z1")
-      ->group("Picture");
+      .type_name("x0,x1,y0,y1,z0,z1")
+      .group("Picture");
   command.add_option("--projection", options.projection, "How the picture shows depth")
-      ->check(one_of({"perspective", "orthographic"}))
-      ->group("Picture")
-      ->capture_default_str();
+      .one_of({"perspective", "orthographic"})
+      .group("Picture")
+      .show_default();
   if (!own_file) return;
   command.add_option("--size", options.size, "Width and height of the picture in pixels (default 1600,1200)")
-      ->type_name("W,H")
-      ->group("Picture");
+      .type_name("W,H")
+      .group("Picture");
 }
 
 }  // namespace adamas

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
 
+#include "cli/command.h"
 #include "core/picture/interface_picture.h"
 
 namespace adamas {
@@ -22,7 +22,7 @@ struct PictureOptions {
 };
 
 /// `subject`: what the picture shows, for the help text. Without `own_file` the program chooses the files.
-void add_picture_options(CLI::App& command, PictureOptions& options, const std::string& subject,
+void add_picture_options(const Command& command, PictureOptions& options, const std::string& subject,
                          bool own_file = true);
 
 }  // namespace adamas

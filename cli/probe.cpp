@@ -1,4 +1,3 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -170,30 +169,28 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_probe(CLI::App& app, Session& session) {
+void add_probe(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       add_command(app, session, "probe", "Values and materials at points, and integrals per material",
                   "adamas probe mesh.vtu --line=-7,0,0..3.5,0,0,200 -o line.csv",
                   [options, &session] { run(*options, session); });
   command
-      ->add_option("input", options->input.path,
-                   std::string("What to probe: ") + kGridFiles +
-                       ", interfaces (.vtp, .ply, .arec, .txt), or a mesh from adamas resample (.vtu)")
-      ->type_name("FILE");
-  command->add_option("--points-file", options->points, "Points, x,y,z a line")->type_name("FILE");
-  command->add_option("--point", options->single, "A point; repeatable")
-      ->type_name("x,y,z")
-      ->allow_extra_args(false);
-  command->add_option("--line", options->line, "n points from one point to another")
-      ->type_name("x,y,z..x,y,z,n");
+      .add_option("input", options->input.path,
+                  std::string("What to probe: ") + kGridFiles +
+                      ", interfaces (.vtp, .ply, .arec, .txt), or a mesh from adamas resample (.vtu)")
+      .type_name("FILE");
+  command.add_option("--points-file", options->points, "Points, x,y,z a line").type_name("FILE");
+  command.add_option("--point", options->single, "A point; repeatable").type_name("x,y,z").one_value_each();
+  command.add_option("--line", options->line, "n points from one point to another")
+      .type_name("x,y,z..x,y,z,n");
   command
-      ->add_option("-o,--output", options->output,
-                   "The samples: .csv (default: stdout, which then has no integrals)")
-      ->type_name("FILE");
-  add_material_options(*command, options->input);
-  add_smoothing_option(*command, options->input);
-  add_interface_options(*command, options->input);
+      .add_option("-o,--output", options->output,
+                  "The samples: .csv (default: stdout, which then has no integrals)")
+      .type_name("FILE");
+  add_material_options(command, options->input);
+  add_smoothing_option(command, options->input);
+  add_interface_options(command, options->input);
 }
 
 }  // namespace adamas

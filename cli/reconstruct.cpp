@@ -1,4 +1,3 @@
-#include <CLI/App.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -162,25 +161,25 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_reconstruct(CLI::App& app, Session& session) {
+void add_reconstruct(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       add_command(app, session, "reconstruct", "Interface meshes from volume fractions, or of a network",
                   "adamas reconstruct cth.vtr --simplify 0.5% -o interfaces.vtp --picture interfaces.png",
                   [options, &session] { run(*options, session); });
   command
-      ->add_option("input", options->input.path,
-                   std::string("What to reconstruct: ") + kGridFiles +
-                       ", or a network to check and write anew (.vtp, .ply, .arec, .txt)")
-      ->type_name("FILE");
-  command->add_option("-o,--output", options->output, "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
-      ->required()
-      ->type_name("FILE");
-  add_simplification_options(*command, options->simplification, "the interfaces");
-  add_surface_picture_options(*command, options->picture);
-  add_material_options(*command, options->input);
-  add_smoothing_option(*command, options->input);
-  add_interface_options(*command, options->input);
+      .add_option("input", options->input.path,
+                  std::string("What to reconstruct: ") + kGridFiles +
+                      ", or a network to check and write anew (.vtp, .ply, .arec, .txt)")
+      .type_name("FILE");
+  command.add_option("-o,--output", options->output, "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
+      .required()
+      .type_name("FILE");
+  add_simplification_options(command, options->simplification, "the interfaces");
+  add_surface_picture_options(command, options->picture);
+  add_material_options(command, options->input);
+  add_smoothing_option(command, options->input);
+  add_interface_options(command, options->input);
 }
 
 }  // namespace adamas

@@ -1,4 +1,3 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -287,29 +286,29 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_resample(CLI::App& app, Session& session) {
+void add_resample(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       add_command(app, session, "resample", "An adaptive tetrahedral mesh with sharp material interfaces",
                   "adamas resample cth.vtr --interface-error 0.5% --field-error Pressure=5% -o mesh.vtu",
                   [options, &session] { run(*options, session); });
   command
-      ->add_option("input", options->input.path,
-                   std::string("What to resample: ") + kGridFiles +
-                       ", or a labelled network (.vtp, .ply, .arec, .txt)")
-      ->type_name("FILE");
-  add_resampling_options(*command, options->text);
-  add_mesh_output_options(*command, options->outputs);
+      .add_option("input", options->input.path,
+                  std::string("What to resample: ") + kGridFiles +
+                      ", or a labelled network (.vtp, .ply, .arec, .txt)")
+      .type_name("FILE");
+  add_resampling_options(command, options->text);
+  add_mesh_output_options(command, options->outputs);
   add_simplification_options(
-      *command, options->simplification,
+      command, options->simplification,
       "the approximated interfaces that --interfaces-out and --picture show, on top of the interface error");
   command
-      ->add_option("--save", options->save,
-                   "The hierarchy, from which adamas select takes meshes of other errors: .h5")
-      ->type_name("FILE");
-  add_material_options(*command, options->input);
-  add_smoothing_option(*command, options->input);
-  add_interface_options(*command, options->input);
+      .add_option("--save", options->save,
+                  "The hierarchy, from which adamas select takes meshes of other errors: .h5")
+      .type_name("FILE");
+  add_material_options(command, options->input);
+  add_smoothing_option(command, options->input);
+  add_interface_options(command, options->input);
 }
 
 }  // namespace adamas

@@ -2,42 +2,41 @@
 
 #include <algorithm>
 
-#include "cli/option_checks.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 
 namespace adamas {
 
-void add_resampling_options(CLI::App& command, ResamplingText& text) {
+void add_resampling_options(const Command& command, ResamplingText& text) {
   command
       .add_option("--interface-error", text.interface_error,
                   "Greatest distance between the interfaces and their approximation: a length, in % of the "
                   "domain's diagonal, or in voxels of the input's grid (its least spacing)")
-      ->type_name("E|E%|Evoxels")
-      ->capture_default_str();
+      .type_name("E|E%|Evoxels")
+      .show_default();
   add_other_resampling_options(command, text);
 }
 
-void add_other_resampling_options(CLI::App& command, ResamplingText& text) {
+void add_other_resampling_options(const Command& command, ResamplingText& text) {
   command
       .add_option("--field-error", text.field_errors,
                   "Greatest error of a field, in its unit or in % of its range; repeatable")
-      ->type_name("NAME=E|E%")
-      ->allow_extra_args(false);
+      .type_name("NAME=E|E%")
+      .one_value_each();
   command.add_option("--max-tetrahedra", text.max_tetrahedra, "Stop at this size, whatever the errors")
-      ->type_name("N");
+      .type_name("N");
   command
       .add_option("--ghost", text.ghost, "How a material's field goes on beyond the material, within a cell")
-      ->check(one_of({"constant", "linear", "least-squares"}))
-      ->capture_default_str();
+      .one_of({"constant", "linear", "least-squares"})
+      .show_default();
   command.add_flag(
       "--conserve", text.conserve,
       "Move the interfaces, within the interface error, until every body has its volume in the input");
   command
       .add_option("--distance", text.distance,
                   "What vertices measure: the distance to an interface, or to the nearest vertex of its mesh")
-      ->check(one_of({"exact", "nearest-vertex"}))
-      ->capture_default_str();
+      .one_of({"exact", "nearest-vertex"})
+      .show_default();
 }
 
 FieldErrorTargets parse_field_errors(const std::vector<std::string>& texts) {

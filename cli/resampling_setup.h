@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/command.h"
 #include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "interfaces/resampling/resampler.h"
@@ -17,9 +17,9 @@ struct ResamplingText {
   bool conserve = false;
 };
 
-void add_resampling_options(CLI::App& command, ResamplingText& text);
+void add_resampling_options(const Command& command, ResamplingText& text);
 /// The same without the interface error.
-void add_other_resampling_options(CLI::App& command, ResamplingText& text);
+void add_other_resampling_options(const Command& command, ResamplingText& text);
 
 using FieldErrorTargets = std::vector<std::pair<std::string, ErrorTarget>>;
 /// "NAME=E" each. Throws UsageError, also for a name that is there twice.

@@ -1,6 +1,5 @@
 #include "isosurface/storage/restore.h"
 
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -56,18 +55,17 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_restore(CLI::App& app, Session& session) {
+void add_restore(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(
+  const Command command = add_command(
       app, session, "restore", "The samples of a store back as a volume, bit for bit",
       "adamas restore head.adm --level 2 -o small.vti", [options, &session] { run(*options, session); });
-  add_store_input(*command, options->input);
-  command->add_option("--level", options->level, "Every 2^N-th sample along each axis")
-      ->type_name("N")
-      ->capture_default_str();
-  command->add_option("--region", options->region, "Only the samples in a box")
-      ->type_name("x0,x1,y0,y1,z0,z1");
-  add_volume_output(*command, options->output);
+  add_store_input(command, options->input);
+  command.add_option("--level", options->level, "Every 2^N-th sample along each axis")
+      .type_name("N")
+      .show_default();
+  command.add_option("--region", options->region, "Only the samples in a box").type_name("x0,x1,y0,y1,z0,z1");
+  add_volume_output(command, options->output);
 }
 
 }  // namespace adamas

@@ -1,4 +1,3 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -154,29 +153,29 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_select(CLI::App& app, Session& session) {
+void add_select(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(app, session, "select",
-                                  "A mesh of another error or size, from a hierarchy that resample has saved",
-                                  "adamas select mesh.h5 --interface-error 2% -o coarse.vtu",
-                                  [options, &session] { run(*options, session); });
-  command->add_option("input", options->path, "What adamas resample --save has written: .h5")
-      ->type_name("FILE")
-      ->required();
+  const Command command = add_command(
+      app, session, "select", "A mesh of another error or size, from a hierarchy that resample has saved",
+      "adamas select mesh.h5 --interface-error 2% -o coarse.vtu",
+      [options, &session] { run(*options, session); });
+  command.add_option("input", options->path, "What adamas resample --save has written: .h5")
+      .type_name("FILE")
+      .required();
   command
-      ->add_option(
+      .add_option(
           "--interface-error", options->interface_error,
           "Greatest estimated distance of the interfaces: a length, in % of the domain's diagonal, or "
           "in voxels of the input's grid (default: all that was saved)")
-      ->type_name("E|E%|Evoxels");
+      .type_name("E|E%|Evoxels");
   command
-      ->add_option("--field-error", options->field_errors,
-                   "Greatest error of a field, in its unit or in % of its range; repeatable")
-      ->type_name("NAME=E|E%")
-      ->allow_extra_args(false);
-  command->add_option("--max-tetrahedra", options->max_tetrahedra, "Stop at this size, whatever the errors")
-      ->type_name("N");
-  add_mesh_output_options(*command, options->outputs);
+      .add_option("--field-error", options->field_errors,
+                  "Greatest error of a field, in its unit or in % of its range; repeatable")
+      .type_name("NAME=E|E%")
+      .one_value_each();
+  command.add_option("--max-tetrahedra", options->max_tetrahedra, "Stop at this size, whatever the errors")
+      .type_name("N");
+  add_mesh_output_options(command, options->outputs);
 }
 
 }  // namespace adamas

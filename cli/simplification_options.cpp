@@ -74,13 +74,14 @@ void note_shortfalls(const SimplifiedInterfaces& found, const SimplificationOpti
 
 }  // namespace
 
-void add_simplification_options(CLI::App& command, SimplificationText& text, const std::string& of_what) {
+void add_simplification_options(const Command& command, SimplificationText& text,
+                                const std::string& of_what) {
   command
       .add_option("--simplify", text.error,
                   "Fewer triangles for " + of_what +
                       ", no point farther from them than this, nor the other way round: a length, in % of "
                       "the domain's diagonal, or in voxels of the input's grid")
-      ->type_name("E|E%|Evoxels");
+      .type_name("E|E%|Evoxels");
   command.add_flag(
       "--smooth", text.smooth,
       "With --simplify: moves points so that triangles become more alike, within the same error");

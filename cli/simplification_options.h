@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <optional>
 #include <string>
 
+#include "cli/command.h"
 #include "cli/console.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"
@@ -19,7 +19,7 @@ struct SimplificationText {
 };
 
 /// `of_what`: what is simplified, for the help.
-void add_simplification_options(CLI::App& command, SimplificationText& text, const std::string& of_what);
+void add_simplification_options(const Command& command, SimplificationText& text, const std::string& of_what);
 
 /// The options with their values checked, before the input is known.
 struct SimplificationWish {

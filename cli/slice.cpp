@@ -1,11 +1,9 @@
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/resampling_setup.h"
 #include "cli/slice_panels.h"
@@ -209,65 +207,65 @@ void run(const Options& options, Session& session) {
   session.outputs.commit();
 }
 
-void add_drawing_options(CLI::App& command, Options& options) {
+void add_drawing_options(const Command& command, Options& options) {
   command
       .add_option(
           "--mode", options.mode,
           "The input as it is, or of a mesh: plain linear interpolation, the fields of each material, "
           "all side by side (default: input for data, materials for a mesh)")
-      ->check(one_of({"input", "plain", "materials", "all"}))
-      ->group("Picture");
+      .one_of({"input", "plain", "materials", "all"})
+      .group("Picture");
   command
       .add_flag("--draw-cells", options.draw_cells,
                 "Draw the cells (default for a mesh, and for its input unless they are tiny)")
-      ->group("Picture");
-  command.add_flag("--no-draw-cells", options.no_draw_cells, "Do not draw the cells")->group("Picture");
-  command.add_flag("--no-interfaces", options.no_interfaces, "Do not draw the interfaces")->group("Picture");
+      .group("Picture");
+  command.add_flag("--no-draw-cells", options.no_draw_cells, "Do not draw the cells").group("Picture");
+  command.add_flag("--no-interfaces", options.no_interfaces, "Do not draw the interfaces").group("Picture");
   command.add_option("--range", options.range, "Values at the ends of the colour map")
-      ->type_name("a,b")
-      ->group("Picture");
+      .type_name("a,b")
+      .group("Picture");
   command.add_option("--colour-map,--color-map", options.colour_map, "The colour map (default sequential)")
-      ->check(one_of(ColourMap::names()))
-      ->group("Picture");
+      .one_of(ColourMap::names())
+      .group("Picture");
   command.add_option("--size", options.size, "Width and greatest height in pixels")
-      ->type_name("W,H")
-      ->group("Picture");
+      .type_name("W,H")
+      .group("Picture");
 }
 
 }  // namespace
 
-void add_slice(CLI::App& app, Session& session) {
+void add_slice(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(
+  const Command command = add_command(
       app, session, "slice", "A cross section of data, of a mesh, of interfaces or of a stored volume",
       "adamas slice mesh.vtu --plane z=0 --field Pressure --mode all --original cth.vtr -o slice.png",
       [options, &session] { run(*options, session); });
   command
-      ->add_option(
+      .add_option(
           "input", options->input.path,
           std::string("What to cut: ") + kGridFiles +
               ", a mesh from adamas resample (.vtu), interfaces (.vtp, .ply, .arec, .txt), or a store from "
               "adamas store (.adm)")
-      ->type_name("FILE");
-  command->add_option("--plane", options->plane, "The plane, at right angles to an axis")
-      ->type_name("x=N|y=N|z=N");
-  command->add_option("--origin", options->origin, "A point of the plane")->type_name("x,y,z");
-  command->add_option("--normal", options->normal, "A vector at right angles to it")->type_name("x,y,z");
+      .type_name("FILE");
+  command.add_option("--plane", options->plane, "The plane, at right angles to an axis")
+      .type_name("x=N|y=N|z=N");
+  command.add_option("--origin", options->origin, "A point of the plane").type_name("x,y,z");
+  command.add_option("--normal", options->normal, "A vector at right angles to it").type_name("x,y,z");
   command
-      ->add_option("--original", options->original,
-                   "What a mesh was resampled from: data on a grid, or a labelled network")
-      ->type_name("FILE");
-  command->add_option("-o,--output", options->output, "A picture (.png, .svg, .pdf) or polygons (.vtp)")
-      ->required()
-      ->type_name("FILE");
-  add_drawing_options(*command, *options);
-  add_material_options(*command, options->input,
+      .add_option("--original", options->original,
+                  "What a mesh was resampled from: data on a grid, or a labelled network")
+      .type_name("FILE");
+  command.add_option("-o,--output", options->output, "A picture (.png, .svg, .pdf) or polygons (.vtp)")
+      .required()
+      .type_name("FILE");
+  add_drawing_options(command, *options);
+  add_material_options(command, options->input,
                        "The field to show, or NAME:x for a component of a vector; without, the materials. "
                        "NAME=FILE adds it first",
                        "NAME[=FILE-or-ARRAY]");
-  add_smoothing_option(*command, options->input);
-  add_interface_options(*command, options->input);
-  add_volume_options(*command, options->volume, "--first-sample");
+  add_smoothing_option(command, options->input);
+  add_interface_options(command, options->input);
+  add_volume_options(command, options->volume, "--first-sample");
 }
 
 }  // namespace adamas

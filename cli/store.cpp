@@ -1,4 +1,3 @@
-#include <CLI/App.hpp>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -6,7 +5,6 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/store_summary.h"
 #include "cli/volume_input.h"
@@ -104,28 +102,28 @@ void run(const Options& options, Session& session) {
 
 }  // namespace
 
-void add_store(CLI::App& app, Session& session) {
+void add_store(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       add_command(app, session, "store", "Preprocesses and compresses a volume, without loss, into one file",
                   "adamas store head.raw --dimensions 512,512,300 --type uint16 -o head.adm",
                   [options, &session] { run(*options, session); });
-  add_volume_input(*command, options->input);
+  add_volume_input(command, options->input);
   command
-      ->add_option("--coding", options->coding,
-                   "How samples are predicted: from all neighbours that are known, or only from the two ends "
-                   "of the edge whose middle they are")
-      ->check(one_of({"interpolation", "split-edge"}))
-      ->capture_default_str();
+      .add_option("--coding", options->coding,
+                  "How samples are predicted: from all neighbours that are known, or only from the two ends "
+                  "of the edge whose middle they are")
+      .one_of({"interpolation", "split-edge"})
+      .show_default();
   command
-      ->add_option("--subtrees", options->subtrees,
-                   "Errors and ranges for every 2^N-th sample along each axis only: a smaller file, from "
-                   "which surfaces are refined in greater steps")
-      ->check(one_of({"0", "1", "2"}))
-      ->capture_default_str();
-  command->add_flag("--gradients", options->gradients,
-                    "Keep the directions of the samples' gradients too, for the normals of surfaces");
-  command->add_option("-o,--output", options->output, "The store (.adm)")->required()->type_name("FILE");
+      .add_option("--subtrees", options->subtrees,
+                  "Errors and ranges for every 2^N-th sample along each axis only: a smaller file, from "
+                  "which surfaces are refined in greater steps")
+      .one_of({"0", "1", "2"})
+      .show_default();
+  command.add_flag("--gradients", options->gradients,
+                   "Keep the directions of the samples' gradients too, for the normals of surfaces");
+  command.add_option("-o,--output", options->output, "The store (.adm)").required().type_name("FILE");
 }
 
 }  // namespace adamas

@@ -2,25 +2,24 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
 
-void add_store_input(CLI::App& command, StoreInput& input) {
-  command.add_option("input", input.path, "A store, from adamas store")->required()->type_name("FILE");
+void add_store_input(const Command& command, StoreInput& input) {
+  command.add_option("input", input.path, "A store, from adamas store").required().type_name("FILE");
   command.add_option("--memory", input.memory, "What decoded pages may take: bytes, or with K, M or G")
-      ->type_name("SIZE")
-      ->capture_default_str()
-      ->group("Paging");
+      .type_name("SIZE")
+      .show_default()
+      .group("Paging");
   command
       .add_option("--paging", input.paging,
                   "Pages are read one by one, or by a mapping of the file, which the system pages")
-      ->check(one_of({"read", "map"}))
-      ->capture_default_str()
-      ->group("Paging");
+      .one_of({"read", "map"})
+      .show_default()
+      .group("Paging");
 }
 
 std::size_t store_memory(const StoreInput& input) { return parse_size("--memory", input.memory); }

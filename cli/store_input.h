@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -16,7 +15,7 @@ struct StoreInput {
   std::string path, memory = "256M", paging = "read";
 };
 
-void add_store_input(CLI::App& command, StoreInput& input);
+void add_store_input(const Command& command, StoreInput& input);
 
 /// Bytes that decoded pages may take.
 std::size_t store_memory(const StoreInput& input);

@@ -76,16 +76,16 @@ void SurfacePictureOptions::check_materials(const IdVector<MaterialId, std::stri
   static_cast<void>(Choice(shown, materials, source));
 }
 
-void add_surface_picture_options(CLI::App& command, SurfacePictureOptions& options, bool own_file) {
+void add_surface_picture_options(const Command& command, SurfacePictureOptions& options, bool own_file) {
   add_picture_options(command, options.camera, "the interfaces", own_file);
   command
       .add_option(
           "--show-interface", options.shown,
           "The picture shows the interface between two materials, or with A alone all of one material; "
           "repeatable (default: all)")
-      ->type_name("A|B")
-      ->allow_extra_args(false)
-      ->group("Picture");
+      .type_name("A|B")
+      .one_value_each()
+      .group("Picture");
 }
 
 void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,

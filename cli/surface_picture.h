@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "cli/command.h"
 #include "cli/picture_options.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
@@ -25,7 +25,8 @@ struct SurfacePictureOptions {
 };
 
 /// Without `own_file` the program chooses the files.
-void add_surface_picture_options(CLI::App& command, SurfacePictureOptions& options, bool own_file = true);
+void add_surface_picture_options(const Command& command, SurfacePictureOptions& options,
+                                 bool own_file = true);
 
 /// Draws interfaces in their domain. Each side of an interface has the colour of the material that lies
 /// behind it, as one sees it: so colours depend on materials alone.

@@ -1,6 +1,5 @@
 #include "isosurface/storage/verify.h"
 
-#include <CLI/App.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -39,11 +38,12 @@ void run(const StoreInput& options, Session& session) {
 
 }  // namespace
 
-void add_verify(CLI::App& app, Session& session) {
+void add_verify(const Command& app, Session& session) {
   const auto options = std::make_shared<StoreInput>();
-  CLI::App* command = add_command(app, session, "verify", "Checks every byte of a store, and its laws",
-                                  "adamas verify head.adm", [options, &session] { run(*options, session); });
-  add_store_input(*command, *options);
+  const Command command =
+      add_command(app, session, "verify", "Checks every byte of a store, and its laws",
+                  "adamas verify head.adm", [options, &session] { run(*options, session); });
+  add_store_input(command, *options);
 }
 
 }  // namespace adamas

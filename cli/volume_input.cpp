@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "cli/option_checks.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
@@ -151,55 +150,55 @@ void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
   }
 }
 
-void add_volume_input(CLI::App& command, VolumeInput& input) {
+void add_volume_input(const Command& command, VolumeInput& input) {
   command
       .add_option(
           "input", input.path,
           "The volume: .nrrd, .nhdr, .mha, .mhd, .vti, .vtr, .vtk, .nii, .nii.gz, .hdr, .h5, .tif, .png "
           "or .slc; with --dimensions a raw file, with --stack a pattern")
-      ->required()
-      ->type_name("FILE");
+      .required()
+      .type_name("FILE");
   add_volume_options(command, input, "--origin,--first-sample");
 }
 
-void add_volume_options(CLI::App& command, VolumeInput& input, const char* origin) {
+void add_volume_options(const Command& command, VolumeInput& input, const char* origin) {
   command
       .add_flag("--stack", input.stack,
                 "INPUT is a pattern of slices, as \"ct_*.tif\" (in quotes) or ct_%04d.png")
-      ->group("Input");
+      .group("Input");
   command.add_option("--array", input.array, "Which array or data set of a file with several")
-      ->type_name("NAME")
-      ->group("Input");
+      .type_name("NAME")
+      .group("Input");
   command.add_option("--dimensions", input.dimensions, "Of a raw file: numbers of samples")
-      ->type_name("X,Y,Z")
-      ->group("Input");
+      .type_name("X,Y,Z")
+      .group("Input");
   command.add_option("--type", input.type, "Of a raw file: the type of samples")
-      ->check(one_of(type_names()))
-      ->group("Input");
+      .one_of(type_names())
+      .group("Input");
   command.add_option("--endian", input.endian, "Of a raw file: the order of bytes (default little)")
-      ->check(one_of({"little", "big"}))
-      ->group("Input");
+      .one_of({"little", "big"})
+      .group("Input");
   command.add_option("--header-bytes", input.header_bytes, "Of a raw file: bytes to pass over (default 0)")
-      ->type_name("N")
-      ->group("Input");
+      .type_name("N")
+      .group("Input");
   command
       .add_option("--spacing", input.spacing, "Between the samples of a raw file or a stack (default 1,1,1)")
-      ->type_name("x,y,z")
-      ->group("Input");
+      .type_name("x,y,z")
+      .group("Input");
   command
       .add_option(origin, input.origin,
                   "The place of the first sample of a raw file or a stack (default 0,0,0)")
-      ->type_name("x,y,z")
-      ->group("Input");
+      .type_name("x,y,z")
+      .group("Input");
   command
       .add_option("--time", input.time, "Of a file with several times (NIfTI): the number of one, from 0 on")
-      ->type_name("N")
-      ->group("Input");
+      .type_name("N")
+      .group("Input");
   command
       .add_option("--scratch", input.scratch,
                   "Folder for scratch data, up to four times the volume's samples (default: that "
                   "of the system, $TMPDIR or /tmp)")
-      ->type_name("FOLDER");
+      .type_name("FOLDER");
 }
 
 }  // namespace adamas

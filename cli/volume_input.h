@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <filesystem>
 #include <string>
 
@@ -21,9 +20,9 @@ struct VolumeInput {
 };
 
 /// The input and its options.
-void add_volume_input(CLI::App& command, VolumeInput& input);
+void add_volume_input(const Command& command, VolumeInput& input);
 /// The options alone. `origin`: the names of that for the first sample.
-void add_volume_options(CLI::App& command, VolumeInput& input, const char* origin);
+void add_volume_options(const Command& command, VolumeInput& input, const char* origin);
 
 /// Opens it. Throws UsageError where options do not go together.
 VolumeReader open_volume_input(const VolumeInput& input, Session& session);

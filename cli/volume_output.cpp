@@ -6,13 +6,13 @@
 
 namespace adamas {
 
-void add_volume_output(CLI::App& command, std::string& output) {
+void add_volume_output(const Command& command, std::string& output) {
   command
       .add_option(
           "-o,--output", output,
           "The volume: .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw alone")
-      ->required()
-      ->type_name("FILE");
+      .required()
+      .type_name("FILE");
 }
 
 void declare_volume_output(const std::string& output, OutputSet& outputs) {

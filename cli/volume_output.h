@@ -12,7 +12,7 @@
 namespace adamas {
 
 /// The option -o of a command that makes a volume.
-void add_volume_output(CLI::App& command, std::string& output);
+void add_volume_output(const Command& command, std::string& output);
 
 /// Declares the file and, where its samples go to another, that one.
 void declare_volume_output(const std::string& output, OutputSet& outputs);

@@ -37,10 +37,12 @@ OWNED = {
     r"nlohmann/.*": ["cli", "tests"],
 }
 LIGHT = [r"CLI/.*", r"nlohmann/.*"]
+# Headers that take seconds to compile: of the program's files, only these include them.
+SLOW = {r"CLI/.*": ["cli/command.cpp", "cli/command_line.cpp", "cli/config_file.cpp", "cli/help.cpp"]}
 # Headers that are there to convert to the types of a library: for .cpp files of every folder.
 CONVERSIONS = ["interfaces/simplification/openmesh_patches.h"]
 FOLDERS = ["core", "interfaces", "isosurface", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
-ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
+ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
 MOST_LINES = 400
@@ -114,6 +116,9 @@ def check_code(root, path, text):
                 yield from check_heavy_header(root, path, target)
             if module_of(path) not in modules:
                 yield f"includes <{target}>, which is for {', '.join(modules)}"
+        for pattern, files in SLOW.items():
+            if re.fullmatch(pattern, target) and not path.startswith("tests/") and path not in files:
+                yield f"includes <{target}>, which is for {', '.join(files)}"
         if quote == '"':
             yield from check_project_include(root, path, target)
 

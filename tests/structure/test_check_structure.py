@@ -70,6 +70,11 @@ class StructureTest(unittest.TestCase):
         self.expect({"interfaces/a.cpp": "#include <vtkImageData.h>\n"}, "which is for core/io")
         self.expect({"core/io/a.cpp": "#include <cairo/cairo.h>\n"}, "which is for core/picture")
 
+    def test_slow_headers(self):
+        readme = {"cli/README.md": "# cli\n"}
+        self.expect({**readme, "cli/help.cpp": "#include <CLI/App.hpp>\n"}, None)
+        self.expect({**readme, "cli/info.cpp": "#include <CLI/App.hpp>\n"}, "which is for cli/command.cpp")
+
     def test_files(self):
         self.expect({"core/base/a.h": "int a;\n"}, "#pragma once")
         self.expect({"core/base/a.cpp": "int a; \n"}, "ends in whitespace")
