@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -77,6 +78,20 @@ struct Simd {
   /// a where one of the two is NaN.
   [[gnu::always_inline]] static inline Numbers greater(Numbers a, Numbers b) { return b > a ? b : a; }
 };
+
+/// Stores the least byte of each number: by one shuffle, where compilers would take each by itself.
+template <std::size_t Bytes>
+[[gnu::always_inline]] inline void store_least_bytes(typename Simd<std::int32_t, Bytes>::Numbers numbers,
+                                                     std::uint8_t* to) {
+  constexpr int kLeast = std::endian::native == std::endian::little ? 0 : 3;
+  typename Simd<std::uint8_t, Bytes>::Numbers all;
+  std::memcpy(&all, &numbers, sizeof all);
+  [&]<std::size_t... N>(std::index_sequence<N...>) __attribute__((always_inline)) {
+    const auto least = __builtin_shufflevector(all, all, (static_cast<int>(4 * N) + kLeast)...);
+    std::memcpy(to, &least, sizeof least);
+  }
+  (std::make_index_sequence<Bytes / 4>());
+}
 
 /// Of four floats: bit n tells whether a[n] <= b[n].
 [[gnu::always_inline]] inline unsigned bits_not_greater(Simd<float, 16>::Numbers a,

@@ -161,9 +161,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
   /// The codes of the squares of the errors' ratios to the LOD's greatest error.
   [[gnu::always_inline]] static inline void store(Numbers squared, std::uint8_t* to) {
     if constexpr (Base::kExact) {
-      using Narrow [[gnu::vector_size(kCount)]] = std::uint8_t;
-      const Narrow narrow = __builtin_convertvector(error_codes<Bytes>(squared), Narrow);
-      std::memcpy(to, &narrow, sizeof narrow);
+      store_least_bytes<Bytes>(error_codes<Bytes>(squared), to);
     } else {
       for (std::size_t n = 0; n < kCount; ++n) to[n] = error_code(static_cast<double>(squared[n]));
     }
