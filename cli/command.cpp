@@ -13,7 +13,7 @@ namespace adamas {
 
 namespace {
 
-/// More threads than this is a slip of the hand.
+/// A greater number of threads is taken for a typing error.
 constexpr std::size_t kMostThreads = 4096;
 
 /// "a, b or c".

@@ -8,7 +8,7 @@
 #include "cli/output_set.h"
 
 // CLI11's headers take seconds to compile, so the files of the commands see only the handles below.
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): it is that library's
 class App;
 class Option;
 }  // namespace CLI
@@ -78,8 +78,10 @@ class Command {
 Command add_command(const Command& parent, Session& session, const std::string& name,
                     const std::string& description, const std::string& example, std::function<void()> run);
 
-// One function per command, in the file of its name.
-void add_generate(const Command& root, Session& session);
+// One function per command, in the file of its name; first the kinds of data that `adamas generate` makes.
+void add_generate_scene(const Command& generate, Session& session);
+void add_generate_impact(const Command& generate, Session& session);
+void add_generate_buckyball(const Command& generate, Session& session);
 void add_info(const Command& root, Session& session);
 void add_reconstruct(const Command& root, Session& session);
 void add_resample(const Command& root, Session& session);
@@ -94,9 +96,5 @@ void add_verify(const Command& root, Session& session);
 void add_isosurface(const Command& root, Session& session);
 void add_completion(const Command& root, Session& session);
 void add_man(const Command& root, Session& session);
-// The kinds of data that `adamas generate` makes, each in the file of its name too.
-void add_generate_scene(const Command& generate, Session& session);
-void add_generate_impact(const Command& generate, Session& session);
-void add_generate_buckyball(const Command& generate, Session& session);
 
 }  // namespace adamas

@@ -30,7 +30,12 @@ constexpr const char* kFirstSteps =
     "  adamas resample --help";
 
 void add_all_commands(const Command& root, Session& session) {
-  add_generate(root, session);
+  const Command generate =
+      root.add_command_group("generate", "Make a data set with known truth",
+                             "adamas generate scene voronoi10 --dimensions 32,32,32 --seed 7 -o cells.vtr");
+  add_generate_scene(generate, session);
+  add_generate_impact(generate, session);
+  add_generate_buckyball(generate, session);
   add_info(root, session);
   add_reconstruct(root, session);
   add_resample(root, session);

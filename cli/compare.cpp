@@ -1,25 +1,28 @@
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "cli/command.h"
-#include "cli/compare_figures.h"
-#include "cli/compare_picture.h"
+#include "cli/compare_report.h"
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/option_values.h"
-#include "cli/reference_program.h"
-#include "cli/resampling_setup.h"
+#include "cli/resampling_options.h"
 #include "cli/usage_error.h"
+#include "core/base/child_process.h"
+#include "core/base/error.h"
 #include "core/io/output_stream.h"
 
 namespace adamas {
 
 namespace {
 
-/// Less address space than this is not enough to load the libraries.
+/// With less address space the other program could not even load its libraries.
 constexpr std::size_t kLeastMemory = std::size_t{64} << 20;
 
 struct Options {
@@ -31,9 +34,9 @@ struct Options {
   std::string picture, csv;
 };
 
-/// One set of wishes for each interface error; greatest errors first as they are given.
-std::vector<ResamplingWishes> all_wishes(const Options& options) {
-  std::vector<ResamplingWishes> result;
+/// A request for each interface error, in the order in which they are given.
+std::vector<ResamplingRequest> all_requests(const Options& options) {
+  std::vector<ResamplingRequest> result;
   for (const std::string& error : options.interface_errors) {
     ResamplingText text = options.text;
     text.interface_error = error;
@@ -56,7 +59,7 @@ void choose_references(const std::string& text, ComparisonOptions& options) {
     wrong_usage("--reference: expected tetgen, mesh3 or both with a comma between them, found '{}'", text);
 }
 
-/// What can be read of TetGen's answers rests on two of the switches, and others would have it write files.
+/// TetGen's output can only be read with the switches z and p, and some other switches make it write files.
 void check_switches(const std::string& switches) {
   constexpr const char* kKnown = "zpYqaMTXOCDSbVQ0123456789./e-";
   if (switches.find('z') == std::string::npos || switches.find('p') == std::string::npos ||
@@ -74,7 +77,8 @@ ComparisonOptions comparison_options(const Options& options) {
   return result;
 }
 
-/// Walls between the sites of a grid along an axis: half way between nodes where these have the values.
+/// The coordinates along an axis at which one label ends and the next begins: the nodes, where cells have the
+/// labels; the middles between nodes, where the nodes have them.
 std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
   const auto& nodes = grid.nodes[static_cast<std::size_t>(axis)];
   if (grid.centering == Centering::kCells) return nodes;
@@ -84,14 +88,40 @@ std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
   return walls;
 }
 
-/// The labels of an input; none where it has no labels, or interfaces of its own.
+/// The labels of an input; empty where it has fractions or interfaces instead of labels.
 std::optional<LabelImage> label_image(const Input& input) {
   if (!input.data || input.data->labels.empty()) return std::nullopt;
   const RectilinearGrid& grid = input.data->grid;
   return LabelImage{walls_of(grid, 0), walls_of(grid, 1), walls_of(grid, 2), input.data->labels};
 }
 
-/// Where the rows are that were finished before the user stopped.
+constexpr const char* kReferenceVariable = "ADAMAS_REFERENCE_PROGRAM";
+constexpr const char* kReferenceName = "adamas-reference";
+
+bool can_run(const std::filesystem::path& path) {
+  std::error_code code;
+  return std::filesystem::is_regular_file(path, code) && ::access(path.c_str(), X_OK) == 0;
+}
+
+/// The program that runs other mesh generators: where the variable ADAMAS_REFERENCE_PROGRAM says, or beside
+/// the running program, or where it is installed. Throws Error where there is none.
+std::filesystem::path find_reference_program() {
+  const char* given = std::getenv(kReferenceVariable);
+  if (given != nullptr && *given != '\0') {
+    if (!can_run(given)) fail("{}: expected a program, found none at '{}'", kReferenceVariable, given);
+    return given;
+  }
+  std::error_code code;
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
+  const std::filesystem::path beside = folder / kReferenceName;
+  const std::filesystem::path installed = folder / ".." / "libexec" / kReferenceName;
+  if (can_run(beside)) return beside;
+  if (can_run(installed)) return installed;
+  fail("expected the program '{}' beside adamas or in ../libexec, found none (the variable {} can name it)",
+       kReferenceName, kReferenceVariable);
+}
+
+/// Says in which files the rows are that were finished before the user stopped the run.
 std::string where_kept(const Options& options, const std::string& json) {
   std::string files;
   for (const std::string& file : {options.csv, json}) {
@@ -102,24 +132,24 @@ std::string where_kept(const Options& options, const std::string& json) {
 
 void run(const Options& options, Session& session) {
   Console& console = session.console;
-  const std::vector<ResamplingWishes> wishes = all_wishes(options);
+  const std::vector<ResamplingRequest> requests = all_requests(options);
   ComparisonOptions comparison = comparison_options(options);
-  comparison.mesher.program = find_reference_program();
+  comparison.mesher.program = find_own_program("adamas-reference", "ADAMAS_REFERENCE_PROGRAM");
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
   session.outputs.declare("--csv", options.csv, {".csv"});
-  comparison.interface_errors.resize(wishes.size());
+  comparison.interface_errors.resize(requests.size());
   if (!options.input.labels.empty() && !has_given_interfaces(options.input)) comparison.image.emplace();
   print_plan(comparison, console);
-  const Input input = load_input(options.input, console, [&wishes](const InputFacts& found) {
-    for (const ResamplingWishes& wish : wishes) wish.check(found);
+  const Input input = load_input(options.input, console, [&requests](const InputFacts& found) {
+    for (const ResamplingRequest& request : requests) request.check(found);
   });
   comparison.image = has_given_interfaces(options.input) ? std::nullopt : label_image(input);
-  comparison.resampling = wishes.front().options(input.source);
-  for (std::size_t i = 0; i < wishes.size(); ++i)
-    comparison.interface_errors[i] = wishes[i].options(input.source).interface_error;
+  comparison.resampling = requests.front().options(input.source);
+  for (std::size_t i = 0; i < requests.size(); ++i)
+    comparison.interface_errors[i] = requests[i].options(input.source).interface_error;
   print_comparison_header(console);
-  // Rows are kept as they come, whatever becomes of the rest.
+  // The files are written again after each row, so that finished rows are kept when a later one fails.
   std::vector<ComparedMesh> rows;
   const auto keep = [&](bool whole) {
     session.outputs.publish(options.csv, [&](const auto& path) {

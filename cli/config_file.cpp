@@ -28,7 +28,7 @@ bool names_command(CLI::App& root, const std::vector<std::string>& names) {
   return true;
 }
 
-/// What of an array a line holds: up to a comment, with the brackets that it leaves open added to `depth`.
+/// The line without its comment. The number of brackets that it opens and does not close is added to `depth`.
 std::string array_part(const std::string& line, int& depth) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -46,7 +46,7 @@ std::string array_part(const std::string& line, int& depth) {
   return line;
 }
 
-/// CLI11 reads line by line: brings arrays that TOML may spread over several lines to one.
+/// The text with each array of TOML on one line, since CLI11 reads line by line.
 std::string with_arrays_in_lines(std::istream& input) {
   std::string result, line;
   int depth = 0;
@@ -98,7 +98,7 @@ std::vector<CLI::ConfigItem> ConfigFile::from_config(std::istream& input) const 
                                  ", found '" + item.name + "'",
                              CLI::ExitCodes::ConfigError);
     }
-    // "4,4,4" is one value to us.
+    // CLI11 splits "4,4,4" at its commas, but for our options it is one value.
     if (option->get_items_expected_max() == 1) item.inputs = {CLI::detail::join(item.inputs, ",")};
     result.push_back(std::move(item));
   }

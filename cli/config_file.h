@@ -2,7 +2,7 @@
 
 #include <memory>
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): it is that library's
 class App;
 class Config;
 }  // namespace CLI

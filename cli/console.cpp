@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kBarWidth = 24;
 constexpr std::chrono::milliseconds kBarInterval{100};
 
-/// Characters of UTF-8 text.
+/// The number of characters of UTF-8 text.
 std::size_t width(std::string_view text) {
   const auto starts = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; };
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts));
@@ -63,7 +63,7 @@ void Console::flush() {
 }
 
 void Console::report(std::string_view stage, double fraction) {
-  // What follows a colon changes from step to step.
+  // A stage is the same one as before if it differs only after the colon.
   const std::string_view name = stage.substr(0, stage.find(':'));
   const bool is_new = name != stage_;
   if (is_new) stage_ = name;

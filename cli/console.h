@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/base/visible_text.h"
+#include "core/base/text.h"
 
 namespace adamas {
 

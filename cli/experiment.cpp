@@ -5,7 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/experiment_options.h"
-#include "cli/experiment_record.h"
+#include "cli/experiment_report.h"
 #include "cli/generated_data.h"
 #include "cli/output_folder.h"
 #include "cli/slice_panels.h"
@@ -22,7 +22,7 @@ namespace adamas {
 
 namespace {
 
-/// Width in pixels of pictures with three panels.
+/// The width in pixels of pictures with three panels.
 constexpr double kSliceWidth = 2000;
 
 ResamplingOptions without_fields(ResamplingOptions options) {
@@ -33,9 +33,9 @@ ResamplingOptions without_fields(ResamplingOptions options) {
 /// An experiment, step by step; what it finds goes into the record and into the folder.
 class Experiment {
  public:
-  Experiment(const ExperimentOptions& options, const ExperimentWishes& wishes, OutputFolder& folder,
+  Experiment(const ExperimentOptions& options, const ExperimentRequest& request, OutputFolder& folder,
              Console& console)
-      : options_(options), wishes_(wishes), folder_(folder), console_(console) {}
+      : options_(options), request_(request), folder_(folder), console_(console) {}
 
   ExperimentRecord run() {
     load();
@@ -71,7 +71,7 @@ class Experiment {
   }
 
   const ExperimentOptions& options_;
-  const ExperimentWishes& wishes_;
+  const ExperimentRequest& request_;
   OutputFolder& folder_;
   Console& console_;
   Input input_;
@@ -86,13 +86,13 @@ void Experiment::load() {
   InputOptions from = with_main_file(options_.input);
   if (!options_.generate.empty()) {
     from.path = folder_.file("input.vtr");
-    write_multi_material_data(from.path, generate_data(wishes_.data, console_));
+    write_multi_material_data(from.path, generate_data(request_.data, console_));
   }
-  input_ = load_input(from, console_, [this](const InputFacts& found) { wishes_.check(found); });
+  input_ = load_input(from, console_, [this](const InputFacts& found) { request_.check(found); });
   if (!options_.generate.empty()) input_.data->source = input_.source.name = "input.vtr";
   const MultiMaterialData& data = *input_.data;
   options_.pictures.check_materials(data.materials, data.source);
-  targets_ = wishes_.resampling.options(input_.source);
+  targets_ = request_.resampling.options(input_.source);
   record_.title = options_.title.empty() ? "Resampling " + input_.source.name : options_.title;
   const auto counts = [&](int axis) { return data.grid.sites(axis); };
   record_.input =
@@ -102,7 +102,7 @@ void Experiment::load() {
                   data.materials.size(), data.fields.size());
   if (input_.source.fields) record_.fields = input_.source.fields->fields();
   if (!options_.show.empty()) record_.shown = find_field(record_.fields, options_.show, data.source).field;
-  record_.density = wishes_.density(record_.fields, data.source);
+  record_.density = request_.density(record_.fields, data.source);
 }
 
 void Experiment::show_input() {
@@ -166,12 +166,12 @@ void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::s
 }
 
 void Experiment::cut_slices() {
-  if (wishes_.planes.empty()) return;
+  if (request_.planes.empty()) return;
   slices_.data = std::move(input_.data);
   std::size_t number = 0;
-  for (const Plane& plane : wishes_.planes) {
+  for (const Plane& plane : request_.planes) {
     const std::string name = fmt::format("slice-{}", ++number);
-    const auto detail = number == 1 ? wishes_.detail : std::nullopt;
+    const auto detail = number == 1 ? request_.detail : std::nullopt;
     add_slice(
         interface_mesh_, plane, name,
         to_string(plane) + (options_.show.empty()
@@ -188,7 +188,7 @@ void Experiment::cut_slices() {
 
 void Experiment::follow_curve() {
   ResamplingOptions options = without_fields(targets_);
-  for (const double error : wishes_.curve(facts_of(input_.source), targets_.interface_error)) {
+  for (const double error : request_.curve(facts_of(input_.source), targets_.interface_error)) {
     if (error == targets_.interface_error) {
       record_.curve.push_back(record_.interfaces);
       continue;
@@ -206,7 +206,7 @@ void Experiment::balance() {
 
 void Experiment::compare_with_published() {
   record_.published_by = options_.published_by;
-  for (const auto& [name, published] : wishes_.published) {
+  for (const auto& [name, published] : request_.published) {
     double here = std::numeric_limits<double>::quiet_NaN();
     if (name == "interface tetrahedra")
       here = static_cast<double>(record_.interfaces.figures.interface_tetrahedra);
@@ -249,14 +249,14 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
 }
 
 void run(const ExperimentOptions& options, Session& session) {
-  const ExperimentWishes wishes(options);
+  const ExperimentRequest request(options);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.protect_other(options.output);
   OutputFolder folder(options.output, options.overwrite, {"metrics.json", "report.html"});
   ExperimentRecord record;
   Figures figures;
   folder.fill([&] {
-    record = Experiment(options, wishes, folder, session.console).run();
+    record = Experiment(options, request, folder, session.console).run();
     write_experiment_report(record, folder.temporary());
     figures = experiment_figures(record);
     write_figures(folder.file("metrics.json"), figures);

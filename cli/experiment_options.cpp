@@ -13,7 +13,7 @@ namespace adamas {
 
 namespace {
 
-/// Interface errors of the curve, in relation to the target, where none are given.
+/// The default interface errors of the curve, in relation to the target.
 constexpr std::array kCurve{8.0, 4.0, 2.0, 1.0};
 constexpr std::array kPublishable{"interface tetrahedra", "tetrahedra", "tetrahedra with fields",
                                   "greatest field error at interfaces", "mean field error at interfaces"};
@@ -86,7 +86,7 @@ void add_experiment_options(const Command& command, ExperimentOptions& options) 
   add_smoothing_option(command, options.input);
 }
 
-ExperimentWishes::ExperimentWishes(const ExperimentOptions& options)
+ExperimentRequest::ExperimentRequest(const ExperimentOptions& options)
     : resampling(options.resampling), show(options.show), density_name(options.density) {
   if (options.generate.empty() == with_main_file(options.input).path.empty())
     wrong_usage("expected an INPUT or --generate, found {}", options.generate.empty() ? "neither" : "both");
@@ -112,7 +112,7 @@ ExperimentWishes::ExperimentWishes(const ExperimentOptions& options)
   for (const std::string& text : options.published) published.push_back(parse_published(text));
 }
 
-void ExperimentWishes::check(const InputFacts& input) const {
+void ExperimentRequest::check(const InputFacts& input) const {
   resampling.check(input);
   for (const ErrorTarget& error : errors) static_cast<void>(interface_error_of("--curve", error, input));
   for (const Plane& plane : planes) {
@@ -124,7 +124,7 @@ void ExperimentWishes::check(const InputFacts& input) const {
   static_cast<void>(density(input.fields, input.name));
 }
 
-std::vector<double> ExperimentWishes::curve(const InputFacts& input, double target) const {
+std::vector<double> ExperimentRequest::curve(const InputFacts& input, double target) const {
   std::vector<double> result{target};
   for (const ErrorTarget& error : errors) result.push_back(interface_error_of("--curve", error, input));
   if (errors.empty()) {
@@ -137,7 +137,8 @@ std::vector<double> ExperimentWishes::curve(const InputFacts& input, double targ
   return result;
 }
 
-std::string ExperimentWishes::density(const std::vector<FieldInfo>& fields, const std::string& source) const {
+std::string ExperimentRequest::density(const std::vector<FieldInfo>& fields,
+                                       const std::string& source) const {
   for (const FieldInfo& info : fields) {
     if (density_name.empty() ? same_letters(info.name, "density") : info.name == density_name) {
       if (info.components == 1) return info.name;

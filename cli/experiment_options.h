@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/generated_data.h"
 #include "cli/input_options.h"
-#include "cli/resampling_setup.h"
+#include "cli/resampling_options.h"
 #include "cli/surface_picture.h"
 #include "core/geometry/plane.h"
 #include "core/picture/vec2.h"
@@ -29,9 +29,9 @@ struct ExperimentOptions {
 void add_experiment_options(const Command& command, ExperimentOptions& options);
 
 /// The options with their values checked, before the input is known.
-struct ExperimentWishes {
+struct ExperimentRequest {
   /// Throws UsageError.
-  explicit ExperimentWishes(const ExperimentOptions& options);
+  explicit ExperimentRequest(const ExperimentOptions& options);
   /// Throws where the options do not suit the input.
   void check(const InputFacts& input) const;
   /// Interface errors from coarse to fine, `target` among them.
@@ -39,7 +39,7 @@ struct ExperimentWishes {
   /// The field whose integral is mass: the one asked for, else one called density; empty for none.
   [[nodiscard]] std::string density(const std::vector<FieldInfo>& fields, const std::string& source) const;
 
-  ResamplingWishes resampling;
+  ResamplingRequest resampling;
   GeneratedData data;
   std::vector<Plane> planes;
   std::optional<Box2> detail;

@@ -1,9 +1,10 @@
+#include "cli/experiment_report.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 
-#include "cli/experiment_record.h"
 #include "core/picture/plot.h"
 
 namespace adamas {
@@ -47,7 +48,7 @@ Plot interface_plot(const std::vector<ExperimentRun>& runs) {
   return plot;
 }
 
-/// One series per field: its mean error in cells with an interface, as a part of its range.
+/// A series for each field: its mean error in cells with an interface, as a part of the field's range.
 Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldInfo>& fields) {
   Plot plot;
   plot.x = {"tetrahedra", AxisKind::kLogarithmic};
@@ -59,7 +60,7 @@ Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldI
       series.x.push_back(static_cast<double>(run.figures.tetrahedra));
       series.y.push_back(range > 0 ? run.figures.fields[f].at_interfaces.mean() / range : 0);
     }
-    // A field that comes back exactly would stretch the axis down to round-off.
+    // The errors of a field that the mesh reproduces exactly are round-off, which would stretch the axis.
     if (*std::max_element(series.y.begin(), series.y.end()) > 1e-12) plot.series.push_back(std::move(series));
   }
   return plot;
@@ -194,6 +195,46 @@ void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
 }
 
 }  // namespace
+
+Figures experiment_figures(const ExperimentRecord& record) {
+  Figures figures;
+  figures["title"] = record.title;
+  figures["input"] = record.input;
+  figures["interfaces"] = Figures::array();
+  for (const auto& [pair, count] : record.triangles)
+    figures["interfaces"].push_back({{"between", pair}, {"triangles", count}});
+  figures["interface_mesh"] = record.interfaces.json;
+  figures["mesh"] = record.last().json;
+  figures["nested_errors"] = Figures::object();
+  for (std::size_t f = 0; f < record.fields.size(); ++f) {
+    const NestedSummary& nested = record.last().nested[f];
+    figures["nested_errors"][record.fields[f].name] = {{"tetrahedra", nested.tetrahedra},
+                                                       {"greatest", nested.greatest},
+                                                       {"mean", nested.mean},
+                                                       {"corrected_greatest", nested.corrected_greatest},
+                                                       {"corrected_mean", nested.corrected_mean},
+                                                       {"undefined", nested.undefined}};
+  }
+  figures["curve"] = Figures::array();
+  for (const ExperimentRun& run : record.curve) figures["curve"].push_back(run.json);
+  figures["published"] = Figures::array();
+  for (const PublishedFigure& figure : record.published)
+    figures["published"].push_back(
+        {{"name", figure.name}, {"published", figure.published}, {"here", figure.here}});
+  figures["ledger"] = Figures::array();
+  for (const LedgerRow& row : record.ledger) {
+    Figures entry{
+        {"material", row.material}, {"volume_input", row.volume_input}, {"volume_mesh", row.volume_mesh}};
+    if (!record.density.empty()) {
+      entry["mass_input"] = row.mass_input;
+      entry["mass_mesh"] = row.mass_mesh;
+    }
+    figures["ledger"].push_back(std::move(entry));
+  }
+  figures["seconds"] = record.seconds;
+  figures["peak_memory_bytes"] = peak_memory_bytes();
+  return figures;
+}
 
 void write_experiment_report(const ExperimentRecord& record, const std::filesystem::path& folder) {
   HtmlReport report(record.title, record.input);

@@ -19,7 +19,7 @@ struct NestedSummary {
   std::size_t undefined = 0;  ///< without a correction
 };
 
-/// One run of the resampler within an experiment, at its end.
+/// The result of one run of the resampler within an experiment.
 struct ExperimentRun {
   ResamplingOptions options;
   ResampleFigures figures;

@@ -25,7 +25,7 @@ std::size_t peak_memory_bytes();
 /// A volume with six digits.
 std::string volume_text(double volume);
 
-/// What became of a volume, in percent: "-0.02%"; "-" where there was none.
+/// The relative change of a volume in percent: "-0.02%"; "-" where the volume before is 0.
 std::string difference_text(double before, double after);
 
 /// "1.5 GiB".

@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/volume_output.h"
+#include "cli/volume_options.h"
 #include "datasets/buckyball.h"
 
 namespace adamas {

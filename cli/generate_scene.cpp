@@ -23,7 +23,7 @@ std::uint64_t parse_seed(const std::string& text) {
   return text.empty() ? 0 : parse_count("--seed", text, 0);
 }
 
-/// As fine as the grid, or 1/64 of the shortest side.
+/// The size of triangles where none is given: that of the grid's cells, or 1/64 of the shortest side.
 double interface_resolution(const Options& options, const Box3& box) {
   if (!options.resolution.empty()) return parse_positive("--resolution", options.resolution);
   const Vec3 size = box.size();

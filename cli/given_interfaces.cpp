@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cli/figures.h"
-#include "cli/material_numbers.h"
+#include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/geometry/length_limits.h"
@@ -25,9 +25,9 @@ namespace adamas {
 
 namespace {
 
-/// How much larger than the interfaces their domain is on each side, where it is not given.
+/// By how much the domain extends beyond the interfaces on each side, where no domain is given.
 constexpr double kMargin = 0.05;
-/// Gaps wider than this part of the domain's diagonal are no cracks.
+/// Gaps that are wider than this part of the domain's diagonal are not closed.
 constexpr double kWidestGap = 0.05;
 
 InterfaceMesh read_surface_option(const std::string& text) {
@@ -57,7 +57,7 @@ Box3 domain_of(const InterfaceMesh& mesh) {
   return box;
 }
 
-/// A grid that knows no materials: all arrays are fields.
+/// Reads a grid without materials, whose arrays are all fields.
 MultiMaterialData read_fields(const InputOptions& options) {
   if (!options.region.empty()) wrong_usage("--region: expected a grid with materials");
   GridFile file = read_grid_file(options.path);
@@ -85,7 +85,7 @@ void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
   mesh.materials = data.materials;
 }
 
-/// Interfaces beside the domain would leave it to one material, which is hardly what was meant.
+/// Throws where no interface is in the domain: all of it would be of one material, which is hardly intended.
 void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
   Box3 found;
   bool finite = true;
@@ -93,7 +93,7 @@ void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
     finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
     found.extend(p);
   }
-  // Other faults are told better by the check of the mesh.
+  // The check of the mesh has better messages for other faults.
   if (!finite || mesh.triangles.empty()) return;
   const auto meets = [&](const InterfaceTriangle& t) {
     std::array<Vec3, 3> corners;
@@ -124,7 +124,7 @@ void print_report(const InterfaceMeshReport& report, const std::string& name, Co
   }
 }
 
-/// Tells what was changed, and where first.
+/// Notes what was changed in the interfaces, and the first place.
 void print_mending(const InterfaceMending& mending, const std::string& name, Console& console) {
   const auto tell = [&](const Mended& mended, const char* what) {
     if (mended.count == 0) return;
@@ -140,15 +140,15 @@ void print_mending(const InterfaceMending& mending, const std::string& name, Con
   tell(mending.turned, "triangles turned that faced the other way than their neighbours");
 }
 
-/// The greatest width of gaps to close.
+/// The greatest width of the gaps that are closed.
 ErrorTarget parse_weld(const InputOptions& options) {
   if (options.weld.empty()) return {InterfaceMendingOptions().gaps, ErrorTarget::Unit::kPart};
   if (options.weld == "0") return {};
   return parse_error_target("--weld", options.weld);
 }
 
-/// Mends what can be. Throws Error where the interfaces cannot be used, and tells of the option that takes
-/// what can.
+/// Repairs the interfaces as far as the options allow. Throws Error where they still cannot be used; the
+/// message names an option that would allow what is needed.
 void check_interfaces(InterfaceMesh& mesh, const Box3& box, const ErrorTarget& weld, bool tolerant,
                       Console& console) {
   const double gaps = weld.of(box.diagonal()) / box.diagonal();

@@ -20,7 +20,8 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-/// The text beside its name, or below where the name is long, broken between words.
+/// The name in a column and the text in the next one, broken between words; below the name where that is
+/// long.
 std::string columns(const std::string& name, const std::string& text) {
   std::string result, line = "  " + name;
   if (line.size() + 1 >= kTextColumn) {

@@ -5,16 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/data_summary.h"
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
-#include "cli/grid_summary.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
-#include "cli/saved_hierarchy_input.h"
-#include "cli/store_input.h"
-#include "cli/store_summary.h"
+#include "cli/store_options.h"
 #include "cli/usage_error.h"
-#include "cli/volume_summary.h"
+#include "cli/volume_options.h"
 #include "core/io/array_names.h"
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
@@ -49,7 +47,7 @@ void print_volumes(const IdVector<MaterialId, std::string>& names, const IdVecto
   console.table(rows);
 }
 
-/// Least and greatest value, of lengths for vectors, over all materials.
+/// The least and the greatest value over all materials; of vectors, those of their lengths.
 std::pair<double, double> range_of(const Field& field) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   const auto add = [&](const std::vector<float>& values) {
@@ -136,7 +134,7 @@ void print_resampled(const ResampledMesh& mesh, Console& console, Figures& figur
   if (rows.size() > 1) console.table(rows);
 }
 
-/// The whole mesh of a saved hierarchy, and what coarser ones there are.
+/// Prints the size of a saved hierarchy, the error for which it was built, and its finest mesh.
 Figures print_hierarchy(const std::string& path, Session& session) {
   Console& console = session.console;
   const SavedHierarchy hierarchy = load_saved_hierarchy(path, console);
@@ -153,7 +151,7 @@ Figures print_hierarchy(const std::string& path, Session& session) {
   return figures;
 }
 
-/// Interfaces, and whether the mesh is sound.
+/// Prints the interfaces, and whether their mesh is sound.
 void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures) {
   figures["materials"] = Figures::array();
   for (const std::string& name : mesh.materials) figures["materials"].push_back({{"name", name}});
@@ -184,7 +182,7 @@ bool has_data(const FileSummary& s, const InputOptions& options) {
                      [](const auto& a) { return fraction_material(a.name).has_value(); });
 }
 
-/// Polygons are interfaces where they have materials on both sides.
+/// Whether the polygons of a file are interfaces: they have materials on both sides.
 bool is_network(const FileSummary& s, const InputOptions& options) {
   if (file_extension(options.path) != ".vtp") return true;
   const auto front = [](const ArraySummary& a) { return a.of == "cells" && a.name == "front"; };
@@ -252,7 +250,7 @@ void run(const Options& given, Session& session) {
     session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
     return session.outputs.commit();
   }
-  // Labels and fractions are of cells where nothing is said.
+  // Unless an option says otherwise, labels and fractions belong to cells.
   const bool materials = !options.labels.empty() || !options.fractions.empty();
   const FileSummary summary =
       summarize_file(options.path, options.centering(), materials ? Centering::kCells : Centering::kPoints);

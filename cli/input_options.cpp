@@ -5,11 +5,13 @@
 
 #include "cli/given_interfaces.h"
 #include "cli/option_values.h"
-#include "cli/saved_hierarchy_input.h"
 #include "cli/usage_error.h"
+#include "core/base/error.h"
+#include "core/io/array_file.h"
 #include "core/io/input_file.h"
 #include "core/io/network_ply.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/source/grid_source.h"
 
 namespace adamas {
@@ -41,7 +43,8 @@ void note_mended_fractions(const MultiMaterialData& data, Console& console) {
   console.note("{}: volume fractions were mended: {}", data.source, what);
 }
 
-/// Names are the same everywhere to the letter; the reader is less strict with these.
+/// Throws where --extensive names no field. Letter case counts as in all other options, although the reader
+/// of the data ignores it.
 void check_extensive(const InputOptions& options, const MultiMaterialData& data) {
   for (const std::string& name : options.extensive) {
     const auto same = [&name](const Field& field) { return field.name == name; };
@@ -272,6 +275,32 @@ Input load_input(const InputOptions& given, Console& console, const InputCheck& 
            input.data->grid.least_spacing()});
   input.source = make_grid_source(*input.data, reconstruction_options(options, *input.data), console);
   return input;
+}
+
+IdVector<MaterialId, MaterialId> material_numbers(const IdVector<MaterialId, std::string>& names,
+                                                  const IdVector<MaterialId, std::string>& among,
+                                                  std::string_view source, std::string_view whose) {
+  IdVector<MaterialId, MaterialId> numbers;
+  for (const std::string& name : names) {
+    const auto found = std::find(among.begin(), among.end(), name);
+    if (found == among.end()) {
+      std::string known;
+      for (const std::string& m : among) known += (known.empty() ? "" : ", ") + m;
+      fail("{}: expected the materials of {} ({}), found '{}'", source, whose, known, name);
+    }
+    numbers.push_back(MaterialId(static_cast<std::size_t>(found - among.begin())));
+  }
+  return numbers;
+}
+
+bool is_saved_hierarchy(const std::string& path) {
+  return file_extension(path) == ".h5" && is_array_file(path, kHierarchyFormat);
+}
+
+SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console) {
+  check_input_file(path);
+  console.step("reading " + path, -1);
+  return from_arrays(read_array_file(path, kHierarchyFormat, kHierarchyVersion).arrays, path);
 }
 
 }  // namespace adamas

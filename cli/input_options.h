@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/output_set.h"
+#include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "core/io/multi_material_reader.h"
@@ -16,6 +18,8 @@
 #include "interfaces/source/resampling_source.h"
 
 namespace adamas {
+
+struct SavedHierarchy;
 
 /// The options that say what the input is, shared by the commands that read data.
 struct InputOptions {
@@ -94,5 +98,17 @@ using InputCheck = std::function<void(const InputFacts&)>;
 
 /// Reads the input: interfaces reconstructed from a grid's volume fractions, or given as meshes.
 Input load_input(const InputOptions& options, Console& console, const InputCheck& check = {});
+
+/// The numbers that materials have among others, by name. Throws Error, in the name of `source`, for one that
+/// is not there; `whose` tells whose materials were expected.
+IdVector<MaterialId, MaterialId> material_numbers(const IdVector<MaterialId, std::string>& names,
+                                                  const IdVector<MaterialId, std::string>& among,
+                                                  std::string_view source, std::string_view whose);
+
+/// Whether a file is a hierarchy that adamas resample has saved; false where there is none.
+bool is_saved_hierarchy(const std::string& path);
+
+/// Throws Error for another file, and for one that is damaged.
+SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console);
 
 }  // namespace adamas

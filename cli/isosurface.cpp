@@ -5,12 +5,11 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/isosurface_figures.h"
-#include "cli/isosurface_picture.h"
+#include "cli/isosurface_report.h"
 #include "cli/option_values.h"
-#include "cli/store_input.h"
+#include "cli/store_options.h"
 #include "cli/usage_error.h"
-#include "cli/volume_input.h"
+#include "cli/volume_options.h"
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "core/io/surface_writer.h"
@@ -60,7 +59,7 @@ std::vector<double> parse_isovalues(const std::vector<std::string>& texts) {
   return values;
 }
 
-/// In space.
+/// The box of --region, in space.
 std::optional<Box3> wanted_region(const Options& options) {
   if (options.region.empty()) return {};
   return to_box(parse_bounds("--region", options.region));
@@ -81,7 +80,7 @@ SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
   return request;
 }
 
-/// Adds a surface for one isovalue to those before.
+/// Adds the surface of one isovalue to the surfaces of the isovalues before.
 void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isovalue,
             TriangleSurface& surface) {
   const auto first = surface.points.size();
@@ -96,7 +95,7 @@ void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isov
   surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
 
-/// Throws where a surface cannot be: in a region outside of the data, or without cells.
+/// Throws where no surface is possible: in a region outside of the data, or in data without cells.
 void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRequest& request,
                 const std::optional<Box3>& region) {
   check_two_samples(name, grid);
@@ -113,7 +112,7 @@ void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRe
   }
 }
 
-/// Calls `work`, whose errors name the store.
+/// Calls `work` and puts the name of the store before the messages of its errors.
 template <class Work>
 auto naming(const std::string& name, Work&& work) {
   try {

@@ -7,13 +7,13 @@
 #include "cli/exit_status.h"
 #include "cli/interrupt.h"
 #include "cli/usage_error.h"
-#include "core/base/visible_text.h"
+#include "core/base/text.h"
 
 namespace {
 
 using adamas::kDone, adamas::kFailed, adamas::kIncomplete, adamas::kInterrupted, adamas::kWrongUsage;
 
-/// One line on stderr, whatever the text.
+/// Prints the message as one line on stderr.
 void complain(std::string text) {
   text.erase(text.find_last_not_of(" \r\n") + 1);
   std::fprintf(stderr, "adamas: error: %s\n", adamas::visible_text(text).c_str());
@@ -25,7 +25,7 @@ int usage_status(const std::string& message, const std::string& command) {
   return kWrongUsage;
 }
 
-/// What goes wrong in a command names the input; where memory runs out, also what was being done.
+/// Runs the command. Messages of its errors name the input and, where memory runs out, the stage of the work.
 void run_command(adamas::Session& session) {
   const adamas::OutputSet& outputs = session.outputs;
   try {
@@ -57,7 +57,7 @@ int run(adamas::CommandLine& command_line, adamas::Session& session, int argc, c
   }
 }
 
-/// All ways a run can end.
+/// Runs the program and returns its exit status, whatever is thrown.
 int run_to_the_end(adamas::CommandLine& command_line, adamas::Session& session, int argc, char** argv) {
   try {
     return run(command_line, session, argc, argv);

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
@@ -11,7 +13,17 @@ namespace adamas {
 
 namespace {
 
-/// Text as roff takes it: no requests, hyphens that can be copied.
+/// The variables of the environment that the program reads, beside those of the system.
+constexpr std::array<std::pair<const char*, const char*>, 2> kVariables{{
+    {"ADAMAS_READER_PROGRAM",
+     "The program that reads files by the libraries of others, where it is not beside adamas or in "
+     "../libexec."},
+    {"ADAMAS_REFERENCE_PROGRAM",
+     "The program that runs other mesh generators for compare, where it is not beside adamas or in "
+     "../libexec."},
+}};
+
+/// The text escaped for roff, so that no line is a request and hyphens can be copied from the page.
 std::string roff(const std::string& text) {
   std::string result;
   bool begins_line = true;
@@ -33,12 +45,12 @@ void append_option(const OptionDescription& option, std::string& page) {
   page += ".TP\n.B " + roff(option.head) + "\n" + roff(option.text) + "\n";
 }
 
-/// A paragraph for examples, line by line as they stand.
+/// Appends a paragraph whose lines stay as they are, for examples.
 void append_lines(const std::string& text, std::string& page) {
   page += ".PP\n.nf\n" + roff(text) + "\n.fi\n";
 }
 
-/// A command's section: what it does, its options but for those that all have, its example.
+/// Appends the section of a command: what it does, the options that it alone has, its example.
 void append_command(const CommandDescription& command, const std::string& name, std::string& page) {
   page += ".SS " + roff(name) + "\n" + roff(command.description) + ".\n";
   for (const OptionDescription& option : command.options) {
@@ -58,7 +70,7 @@ void append_command(const CommandDescription& command, const std::string& name, 
   }
 }
 
-/// The options that all commands have, as any of them has them.
+/// Appends the section of the options that all commands have, which are taken from one of them.
 void append_common_options(const CommandDescription& any, std::string& page) {
   page += ".SH COMMON OPTIONS\n";
   for (const OptionDescription& option : any.options) {
@@ -86,11 +98,9 @@ std::string man_page(const CommandDescription& app) {
   page += ".SH EXIT STATUS\n";
   for (const auto& [status, meaning] : kExitStatuses)
     page += ".TP\n.B " + std::to_string(status) + "\n" + roff(meaning) + "\n";
-  page += ".SH ENVIRONMENT\n.TP\n.B ADAMAS_REFERENCE_PROGRAM\n" +
-          roff(
-              "The program that runs other mesh generators for compare, where it is not beside adamas or in "
-              "../libexec.") +
-          "\n";
+  page += ".SH ENVIRONMENT\n";
+  for (const auto& [variable, meaning] : kVariables)
+    page += ".TP\n.B " + std::string(variable) + "\n" + roff(meaning) + "\n";
   return page;
 }
 

@@ -1,13 +1,218 @@
 #include "cli/mesh_outputs.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/option_values.h"
+#include "cli/resampling_options.h"
+#include "cli/usage_error.h"
+#include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/output_stream.h"
+#include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "interfaces/cutting/cut_mesh.h"
+#include "interfaces/cutting/cut_mesh_file.h"
+#include "interfaces/cutting/cut_mesh_report.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 
 namespace adamas {
+
+namespace {
+
+/// Volumes of bodies count as changed when they differ by more than this part of the domain's volume.
+constexpr double kVolumesRestored = 1e-9;
+
+double tolerance_of(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error) {
+  if (output.error.empty()) {
+    // The interface error of a mesh of planes is 0, so that half of it would be no target.
+    const double least = 1e-4 * mesh.box.diagonal();
+    return std::max(kCutTolerance * interface_error, least);
+  }
+  const InputFacts facts{mesh.source, mesh.box, mesh.fields, 0};
+  return interface_error_of("--cut-error", parse_error_target("--cut-error", output.error), facts);
+}
+
+Figures distance_figures(const InterfaceCertificate& certificate) {
+  Figures figures{{"interface_error", certificate.networks.upper},
+                  {"interface_error_found", certificate.networks.lower},
+                  {"interface_error_per_material", certificate.materials.upper}};
+  figures["junction_error"] =
+      certificate.junctions ? Figures(certificate.junctions->upper) : Figures(nullptr);
+  return figures;
+}
+
+std::string distance_text(const InterfaceDistance& distance) {
+  return std::isinf(distance.upper) ? "none shown" : fmt::format("{:.4g}", distance.upper);
+}
+
+void note_changed_bodies(const CutMeshReport& report, const ResampledMesh& mesh, Console& console) {
+  constexpr std::size_t kMost = 10;
+  for (std::size_t i = 0; i < std::min(kMost, report.changed.size()); ++i) {
+    const auto& [body, of_mesh, of_cut, volume] = report.changed[i];
+    const std::string& material = mesh.materials[mesh.table.material(body)];
+    if (of_cut.pieces == 0) {
+      console.note("the cut mesh shows nothing of a body of '{}' of volume {}", material,
+                   volume_text(volume));
+    } else {
+      console.note(
+          "the cut mesh shows a body of '{}' of volume {} in {} piece{} instead of {}, and its boundary has "
+          "the Euler characteristic {} instead of {}",
+          material, volume_text(volume), of_cut.pieces, of_cut.pieces == 1 ? "" : "s", of_mesh.pieces,
+          of_cut.euler, of_mesh.euler);
+    }
+  }
+  if (report.changed.size() > kMost)
+    console.note("... and {} more bodies that the cut mesh has lost or torn", report.changed.size() - kMost);
+  if (report.volume_difference > kVolumesRestored * mesh.box.volume())
+    console.note("the cut mesh's bodies have the volumes of the mesh's but for {}, at most",
+                 volume_text(report.volume_difference));
+}
+
+/// The distances from the input's interfaces; empty where the input is not known.
+std::optional<InterfaceCertificate> compare_with_input(const ConformingMesh& cut, const ResampledMesh& mesh,
+                                                       const ResamplingSource* source, double target,
+                                                       const Progress& progress) {
+  if (source == nullptr || source->network->triangles().empty()) return std::nullopt;
+  const ExtractedInterfaces shown = interfaces_of(cut, mesh.table);
+  InterfaceComparison comparison(*source, target);
+  comparison.measure(shown.mesh, progress);
+  return comparison.finish(shown.mesh, progress);
+}
+
+Figures report_figures(const ConformingMesh& cut, const CutMeshReport& report,
+                       const std::optional<InterfaceCertificate>& from_input) {
+  const auto lost =
+      static_cast<std::size_t>(std::count_if(report.changed.begin(), report.changed.end(),
+                                             [](const auto& changed) { return changed.of_cut.pieces == 0; }));
+  return {{"tetrahedra", cut.tetrahedra.size()},
+          {"vertices", cut.points.size()},
+          {"dihedral_min", report.dihedral.min},
+          {"dihedral_max", report.dihedral.max},
+          {"to_mesh", distance_figures(report.distance)},
+          {"to_input", from_input ? distance_figures(*from_input) : Figures(nullptr)},
+          {"volume_difference", report.volume_difference},
+          {"lost_bodies", lost},
+          {"changed_bodies", report.changed.size() - lost}};
+}
+
+void print_report(const ConformingMesh& cut, const CutMeshReport& report,
+                  const std::optional<InterfaceCertificate>& from_input, Console& console) {
+  std::vector<std::vector<std::string>> rows{
+      {"cut mesh", ""},
+      {"tetrahedra", std::to_string(cut.tetrahedra.size())},
+      {"vertices", std::to_string(cut.points.size())},
+      {"dihedral angles", fmt::format("{:.3g} to {:.4g} degrees", report.dihedral.min, report.dihedral.max)},
+      {"distance from the mesh's interfaces", distance_text(report.distance.networks)}};
+  if (from_input) rows.push_back({"interface error certified", distance_text(from_input->networks)});
+  console.print("\n");
+  console.table(rows);
+}
+
+}  // namespace
+
+Ledger volume_ledger(const std::string& of, const IdVector<MaterialId, double>& volumes) {
+  Ledger ledger{of, {}};
+  for (const double volume : volumes) ledger.materials.push_back({volume, {}, {}});
+  return ledger;
+}
+
+Figures ledger_figures(const std::vector<Ledger>& ledgers, const IdVector<MaterialId, std::string>& materials,
+                       const std::vector<FieldInfo>& fields) {
+  Figures rows = Figures::array();
+  for (const Ledger& ledger : ledgers) {
+    for (MaterialId m(0); m.value < materials.size(); ++m.value) {
+      const MaterialIntegral& sums = ledger.materials[m];
+      Figures integrals = Figures::object();
+      for (const FieldInfo& field : fields) {
+        if (sums.integral.empty()) continue;
+        Figures components = Figures::array();
+        for (int c = 0; c < field.components; ++c)
+          components.push_back(sums.integral[field.offset + static_cast<std::size_t>(c)]);
+        integrals[field.name] = field.components == 1 ? components[0] : components;
+      }
+      rows.push_back({{"of", ledger.of},
+                      {"material", materials[m]},
+                      {"volume", sums.volume},
+                      {"integrals", std::move(integrals)}});
+    }
+  }
+  return rows;
+}
+
+std::string ledger_csv(const std::vector<Ledger>& ledgers, const IdVector<MaterialId, std::string>& materials,
+                       const std::vector<FieldInfo>& fields) {
+  std::string text = "of,material,volume";
+  for (const FieldInfo& field : fields) {
+    for (int c = 0; c < field.components; ++c)
+      text += "," + csv_text("integral of " + field.name +
+                             (field.components > 1 ? fmt::format(" ({})", c) : std::string()));
+  }
+  text += "\n";
+  for (const Ledger& ledger : ledgers) {
+    for (MaterialId m(0); m.value < materials.size(); ++m.value) {
+      const MaterialIntegral& sums = ledger.materials[m];
+      text += fmt::format("{},{},{:.17g}", ledger.of, csv_text(materials[m]), sums.volume);
+      for (const FieldInfo& field : fields) {
+        for (int c = 0; c < field.components; ++c) {
+          const std::size_t at = field.offset + static_cast<std::size_t>(c);
+          const bool known = at < sums.integral.size() && !std::isnan(sums.integral[at]);
+          text += known ? fmt::format(",{:.17g}", sums.integral[at]) : ",";
+        }
+      }
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+void CutMeshOutput::declare(OutputSet& outputs) const {
+  outputs.declare("--cut-mesh", file, {".vtu", ".msh", ".exo"});
+  if (error.empty()) return;
+  if (file.empty()) wrong_usage("--cut-error: expected --cut-mesh FILE with it, found none");
+  (void)parse_error_target("--cut-error", error);
+}
+
+void add_cut_mesh_options(const Command& command, CutMeshOutput& output) {
+  command
+      .add_option("--cut-mesh", output.file,
+                  "The mesh cut along its interfaces, for solvers: .vtu, .msh (Gmsh) or .exo (ExodusII)")
+      .type_name("FILE");
+  command
+      .add_option(
+          "--cut-error", output.error,
+          "How far the cut mesh's faces between materials may be from the mesh's interfaces: a length, "
+          "or in % of the domain's diagonal (default: half the interface error)")
+      .type_name("E|E%");
+}
+
+Figures write_cut_mesh(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error,
+                       const ResamplingSource* source, std::vector<Ledger>& ledgers, Session& session) {
+  if (output.file.empty()) return nullptr;
+  Console& console = session.console;
+  const double tolerance = tolerance_of(output, mesh, interface_error);
+  const ConformingMesh cut = cut_mesh(mesh, tolerance, console);
+  console.step("measuring the cut mesh", -1);
+  const CutMeshReport report = examine_cut_mesh(cut, mesh, tolerance, console);
+  const auto from_input =
+      compare_with_input(cut, mesh, source, std::max(interface_error, tolerance), console);
+  print_report(cut, report, from_input, console);
+  note_changed_bodies(report, mesh, console);
+  const UnstructuredMesh with_fields = to_unstructured_mesh(cut, mesh);
+  ledgers.push_back({"cut mesh", material_integrals(with_fields, mesh.materials.size())});
+  session.outputs.write(output.file, [&](const auto& path) {
+    console.step("writing " + output.file, -1);
+    if (file_extension(path) == ".vtu") {
+      write_unstructured_mesh(path, with_fields);
+    } else {
+      write_solver_mesh(path, to_solver_mesh(cut, mesh));
+    }
+  });
+  return report_figures(cut, report, from_input);
+}
 
 void MeshOutputs::declare(OutputSet& outputs) const {
   picture.check();

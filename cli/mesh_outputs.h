@@ -4,12 +4,48 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/cut_mesh_output.h"
-#include "cli/ledger.h"
+#include "cli/figures.h"
 #include "cli/surface_picture.h"
 #include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/probe/material_integrals.h"
+#include "interfaces/source/field_source.h"
+#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
+
+/// Volumes of the materials and integrals of their fields, in the input or in a mesh: of a density that is
+/// mass.
+struct Ledger {
+  std::string of;  ///< what it is of: "input", "mesh", "cut mesh"
+  IdVector<MaterialId, MaterialIntegral> materials;
+};
+
+/// Volumes alone, where there are no fields.
+Ledger volume_ledger(const std::string& of, const IdVector<MaterialId, double>& volumes);
+
+/// For `--json`: a row per ledger and material.
+Figures ledger_figures(const std::vector<Ledger>& ledgers, const IdVector<MaterialId, std::string>& materials,
+                       const std::vector<FieldInfo>& fields);
+/// The same as CSV; what a material has not is left empty.
+std::string ledger_csv(const std::vector<Ledger>& ledgers, const IdVector<MaterialId, std::string>& materials,
+                       const std::vector<FieldInfo>& fields);
+
+/// The file that a mesh cut along its interfaces is written to, empty where it is not wanted, and how far the
+/// faces between materials may be from the mesh's interfaces, empty for half the interface error.
+struct CutMeshOutput {
+  std::string file, error;
+
+  /// Throws UsageError for an error that is none, and for a file of another kind.
+  void declare(OutputSet& outputs) const;
+};
+
+void add_cut_mesh_options(const Command& command, CutMeshOutput& output);
+
+/// Cuts, measures, prints, and writes; returns the figures for `--json`, null where no cut mesh is wanted.
+/// `interface_error`: of the mesh, a length. `source`: what the mesh was made of, null where that is not
+/// known.
+Figures write_cut_mesh(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error,
+                       const ResamplingSource* source, std::vector<Ledger>& ledgers, Session& session);
 
 /// The files that a resampled mesh is written to, each empty where it is not wanted.
 struct MeshOutputs {

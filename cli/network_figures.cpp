@@ -9,7 +9,7 @@ namespace adamas {
 
 namespace {
 
-/// More interfaces than this are only counted.
+/// Of more interfaces than these only the number is printed.
 constexpr std::size_t kMostRows = 40;
 
 using Pair = std::pair<MaterialId, MaterialId>;

@@ -76,11 +76,12 @@ void OutputFolder::commit() {
   std::error_code code;
   const bool replace = fs::exists(path_, code);
   fs::path old;
-  // At no time is there neither the old folder nor the new one, where the file system can exchange them.
+  // Where the file system can exchange two names, the old or the new folder is there at any time.
   if (replace && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0) {
     old = temporary_;
   } else {
-    // No temporary name: as long as the new one has no other, the next run must not remove the old one.
+    // The old folder must not get a temporary name here: the next run would remove it, although the new one
+    // may not have its final name yet.
     if (replace) old = path_.string() + "-replaced-by" + temporary_.filename().string();
     if (replace) fs::rename(path_, old, code);
     if (!code) fs::rename(temporary_, path_, code);

@@ -29,7 +29,7 @@ void check_extension(const std::string& option, const std::filesystem::path& pat
   wrong_usage("{}: expected a file name that ends in {}, found '{}'", option, known, path.string());
 }
 
-/// The same file may go by several names.
+/// Throws UsageError where both names are of the same file.
 void check_apart(const std::string& option, const std::filesystem::path& output,
                  const std::filesystem::path& input) {
   std::error_code code;
@@ -63,7 +63,7 @@ void OutputSet::protect_other(const std::filesystem::path& path) {
 }
 
 std::string OutputSet::naming_input(const std::string& message) const {
-  // A name that is part of a longer word names nothing.
+  // A name within a longer word does not count.
   const auto ends_word = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-';
   };

@@ -11,7 +11,7 @@
 
 namespace adamas {
 
-/// The text with every `from` made `to`: messages about temporary names tell of the final ones.
+/// The text with every `from` replaced by `to`, as for messages about files that still have temporary names.
 std::string replaced(std::string text, const std::string& from, const std::string& to);
 
 /// The outputs of one run: they get their names together, when all of them are whole.

@@ -10,14 +10,14 @@
 
 #include "cli/figures.h"
 #include "core/base/error.h"
-#include "core/base/trimmed.h"
+#include "core/base/text.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
 
 namespace {
 
-/// The cells of a line: between semicolons where there are any, else between commas, else between blanks.
+/// Splits a line into cells at semicolons; without semicolons at commas; without either at blanks.
 std::vector<std::string_view> split_cells(std::string_view line) {
   const char separator = line.find(';') != line.npos ? ';' : line.find(',') != line.npos ? ',' : ' ';
   std::vector<std::string_view> cells;

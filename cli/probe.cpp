@@ -24,7 +24,7 @@ struct Options {
   std::vector<std::string> single;
 };
 
-/// "x,y,z..x,y,z,n".
+/// Parses a line of points, "x,y,z..x,y,z,n".
 std::vector<Vec3> parse_line(const std::string& text) {
   const std::size_t dots = text.find("..");
   const std::size_t comma = text.rfind(',');
@@ -54,9 +54,9 @@ std::vector<Vec3> wanted_points(const Options& options) {
   return points;
 }
 
-/// One number of a field as it is, a list for vectors.
+/// The value of a field: a number, or a list of numbers for vectors.
 Figures components(const std::vector<double>& row, const FieldInfo& info) {
-  // What is not finite becomes null when it is written.
+  // A number that is not finite is written as null.
   if (info.components == 1) return row[info.offset];
   Figures list = Figures::array();
   for (int c = 0; c < info.components; ++c) list.push_back(row[info.offset + static_cast<std::size_t>(c)]);
@@ -96,14 +96,14 @@ void report_integrals(const IdVector<MaterialId, MaterialIntegral>& integrals,
   if (print) console.table(rows);
 }
 
-/// Volumes and areas of given interfaces.
+/// Prints the volumes and areas of given interfaces.
 void report_network(const ResamplingSource& source, bool print, Console& console, Figures& figures) {
   if (print) console.print("  domain {}\n", box_text(source.box));
   figures["materials"] = print_network_volumes(source, "volume", print, console);
   figures["interfaces"] = print_interface_areas(source, print, console);
 }
 
-/// Points beside the domain have no values, which is easily overlooked in a long table.
+/// Notes how many points are outside of the domain: that they have no values is easily overlooked in a table.
 void note_points_outside(const PointTable& table, const Box3& domain, Console& console) {
   const auto outside = std::count_if(table.samples.begin(), table.samples.end(),
                                      [](const ProbeSample& sample) { return !sample.inside; });
@@ -112,7 +112,7 @@ void note_points_outside(const PointTable& table, const Box3& domain, Console& c
                outside == 1 ? "lies" : "lie", box_text(domain));
 }
 
-/// Options that say nothing of a mesh.
+/// Throws UsageError at options that mean nothing for a mesh.
 void check_mesh_options(const InputOptions& input) {
   const std::string material = input.grid_option(), interface = input.interface_option();
   if (!material.empty()) wrong_usage("{}: expected data on a grid as INPUT", material);

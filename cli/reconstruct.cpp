@@ -38,7 +38,7 @@ Figures print_volumes(const MultiMaterialData& data, const Reconstruction& resul
   return figures;
 }
 
-/// How well the volumes in cells agree with the fractions there.
+/// Prints how well the volumes in the cells agree with the volume fractions there.
 Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
   if (agreement.mixed_cells > 0) {
     console.print(
@@ -58,7 +58,7 @@ Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
           {"full_greatest_difference", agreement.greatest_in_full_cell}};
 }
 
-/// Says what the fractions hold and the interfaces do not show.
+/// Notes what the volume fractions contain but the interfaces do not show.
 void note_losses(const MultiMaterialData& data, const Reconstruction& result, Figures& figures,
                  Console& console) {
   constexpr std::size_t kMostNotes = 10;
@@ -86,24 +86,24 @@ void note_losses(const MultiMaterialData& data, const Reconstruction& result, Fi
   figures["lost_bodies"] = bodies;
 }
 
-/// The interfaces of an input, with what is printed of them.
+/// The interfaces of an input, and its domain.
 struct Interfaces {
   InterfaceMesh mesh;
   Box3 box;
 };
 
-/// Takes fewer triangles where that is wanted.
-Interfaces simplified(Interfaces&& found, const ResamplingSource& source, const SimplificationWish& wish,
-                      Figures& figures, Console& console) {
-  if (wish.wanted()) found.mesh = simplify_and_print(source, wish, figures, console).mesh;
+/// Simplifies the interfaces where the options ask for it.
+Interfaces simplified(Interfaces&& found, const ResamplingSource& source,
+                      const SimplificationRequest& request, Figures& figures, Console& console) {
+  if (request.wanted()) found.mesh = simplify_and_print(source, request, figures, console).mesh;
   return std::move(found);
 }
 
-Interfaces reconstruct(const Options& options, const SimplificationWish& wish, Figures& figures,
+Interfaces reconstruct(const Options& options, const SimplificationRequest& request, Figures& figures,
                        Console& console) {
   const MultiMaterialData data = load_data(options.input, console);
   const double voxel = data.grid.least_spacing();
-  wish.check({data.source, data.grid.domain(), {}, voxel});
+  request.check({data.source, data.grid.domain(), {}, voxel});
   options.picture.check_materials(data.materials, data.source);
   Reconstruction result(data, reconstruction_options(options.input, data), console);
   figures["materials"] = print_volumes(data, result, console);
@@ -112,29 +112,30 @@ Interfaces reconstruct(const Options& options, const SimplificationWish& wish, F
   figures["interfaces"] = print_interfaces(result.mesh(), console);
   figures["bodies"] = result.body_materials().size();
   const Box3 box = data.grid.domain();
-  if (!wish.wanted()) return {result.take_mesh(), box};
+  if (!request.wanted()) return {result.take_mesh(), box};
   ResamplingSource source =
       source_of_interfaces(result.mesh(), box, result.take_bodies(), result.body_materials());
   source.voxel = voxel;
-  return simplified({result.take_mesh(), box}, source, wish, figures, console);
+  return simplified({result.take_mesh(), box}, source, request, figures, console);
 }
 
-/// Given interfaces: checked, welded, without triangles that bound nothing.
-Interfaces take_given(const Options& options, const SimplificationWish& wish, Figures& figures,
+/// Loads given interfaces: they are checked and welded, and triangles with the same material on both sides
+/// are left out.
+Interfaces take_given(const Options& options, const SimplificationRequest& request, Figures& figures,
                       Console& console) {
   const Input input =
-      load_input(options.input, console, [&wish](const InputFacts& found) { wish.check(found); });
+      load_input(options.input, console, [&request](const InputFacts& found) { request.check(found); });
   const ResamplingSource& source = input.source;
   options.picture.check_materials(source.materials, source.name);
   figures["materials"] = print_network_volumes(source, "volume_reconstructed", true, console);
   figures["interfaces"] = print_interface_areas(source, true, console);
   figures["bodies"] = source.network->table().body_count();
-  return simplified({network_mesh(*source.network, source.materials, source.name), source.box}, source, wish,
-                    figures, console);
+  return simplified({network_mesh(*source.network, source.materials, source.name), source.box}, source,
+                    request, figures, console);
 }
 
 void run(const Options& options, Session& session) {
-  const SimplificationWish wish(options.simplification);
+  const SimplificationRequest request(options.simplification);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf"});
@@ -144,8 +145,8 @@ void run(const Options& options, Session& session) {
   const bool given = has_given_interfaces(options.input);
   if (!given && !options.input.interface_option().empty())
     wrong_usage("{}: expected given interfaces as INPUT", options.input.interface_option());
-  const Interfaces found =
-      given ? take_given(options, wish, figures, console) : reconstruct(options, wish, figures, console);
+  const Interfaces found = given ? take_given(options, request, figures, console)
+                                 : reconstruct(options, request, figures, console);
   figures["triangles"] = found.mesh.triangles.size();
   console.step("writing", -1);
   session.outputs.write(options.output, [&](const auto& path) { write_interface_mesh(path, found.mesh); });

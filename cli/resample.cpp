@@ -8,7 +8,7 @@
 #include "cli/input_options.h"
 #include "cli/mesh_outputs.h"
 #include "cli/resample_figures.h"
-#include "cli/resampling_setup.h"
+#include "cli/resampling_options.h"
 #include "cli/simplification_options.h"
 #include "cli/usage_error.h"
 #include "core/io/array_file.h"
@@ -20,7 +20,7 @@ namespace adamas {
 
 namespace {
 
-/// A distance between interfaces; infinite where the mesh shows none.
+/// The text of a distance between interfaces, which is infinite where the mesh shows none.
 std::string shown_length(double length) {
   return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
 }
@@ -33,7 +33,7 @@ struct Options {
   std::string save;
 };
 
-/// Says which of the distances are greater than wanted, and why.
+/// Notes which of the distances are greater than the interface error, and why.
 void note_shortfalls(const InterfaceCertificate& certificate, const Resampler& resampler, Console& console) {
   const auto note = [&](const std::string& what, const InterfaceDistance& distance) {
     const auto shortfall = interface_shortfall(resampler, distance);
@@ -50,7 +50,7 @@ void note_shortfalls(const InterfaceCertificate& certificate, const Resampler& r
     note("the interface error wanted for the lines where three materials meet", *certificate.junctions);
 }
 
-/// Names what the mesh does not show as the input has it.
+/// Notes the materials and bodies of the input that the mesh shows changed or not at all.
 void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
   constexpr std::size_t kMost = 10;
   for (const MaterialId material : lost_materials(m, source)) {
@@ -100,7 +100,7 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   };
   if (certificate) {
     add_distance("interface error", certificate->networks);
-    // Of two materials each one's boundary is the whole.
+    // With two materials the boundary of each consists of all interfaces.
     if (resampler.source().materials.size() > 2)
       add_distance("interface error per material", certificate->materials);
     if (certificate->junctions) add_distance("junction error", *certificate->junctions);
@@ -120,7 +120,8 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   note_bodies(m, resampler.source(), console);
 }
 
-/// How many elements of each kind the errors are of; once where they are the same for all fields.
+/// Prints over how many elements of each kind the errors are taken; once where that is the same for all
+/// fields.
 void print_elements(const ResampleFigures& m, const FieldSource& source, Console& console) {
   std::vector<std::string> texts;
   for (const FieldFigures& field : m.fields) {
@@ -164,7 +165,7 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
   }
 }
 
-/// Says whether volumes are conserved, where that was wanted.
+/// Prints whether volumes are conserved, where the options ask for it.
 void print_conservation(const ResampleFigures& m, const Resampler& resampler, Console& console) {
   if (!resampler.options().conserve) return;
   const BodyFigures* worst = nullptr;
@@ -200,12 +201,12 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
   if (source.materials.size() > kMost) console.print("  ... and {} more\n", source.materials.size() - kMost);
 }
 
-/// The interfaces of the mesh, with fewer triangles where that is wanted.
-InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationWish& wish, Figures& figures,
-                               Console& console) {
-  if (!wish.wanted()) return approximated_interfaces(resampler, console);
+/// The interfaces of the mesh, simplified where the options ask for it.
+InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationRequest& request,
+                               Figures& figures, Console& console) {
+  if (!request.wanted()) return approximated_interfaces(resampler, console);
   const ResamplingSource shown = source_of_approximated_interfaces(resampler, console);
-  SimplifiedInterfaces found = simplify_and_print(shown, wish, figures, console);
+  SimplifiedInterfaces found = simplify_and_print(shown, request, figures, console);
   console.note(
       "the simplified interfaces are within {:.4g} of those of the mesh, and so within the interface error "
       "and "
@@ -216,10 +217,10 @@ InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationW
 
 /// Writes what is asked for; returns the ledgers of the input and of all meshes that were written.
 std::vector<Ledger> write_outputs(const Options& options, const Input& input, Resampler& resampler,
-                                  const SimplificationWish& wish, Figures& figures, Session& session) {
+                                  const SimplificationRequest& request, Figures& figures, Session& session) {
   Console& console = session.console;
   if (options.outputs.need_interfaces())
-    write_interfaces(options.outputs, shown_interfaces(resampler, wish, figures, console),
+    write_interfaces(options.outputs, shown_interfaces(resampler, request, figures, console),
                      resampler.source().box, session);
   session.outputs.write(options.save, [&](const auto& path) {
     console.step("measuring all cells of the hierarchy", -1);
@@ -228,7 +229,7 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
     write_array_file(path, {kHierarchyFormat, kHierarchyVersion, to_arrays(hierarchy)});
   });
   std::vector<Ledger> ledgers;
-  // Beside given interfaces a grid need not know materials.
+  // Where interfaces are given, the grid needs no materials.
   if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
     ledgers.push_back({"input", material_integrals(*input.data)});
   } else if (!input.source.volumes.empty()) {
@@ -244,8 +245,8 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
 
 void run(const Options& options, Session& session) {
   Console& console = session.console;
-  const ResamplingWishes wishes(options.text);
-  const SimplificationWish simplification(options.simplification);
+  const ResamplingRequest request(options.text);
+  const SimplificationRequest simplification(options.simplification);
   if (simplification.wanted() && !options.outputs.need_interfaces())
     wrong_usage("--simplify: expected --interfaces-out or --picture beside it, found none");
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && options.save.empty() &&
@@ -258,11 +259,11 @@ void run(const Options& options, Session& session) {
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
   const Input input = load_input(options.input, console, [&](const InputFacts& found) {
-    wishes.check(found);
+    request.check(found);
     simplification.check(found);
   });
   options.outputs.picture.check_materials(input.source.materials, input.source.name);
-  Resampler resampler(input.source, wishes.options(input.source), console);
+  Resampler resampler(input.source, request.options(input.source), console);
   resampler.refine();
   console.step("measuring", -1);
   const ResampleFigures measured = measure(resampler, console);

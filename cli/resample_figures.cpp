@@ -27,7 +27,7 @@ std::vector<BodyFigures> body_figures(const Resampler& resampler, const CellSet&
     body.topology_mesh = report->mesh[b];
     body.changed = !body.lost && !report->kept(b);
   }
-  // The first triangle's place stands for its body's.
+  // The place of a body is that of its first triangle.
   for (std::uint32_t t = static_cast<std::uint32_t>(network.triangles().size()); t-- > 0;) {
     const auto& [x, y, z] = network.triangle_corners(t);
     for (const BodyId b : table.sides(network.interface_of(t)))
@@ -72,10 +72,10 @@ ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
 
 namespace {
 
-/// A figure that is not known is null.
+/// The figure, or null where it is not known.
 Figures known(bool is, double value) { return is ? Figures(value) : Figures(nullptr); }
 
-/// Null where an error was reached.
+/// The reason why an error was not reached; null where it was.
 Figures shortfall_figures(const std::optional<Shortfall>& shortfall) {
   if (!shortfall) return nullptr;
   const Vec3& p = shortfall->place;

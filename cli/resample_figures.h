@@ -10,7 +10,7 @@
 
 namespace adamas {
 
-/// A body of the input, and what became of it.
+/// A body of the input, and how the mesh shows it.
 struct BodyFigures {
   MaterialId material;
   std::optional<double> volume_input;  ///< where it is known
@@ -27,7 +27,7 @@ struct BodyFigures {
 /// Volumes count as conserved that differ by no more than this, in relation to the domain's.
 inline constexpr double kConserved = 1e-9;
 
-/// What a run of the resampler came to (the keys of `--json`).
+/// The results of a run of the resampler (the keys of `--json`).
 struct ResampleFigures {
   std::size_t tetrahedra = 0, vertices = 0;
   std::size_t interface_tetrahedra = 0;         ///< that an approximated interface runs through

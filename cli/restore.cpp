@@ -7,8 +7,8 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/store_input.h"
-#include "cli/volume_output.h"
+#include "cli/store_options.h"
+#include "cli/volume_options.h"
 #include "core/data/volume_placement.h"
 
 namespace adamas {

@@ -4,10 +4,10 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/input_options.h"
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
-#include "cli/resampling_setup.h"
-#include "cli/saved_hierarchy_input.h"
+#include "cli/resampling_options.h"
 #include "cli/usage_error.h"
 #include "interfaces/selection/selection.h"
 
@@ -21,7 +21,7 @@ struct Options {
   MeshOutputs outputs;
 };
 
-/// What is wanted, with its values checked against the hierarchy.
+/// The options with their values checked against the hierarchy.
 SelectionTargets targets_of(const Options& options, const SavedHierarchy& hierarchy) {
   const ResampledMesh& tree = hierarchy.tree;
   SelectionTargets targets;
@@ -45,7 +45,7 @@ std::vector<FieldError> measured_errors(const Selection& selection) {
   return errors;
 }
 
-/// Says which errors the mesh does not reach.
+/// Notes which of the errors asked for the mesh does not reach.
 void note_shortfalls(const Selection& selection, const SelectionTargets& targets, Console& console) {
   const SavedHierarchy& hierarchy = selection.hierarchy();
   const std::string why =

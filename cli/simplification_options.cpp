@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/network_figures.h"
-#include "cli/resampling_setup.h"
+#include "cli/resampling_options.h"
 #include "cli/usage_error.h"
 #include "core/geometry/place_text.h"
 
@@ -87,20 +87,20 @@ void add_simplification_options(const Command& command, SimplificationText& text
       "With --simplify: moves points so that triangles become more alike, within the same error");
 }
 
-SimplificationWish::SimplificationWish(const SimplificationText& text) : smooth(text.smooth) {
+SimplificationRequest::SimplificationRequest(const SimplificationText& text) : smooth(text.smooth) {
   if (!text.error.empty()) error = parse_error_target("--simplify", text.error, true);
   if (smooth && !error) wrong_usage("--smooth: expected --simplify beside it, found none");
 }
 
-void SimplificationWish::check(const InputFacts& input) const {
+void SimplificationRequest::check(const InputFacts& input) const {
   if (error) static_cast<void>(interface_error_of("--simplify", *error, input));
 }
 
-SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const SimplificationWish& wish,
+SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const SimplificationRequest& request,
                                         Figures& figures, Console& console) {
   SimplificationOptions options;
-  options.error = interface_error_of("--simplify", *wish.error, facts_of(source));
-  options.smooth = wish.smooth;
+  options.error = interface_error_of("--simplify", *request.error, facts_of(source));
+  options.smooth = request.smooth;
   const double start = console.seconds();
   SimplifiedInterfaces found = simplify_interfaces(source, options, console);
   const double seconds = console.seconds() - start;

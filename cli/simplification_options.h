@@ -22,9 +22,9 @@ struct SimplificationText {
 void add_simplification_options(const Command& command, SimplificationText& text, const std::string& of_what);
 
 /// The options with their values checked, before the input is known.
-struct SimplificationWish {
+struct SimplificationRequest {
   /// Throws UsageError.
-  explicit SimplificationWish(const SimplificationText& text);
+  explicit SimplificationRequest(const SimplificationText& text);
   /// Throws UsageError for an error that says nothing in this domain.
   void check(const InputFacts& input) const;
   [[nodiscard]] bool wanted() const { return error.has_value(); }
@@ -34,7 +34,7 @@ struct SimplificationWish {
 };
 
 /// Simplifies the interfaces of a source and prints what came of it; the figures are put into `figures`.
-SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const SimplificationWish& wish,
+SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const SimplificationRequest& request,
                                         Figures& figures, Console& console);
 
 }  // namespace adamas

@@ -1,17 +1,19 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/resampling_setup.h"
+#include "cli/resampling_options.h"
 #include "cli/slice_panels.h"
-#include "cli/slice_polygons.h"
 #include "cli/slice_samples.h"
 #include "cli/usage_error.h"
+#include "core/data/unstructured_mesh.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "interfaces/cross_section/cross_section.h"
 
 namespace adamas {
 
@@ -35,6 +37,33 @@ Plane parse_any_plane(const Options& options) {
   const Plane plane{parse_vector("--origin", options.origin), parse_vector("--normal", options.normal)};
   if (!(squared_norm(plane.normal) > 0)) wrong_usage("--normal: expected a vector with a length, found 0");
   return plane;
+}
+
+/// The pieces of a section as polygons with points of their own, so that values jump at interfaces: cell
+/// arrays `material` and `cell`, the point array `field` unless it is empty, the field array
+/// `material_names`.
+UnstructuredMesh section_polygons(const CrossSection& section,
+                                  const IdVector<MaterialId, std::string>& materials,
+                                  const std::string& field) {
+  UnstructuredMesh mesh;
+  mesh.kind = CellKind::kPolygons;
+  std::vector<std::int32_t> material, cell;
+  std::vector<double> values;
+  for (const SectionPiece& piece : section.pieces) {
+    for (const Vec3& p : piece.corners) {
+      mesh.connectivity.push_back(static_cast<std::uint32_t>(mesh.points.size()));
+      mesh.points.push_back(p);
+    }
+    mesh.offsets.push_back(mesh.connectivity.size());
+    material.push_back(static_cast<std::int32_t>(piece.material.value));
+    cell.push_back(static_cast<std::int32_t>(piece.cell));
+    values.insert(values.end(), piece.values.begin(), piece.values.end());
+  }
+  mesh.cell_arrays.push_back({"material", 1, std::move(material)});
+  mesh.cell_arrays.push_back({"cell", 1, std::move(cell)});
+  if (!field.empty()) mesh.point_arrays.push_back({field, 1, std::move(values)});
+  mesh.field_arrays.push_back({"material_names", 1, std::vector<std::string>(materials)});
+  return mesh;
 }
 
 /// `--field NAME=FILE` adds a field as for other commands; the last one named is shown.
@@ -61,7 +90,7 @@ std::vector<SliceMode> modes(const Options& options, const SliceInput& input, bo
   if (options.mode == "plain") return {SliceMode::kPlain};
   if (options.mode != "all") return {SliceMode::kMaterials};
   std::vector<SliceMode> all{SliceMode::kMaterials};
-  // Without a field the two modes of the mesh show the same.
+  // Where no field is shown, the two modes of the mesh look the same.
   if (with_field) all.insert(all.begin(), SliceMode::kPlain);
   if (has_data) all.insert(all.begin(), SliceMode::kInput);
   return all;
@@ -96,8 +125,8 @@ SlicePicture make_picture(const Options& options, const SliceInput& input, const
   return picture;
 }
 
-/// Areas of the last section: the one with the materials, where there are several. Samples alone
-/// have none.
+/// Prints the areas of the materials in the last section, which is the one with the fields of each material.
+/// Samples without materials have none.
 void report_areas(const SliceInput& input, const CrossSection& section, bool plain, Session& session,
                   Figures& figures) {
   figures["area"] = section.area;
@@ -115,7 +144,7 @@ void report_areas(const SliceInput& input, const CrossSection& section, bool pla
   session.console.table(rows);
 }
 
-/// Options that would say nothing where no field is shown.
+/// Throws UsageError at options that mean nothing where no field is shown.
 void check_field_options(const Options& options, const std::string& field) {
   if (!field.empty()) return;
   if (!options.range.empty()) wrong_usage("--range: expected --field as well");
@@ -123,7 +152,7 @@ void check_field_options(const Options& options, const std::string& field) {
   if (options.mode == "plain") wrong_usage("--mode plain: expected --field as well");
 }
 
-/// Options that cannot be, and files that may not be written.
+/// Throws at options that make no sense, and at an output that cannot be written.
 void check_options(const Options& options, OutputSet& outputs) {
   if (options.draw_cells && options.no_draw_cells)
     wrong_usage("--draw-cells and --no-draw-cells: expected one of them");
@@ -133,7 +162,8 @@ void check_options(const Options& options, OutputSet& outputs) {
   outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});
 }
 
-/// Cells are drawn as asked for, else those of a mesh and, beside it, those of its input where they are seen.
+/// Whether cells are drawn: as the options say; without them, the cells of a mesh are drawn, and those of its
+/// input where they are wide enough to be seen.
 void choose_cells(const Options& options, const SliceInput& input, const SliceOptions& size,
                   std::size_t panels, SliceStyle& style) {
   style.mesh_cells = options.draw_cells || !options.no_draw_cells;
@@ -164,7 +194,7 @@ void run(const Options& options, Session& session) {
   const SliceOptions size = picture_size(options);
   InputOptions from = options.input;
   style.field = split_fields(from);
-  // Data without materials may do where no option is about them.
+  // Data without materials are enough unless an option is about materials.
   from.plain = from.material_option().empty() && options.original.empty();
   check_options(options, session.outputs);
   const SampleOrigin origin = sample_origin(options.input, options.volume, options.original);

@@ -5,8 +5,7 @@
 
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
-#include "cli/material_numbers.h"
-#include "cli/saved_hierarchy_input.h"
+#include "cli/input_options.h"
 #include "cli/usage_error.h"
 #include "core/data/volume_placement.h"
 #include "core/io/input_file.h"
@@ -20,7 +19,8 @@ namespace adamas {
 
 namespace {
 
-/// The data's materials in the order of the mesh's, by name; the mesh may have more.
+/// Brings the data's materials into the order of the mesh's, by their names; the mesh may have more
+/// materials.
 void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
   const auto there = material_numbers(data.materials, mesh.materials, data.source, "the mesh");
   const std::size_t count = mesh.materials.size();

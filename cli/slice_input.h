@@ -23,7 +23,7 @@ struct SliceInput {
   /// Of samples whose axes are not x, y and z: the data are in its frame.
   std::optional<VolumeGrid> turned;
 
-  /// Whether the data know no materials.
+  /// Whether the data have no materials.
   [[nodiscard]] bool plain() const { return data && !mesh && is_plain(*data); }
   /// What the plane cuts out of the domain, in space.
   [[nodiscard]] std::vector<Vec3> outline(const Plane& plane) const;

@@ -12,9 +12,9 @@ namespace adamas {
 
 namespace {
 
-/// More materials than this make no legend.
+/// There is no legend for more materials than these.
 constexpr std::size_t kMostNames = 30;
-/// A smaller part of a section is round-off.
+/// A material with a smaller part of a section does not count: it is round-off.
 constexpr double kSeen = 1e-9;
 
 Vec2 to_plane(const PlaneFrame& frame, const Vec3& p) {
@@ -38,7 +38,7 @@ std::vector<FieldInfo> fields_of(const SliceInput& input, bool of_data) {
   return of_data ? field_infos(*input.data) : input.mesh->fields;
 }
 
-/// "NAME:x" as "NAME:0" where that is what it means; throws at components of a scalar.
+/// Replaces the letter of a component by its number: "NAME:x" by "NAME:0". Throws at components of a scalar.
 std::string with_index(const std::vector<FieldInfo>& fields, const std::string& text,
                        const std::string& source) {
   const std::size_t colon = text.rfind(':');
@@ -58,7 +58,8 @@ std::string with_index(const std::vector<FieldInfo>& fields, const std::string& 
   return text;
 }
 
-/// Below the approximated interfaces and wider, so that both are seen where they agree.
+/// The lines of the original interfaces. They are drawn below the approximated ones and wider, so that both
+/// are seen where they agree.
 Stroke original_below() { return {.colour = {0.6, 0.6, 0.6}, .width = 4.2}; }
 
 /// A panel of a section: areas by field or material, cells and interfaces as lines.
@@ -109,7 +110,7 @@ std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vec
   return entries;
 }
 
-/// Puts a section from a grid's frame into space.
+/// Transforms a section from the frame of a grid into space.
 void place_in_space(const VolumeGrid& grid, CrossSection& section) {
   section.area = 0;
   std::fill(section.material_area.begin(), section.material_area.end(), 0.0);

@@ -1,13 +1,141 @@
 #include "cli/slice_samples.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
 #include <utility>
 
-#include "cli/sample_slab.h"
 #include "cli/usage_error.h"
+#include "cli/volume_options.h"
+#include "core/base/error.h"
+#include "core/data/volume_placement.h"
+#include "core/geometry/length_limits.h"
 #include "core/io/array_names.h"
 #include "core/io/input_file.h"
+#include "core/io/multi_material_reader.h"
+#include "isosurface/storage/restore.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
+
+namespace {
+
+/// The greatest number of samples that are read: four for each pixel of a large picture, or a cube of 256^3.
+constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 24;
+
+/// The part of the grid, in its frame, that the samples of an LOD next to the plane span.
+Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
+  const Box3 box = grid.frame_box();
+  Box3 region, cut;
+  for (const Vec3& p : clip_plane(plane, box)) cut.extend(p);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step = std::ldexp(grid.spacing[axis], lod);
+    const double layers = std::floor((box.max[axis] - box.min[axis]) / step);
+    // A plane at right angles to the axis meets it at a single coordinate.
+    const bool across = plane.axis() == axis;
+    const double low = ((across ? plane.origin[axis] : cut.min[axis]) - box.min[axis]) / step;
+    const double high = ((across ? plane.origin[axis] : cut.max[axis]) - box.min[axis]) / step;
+    const double below = std::clamp(std::floor(low), 0.0, std::max(0.0, layers - 1));
+    const double above = std::clamp(std::ceil(high), below + 1, std::max(below + 1, layers));
+    region.min[axis] = box.min[axis] + below * step;
+    region.max[axis] = box.min[axis] + above * step;
+  }
+  return region;
+}
+
+/// The samples of a part as the nodes of a grid in the frame of the whole volume.
+RectilinearGrid nodes_of(const RestoredPart& part, const VolumeGrid& whole) {
+  RectilinearGrid grid;
+  grid.centering = Centering::kPoints;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double step = part.grid.spacing[axis], first = whole.origin[axis] + part.first[axis] * step;
+    for (std::uint64_t n = 0; n < part.grid.dimensions[a]; ++n)
+      grid.nodes[a].push_back(first + static_cast<double>(n) * step);
+  }
+  return grid;
+}
+
+/// Makes the slab from the planes of a part, which `read` gives one after another.
+SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& plane,
+                const std::function<void(const RestoredPart&, const PlaneSink&)>& read, Session& session) {
+  check_volume_dimensions(name, volume);
+  check_two_samples(name, volume);
+  check_lengths(name, volume.frame_box());
+  check_lengths(name, {volume.origin, volume.origin + volume.spacing});
+  const Plane in_frame = plane_in_frame(volume, plane);
+  if (clip_plane(in_frame, volume.frame_box()).empty())
+    fail("{}: expected a plane that cuts {}, found {}", name, box_text(volume.box()), to_string(plane));
+  RestoredPart part;
+  for (int lod = 0; lod <= PageGrid(volume.dimensions).top(); ++lod) {
+    part = restored_part(volume, lod, layers_at(volume, in_frame, lod), name);
+    if (part.grid.samples() <= kMostSamples) break;
+  }
+  check_two_samples(name, part.grid);
+  if (part.lod > 0) session.console.note("the section is of one sample in {} along each axis", 1 << part.lod);
+  MultiMaterialData data;
+  data.source = name;
+  data.grid = nodes_of(part, volume);
+  data.materials = IdVector<MaterialId, std::string>(1, kPlainMaterial);
+  data.labels.assign(part.grid.samples(), 0);
+  Field field;
+  field.name = kSampleField;
+  field.values.reserve(part.grid.samples());
+  with_sample_type(volume.type, [&](auto sample) {
+    using Sample = decltype(sample);
+    read(part, [&field](std::span<const std::byte> plane_bytes) {
+      for (std::size_t at = 0; at < plane_bytes.size(); at += sizeof(Sample)) {
+        Sample value;
+        std::memcpy(&value, plane_bytes.data() + at, sizeof(Sample));
+        field.values.push_back(static_cast<float>(value));
+      }
+    });
+  });
+  data.fields.push_back(std::move(field));
+  return {std::move(data), volume};
+}
+
+/// The planes of a part from a volume that is read plane by plane.
+void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& sink, Progress& progress) {
+  const VolumeGrid& volume = reader.grid();
+  const std::size_t width = sample_bytes(volume.type);
+  std::vector<std::byte> plane(volume.plane_bytes()), some(part.grid.plane_bytes());
+  const auto& n = part.grid.dimensions;
+  const auto whole = [&part](std::int32_t first, std::uint64_t i) {
+    return (static_cast<std::uint64_t>(first) + i) << part.lod;
+  };
+  for (std::uint64_t k = 0; k < n[2]; ++k) {
+    progress.step("reading", static_cast<double>(k) / static_cast<double>(n[2]));
+    reader.read_plane(whole(part.first.k, k), plane);
+    std::byte* to = some.data();
+    for (std::uint64_t j = 0; j < n[1]; ++j) {
+      const std::uint64_t row = whole(part.first.j, j) * volume.dimensions[0];
+      for (std::uint64_t i = 0; i < n[0]; ++i, to += width)
+        std::memcpy(to, plane.data() + (row + whole(part.first.i, i)) * width, width);
+    }
+    sink(some);
+  }
+}
+
+}  // namespace
+
+SampleSlab store_slab(const StoreInput& input, const Plane& plane, Session& session) {
+  const std::unique_ptr<StoreFile> file = open_store(input, session);
+  const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
+    restore(*file, 0, part, store_memory(input), sink, session.console);
+  };
+  return slab(input.path, file->header().grid, plane, read, session);
+}
+
+SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Session& session) {
+  const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
+    read_part(reader, part, sink, session.console);
+  };
+  SampleSlab result = slab(reader.source().name, reader.grid(), plane, read, session);
+  if (const std::string note = reader.note(); !note.empty()) session.console.note("{}", note);
+  return result;
+}
 
 SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
                            const std::string& original) {

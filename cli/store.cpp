@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/data_summary.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/store_summary.h"
-#include "cli/volume_input.h"
+#include "cli/volume_options.h"
 #include "isosurface/storage/store_builder.h"
 
 namespace adamas {

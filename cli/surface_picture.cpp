@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
-#include "core/base/trimmed.h"
+#include "core/base/text.h"
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 
@@ -13,10 +14,10 @@ namespace adamas {
 
 namespace {
 
-/// More names than this make no legend.
+/// There is no legend for more materials than these.
 constexpr std::size_t kMostNames = 24;
 
-/// The materials that a choice names: two of an interface, or one and none.
+/// The materials that the text names: both sides of an interface, or one material and an empty name.
 std::array<std::string, 2> chosen_names(const std::string& text) {
   const std::size_t bar = text.find('|');
   if (bar == std::string::npos) return {std::string(trimmed(text)), ""};
@@ -33,7 +34,7 @@ MaterialId find_material(const IdVector<MaterialId, std::string>& materials, con
   fail("{}: --show-interface: expected materials of {}, found '{}'", source, known, name);
 }
 
-/// Whether a picture shows a triangle.
+/// The triangles that a picture shows.
 class Choice {
  public:
   Choice(const std::vector<std::string>& texts, const IdVector<MaterialId, std::string>& materials,
@@ -59,6 +60,63 @@ class Choice {
 };
 
 }  // namespace
+
+void PictureOptions::aim(InterfacePicture& picture) const {
+  picture.direction = parse_vector("--direction", direction);
+  if (!(squared_norm(picture.direction) > 0))
+    wrong_usage("--direction: expected a vector with a length, found 0");
+  picture.projection = projection == "orthographic" ? Projection::kOrthographic : Projection::kPerspective;
+  if (!focus.empty()) picture.focus = to_box(parse_bounds("--focus", focus));
+}
+
+InterfacePictureOptions PictureOptions::sizes() const {
+  InterfacePictureOptions result;
+  if (size.empty()) return result;
+  const auto sides = parse_numbers("--size", size, 2);
+  for (const double side : sides) {
+    if (!(side >= 200 && side <= 8000))
+      wrong_usage("--size: expected a width and a height from 200 to 8000, found '{}'", size);
+  }
+  result.width = sides[0];
+  result.height = sides[1];
+  return result;
+}
+
+void PictureOptions::check() const {
+  const PictureOptions none;
+  const char* given = direction != none.direction     ? "--direction"
+                      : projection != none.projection ? "--projection"
+                      : !focus.empty()                ? "--focus"
+                      : !size.empty()                 ? "--size"
+                                                      : nullptr;
+  if (own_file && file.empty() && given != nullptr) wrong_usage("{}: expected --picture as well", given);
+  InterfacePicture unused;
+  aim(unused);
+  static_cast<void>(sizes());
+}
+
+void add_picture_options(const Command& command, PictureOptions& options, const std::string& subject,
+                         bool own_file) {
+  options.own_file = own_file;
+  if (own_file)
+    command.add_option("--picture", options.file, "A picture of " + subject + ": .png, .svg or .pdf")
+        .type_name("FILE");
+  command.add_option("--direction", options.direction, "The way that the picture's camera looks; z is up")
+      .type_name("x,y,z")
+      .group("Picture")
+      .show_default();
+  command.add_option("--focus", options.focus, "What the picture shows as large as it can (default: all)")
+      .type_name("x0,x1,y0,y1,z0,z1")
+      .group("Picture");
+  command.add_option("--projection", options.projection, "How the picture shows depth")
+      .one_of({"perspective", "orthographic"})
+      .group("Picture")
+      .show_default();
+  if (!own_file) return;
+  command.add_option("--size", options.size, "Width and height of the picture in pixels (default 1600,1200)")
+      .type_name("W,H")
+      .group("Picture");
+}
 
 void SurfacePictureOptions::check() const {
   camera.check();

@@ -5,7 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/store_input.h"
+#include "cli/store_options.h"
 #include "core/base/error.h"
 
 namespace adamas {

@@ -4,16 +4,18 @@
 #include <cstdint>
 #include <numbers>
 
+#include "core/base/hash.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {
 
-/// Random numbers that are the same on every platform: a Weyl sequence through a mixing function.
+/// Random numbers that are the same on every platform: a Weyl sequence through a mixing function, as of
+/// SplitMix64 but with another one (two rounds of `remix`).
 class RandomNumbers {
  public:
-  explicit RandomNumbers(std::uint64_t seed) : state_(mix(seed + kIncrement)) {}
+  explicit RandomNumbers(std::uint64_t seed) : state_(mix(seed + kGoldenRatio64)) {}
 
-  std::uint64_t bits() { return mix(state_ += kIncrement); }
+  std::uint64_t bits() { return mix(state_ += kGoldenRatio64); }
   /// In [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
@@ -33,10 +35,8 @@ class RandomNumbers {
   }
 
  private:
-  static constexpr std::uint64_t kIncrement = 0x9e3779b97f4a7c15u;
   static std::uint64_t mix(std::uint64_t z) {
-    z = (z ^ (z >> 32)) * 0xd6e8feb86659fd93u;
-    z = (z ^ (z >> 32)) * 0xd6e8feb86659fd93u;
+    z = remix(remix(z));
     return z ^ (z >> 32);
   }
   std::uint64_t state_;

@@ -28,8 +28,8 @@ struct Group {
 std::array<Temporary, 32> temporaries;
 std::array<Group, 32> groups;
 
-/// Calls visit(folder, name) for the entries of a folder, which a signal handler may do: no library looks
-/// into folders without allocating, and a thread of its own would be there when readers fork.
+/// Calls visit(name) for the entries of a folder. It makes the system call itself, since libraries allocate
+/// memory for that, which a signal handler must not.
 template <class Visit>
 void for_each_entry(int folder, char* entries, std::size_t size, Visit&& visit) {
   for (long count = 0; (count = syscall(SYS_getdents64, folder, entries, size)) > 0;) {
@@ -68,7 +68,7 @@ void remove_alike(const Temporary& temporary) {
 RemovedAtAbruptEnd::RemovedAtAbruptEnd(const std::filesystem::path& folder, const std::string& beginning) {
   const std::string place = std::filesystem::absolute(folder).string();
   for (Temporary& entry : temporaries) {
-    // The last byte stays a zero, whatever a handler reads meanwhile.
+    // The last byte of each text stays zero, so that a handler that reads meanwhile finds its end.
     if (place.size() >= entry.folder.size() || beginning.size() >= entry.beginning.size()) return;
     if (beginning.empty() || entry.taken.exchange(true)) continue;
     std::memcpy(entry.folder.data(), place.c_str(), place.size() + 1);

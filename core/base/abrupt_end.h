@@ -8,11 +8,12 @@
 
 namespace adamas {
 
-/// What a run leaves behind where it ends at once, by a signal, without destructors: kept in fixed memory
-/// that a signal handler may read. Of more than a few dozen at a time the others are not remembered.
+// What a run would leave behind where a signal ends it at once, without destructors. It is remembered in
+// fixed memory that a signal handler may read; of more than a few dozen things at a time the others are
+// forgotten.
 
-/// While it lives: temporary files and folders of a folder, known by how their names begin. Folders go with
-/// the files in them.
+/// Temporary files and folders that an abrupt end removes while this object lives: all in `folder` whose
+/// names begin alike, folders with the files in them.
 class RemovedAtAbruptEnd {
  public:
   RemovedAtAbruptEnd(const std::filesystem::path& folder, const std::string& beginning);
@@ -24,7 +25,7 @@ class RemovedAtAbruptEnd {
   std::atomic<bool>* used_ = nullptr;
 };
 
-/// While it lives: the processes of a group.
+/// A group of processes that an abrupt end kills while this object lives.
 class EndedAtAbruptEnd {
  public:
   explicit EndedAtAbruptEnd(pid_t group);
@@ -37,7 +38,7 @@ class EndedAtAbruptEnd {
 };
 
 /// Ends and removes what is remembered, with calls that a signal handler may make. In a child that was forked
-/// it does nothing: all that is the parent's.
+/// it does nothing, since all of it is the parent's.
 void clean_up_at_abrupt_end();
 
 }  // namespace adamas

@@ -12,14 +12,14 @@ namespace adamas {
 
 namespace {
 
-/// What block_signals_in_workers has said, before there is any worker.
+/// The thread that handles signals, and which: set by block_signals_in_workers before there is any worker.
 struct Keeper {
   bool known = false;
   pthread_t thread{};
   sigset_t signals{};
 } keeper;
 
-/// Once for each thread that comes here.
+/// Blocks these signals in any other thread, at its first call.
 void leave_signals_to_keeper() {
   thread_local bool done = false;
   if (done) return;

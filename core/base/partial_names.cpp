@@ -46,7 +46,7 @@ void remove_with(const fs::path& folder, const std::string& mark, const std::vec
     for (const std::string& name : names) {
       if (name.starts_with(mark + "-")) fs::remove_all(folder / name, code);
     }
-    // Last, so that what could not be removed now is found again; and while it is locked.
+    // The mark goes last, so that what could not be removed now is found again, and while it is locked.
     const bool is_clean = std::none_of(names.begin(), names.end(), [&](const std::string& name) {
       return name.starts_with(mark + "-") && fs::exists(fs::symlink_status(folder / name, code));
     });
@@ -97,7 +97,7 @@ bool PartialNames::make_locked_file() {
   if (file_ < 0) throw std::system_error(errno, std::generic_category());
   mark_ = name;
   if (lock(file_)) return true;
-  // Where files cannot be locked, none can be taken for one that was left.
+  // Where files cannot be locked, no run takes this one for left behind.
   const bool is_locked_by_another = errno == EWOULDBLOCK;
   struct stat status {};
   if (!is_locked_by_another && ::fstat(file_, &status) == 0 && status.st_nlink > 0) return true;
@@ -106,7 +106,7 @@ bool PartialNames::make_locked_file() {
 }
 
 PartialNames::~PartialNames() {
-  // Removed while it is locked: nobody else does then.
+  // The mark goes while it is locked, so that nobody else removes it.
   ::unlink(mark_.c_str());
   ::close(file_);
 }

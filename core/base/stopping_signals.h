@@ -9,7 +9,7 @@ namespace adamas {
 /// The signals that ask a program to end.
 inline constexpr std::array<int, 4> kStoppingSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
-/// The same as a set of POSIX.
+/// The same as a set for sigprocmask and the like.
 inline sigset_t stopping_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -17,7 +17,7 @@ inline sigset_t stopping_signals() {
   return set;
 }
 
-/// Whether a signal is ignored, as nohup has it of hanging up.
+/// Whether this process ignores a signal; under nohup it ignores SIGHUP.
 inline bool is_ignored(int number) {
   struct sigaction now {};
   return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;

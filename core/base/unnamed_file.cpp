@@ -2,18 +2,24 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <string>
+
+#include "core/base/error.h"
 
 namespace adamas {
 
 int open_unnamed_file(const std::filesystem::path& folder) {
   const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (unnamed >= 0) return unnamed;
-  // Some file systems cannot make files without names. No signal ends this thread while there is one.
+  // Some file systems cannot make files without names. Signals are blocked while
+  // the file has a name, so that none of them ends this thread and leaves it behind.
   sigset_t all{}, before{};
   sigfillset(&all);
   ::pthread_sigmask(SIG_BLOCK, &all, &before);
@@ -24,6 +30,37 @@ int open_unnamed_file(const std::filesystem::path& folder) {
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   errno = reason;
   return named;
+}
+
+MemoryFile::MemoryFile(const char* name) : descriptor_(::memfd_create(name, MFD_CLOEXEC)) {
+  if (descriptor_ < 0)
+    fail("no memory for what a separate program reads and writes: {}", std::strerror(errno));
+}
+
+MemoryFile::~MemoryFile() { ::close(descriptor_); }
+
+void MemoryFile::fill(const std::vector<char>& bytes) const {
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t size = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) fail("no memory for what a separate program reads: {}", std::strerror(errno));
+    done += static_cast<std::size_t>(size);
+  }
+  ::lseek(descriptor_, 0, SEEK_SET);
+}
+
+std::vector<char> MemoryFile::content() const {
+  std::vector<char> bytes(static_cast<std::size_t>(std::max<off_t>(::lseek(descriptor_, 0, SEEK_END), 0)));
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t size =
+        ::pread(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) break;
+    done += static_cast<std::size_t>(size);
+  }
+  bytes.resize(done);
+  return bytes;
 }
 
 }  // namespace adamas

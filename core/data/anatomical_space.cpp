@@ -10,9 +10,9 @@ namespace adamas {
 namespace {
 
 struct Space {
-  const char* name;          ///< as here
+  const char* name;          ///< as VolumeGrid has it
   const char* long_name;     ///< as NRRD has it, in lower case
-  const char* abbreviation;  ///< the same; with time another letter follows
+  const char* abbreviation;  ///< as NRRD has it too; a 't' follows where there is time
 };
 
 constexpr Space kSpaces[] = {

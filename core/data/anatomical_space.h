@@ -10,7 +10,7 @@ namespace adamas {
 /// A space as VolumeGrid names it, from its name or abbreviation in NRRD in any case ("LPS",
 /// "left-posterior-superior"; time apart); empty for one that is not known.
 std::string space_of_nrrd(std::string_view name);
-/// The way back; empty for an empty name.
+/// The name that NRRD has for a space of VolumeGrid; empty for an empty one.
 std::string nrrd_space(const std::string& space);
 /// Whether VolumeGrid may have such a name: one of those that space_of_nrrd gives.
 bool is_space(const std::string& space);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/geometry/triangulate.h"
 
@@ -16,22 +17,14 @@ constexpr double kSmallWeight = 1e-9;
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
 constexpr std::size_t kPolygonsAPart = 16384;
 
-std::uint64_t mix(std::uint64_t x) {
-  x ^= x >> 30;
-  x *= 0xbf58476d1ce4e5b9ull;
-  x ^= x >> 27;
-  x *= 0x94d049bb133111ebull;
-  return x ^ (x >> 31);
-}
-
 }  // namespace
 
 ContactBuffer::Key ContactBuffer::digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
                                          std::span<const std::uint64_t> functions) {
   std::uint64_t low = 0x243f6a8885a308d3ull, high = 0x13198a2e03707344ull;
   const auto take = [&](std::uint64_t word) {
-    low = mix(low + word + 0x9e3779b97f4a7c15ull);
-    high = mix((high ^ std::rotl(word, 32)) + 0xd1b54a32d192ed03ull);
+    low = mix64(low + word + kGoldenRatio64);
+    high = mix64((high ^ std::rotl(word, 32)) + 0xd1b54a32d192ed03ull);
   };
   for (std::size_t i = 0; i < 4; ++i) {
     if ((zeros >> i & 1u) == 0) take(ids[i]);

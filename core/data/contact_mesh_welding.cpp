@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"
-#include "core/geometry/edge_key.h"
 
 namespace adamas {
 
@@ -17,7 +17,7 @@ void ContactMeshBuilder::weld_crowded_points() {
   const auto box_of = [](std::int64_t i, std::int64_t j, std::int64_t k) {
     std::uint64_t hash = 0;
     for (const std::int64_t index : {i, j, k})
-      hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9e3779b97f4a7c15ull + (hash >> 29);
+      hash = hash_combine(hash, static_cast<std::uint64_t>(index)) + (hash >> 29);
     return hash;
   };
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> boxes;
@@ -53,7 +53,7 @@ void ContactMeshBuilder::weld_crowded_points() {
 }
 
 void ContactMeshBuilder::drop_repeated(std::vector<std::uint32_t>& loop) {
-  // Also ways there and back.
+  // What is left of an edge that was run along and back is a point between two equal ones.
   for (std::size_t before = 0; before != loop.size();) {
     before = loop.size();
     loop.erase(std::unique(loop.begin(), loop.end()), loop.end());

@@ -8,7 +8,7 @@
 
 namespace adamas {
 
-// What is in the frame of a grid and what is in space, beside points (VolumeGrid::in_space).
+// Conversions between the frame of a grid and space; VolumeGrid itself has those of points.
 
 /// Puts a surface from the grid's frame into space: its points, its normals as those of level sets turn, and
 /// the order of corners so that triangles still face the same values.

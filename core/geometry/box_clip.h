@@ -8,10 +8,10 @@
 namespace adamas {
 
 /// Leaves of a convex polygon the part where sign * p[axis] <= sign * wall, with the points on the wall
-/// exactly there; `scratch` is for a polygon between.
+/// exactly there. `scratch` is memory to work in.
 void clip_at_wall(std::vector<Vec3>& polygon, int axis, double wall, double sign, std::vector<Vec3>& scratch);
 
-/// The part inside a box.
+/// Leaves of a convex polygon the part inside a box.
 void clip_to_box(std::vector<Vec3>& polygon, const Box3& box, std::vector<Vec3>& scratch);
 
 /// Corners of the part of a tetrahedron inside a box (some may come more than once); empty where there is

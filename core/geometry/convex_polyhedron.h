@@ -27,8 +27,8 @@ class ConvexPolyhedron {
   [[nodiscard]] const std::vector<Weights>& corners() const { return corners_; }
 
   /// Cuts where `d`, given at the corners, changes sign; `positive` tells the side of each corner, and both
-  /// sides have some. Changes both where they are no plane's but for round-off. Points of the cut do not
-  /// depend on the order of the corners.
+  /// sides have some. Where round-off has made signs that those of a plane cannot be, it first changes `d`
+  /// and `positive`. Points of the cut do not depend on the order of the corners.
   void cut(std::vector<double>& d, std::vector<char>& positive, ConvexPolyhedron& above,
            ConvexPolyhedron& below) const;
 
@@ -53,7 +53,7 @@ class ConvexPolyhedron {
   }
 
  private:
-  /// Which of some corners comes first by its weights.
+  /// Which k in [0, count) has the corner, corner(k), that comes first by its weights.
   template <class Corner>
   [[nodiscard]] std::size_t first_of(std::size_t count, const Corner& corner) const {
     std::size_t best = 0;

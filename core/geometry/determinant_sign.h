@@ -9,9 +9,9 @@ namespace adamas {
 using SmallMatrix = std::array<std::array<double, 5>, 5>;
 
 /// The sign of the determinant of an n x n matrix, n <= 5, with a column of ones and zeros where n is 5:
-/// exact for entries of a size of at most 1e300. In floating point where that is certain, else by expansions,
-/// sums of numbers that do not overlap (Shewchuk, Adaptive precision floating-point arithmetic, 1997).
-/// Fastest where the last column consists of ones and zeros.
+/// exact for entries of a size of at most 1e300. It is computed in floating point where that is certain, else
+/// by expansions, sums of numbers that do not overlap (Shewchuk, Adaptive precision floating-point
+/// arithmetic, 1997). Fastest where the last column consists of ones and zeros.
 int determinant_sign(SmallMatrix matrix, std::size_t n);
 
 /// The determinant itself with a relative error below 1e-12, however nearly singular the matrix is; in the

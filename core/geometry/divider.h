@@ -91,7 +91,7 @@ class Divider {
     return *states_[depth];
   }
   [[nodiscard]] std::uint64_t key(const Function& f) const { return problem_->functions[f.id].key; }
-  /// The order of equal functions: which counts as greater.
+  /// Whether f counts as greater than g where they are equal.
   [[nodiscard]] bool comes_first(const Function& f, const Function& g) const {
     return key(f) < key(g) || (key(f) == key(g) && f.id < g.id);
   }
@@ -108,11 +108,12 @@ class Divider {
       Removal above, below;
       const std::size_t crowded = s.contenders[x].count > 1 ? x : y;
       if (s.contenders[crowded].count > 1) {
-        // Where which of two functions is the least of one contender.
+        // The cut runs where two functions of one contender are equal: each is needed on one side only.
         f = s.function(s.contenders[crowded], 0), g = s.function(s.contenders[crowded], 1);
         above = {crowded, f.id}, below = {crowded, g.id};
       } else {
-        // Where which of two linear contenders is greater.
+        // The cut runs where two contenders of a function each are equal: on each side one of them is
+        // greater.
         f = s.function(s.contenders[x], 0), g = s.function(s.contenders[y], 0);
         above = {y}, below = {x};
       }
@@ -176,7 +177,8 @@ class Divider {
     std::size_t positives = 0;
     for (std::size_t c = 0; c < s.corners; ++c) {
       const Weights& w = piece.corners()[c];
-      // Of the vertices of the face it lies on: elsewhere functions may differ by far more.
+      // Only the vertices of the face that the corner lies on count: elsewhere functions may differ by far
+      // more.
       double greatest = 0;
       for (std::size_t v = 0; v < 4; ++v)
         greatest = std::max(greatest, w[v] != 0 ? std::abs(difference[v]) : 0);
@@ -257,7 +259,7 @@ class Divider {
   /// Drops functions that are nowhere the least of their contender.
   void drop_redundant(State& s, Contender& c) const {
     if (c.count > 2) {
-      // First those that are above the greatest value of another: that needs no pairs.
+      // First those that are above the greatest value of another, which can be told without comparing pairs.
       double ceiling = std::numeric_limits<double>::infinity();
       for (std::uint32_t i = 0; i < c.count; ++i)
         ceiling = std::min(ceiling, s.greatest[s.function(c, i).row]);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/error.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {
@@ -22,6 +23,13 @@ inline bool within_length_limits(double low, double high) {
 }
 
 /// Throws Error with `name` where the sides or the places of a box are not within these bounds.
-void check_lengths(const std::string& name, const Box3& box);
+inline void check_lengths(const std::string& name, const Box3& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = box.min[axis], high = box.max[axis];
+    if (within_length_limits(low, high)) continue;
+    fail("{}: expected coordinates below {} that are more than {} apart, found {} and {} along {}", name,
+         kGreatestCoordinate, kLeastLength, low, high, "xyz"[axis]);
+  }
+}
 
 }  // namespace adamas

@@ -46,7 +46,7 @@ std::uint32_t OwnershipProblem::owner(const Weights& weights) const {
   return owner;
 }
 
-void drop_hopeless(OwnershipProblem& problem) {
+void drop_dominated(OwnershipProblem& problem) {
   const auto least_at = [&](const OwnershipProblem::Candidate& candidate, std::size_t corner) {
     double least = problem.functions[candidate.first].values[corner];
     for (std::uint32_t f = 1; f < candidate.count; ++f) {
@@ -111,7 +111,7 @@ void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t
 
 void keep_owners(OwnershipProblem& problem) {
   if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
-  drop_hopeless(problem);
+  drop_dominated(problem);
   double size = 0;
   for (const LinearFunction& f : problem.functions) {
     for (const double value : f.values) size = std::max(size, std::abs(value));

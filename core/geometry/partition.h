@@ -15,7 +15,7 @@ struct LinearFunction {
 
 /// Who owns a point of a tetrahedron (docs/method.md, Who owns a point of a cell): each candidate is the
 /// least of its linear functions, and the owner of a point is the candidate with the greatest value there.
-/// Questions need candidates that have a function each.
+/// It can be asked only where there are candidates, each with a function.
 struct OwnershipProblem {
   /// Products of smaller values with the weights of points where functions cross would be rounded to nothing.
   static constexpr double kLeastValue = 0x1p-300;
@@ -84,9 +84,9 @@ void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTet
 void partition_polygon(const OwnershipProblem& problem, const std::vector<Weights>& polygon,
                        std::vector<OwnedPolygon>& parts);
 
-/// Leaves out candidates whose greatest value is below what another surely reaches everywhere, so that the
-/// others can be divided faster.
-void drop_hopeless(OwnershipProblem& problem);
+/// Leaves out candidates that another dominates: whose greatest value is below what that one surely reaches
+/// everywhere. So the others can be divided faster.
+void drop_dominated(OwnershipProblem& problem);
 
 /// Leaves out candidates that own and touch no part of the tetrahedron, and functions that are nowhere the
 /// least of theirs. What touches stays, so that contacts still fit those of other tetrahedra.

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/trimmed.h"
+#include "core/base/text.h"
 #include "core/geometry/box_clip.h"
 
 namespace adamas {

@@ -25,8 +25,8 @@ class PlaneSides {
   [[nodiscard]] double distance(const Vec3& p) const { return snapped(dot(normal_, p - plane_.origin)); }
   /// A distance, or zero where it is round-off.
   [[nodiscard]] double snapped(double d) const { return d >= -tolerance_ && d <= tolerance_ ? 0 : d; }
-  /// A way, far above round-off and far below anything seen, to the side whose cells are cut where cells meet
-  /// in the plane: points moved by it are not in what coincides with the plane.
+  /// A displacement, far greater than round-off and far smaller than anything that is seen, to that side
+  /// whose cells are cut where cells meet in the plane: points moved by it lie inside these cells.
   [[nodiscard]] Vec3 nudge() const { return (zero_above_ ? -4096 : 4096) * tolerance_ * normal_; }
   /// The side of a point at this distance.
   [[nodiscard]] bool above(double distance) const { return distance > 0 || (distance == 0 && zero_above_); }

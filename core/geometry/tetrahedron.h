@@ -68,7 +68,7 @@ class ClippedTriangle {
 
  private:
   friend bool meets(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c);
-  /// Of a triangle with corners of these weights.
+  /// The part of the triangle whose corners have these weights.
   ClippedTriangle(double slack, const std::array<Weights, 3>& corners);
 
   std::array<Weights, 8> corners_;

@@ -2,7 +2,7 @@
 
 #include <cctype>
 
-#include "core/base/trimmed.h"
+#include "core/base/text.h"
 
 namespace adamas {
 

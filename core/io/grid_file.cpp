@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/visible_text.h"
-#include "core/io/child_process.h"
+#include "core/base/text.h"
 #include "core/io/input_file.h"
 #include "core/io/legacy_vtk_check.h"
 #include "core/io/meta_image_check.h"
 #include "core/io/nrrd_reader.h"
+#include "core/io/reader_program.h"
 #include "core/io/vtk_grid_reader.h"
 #include "core/io/vtk_xml_check.h"
 
@@ -105,6 +105,10 @@ std::string GridFile::array_names() const {
   return names.empty() ? "no array" : names;
 }
 
+void send_grid(const ReaderRequest& request, ByteSink& sink) {
+  send(read_grid_with_vtk(request.paths.front()), sink);
+}
+
 GridFile read_grid_file(const std::filesystem::path& path) {
   const std::size_t size = check_input_file(path);
   GridFile file;
@@ -117,9 +121,8 @@ GridFile read_grid_file(const std::filesystem::path& path) {
   if (file_extension(path) == ".vtk") check_legacy_vtk(path);
   if (file_extension(path) == ".vti" || file_extension(path) == ".vtr") check_vtk_xml(path);
   if (file_extension(path) == ".mha" || file_extension(path) == ".mhd") check_meta_image(path);
-  read_in_child(
-      path.string(), size, [&path](ByteSink& sink) { send(read_grid_with_vtk(path), sink); },
-      [&file](ByteSource& source) { file = receive(source); });
+  const ReaderRequest request{LibraryReader::kGrid, path.string(), size, {path.string()}};
+  read_in_child(request, [&file](ByteSource& source) { file = receive(source); });
   show_names(file);
   check_sizes(path.string(), file);
   return file;

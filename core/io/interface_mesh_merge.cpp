@@ -2,6 +2,8 @@
 #include <bit>
 #include <unordered_map>
 
+#include "core/base/hash.h"
+
 #include "core/io/interface_mesh_io.h"
 
 namespace adamas {
@@ -13,7 +15,7 @@ struct PointHash {
     std::uint64_t hash = 0;
     for (int axis = 0; axis < 3; ++axis) {
       // -0 equals 0, so both get one hash.
-      hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis] + 0.0)) * 0x9e3779b97f4a7c15ull;
+      hash = hash_combine(hash, std::bit_cast<std::uint64_t>(p[axis] + 0.0));
       hash ^= hash >> 29;
     }
     return static_cast<std::size_t>(hash);

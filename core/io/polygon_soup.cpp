@@ -12,8 +12,8 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/io/child_process.h"
 #include "core/io/input_file.h"
+#include "core/io/reader_program.h"
 
 namespace adamas {
 
@@ -108,18 +108,21 @@ void check(const std::string& name, const PolygonSoup& soup) {
 
 }  // namespace
 
+void send_polygons(const ReaderRequest& request, ByteSink& sink) {
+  const std::string& path = request.paths.front();
+  send(path, read_with_cgal(path, file_extension(path)), sink);
+}
+
 PolygonSoup read_polygon_soup(const std::filesystem::path& path) {
   const std::size_t size = check_input_file(path);
-  const std::string name = path.string(), extension = file_extension(path);
   PolygonSoup soup;
-  read_in_child(
-      name, size, [&](ByteSink& sink) { send(name, read_with_cgal(name, extension), sink); },
-      [&soup](ByteSource& source) {
-        soup.points = source.get_vector<Vec3>();
-        soup.corners = source.get_vector<std::uint32_t>();
-        soup.offsets = source.get_vector<std::size_t>();
-      });
-  check(name, soup);
+  const ReaderRequest request{LibraryReader::kPolygons, path.string(), size, {path.string()}};
+  read_in_child(request, [&soup](ByteSource& source) {
+    soup.points = source.get_vector<Vec3>();
+    soup.corners = source.get_vector<std::uint32_t>();
+    soup.offsets = source.get_vector<std::size_t>();
+  });
+  check(request.name, soup);
   return soup;
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/trimmed.h"
+#include "core/base/text.h"
 #include "core/io/input_file.h"
 #include "core/io/number_list.h"
 

@@ -13,8 +13,8 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/io/child_process.h"
 #include "core/io/input_file.h"
+#include "core/io/reader_program.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/io/vtk_array.h"
 #include "core/io/vtk_messages.h"
@@ -186,31 +186,31 @@ std::vector<NamedArray> receive_arrays(ByteSource& source) {
 
 }  // namespace
 
+void send_mesh(const ReaderRequest& request, ByteSink& sink) {
+  const std::string& path = request.paths.front();
+  const UnstructuredMesh mesh = read_with_vtk(path, file_extension(path));
+  sink.put(mesh.kind);
+  sink.put(mesh.points);
+  sink.put(mesh.connectivity);
+  sink.put(mesh.offsets);
+  send(mesh.point_arrays, sink);
+  send(mesh.cell_arrays, sink);
+  send(mesh.field_arrays, sink);
+}
+
 UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path) {
   const std::size_t size = check_input_file(path);
-  const std::string name = path.string(), extension = file_extension(path);
   UnstructuredMesh mesh;
-  read_in_child(
-      name, size,
-      [&](ByteSink& sink) {
-        const UnstructuredMesh read = read_with_vtk(name, extension);
-        sink.put(read.kind);
-        sink.put(read.points);
-        sink.put(read.connectivity);
-        sink.put(read.offsets);
-        send(read.point_arrays, sink);
-        send(read.cell_arrays, sink);
-        send(read.field_arrays, sink);
-      },
-      [&mesh](ByteSource& source) {
-        mesh.kind = source.get<CellKind>();
-        mesh.points = source.get_vector<Vec3>();
-        mesh.connectivity = source.get_vector<std::uint32_t>();
-        mesh.offsets = source.get_vector<std::size_t>();
-        mesh.point_arrays = receive_arrays(source);
-        mesh.cell_arrays = receive_arrays(source);
-        mesh.field_arrays = receive_arrays(source);
-      });
+  const ReaderRequest request{LibraryReader::kMesh, path.string(), size, {path.string()}};
+  read_in_child(request, [&mesh](ByteSource& source) {
+    mesh.kind = source.get<CellKind>();
+    mesh.points = source.get_vector<Vec3>();
+    mesh.connectivity = source.get_vector<std::uint32_t>();
+    mesh.offsets = source.get_vector<std::size_t>();
+    mesh.point_arrays = receive_arrays(source);
+    mesh.cell_arrays = receive_arrays(source);
+    mesh.field_arrays = receive_arrays(source);
+  });
   return mesh;
 }
 

@@ -91,27 +91,30 @@ void send(const GridArray& array, StoredType type, ImportSink& sink) {
 
 }  // namespace
 
+void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
+  const std::string& name = request.name;
+  const GridFile file = read_grid_with_vtk(request.paths.front());
+  const GridArray& array = chosen_array(name, file, request.array);
+  ImportedVolume volume;
+  set_places(name, file, volume);
+  if (file.aslant) set_directions(*file.aslant, volume);
+  volume.stored = kept_type(array);
+  const auto& n = volume.dimensions;
+  if (array.size() != n[0] * n[1] * n[2]) {
+    fail("{}: array '{}': expected {} values, found {}", name, array.name, n[0] * n[1] * n[2], array.size());
+  }
+  const bool wide = !array.integral() && array.type != "float32";
+  ImportSink import(request, sink);
+  import.begin(volume, wide ? array.type + " samples are read as float32" : "");
+  send(array, volume.stored, import);
+}
+
 VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions& options,
                          Progress& progress) {
-  const std::string name = path.string();
   const std::size_t size = check_input_file(path);
   if (file_extension(path) == ".vtk") check_legacy_vtk(path);
-  return import_volume(name, size, options, progress, [&](ImportSink& sink) {
-    const GridFile file = read_grid_with_vtk(path);
-    const GridArray& array = chosen_array(name, file, options.array);
-    ImportedVolume volume;
-    set_places(name, file, volume);
-    if (file.aslant) set_directions(*file.aslant, volume);
-    volume.stored = kept_type(array);
-    const auto& n = volume.dimensions;
-    if (array.size() != n[0] * n[1] * n[2]) {
-      fail("{}: array '{}': expected {} values, found {}", name, array.name, n[0] * n[1] * n[2],
-           array.size());
-    }
-    const bool wide = !array.integral() && array.type != "float32";
-    sink.begin(volume, wide ? array.type + " samples are read as float32" : "");
-    send(array, volume.stored, sink);
-  });
+  return import_volume({LibraryReader::kGridVolume, path.string(), size, {path.string()}, options.array},
+                       options, progress);
 }
 
 }  // namespace adamas

@@ -158,15 +158,20 @@ std::string chosen_set(const std::string& name, hid_t file, const std::string& w
 
 }  // namespace
 
+void send_hdf5_volume(const ReaderRequest& request, ByteSink& sink) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const std::string& name = request.name;
+  const Hdf5Handle file(H5Fopen(request.paths.front().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", name);
+  ImportSink import(request, sink);
+  DataSet(name, file.id(), chosen_set(name, file.id(), request.array)).send(import);
+}
+
 VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions& options,
                          Progress& progress) {
-  const std::string name = path.string();
-  return import_volume(name, check_input_file(path), options, progress, [&](ImportSink& sink) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const Hdf5Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", name);
-    DataSet(name, file.id(), chosen_set(name, file.id(), options.array)).send(sink);
-  });
+  const std::uint64_t size = check_input_file(path);
+  return import_volume({LibraryReader::kHdf5Volume, path.string(), size, {path.string()}, options.array},
+                       options, progress);
 }
 
 }  // namespace adamas

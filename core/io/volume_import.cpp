@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint64_t kGreatestExpansion = 10'000;
 
 /// The volume as a source without its samples; a file of so many bytes has to be able to hold it.
-VolumeSource checked_source(const std::string& name, std::uint64_t input_bytes,
-                            const ImportedVolume& volume) {
+VolumeSource checked_source(const ReaderRequest& request, const ImportedVolume& volume) {
+  const std::string& name = request.name;
   VolumeSource source;
   source.name = name;
   if (volume.stored > StoredType::kFloat64) fail("{}: expected a type of numbers, found none", name);
@@ -25,9 +25,9 @@ VolumeSource checked_source(const std::string& name, std::uint64_t input_bytes,
   source.grid.directions = volume.directions;
   source.grid.check(name);
   const auto& n = volume.dimensions;
-  if (source.sample_file_bytes() / kGreatestExpansion > input_bytes) {
+  if (source.sample_file_bytes() / kGreatestExpansion > request.input_bytes) {
     fail("{}: expected {} bytes for {} x {} x {} samples of {}, found a file of {}", name,
-         source.sample_file_bytes(), n[0], n[1], n[2], stored_name(volume.stored), input_bytes);
+         source.sample_file_bytes(), n[0], n[1], n[2], stored_name(volume.stored), request.input_bytes);
   }
   return source;
 }
@@ -35,17 +35,16 @@ VolumeSource checked_source(const std::string& name, std::uint64_t input_bytes,
 }  // namespace
 
 void ImportSink::begin(const ImportedVolume& volume, const std::string& remark) {
-  checked_source(name_, input_bytes_, volume);
+  checked_source(request_, volume);
   bytes_.put(volume);
   bytes_.put(remark);
 }
 
-VolumeSource import_volume(const std::string& name, std::uint64_t input_bytes, const VolumeOptions& options,
-                           Progress& progress, const std::function<void(ImportSink&)>& produce) {
+VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& options, Progress& progress) {
   constexpr std::uint64_t kPiece = std::uint64_t{1} << 20;
   VolumeSource result;
-  const auto receive = [&](ByteSource& bytes) {
-    VolumeSource source = checked_source(name, input_bytes, bytes.get<ImportedVolume>());
+  read_in_child(request, [&](ByteSource& bytes) {
+    VolumeSource source = checked_source(request, bytes.get<ImportedVolume>());
     source.remark = bytes.get_string();
     SampleSink sink(source, options.scratch_folder, progress);
     std::vector<std::byte> piece;
@@ -55,14 +54,7 @@ VolumeSource import_volume(const std::string& name, std::uint64_t input_bytes, c
       sink.take(piece);
     }
     result = sink.finish();
-  };
-  read_in_child(
-      name, static_cast<std::size_t>(input_bytes),
-      [&](ByteSink& bytes) {
-        ImportSink sink(bytes, name, input_bytes);
-        produce(sink);
-      },
-      receive);
+  });
   return result;
 }
 

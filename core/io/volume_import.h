@@ -3,13 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/io/child_process.h"
+#include "core/io/reader_program.h"
 #include "core/io/volume_reader.h"
 
 namespace adamas {
@@ -26,26 +25,21 @@ struct ImportedVolume {
 /// The end of an import in the child: the volume first, then its samples in order.
 class ImportSink {
  public:
-  /// `name` and `input_bytes` as of import_volume.
-  ImportSink(ByteSink& bytes, const std::string& name, std::uint64_t input_bytes)
-      : bytes_(bytes), name_(name), input_bytes_(input_bytes) {}
+  ImportSink(const ReaderRequest& request, ByteSink& bytes) : request_(request), bytes_(bytes) {}
 
   /// Throws Error where files of that size cannot hold such a volume.
   void begin(const ImportedVolume& volume, const std::string& remark = {});
   void samples(std::span<const std::byte> bytes) { bytes_.write(bytes.data(), bytes.size()); }
 
  private:
+  const ReaderRequest& request_;
   ByteSink& bytes_;
-  const std::string& name_;
-  std::uint64_t input_bytes_;
 };
 
-/// Runs `produce`, which calls a library, in a child process (read_in_child) and returns a source of what it
-/// hands over, in a scratch file in `options`' folder. `name` begins messages, `input_bytes` is the size of
-/// all files. Throws Error where the child did, where it crashed, where there are too few samples, or more
-/// than a file of that size may hold.
-VolumeSource import_volume(const std::string& name, std::uint64_t input_bytes, const VolumeOptions& options,
-                           Progress& progress, const std::function<void(ImportSink&)>& produce);
+/// Has a library read a volume in a child process (read_in_child) and returns a source of what it hands over,
+/// in a scratch file in `options`' folder. Throws Error where the child did, where it crashed, where there
+/// are too few samples, or more than a file of that size may hold.
+VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& options, Progress& progress);
 
 /// Of HDF5: the data set that `options.array` names, or the only one with numbers along three axes, the
 /// slowest being z. Its attribute "element_size_um" gives the spacing (z, y, x), as ilastik and Fiji write

@@ -18,8 +18,11 @@ struct PlaneKind {
 /// Reads the pictures of a stack, in the child.
 class StackReader {
  public:
-  StackReader(const std::vector<std::filesystem::path>& paths, ImportedVolume volume, ImportSink& sink)
-      : paths_(paths), volume_(volume), sink_(sink) {}
+  StackReader(const ReaderRequest& request, ByteSink& bytes)
+      : paths_(request.paths.begin(), request.paths.end()), sink_(request, bytes) {
+    volume_.spacing = request.spacing;
+    volume_.origin = request.origin;
+  }
 
   void run() {
     for (const auto& path : paths_) {
@@ -76,25 +79,28 @@ class StackReader {
     sink_.samples(image.samples);
   }
 
-  const std::vector<std::filesystem::path>& paths_;
+  std::vector<std::filesystem::path> paths_;
   ImportedVolume volume_;
-  ImportSink& sink_;
+  ImportSink sink_;
   PlaneKind kind_;
 };
 
 }  // namespace
 
+void send_stack_volume(const ReaderRequest& request, ByteSink& sink) { StackReader(request, sink).run(); }
+
 VolumeSource import_stack(const std::vector<std::filesystem::path>& paths, const Vec3& spacing,
                           const Vec3& origin, const VolumeOptions& options, Progress& progress) {
   if (paths.empty()) fail("expected the pictures of a stack, found none");
-  std::uint64_t bytes = 0;
-  for (const auto& path : paths) bytes += check_input_file(path);
   const std::string others = paths.size() > 1 ? fmt::format(" and {} others", paths.size() - 1) : "";
-  ImportedVolume volume;
-  volume.spacing = spacing;
-  volume.origin = origin;
-  return import_volume(paths.front().string() + others, bytes, options, progress,
-                       [&](ImportSink& sink) { StackReader(paths, volume, sink).run(); });
+  ReaderRequest request{LibraryReader::kStackVolume, paths.front().string() + others};
+  for (const auto& path : paths) {
+    request.input_bytes += check_input_file(path);
+    request.paths.push_back(path.string());
+  }
+  request.spacing = spacing;
+  request.origin = origin;
+  return import_volume(request, options, progress);
 }
 
 }  // namespace adamas

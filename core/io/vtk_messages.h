@@ -6,7 +6,7 @@
 namespace adamas {
 
 /// While it lives, VTK's errors and warnings of the whole process are kept here instead of printed, and it
-/// starts no threads (those of before a fork would be missing in the child).
+/// starts no threads.
 class VtkMessages {
  public:
   VtkMessages();

@@ -76,7 +76,7 @@ Domain Domain::fit(const Box3& box, int max_roots) {
   std::array<int, 3> roots{1, 1, 1}, best = roots;
   for (roots[u] = 1; roots[u] <= max_roots; ++roots[u]) {
     for (roots[v] = 1; roots[v] <= max_roots; ++roots[v]) {
-      // A gain within rounding is none.
+      // What may be rounding is no gain.
       if (cell_ratio(size, roots) < cell_ratio(size, best) * (1 - 1e-12)) best = roots;
     }
   }

@@ -30,7 +30,7 @@ class LatticeMap {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 
-  /// Makes room for so many, which will come.
+  /// Makes room for `size` entries.
   void reserve(std::size_t size) {
     const std::size_t capacity = 10 * size / (kCompact ? 7 : 6) + 1;
     if (capacity > entries_.size()) grow(capacity);
@@ -49,7 +49,7 @@ class LatticeMap {
   /// Fetches the memory that a later find(p) or insert(p) will look at.
   void prefetch(Key p) const { __builtin_prefetch(&entries_[home(p)]); }
 
-  /// The value at p, and whether it was put there by this call, being a default value then.
+  /// The value at p, and whether this call has put it there, as a default value.
   std::pair<Value*, bool> insert(Key p) {
     ADAMAS_ASSERT(p != kEmpty.key);
     std::size_t slot = home(p);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "core/base/hash.h"
+
 namespace adamas {
 
 /// The side of a root cube is 2^kRootBits lattice units.
@@ -32,11 +34,11 @@ constexpr int trailing_zeros(LatticePoint p) {
 
 /// A 64-bit hash; its high bits are good for points of every scale.
 constexpr std::uint64_t hash_value(LatticePoint p) {
-  std::uint64_t h = static_cast<std::uint32_t>(p.i) * 0x9e3779b97f4a7c15ull;
+  // The factors of j and k are two of the primes of xxHash.
+  std::uint64_t h = fibonacci_hash(static_cast<std::uint32_t>(p.i));
   h += static_cast<std::uint32_t>(p.j) * 0xc2b2ae3d27d4eb4full;
   h += static_cast<std::uint32_t>(p.k) * 0x165667b19e3779f9ull;
-  h ^= h >> 32;
-  return h * 0xd6e8feb86659fd93ull;
+  return remix(h);
 }
 
 }  // namespace adamas

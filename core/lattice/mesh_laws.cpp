@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/base/hash.h"
+
 namespace adamas {
 
 namespace {
@@ -16,12 +18,6 @@ std::int64_t scaled_volume(const MeshLaws::Corners& points, int bits) {
   };
   const auto minor = [&](int x, int y) { return edge(2, x) * edge(3, y) - edge(2, y) * edge(3, x); };
   return edge(1, 0) * minor(1, 2) + edge(1, 1) * minor(2, 0) + edge(1, 2) * minor(0, 1);
-}
-
-std::uint64_t mix(std::uint64_t h) {
-  h = (h ^ (h >> 31)) * 0x7fb5d329728ea185ull;
-  h = (h ^ (h >> 27)) * 0x81dadef4bc2dd44dull;
-  return h ^ (h >> 33);
 }
 
 }  // namespace
@@ -56,7 +52,7 @@ void MeshLaws::check_volume() const {
 std::uint64_t tetrahedron_checksum(std::array<LatticePoint, 4> corners) {
   std::sort(corners.begin(), corners.end());
   std::uint64_t h = 0;
-  for (const LatticePoint p : corners) h = mix(h + hash_value(p));
+  for (const LatticePoint p : corners) h = mix64_variant1(h + hash_value(p));
   return h;
 }
 

@@ -31,7 +31,8 @@ class MeshLaws {
   std::array<std::int64_t, kRootBits> volumes_{};  ///< per level, in units of that level's scale cubed
 };
 
-/// Of the corners in any order. Sums of it over meshes tell them apart, whatever the order of the tetrahedra.
+/// A checksum of a tetrahedron that does not depend on the order of its corners. Sums of it tell meshes
+/// apart, whatever the order of their tetrahedra.
 std::uint64_t tetrahedron_checksum(std::array<LatticePoint, 4> corners);
 
 }  // namespace adamas

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "core/base/arena.h"
+#include "core/base/stable_vector.h"
 #include "core/lattice/lattice_map.h"
 
 namespace adamas {
@@ -18,17 +18,17 @@ class PointNumbers {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// Makes room for about so many, which will come.
+  /// Makes room for about so many points.
   void expect(std::size_t points) {
     constexpr std::size_t kInBlock = 6;
     blocks_.reserve(points / kInBlock);
   }
 
-  /// The number of p, to be changed at will, and whether it has none yet, being kNone then. Valid until the
-  /// next call.
+  /// Where the number of p is, for the caller to change, and whether p has none yet; it is kNone then. The
+  /// pointer is valid until the next call.
   std::pair<std::uint32_t*, bool> insert(LatticePoint p) {
-    // Points of a level have one odd coordinate at least in its units; blocks go by their centres, which tell
-    // their level.
+    // In units of its level a point has at least one odd coordinate. The key of a block is its centre, from
+    // which its level follows.
     const int level = std::min(trailing_zeros(p), kRootBits);
     const LatticePoint q{p.i >> level, p.j >> level, p.k >> level};
     const auto centre = [level](std::int32_t x) { return ((x & ~3) + 2) << level; };
@@ -43,7 +43,7 @@ class PointNumbers {
 
  private:
   using Block = std::array<std::uint32_t, 64>;
-  /// A block that was asked for lately: far fewer of them stay in the caches than there are.
+  /// A block that was asked for lately. A search in the table would mostly miss the caches.
   struct Recent {
     LatticePoint key = kNoKey<LatticePoint>;
     Block* block = nullptr;
@@ -59,7 +59,7 @@ class PointNumbers {
   }
 
   LatticeMap<std::uint32_t> blocks_;
-  Arena<Block> numbers_;
+  StableVector<Block> numbers_;
   std::array<Recent, 512> recent_;  ///< by where the block lies among 8^3 of its level
 };
 

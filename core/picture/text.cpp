@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <map>
 
-#include "core/base/utf8.h"
+#include "core/base/text.h"
 
 namespace adamas {
 std::string one_line(std::string_view text) {

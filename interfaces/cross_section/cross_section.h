@@ -56,9 +56,9 @@ CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
 CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
                            const std::optional<FieldChoice>& field);
 
-/// The section of given interfaces in a box, as triangles between the lines in which the plane cuts them, by
-/// exact predicates; without cells and interface edges. `source`: for messages. Throws Error as PlaneSides
-/// does.
+/// The section of given interfaces in a box, as trapezoids and triangles between the lines in which the plane
+/// cuts them, which is exact (trapezoidal_decomposition); without cells and interface edges. `source`: for
+/// messages. Throws Error as PlaneSides does.
 CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std::size_t materials,
                            const Plane& plane, const std::string& source);
 

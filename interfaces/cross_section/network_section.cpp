@@ -1,29 +1,21 @@
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-
 #include <algorithm>
 
 #include "interfaces/cross_section/cross_section.h"
+#include "interfaces/cross_section/trapezoidal_decomposition.h"
 #include "interfaces/network/network_mesh.h"
 
 namespace adamas {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Structure = CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_2<Kernel>,
-                                                       CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-/// Interfaces may cross each other, where that was allowed, and the sides of the box.
-using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::Exact_predicates_tag>;
-
-/// A convex polygon, in either direction.
-bool contains(const std::vector<Kernel::Point_2>& polygon, const Kernel::Point_2& p) {
+/// Of a convex polygon, in either direction.
+bool contains(const std::vector<PlanePoint>& polygon, const PlanePoint& p) {
   bool left = false, right = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const auto side = CGAL::orientation(polygon[i], polygon[(i + 1) % polygon.size()], p);
-    left = left || side == CGAL::LEFT_TURN;
-    right = right || side == CGAL::RIGHT_TURN;
+    const PlanePoint &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double turn = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+    left = left || turn > 0;
+    right = right || turn < 0;
   }
   return !(left && right);
 }
@@ -34,17 +26,14 @@ CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std
                            const Plane& plane, const std::string& source) {
   const PlaneSides sides(plane, box, source);
   const PlaneFrame frame = plane_frame(plane);
-  const auto flat = [&](const Vec3& p) {
-    const auto [x, y] = frame.coordinates(p);
-    return Kernel::Point_2(x, y);
-  };
-  std::vector<Kernel::Point_2> outline;
-  for (const Vec3& p : clip_plane(plane, box)) outline.push_back(flat(p));
-  Triangulation triangulation;
+  // Interfaces may cross each other, where that was allowed, and the sides of the box.
+  std::vector<PlanePoint> outline;
+  for (const Vec3& p : clip_plane(plane, box)) outline.push_back(frame.coordinates(p));
+  std::vector<PlaneSegment> lines;
   for (std::size_t i = 0; i < outline.size(); ++i)
-    triangulation.insert_constraint(outline[i], outline[(i + 1) % outline.size()]);
+    lines.push_back({outline[i], outline[(i + 1) % outline.size()]});
   for (const Segment& s : section_edges(network_mesh(network, {}, source), plane, box))
-    triangulation.insert_constraint(flat(s[0]), flat(s[1]));
+    lines.push_back({frame.coordinates(s[0]), frame.coordinates(s[1])});
 
   // The frame's origin lies on the plane's normal, but not in the plane where that is at right angles to an
   // axis.
@@ -53,16 +42,14 @@ CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std
   const bool mirrored = dot(cross(frame.right, frame.up), plane.normal) < 0;
   CrossSection section;
   section.material_area.assign(materials, 0);
-  for (const auto face : triangulation.finite_face_handles()) {
-    if (!contains(outline, CGAL::centroid(triangulation.triangle(face)))) continue;
+  for (const Trapezoid& part : trapezoidal_decomposition(lines)) {
+    const PlanePoint middle = part.middle();
+    if (!contains(outline, middle)) continue;
+    const auto place = [&](const PlanePoint& p) { return base + p[0] * frame.right + p[1] * frame.up; };
     SectionPiece piece;
-    for (int i = 0; i < 3; ++i) {
-      const auto& p = face->vertex(i)->point();
-      piece.corners.push_back(base + p.x() * frame.right + p.y() * frame.up);
-    }
-    if (mirrored) std::swap(piece.corners[1], piece.corners[2]);
-    const Vec3 middle = (1.0 / 3) * (piece.corners[0] + piece.corners[1] + piece.corners[2]);
-    piece.body = network.body_at(middle + sides.nudge());
+    for (const PlanePoint& p : part.corners) piece.corners.push_back(place(p));
+    if (mirrored) std::reverse(piece.corners.begin(), piece.corners.end());
+    piece.body = network.body_at(place(middle) + sides.nudge());
     piece.material = network.table().material(piece.body);
     const double area = polygon_area(piece.corners);
     section.area += area;

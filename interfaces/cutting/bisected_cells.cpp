@@ -141,7 +141,7 @@ void BisectedCells::find_owners() {
                                       : ownership.problem.owner(cells_[c].corners[i]));
     }
     if (ownership.pure()) continue;
-    drop_hopeless(ownership.problem);
+    drop_dominated(ownership.problem);
     keep_owners(ownership.problem);
     problems_.emplace(static_cast<std::uint32_t>(c), ownership.problem);
   }

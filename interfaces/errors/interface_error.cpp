@@ -4,6 +4,8 @@
 #include <bit>
 #include <limits>
 
+#include "core/base/hash.h"
+
 namespace adamas {
 
 namespace {
@@ -87,8 +89,7 @@ class Estimator {
     std::uint64_t bits = 0;
     for (const Vec3& p : network_.triangle_corners(triangle)) {
       std::uint64_t corner = 0;
-      for (const double x : {p.x, p.y, p.z})
-        corner = (corner ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15ull;
+      for (const double x : {p.x, p.y, p.z}) corner = hash_combine(corner, std::bit_cast<std::uint64_t>(x));
       bits ^= corner;
     }
     return bits >> 32;
@@ -139,7 +140,7 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
   const double diameter = cell.diameter();
   if (ownership.pure()) return {triangles.empty() ? 0 : diameter, !triangles.empty()};
   OwnershipProblem owners = ownership.problem;
-  drop_hopeless(owners);
+  drop_dominated(owners);
   if (owners.candidates.size() > kCrowd && diameter > target) return {diameter, !triangles.empty()};
   keep_owners(owners);
   if (triangles.empty() && owners.candidates.size() == 1) return {};

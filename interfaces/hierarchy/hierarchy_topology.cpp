@@ -1,6 +1,6 @@
 #include "interfaces/hierarchy/hierarchy_topology.h"
 
-#include "core/refinement/forced_split.h"
+#include "core/refinement/forced_refinement.h"
 
 namespace adamas {
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/hash.h"
+
 namespace adamas {
 
 namespace {
@@ -12,14 +14,9 @@ constexpr int kRandomRays = 24;
 constexpr double kCleanWeight = 1e-7;  // hits nearer to an edge, or more grazing than this, prove nothing
 constexpr double kCleanAngle = 1e-6;
 
-/// splitmix64: a counter, scrambled.
+/// A random number in [0, 1).
 double next_random(std::uint64_t& state) {
-  state += 0x9e3779b97f4a7c15ull;
-  std::uint64_t z = state;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) * 0x1p-53;
+  return static_cast<double>(next_splitmix64(state) >> 11) * 0x1p-53;
 }
 
 Vec3 random_direction(std::uint64_t& state) {

@@ -1,13 +1,27 @@
 #include "interfaces/network/box_tree.h"
 
 #include <algorithm>
-#include <numeric>
+#include <bit>
+
+#include "core/base/parallel.h"
 
 namespace adamas {
 
 namespace {
 
-constexpr std::uint32_t kLeafSize = 8;
+/// Pairs of nodes that are worked on at the same time, at least, where there are as many.
+constexpr std::size_t kTasks = 1024;
+/// Boxes that one thread orders at a time.
+constexpr std::size_t kBoxesPerTask = 8192;
+
+bool is_empty(const Box3& box) { return !(box.min.x <= box.max.x); }
+
+Box3 joined(Box3 a, const Box3& b) {
+  if (is_empty(b)) return a;
+  a.extend(b.min);
+  a.extend(b.max);
+  return a;
+}
 
 }  // namespace
 
@@ -20,61 +34,131 @@ double squared_distance(const Box3& box, const Vec3& p) {
   return sum;
 }
 
-BoxTree::BoxTree(std::span<const Box3> boxes) : order_(boxes.size()) {
-  std::iota(order_.begin(), order_.end(), 0u);
+BoxTree::BoxTree(std::span<const Box3> boxes)
+    : boxes_(boxes.size()), index_(boxes.size()), place_(boxes.size()) {
   if (boxes.empty()) return;
-  nodes_.emplace_back();
-  build(0, 0, static_cast<std::uint32_t>(boxes.size()), boxes);
-  for (const std::uint32_t i : order_) boxes_.push_back(boxes[i]);
+  std::vector<Center> centers(boxes.size());
+  for (std::uint32_t i = 0; i < boxes.size(); ++i)
+    centers[i] = {is_empty(boxes[i]) ? Vec3{} : boxes[i].min + boxes[i].max, i};
+  const std::size_t leaves = std::bit_ceil((boxes.size() + kLeafSize - 1) / kLeafSize);
+  // Level by level: each node's boxes are divided among its children, which are full but for the last ones.
+  for (std::size_t size = leaves * kLeafSize; size > kLeafSize; size /= 2) {
+    parallel_for(leaves * kLeafSize / size, std::max<std::size_t>(kBoxesPerTask / size, 1),
+                 [&](std::size_t i) {
+                   const std::size_t begin = i * size, middle = begin + size / 2,
+                                     end = std::min(begin + size, centers.size());
+                   if (middle < end) halve(std::span(centers).subspan(begin, end - begin), size / 2);
+                 });
+  }
+  for (std::uint32_t place = 0; place < centers.size(); ++place) {
+    index_[place] = centers[place].index;
+    place_[index_[place]] = place;
+    boxes_[place] = boxes[index_[place]];
+  }
+  nodes_.resize(2 * leaves);
+  for (auto leaf = first_leaf(); leaf < nodes_.size(); ++leaf) nodes_[leaf] = box_of_leaf(leaf);
+  for (std::size_t i = leaves; --i > 0;) nodes_[i] = joined(nodes_[2 * i], nodes_[2 * i + 1]);
 }
 
-void BoxTree::build(std::uint32_t node, std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes) {
-  Box3 box;
-  Box3 centers;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const Box3& b = boxes[order_[i]];
-    box.extend(b.min);
-    box.extend(b.max);
-    centers.extend(b.center());
-  }
-  nodes_[node] = {box, begin, end - begin};
-  if (end - begin <= kLeafSize) return;
-  const Vec3 size = centers.size();
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](std::uint32_t i, std::uint32_t j) {
-                     const double x = boxes[i].center()[axis], y = boxes[j].center()[axis];
-                     return x != y ? x < y : i < j;
+/// Puts the `middle` first ones along the longest side of the box of all centres before the others.
+void BoxTree::halve(std::span<Center> centers, std::size_t middle) {
+  Box3 bounds;
+  for (const Center& c : centers) bounds.extend(c.twice);
+  const Vec3 size = bounds.size();
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  std::nth_element(centers.begin(), centers.begin() + static_cast<std::ptrdiff_t>(middle), centers.end(),
+                   [axis](const Center& a, const Center& b) {
+                     const double x = a.twice[axis], y = b.twice[axis];
+                     return x != y ? x < y : a.index < b.index;
                    });
-  const auto child = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node] = {box, child, 0};
-  nodes_.resize(nodes_.size() + 2);
-  build(child, begin, middle, boxes);
-  build(child + 1, middle, end, boxes);
+}
+
+BoxTree::Places BoxTree::places(std::uint32_t leaf) const {
+  const auto count = static_cast<std::uint32_t>(boxes_.size());
+  const std::uint32_t begin = std::min((leaf - first_leaf()) * kLeafSize, count);
+  return {begin, std::min(begin + kLeafSize, count)};
+}
+
+Box3 BoxTree::box_of_leaf(std::uint32_t leaf) const {
+  const Places range = places(leaf);
+  Box3 box;
+  for (std::uint32_t place = range.begin; place < range.end; ++place) box = joined(box, boxes_[place]);
+  return box;
+}
+
+void BoxTree::set(std::uint32_t index, const Box3& box) {
+  const std::uint32_t place = place_[index];
+  boxes_[place] = box;
+  std::uint32_t node = first_leaf() + place / kLeafSize;
+  nodes_[node] = box_of_leaf(node);
+  while ((node /= 2) > 0) nodes_[node] = joined(nodes_[2 * node], nodes_[2 * node + 1]);
 }
 
 void BoxTree::near(const Vec3& p, double radius, std::vector<std::uint32_t>& out) const {
   out.clear();
-  if (nodes_.empty()) return;
+  if (boxes_.empty()) return;
   // The margin keeps boxes whose distance is the radius but for round-off.
   const double bound = radius * radius * (1 + 1e-12);
   std::uint32_t stack[64];
   std::size_t top = 0;
-  stack[top++] = 0;
+  stack[top++] = 1;
   while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (squared_distance(node.box, p) > bound) continue;
-    if (node.count == 0) {
-      stack[top++] = node.first;
-      stack[top++] = node.first + 1;
+    const std::uint32_t node = stack[--top];
+    if (!(squared_distance(nodes_[node], p) <= bound)) continue;
+    if (!is_leaf(node)) {
+      stack[top++] = 2 * node;
+      stack[top++] = 2 * node + 1;
       continue;
     }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      if (squared_distance(boxes_[i], p) <= bound) out.push_back(order_[i]);
+    const Places leaf = places(node);
+    for (std::uint32_t place = leaf.begin; place < leaf.end; ++place) {
+      if (squared_distance(boxes_[place], p) <= bound) out.push_back(index_[place]);
     }
   }
   std::sort(out.begin(), out.end());
+}
+
+/// The pairs of children among which the boxes are that touch each other.
+void BoxTree::append_children(const NodePair& pair, std::vector<NodePair>& out) const {
+  for (const std::uint32_t a : {2 * pair.a, 2 * pair.a + 1}) {
+    for (const std::uint32_t b : {2 * pair.b, 2 * pair.b + 1}) {
+      if (pair.a == pair.b && b < a) continue;
+      if (nodes_[a].touches(nodes_[b])) out.push_back({a, b});
+    }
+  }
+}
+
+void BoxTree::visit_leaves(const NodePair& pair,
+                           const std::function<void(std::uint32_t, std::uint32_t)>& visit) const {
+  const Places first = places(pair.a), second = places(pair.b);
+  for (std::uint32_t a = first.begin; a < first.end; ++a) {
+    for (std::uint32_t b = pair.a == pair.b ? a + 1 : second.begin; b < second.end; ++b) {
+      if (boxes_[a].touches(boxes_[b])) visit(std::min(index_[a], index_[b]), std::max(index_[a], index_[b]));
+    }
+  }
+}
+
+void BoxTree::for_each_touching_pair(const std::function<void(std::uint32_t, std::uint32_t)>& visit) const {
+  if (boxes_.empty()) return;
+  std::vector<NodePair> tasks{{1, 1}}, children;
+  // All pairs in the list are of one level, and with them the leaves come all at once.
+  while (!tasks.empty() && tasks.size() < kTasks && !is_leaf(tasks.front().a)) {
+    children.clear();
+    for (const NodePair& pair : tasks) append_children(pair, children);
+    std::swap(tasks, children);
+  }
+  parallel_for(tasks.size(), 1, [&](std::size_t i) {
+    std::vector<NodePair> stack{tasks[i]};
+    while (!stack.empty()) {
+      const NodePair pair = stack.back();
+      stack.pop_back();
+      if (is_leaf(pair.a)) {
+        visit_leaves(pair, visit);
+      } else {
+        append_children(pair, stack);
+      }
+    }
+  });
 }
 
 }  // namespace adamas

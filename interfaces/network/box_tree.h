@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -8,29 +9,81 @@
 
 namespace adamas {
 
-/// A binary tree of boxes, for those that are near a point.
+/// A binary tree over boxes: which of them are near a point, which touch a box, and which touch each other.
+/// The order of the tree is that of the first boxes; it serves well for as long as they stay more or less
+/// where they were.
 class BoxTree {
  public:
   BoxTree() = default;
+  /// Of fewer than 2^31 boxes; empty ones are near nothing and touch nothing. Takes time of n log n.
   explicit BoxTree(std::span<const Box3> boxes);
+
+  /// Replaces the box of that index.
+  void set(std::uint32_t index, const Box3& box);
 
   /// Indices of the boxes within `radius` of p (at most), ascending; replaces `out`.
   void near(const Vec3& p, double radius, std::vector<std::uint32_t>& out) const;
+  /// Calls visit(index) for the boxes that touch this one, in an order of its own, until it returns false.
+  template <class Visit>
+  void for_each_touching(const Box3& box, Visit&& visit) const;
+  /// Calls visit(i, j) once for every two boxes that touch each other, with i < j; from several threads at
+  /// once, and in any order.
+  void for_each_touching_pair(const std::function<void(std::uint32_t, std::uint32_t)>& visit) const;
 
  private:
-  struct Node {
-    Box3 box;
-    std::uint32_t first,
-        count;  ///< leaf: boxes order_[first, first + count); else children first and first + 1
-  };
-  void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes);
+  static constexpr std::uint32_t kLeafSize = 4;
 
-  std::vector<Node> nodes_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Box3> boxes_;  ///< in the order of order_
+  /// A box's place in the order of the tree, while that is made.
+  struct Center {
+    Vec3 twice;  ///< the centre, times two
+    std::uint32_t index;
+  };
+  /// Two nodes of the same level, or one node twice.
+  struct NodePair {
+    std::uint32_t a, b;
+  };
+
+  static void halve(std::span<Center> centers, std::size_t middle);
+  [[nodiscard]] std::uint32_t first_leaf() const { return static_cast<std::uint32_t>(nodes_.size() / 2); }
+  [[nodiscard]] bool is_leaf(std::uint32_t node) const { return node >= first_leaf(); }
+  /// The places [begin, end) of a leaf's boxes.
+  struct Places {
+    std::uint32_t begin, end;
+  };
+  [[nodiscard]] Places places(std::uint32_t leaf) const;
+  [[nodiscard]] Box3 box_of_leaf(std::uint32_t leaf) const;
+  void append_children(const NodePair& pair, std::vector<NodePair>& out) const;
+  void visit_leaves(const NodePair& pair,
+                    const std::function<void(std::uint32_t, std::uint32_t)>& visit) const;
+
+  std::vector<Box3> nodes_;  ///< a complete binary tree: node i has the children 2i and 2i + 1, the root is 1
+  std::vector<Box3> boxes_;  ///< by place: leaf after leaf
+  std::vector<std::uint32_t> index_;  ///< of the box at each place
+  std::vector<std::uint32_t> place_;  ///< of the box of each index
 };
 
 /// Squared distance from a point to a box; zero inside.
 double squared_distance(const Box3& box, const Vec3& p);
+
+template <class Visit>
+void BoxTree::for_each_touching(const Box3& box, Visit&& visit) const {
+  if (boxes_.empty()) return;
+  std::uint32_t stack[64];
+  std::size_t size = 0;
+  stack[size++] = 1;
+  while (size > 0) {
+    const std::uint32_t node = stack[--size];
+    if (!nodes_[node].touches(box)) continue;
+    if (!is_leaf(node)) {
+      stack[size++] = 2 * node + 1;
+      stack[size++] = 2 * node;
+      continue;
+    }
+    const Places leaf = places(node);
+    for (std::uint32_t place = leaf.begin; place < leaf.end; ++place) {
+      if (boxes_[place].touches(box) && !visit(index_[place])) return;
+    }
+  }
+}
 
 }  // namespace adamas

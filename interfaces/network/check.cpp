@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/geometry/place_text.h"
 #include "interfaces/network/edge_fans.h"
+#include "interfaces/network/triangle_contacts.h"
 
 namespace adamas {
 

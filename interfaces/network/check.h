@@ -1,9 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
@@ -45,13 +42,5 @@ void check_interface_arrays(const InterfaceMesh& mesh);
 /// intersect; the last two as TolerableFault. `domain` may be null.
 InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* domain,
                                          const InterfaceCheckOptions& options = {});
-
-/// Pairs of triangles that intersect, though they have no point in common. Degenerate triangles are left out.
-struct SelfIntersections {
-  std::size_t count = 0;
-  std::optional<std::array<std::uint32_t, 2>> first;  ///< the lowest pair
-};
-/// Exact. Points must be finite and indices within range.
-SelfIntersections find_self_intersections(const InterfaceMesh& mesh);
 
 }  // namespace adamas

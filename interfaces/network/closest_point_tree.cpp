@@ -21,6 +21,29 @@ float round_down(double x) {
   return static_cast<double>(f) > x ? std::nextafter(f, -kFloatInfinity) : f;
 }
 
+using Lanes = Simd<float, 16>;
+
+/// Squared distances between the boxes of a node's children and a box round a point, and a bit for each child
+/// that is within the bound.
+template <class Node, std::size_t kWidth>
+unsigned children_within(const Node& node, const Lanes::Numbers (&low)[3], const Lanes::Numbers (&high)[3],
+                         float bound, float (&distances)[kWidth]) {
+  using Numbers = Lanes::Numbers;
+  unsigned hits = 0;
+  for (std::size_t half = 0; half < kWidth; half += Lanes::kCount) {
+    Numbers sum{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Numbers under = Lanes::load(node.lower[axis] + half) - high[axis];
+      const Numbers over = low[axis] - Lanes::load(node.upper[axis] + half);
+      const Numbers gap = Lanes::greater(Lanes::greater(under, over), Numbers{});
+      sum += gap * gap;
+    }
+    Lanes::store(sum, distances + half);
+    hits |= bits_not_greater(sum, Numbers{} + bound) << half;
+  }
+  return hits;
+}
+
 /// Bound for squared distances to boxes in float: above every rounding error of computing them.
 float box_bound(double squared_distance, double scale) {
   const double scaled = squared_distance * scale * scale;
@@ -62,12 +85,10 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
   if (nodes_.empty() || !(max_distance >= 0)) return std::nullopt;
   const Vec3 local = to_tree(q);
   if (!std::isfinite(local.x) || !std::isfinite(local.y) || !std::isfinite(local.z)) return std::nullopt;
-  using Lanes = Simd<float, 16>;
-  using Numbers = Lanes::Numbers;
-  Numbers low[3], high[3];
+  Lanes::Numbers low[3], high[3];
   for (int axis = 0; axis < 3; ++axis) {
-    low[axis] = Numbers{} + round_down(local[axis]);
-    high[axis] = Numbers{} - round_down(-local[axis]);
+    low[axis] = Lanes::Numbers{} + round_down(local[axis]);
+    high[axis] = Lanes::Numbers{} - round_down(-local[axis]);
   }
 
   ClosestPoint best;
@@ -84,20 +105,8 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
     if (entry.count == 0) {
       const Node& node = nodes_[entry.first];
       alignas(16) float distances[kWidth];
-      unsigned hits = 0;
-      for (int half = 0; half < kWidth; half += 4) {
-        Numbers sum{};
-        for (int axis = 0; axis < 3; ++axis) {
-          const Numbers under = Lanes::load(node.lower[axis] + half) - high[axis];
-          const Numbers over = low[axis] - Lanes::load(node.upper[axis] + half);
-          const Numbers gap = Lanes::greater(Lanes::greater(under, over), Numbers{});
-          sum += gap * gap;
-        }
-        Lanes::store(sum, distances + half);
-        hits |= bits_not_greater(sum, Numbers{} + bound) << half;
-      }
       const std::size_t base = top;
-      for (; hits != 0; hits &= hits - 1) {
+      for (unsigned hits = children_within(node, low, high, bound, distances); hits != 0; hits &= hits - 1) {
         const auto i = static_cast<unsigned>(__builtin_ctz(hits));
         if (node.count[i] == kEmptySlot) continue;
         // Kept with the farthest first.

@@ -7,8 +7,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "interfaces/network/lazy_winding.h"
-#include "interfaces/network/vertex_trees.h"
+#include "interfaces/network/network_on_demand.h"
 #include "interfaces/network/weld.h"
 
 namespace adamas {
@@ -20,8 +19,7 @@ InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3
     : domain_(domain),
       points_(mesh.points),
       inconsistencies_(bodies.inconsistent_edges + bodies.inconsistent_rays),
-      vertex_trees_(std::make_shared<VertexTrees>()),
-      winding_(std::make_shared<LazyWinding>()) {
+      on_demand_(std::make_shared<OnDemand>()) {
   if (bodies.sides.size() != mesh.triangles.size()) {
     fail("{}: expected the bodies of {} triangles, found {}", mesh.source, mesh.triangles.size(),
          bodies.sides.size());

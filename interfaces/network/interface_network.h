@@ -154,10 +154,8 @@ class InterfaceNetwork {
   IdVector<InterfaceId, ClosestPointTree> trees_;  ///< empty where there is one interface
   BoxTree box_tree_;
 
-  struct VertexTrees;
-  std::shared_ptr<VertexTrees> vertex_trees_;  ///< built on first need
-  struct LazyWinding;
-  std::shared_ptr<LazyWinding> winding_;  ///< built on first need
+  struct OnDemand;
+  std::shared_ptr<OnDemand> on_demand_;
 };
 
 }  // namespace adamas

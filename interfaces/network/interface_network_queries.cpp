@@ -5,9 +5,8 @@
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "interfaces/network/interface_network.h"
-#include "interfaces/network/lazy_winding.h"
+#include "interfaces/network/network_on_demand.h"
 #include "interfaces/network/pseudonormals.h"
-#include "interfaces/network/vertex_trees.h"
 
 namespace adamas {
 
@@ -136,8 +135,8 @@ bool InterfaceNetwork::find_touching(const ClosestPointTree& tree, std::uint32_t
 
 /// Winding numbers where they leave no doubt, else `continued`, the body that the sheet at the border tells.
 BodyId InterfaceNetwork::body_beyond_border(const Vec3& p, BodyId continued, bool* flagged) const {
-  std::call_once(winding_->built, [this] { winding_->winding.emplace(*this, domain_); });
-  const BodyWinding::Answer answer = winding_->winding->at(p);
+  std::call_once(on_demand_->winding_built, [this] { on_demand_->winding.emplace(*this, domain_); });
+  const BodyWinding::Answer answer = on_demand_->winding->at(p);
   const bool sure = answer.number >= kSure;
   if (flagged != nullptr) *flagged = !sure || table_.material(answer.body) != table_.material(continued);
   return sure ? answer.body : continued;
@@ -224,7 +223,7 @@ void InterfaceNetwork::near_interfaces(const Vec3& p, double radius, BodyId body
                                        std::vector<NearInterface>& out, DistanceMode mode) const {
   out.clear();
   if (mode == DistanceMode::kNearestVertex)
-    std::call_once(vertex_trees_->built, [this] { build_vertex_trees(); });
+    std::call_once(on_demand_->vertices_built, [this] { build_vertex_trees(); });
   thread_local std::vector<std::uint32_t> candidates;
   box_tree_.near(p, radius, candidates);
   for (const std::uint32_t i : candidates) {
@@ -235,10 +234,10 @@ void InterfaceNetwork::near_interfaces(const Vec3& p, double radius, BodyId body
 /// As the closest point of an interface: a corner of one of its triangles.
 std::optional<ClosestPoint> InterfaceNetwork::nearest_vertex(InterfaceId i, const Vec3& p,
                                                              double radius) const {
-  const VertexTrees::Tree& vertices = vertex_trees_->trees[i];
+  const OnDemand::Vertices& vertices = on_demand_->vertices[i];
   const auto nearest = vertices.tree.nearest(p, radius);
   if (!nearest) return std::nullopt;
-  const VertexTrees::Corner& corner = vertices.corners[nearest->index];
+  const OnDemand::Corner& corner = vertices.corners[nearest->index];
   return ClosestPoint{triangle_corners(corner.triangle)[feature_index(corner.feature)],
                       nearest->squared_distance, corner.triangle - interfaces_[i].first, corner.feature};
 }
@@ -284,14 +283,14 @@ bool InterfaceNetwork::on_open_border(InterfaceId i, std::uint32_t triangle, Tri
 }
 
 void InterfaceNetwork::build_vertex_trees() const {
-  auto& trees = vertex_trees_->trees;
+  auto& trees = on_demand_->vertices;
   trees.resize(interfaces_.size());
   parallel_for(interfaces_.size(), 1, [&](std::size_t i) {
     const Interface& interface = interfaces_[InterfaceId(i)];
-    std::map<std::uint32_t, VertexTrees::Corner> corners;
+    std::map<std::uint32_t, OnDemand::Corner> corners;
     for (std::uint32_t t = interface.first; t < interface.first + interface.count; ++t) {
       for (unsigned k = 0; k < 3; ++k)
-        corners.try_emplace(triangles_[t][k], VertexTrees::Corner{t, vertex_feature(k)});
+        corners.try_emplace(triangles_[t][k], OnDemand::Corner{t, vertex_feature(k)});
     }
     std::vector<Vec3> vertices;
     for (const auto& [point, corner] : corners) {

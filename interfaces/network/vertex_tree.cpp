@@ -1,73 +1,74 @@
 #include "interfaces/network/vertex_tree.h"
 
-#include <CGAL/Orthogonal_k_neighbor_search.h>
-#include <CGAL/Search_traits_3.h>
-#include <CGAL/Search_traits_adapter.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/property_map.h>
-
+#include <algorithm>
 #include <cmath>
-#include <utility>
-#include <vector>
 
 namespace adamas {
 
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Numbered = std::pair<Kernel::Point_3, std::uint32_t>;
-using Traits = CGAL::Search_traits_adapter<Numbered, CGAL::First_of_pair_property_map<Numbered>,
-                                           CGAL::Search_traits_3<Kernel>>;
-using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
-
-/// Squared distances that agree so well may be equal, but for the order of sums.
-constexpr double kTie = 1e-14;
-
-std::vector<Numbered> numbered(std::span<const Vec3> points) {
-  std::vector<Numbered> result;
-  result.reserve(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    result.emplace_back(Kernel::Point_3(points[i].x, points[i].y, points[i].z), i);
-  return result;
-}
+constexpr std::size_t kLeafSize = 8;
 
 }  // namespace
 
-struct VertexTree::Tree {
-  explicit Tree(const std::vector<Numbered>& points) : tree(points.begin(), points.end()) {
-    // Otherwise built by the first query, which others would have to wait for.
-    if (!points.empty()) tree.build();
-  }
-  Search::Tree tree;
-};
+VertexTree::VertexTree(std::span<const Vec3> points) {
+  vertices_.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) vertices_.push_back({points[i], i, 0});
+  build(0, vertices_.size());
+}
 
-VertexTree::VertexTree(std::span<const Vec3> points) : tree_(std::make_unique<Tree>(numbered(points))) {}
-VertexTree::VertexTree(VertexTree&&) noexcept = default;
-VertexTree& VertexTree::operator=(VertexTree&&) noexcept = default;
-VertexTree::~VertexTree() = default;
+void VertexTree::build(std::size_t begin, std::size_t end) {
+  if (end - begin <= kLeafSize) return;
+  Box3 bounds;
+  for (std::size_t i = begin; i < end; ++i) bounds.extend(vertices_[i].point);
+  const Vec3 size = bounds.size();
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t middle = begin + (end - begin) / 2;
+  const auto at = [this](std::size_t i) { return vertices_.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(begin), at(middle), at(end), [axis](const Vertex& a, const Vertex& b) {
+    return a.point[axis] != b.point[axis] ? a.point[axis] < b.point[axis] : a.index < b.index;
+  });
+  vertices_[middle].axis = static_cast<std::uint8_t>(axis);
+  build(begin, middle);
+  build(middle + 1, end);
+}
 
 std::optional<NearestVertex> VertexTree::nearest(const Vec3& q, double max_distance) const {
-  const Search::Tree& tree = tree_->tree;
-  if (tree.size() == 0 || !std::isfinite(q.x + q.y + q.z)) return std::nullopt;
+  if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z)) return std::nullopt;
   std::optional<NearestVertex> best;
-  // More and more of them, until one is farther: of equally near ones the lowest is wanted.
-  for (unsigned count = 2;; count *= 2) {
-    const Search search(tree, Kernel::Point_3(q.x, q.y, q.z), count);
-    const double least = search.begin()->second;
-    double last = least;
-    best.reset();
-    for (const auto& [point, squared] : search) {
-      last = squared;
-      if (squared > (1 + kTie) * least) break;
-      const Kernel::Point_3& p = point.first;
-      const double own = squared_norm(q - Vec3{p.x(), p.y(), p.z()});
-      if (!best || own < best->squared_distance ||
-          (own == best->squared_distance && point.second < best->index))
-        best = {point.second, own};
+  double bound = max_distance * max_distance;
+  const auto consider = [&](const Vertex& v) {
+    const double d = squared_norm(q - v.point);
+    if (d < bound || (d == bound && (!best || v.index < best->index))) {
+      best = {v.index, d};
+      bound = d;
     }
-    if (last > (1 + kTie) * least || count >= tree.size()) break;
+  };
+  /// A part of the tree, and how far q is from it along each axis, at least. Differences, squares and sums
+  /// are rounded in the same way as those of its vertices, and so are never greater.
+  struct Part {
+    std::size_t begin, end;
+    Vec3 gap;
+  };
+  Part stack[64];
+  std::size_t size = 0;
+  stack[size++] = {0, vertices_.size(), {}};
+  while (size > 0) {
+    const Part part = stack[--size];
+    if (squared_norm(part.gap) > bound) continue;
+    if (part.end - part.begin <= kLeafSize) {
+      for (std::size_t i = part.begin; i < part.end; ++i) consider(vertices_[i]);
+      continue;
+    }
+    const std::size_t middle = part.begin + (part.end - part.begin) / 2;
+    const Vertex& v = vertices_[middle];
+    consider(v);
+    const double beyond = q[v.axis] - v.point[v.axis];
+    Part before{part.begin, middle, part.gap}, after{middle + 1, part.end, part.gap};
+    (beyond < 0 ? after : before).gap[v.axis] = beyond;
+    stack[size++] = beyond < 0 ? after : before;
+    stack[size++] = beyond < 0 ? before : after;
   }
-  if (best->squared_distance > max_distance * max_distance) return std::nullopt;
   return best;
 }
 

@@ -103,7 +103,7 @@ void partition_cell(CellOwnership& ownership, std::vector<OwnedTetrahedron>& par
     parts.push_back({ownership.problem.candidates[0].owner, kWhole});
     return;
   }
-  drop_hopeless(ownership.problem);
+  drop_dominated(ownership.problem);
   partition_tetrahedron(ownership.problem, parts);
 }
 

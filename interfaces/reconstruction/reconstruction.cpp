@@ -53,7 +53,7 @@ void drop_unused_points(InterfaceMesh& mesh) {
 struct Reconstruction::Layer {
   ContactBuffer contacts;
   IdVector<MaterialId, double> volume;
-  std::vector<std::pair<Part, MaterialId>> pointless;
+  std::vector<std::pair<Part, MaterialId>> inner_parts;
 };
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
@@ -107,7 +107,7 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
   if (flakes.empty()) return moves;
   const IdVector<BodyId, BodyId> numbers = drop_flakes(flakes, mesh_, bodies_, body_materials_);
   for (BodyId& body : body_of_point_) body = numbers[body];
-  for (auto& [part, body] : body_of_pointless_) body = numbers[body];
+  for (auto& [part, body] : body_of_inner_part_) body = numbers[body];
   drop_unused_points(mesh_);
   return moves;
 }
@@ -130,7 +130,7 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
       builder.append(layer.contacts);
       for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
         volume_reconstructed_[m] += layer.volume[m];
-      pointless_.insert(pointless_.end(), layer.pointless.begin(), layer.pointless.end());
+      inner_parts_.insert(inner_parts_.end(), layer.inner_parts.begin(), layer.inner_parts.end());
     }
   }
   InterfaceMesh extracted = builder.finish();
@@ -140,7 +140,7 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
   number_bodies();
 
   const auto body_of = [&](std::uint32_t part) {
-    return part < body_of_point_.size() ? body_of_point_[part] : body_of_pointless_.at(part);
+    return part < body_of_point_.size() ? body_of_point_[part] : body_of_inner_part_.at(part);
   };
   mesh_.points = std::move(extracted.points);
   mesh_.triangles = std::move(extracted.triangles);
@@ -207,7 +207,7 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
   const std::vector<OwnershipProblem::Candidate> owners = problem.candidates;
   for (std::size_t c = 0; c < owners.size(); ++c) {
     const Part part = problem.candidates[c].owner = part_in(cell, path, points, owners, owners[c].owner);
-    if (is_pointless(part)) layer.pointless.emplace_back(part, lattice_.material(owners[c].owner));
+    if (is_inner(part)) layer.inner_parts.emplace_back(part, lattice_.material(owners[c].owner));
   }
   layer.contacts.add(ids, positions, problem);
 }
@@ -219,9 +219,9 @@ Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell,
   for (const std::uint32_t p : corners) {
     if (lattice_.is_one_region(lattice_.owner(p), number)) return p;
   }
-  // A tetrahedron has at most four regions that hold a corner; those that hold none are told apart by the
-  // position of their material among those that own something. More of them in one tetrahedron than there
-  // are numbers for, which hardly comes about, count as one.
+  // A tetrahedron has at most four regions that hold a corner; inner parts are told apart by the position of
+  // their material among those that own something. More of them in one tetrahedron than there are numbers
+  // for, which hardly comes about, count as one.
   std::uint32_t slot = 0;
   for (const auto& candidate : owners) {
     if (candidate.owner == number) break;

@@ -53,8 +53,8 @@ class Reconstruction {
   [[nodiscard]] const std::vector<LostBody>& lost_bodies() const { return lost_bodies_; }
 
  private:
-  /// A part of a material's region: the lattice point it holds, or a number above all points for a part that
-  /// holds none.
+  /// A part of a material's region, numbered by a lattice point that it holds; an inner part, which holds
+  /// none and lies inside tetrahedra, has a number above those of all points.
   using Part = std::uint32_t;
   struct Layer;
 
@@ -67,7 +67,7 @@ class Reconstruction {
                              const std::array<std::uint32_t, 4>& corners,
                              const std::vector<OwnershipProblem::Candidate>& owners,
                              std::uint32_t number) const;
-  [[nodiscard]] bool is_pointless(Part part) const { return part >= lattice_.point_count(); }
+  [[nodiscard]] bool is_inner(Part part) const { return part >= lattice_.point_count(); }
   [[nodiscard]] MaterialId material_of(Part part) const;
   void join_points();
   void settle_parts(InterfaceMesh& mesh);
@@ -90,12 +90,12 @@ class Reconstruction {
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<BodyId, MaterialId> body_materials_;
   IdVector<MaterialId, double> volume_input_, volume_reconstructed_;
-  std::uint32_t slots_ = 4;   ///< numbers of a tetrahedron for parts that hold no lattice point
-  std::vector<Part> parent_;  ///< union-find over lattice points
-  std::unordered_map<Part, Part> pointless_parent_;     ///< and over parts that hold no lattice point
-  std::vector<std::pair<Part, MaterialId>> pointless_;  ///< in the order of their numbers
+  std::uint32_t slots_ = 4;                               ///< numbers of a tetrahedron for inner parts
+  std::vector<Part> parent_;                              ///< union-find over lattice points
+  std::unordered_map<Part, Part> inner_parents_;          ///< and over inner parts
+  std::vector<std::pair<Part, MaterialId>> inner_parts_;  ///< in the order of their numbers
   std::vector<BodyId> body_of_point_;
-  std::unordered_map<Part, BodyId> body_of_pointless_;
+  std::unordered_map<Part, BodyId> body_of_inner_part_;
 };
 
 }  // namespace adamas

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "core/base/hash.h"
 #include "core/data/contact_mesh.h"
-#include "core/geometry/edge_key.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
@@ -32,22 +32,23 @@ void Reconstruction::join_points() {
   }
 }
 
-/// Parts without a corner that no triangle touches own nothing, and triangles with one material on both sides
-/// are left by the welding of what lay between.
+/// Inner parts that no triangle touches own nothing and are dropped. Triangles with one material on both
+/// sides, which welding leaves where it closed what lay between, are dropped as well, and join the parts on
+/// their sides.
 void Reconstruction::settle_parts(InterfaceMesh& mesh) {
   std::vector<Part> seen;
   for (const InterfaceTriangle& t : mesh.triangles) {
     for (const Part part : {t.front.value, t.back.value}) {
-      if (is_pointless(part)) seen.push_back(part);
+      if (is_inner(part)) seen.push_back(part);
     }
   }
   std::sort(seen.begin(), seen.end());
-  std::sort(pointless_.begin(), pointless_.end());
-  pointless_.erase(std::unique(pointless_.begin(), pointless_.end()), pointless_.end());
-  std::erase_if(pointless_, [&](const auto& entry) {
+  std::sort(inner_parts_.begin(), inner_parts_.end());
+  inner_parts_.erase(std::unique(inner_parts_.begin(), inner_parts_.end()), inner_parts_.end());
+  std::erase_if(inner_parts_, [&](const auto& entry) {
     return !std::binary_search(seen.begin(), seen.end(), entry.first);
   });
-  for (const auto& [part, material] : pointless_) pointless_parent_.emplace(part, part);
+  for (const auto& [part, material] : inner_parts_) inner_parents_.emplace(part, part);
   std::erase_if(mesh.triangles, [&](const InterfaceTriangle& t) {
     if (material_of(t.front.value) != material_of(t.back.value)) return false;
     join(t.front.value, t.back.value);
@@ -56,12 +57,12 @@ void Reconstruction::settle_parts(InterfaceMesh& mesh) {
 }
 
 MaterialId Reconstruction::material_of(Part part) const {
-  if (!is_pointless(part)) return lattice_.material(lattice_.owner(part));
-  return std::lower_bound(pointless_.begin(), pointless_.end(), std::pair{part, MaterialId(0)})->second;
+  if (!is_inner(part)) return lattice_.material(lattice_.owner(part));
+  return std::lower_bound(inner_parts_.begin(), inner_parts_.end(), std::pair{part, MaterialId(0)})->second;
 }
 
-/// Edges, by their points, round which parts of one material may meet that are not yet one: where a part has
-/// no corner, or the boundary of one is open.
+/// Edges, by their points, round which parts of one material may meet that are not yet one: where there is an
+/// inner part, or the boundary of a part is open.
 std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>>
       all;  // edges with the triangle, and the side they are of
@@ -85,18 +86,18 @@ std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh
   };
   for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
     balance.clear();
-    bool pointless = false;
+    bool has_inner = false;
     for (; last < all.size() && all[last].first == all[first].first; ++last) {
       const InterfaceTriangle& t = mesh.triangles[all[last].second / 3];
       const std::uint32_t i = all[last].second % 3;
       const int way = t.points[i] < t.points[(i + 1) % 3] ? 1 : -1;
       count(t.front.value, way);
       count(t.back.value, -way);
-      pointless = pointless || is_pointless(t.front.value) || is_pointless(t.back.value);
+      has_inner = has_inner || is_inner(t.front.value) || is_inner(t.back.value);
     }
     const bool open =
         std::any_of(balance.begin(), balance.end(), [](const auto& entry) { return entry.second != 0; });
-    if (pointless || open) loose.push_back(all[first].first);
+    if (has_inner || open) loose.push_back(all[first].first);
   }
   return loose;
 }
@@ -148,9 +149,7 @@ void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& dom
 }
 
 Reconstruction::Part Reconstruction::find(Part part) {
-  const auto parent = [&](Part p) -> Part& {
-    return p < parent_.size() ? parent_[p] : pointless_parent_.at(p);
-  };
+  const auto parent = [&](Part p) -> Part& { return p < parent_.size() ? parent_[p] : inner_parents_.at(p); };
   while (parent(part) != part) {
     parent(part) = parent(parent(part));
     part = parent(part);
@@ -162,12 +161,12 @@ void Reconstruction::join(Part a, Part b) {
   a = find(a), b = find(b);
   if (a == b) return;
   if (b < a) std::swap(a, b);
-  (b < parent_.size() ? parent_[b] : pointless_parent_.at(b)) = a;
+  (b < parent_.size() ? parent_[b] : inner_parents_.at(b)) = a;
 }
 
 void Reconstruction::number_bodies() {
   body_materials_ = {};
-  body_of_pointless_.clear();
+  body_of_inner_part_.clear();
   body_of_point_.resize(lattice_.point_count());
   for (Part p = 0; p < lattice_.point_count(); ++p) {
     const Part root = find(p);
@@ -178,20 +177,20 @@ void Reconstruction::number_bodies() {
       body_of_point_[p] = body_of_point_[root];
     }
   }
-  for (const auto& [part, material] : pointless_) {
+  for (const auto& [part, material] : inner_parts_) {
     const Part root = find(part);
     if (root < body_of_point_.size()) {
-      body_of_pointless_[part] = body_of_point_[root];
+      body_of_inner_part_[part] = body_of_point_[root];
     } else if (root == part) {
-      body_of_pointless_[part] = body_materials_.next_id();
+      body_of_inner_part_[part] = body_materials_.next_id();
       body_materials_.push_back(material);
     } else {
-      body_of_pointless_[part] = body_of_pointless_.at(root);
+      body_of_inner_part_[part] = body_of_inner_part_.at(root);
     }
   }
-  pointless_ = {};
+  inner_parts_ = {};
   parent_ = {};
-  pointless_parent_ = {};
+  inner_parents_ = {};
 }
 
 BodyId Reconstruction::body_at(const Vec3& p) const {
@@ -206,8 +205,8 @@ BodyId Reconstruction::body_at(const Vec3& p) const {
   keep_owners(problem);
   const Part part = part_in(location.cell, location.path, points, problem.candidates, owner);
   if (part < body_of_point_.size()) return body_of_point_[part];
-  const auto found = body_of_pointless_.find(part);
-  return found != body_of_pointless_.end() ? found->second : body_of_point_[points[0]];
+  const auto found = body_of_inner_part_.find(part);
+  return found != body_of_inner_part_.end() ? found->second : body_of_point_[points[0]];
 }
 
 }  // namespace adamas

@@ -75,16 +75,15 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
   });
 }
 
-/// Who has values where: materials that a site or a neighbour holds, unless that is one material alone.
-void SiteValues::find_entries(const MultiMaterialData& data) {
-  const GridSites sites(data.grid);
+/// Numbers the materials by their names, and finds the sites that hold one alone.
+void SiteValues::find_sole_materials(const MultiMaterialData& data) {
   const std::size_t count = data.grid.site_count(), materials = data.materials.size();
-  sole_.resize(count);
   for (MaterialId m(0); m.value < materials; ++m.value) by_name_.push_back(m);
   std::stable_sort(by_name_.begin(), by_name_.end(),
                    [&](MaterialId a, MaterialId b) { return data.materials[a] < data.materials[b]; });
   std::vector<std::uint16_t> numbers(materials);
   for (std::size_t n = 0; n < materials; ++n) numbers[by_name_[n].value] = static_cast<std::uint16_t>(n);
+  sole_.resize(count);
   parallel_for(count, 1 << 14, [&](std::size_t site) {
     sole_[site] = static_cast<std::uint16_t>(materials);
     if (!data.labels.empty()) {
@@ -95,33 +94,45 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
       if (data.fractions[by_name_[n]][site] >= 1) sole_[site] = static_cast<std::uint16_t>(n);
     }
   });
-  const auto find = [&](std::size_t site, std::vector<std::uint16_t>& found) {
-    found.clear();
-    if (sole_[site] < materials) {
-      bool alone = true;
-      sites.for_each_neighbour(
-          site, [&](std::size_t other, int, int, int) { alone = alone && sole_[other] == sole_[site]; });
-      if (alone) return;
-    }
-    const auto add = [&](std::size_t m) {
-      const auto number = static_cast<std::uint16_t>(m);
-      if (std::find(found.begin(), found.end(), number) == found.end()) found.push_back(number);
-    };
-    const auto add_site = [&](std::size_t s) {
-      if (sole_[s] < materials) return add(sole_[s]);
-      for (std::size_t n = 0; n < materials; ++n) {
-        if (data.fractions[by_name_[n]][s] > 0) add(n);
-      }
-    };
-    add_site(site);
-    sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) { add_site(other); });
-    if (found.size() == 1 && sole_[site] < materials) found.clear();
-    std::sort(found.begin(), found.end());
+}
+
+/// The numbers of the materials that have a value at a site, ascending: those that the site or a neighbour
+/// holds, unless that is one material alone. Replaces `found`.
+void SiteValues::find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
+                                   std::vector<std::uint16_t>& found) const {
+  found.clear();
+  const std::size_t materials = by_name_.size();
+  if (sole_[site] < materials) {
+    bool alone = true;
+    sites.for_each_neighbour(
+        site, [&](std::size_t other, int, int, int) { alone = alone && sole_[other] == sole_[site]; });
+    if (alone) return;
+  }
+  const auto add = [&](std::size_t m) {
+    const auto number = static_cast<std::uint16_t>(m);
+    if (std::find(found.begin(), found.end(), number) == found.end()) found.push_back(number);
   };
+  const auto add_site = [&](std::size_t s) {
+    if (sole_[s] < materials) return add(sole_[s]);
+    for (std::size_t n = 0; n < materials; ++n) {
+      if (data.fractions[by_name_[n]][s] > 0) add(n);
+    }
+  };
+  add_site(site);
+  sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) { add_site(other); });
+  if (found.size() == 1 && sole_[site] < materials) found.clear();
+  std::sort(found.begin(), found.end());
+}
+
+/// Makes an entry for each material that has a value at a site, and lists the mixed sites.
+void SiteValues::find_entries(const MultiMaterialData& data) {
+  find_sole_materials(data);
+  const GridSites sites(data.grid);
+  const std::size_t count = data.grid.site_count();
   first_.assign(count + 1, 0);
   parallel_for(count, 4096, [&](std::size_t site) {
     thread_local std::vector<std::uint16_t> found;
-    find(site, found);
+    find_materials_at(data, sites, site, found);
     first_[site + 1] = static_cast<std::uint32_t>(found.size());
   });
   std::uint64_t total = 0;
@@ -130,13 +141,13 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
     if (total > 0xffffffffu)
       fail("{}: expected at most {} materials beside sites, found more", data.source, 0xffffffffu);
     first_[site + 1] = static_cast<std::uint32_t>(total);
-    if (sole_[site] == materials) mixed_.push_back(static_cast<std::uint32_t>(site));
+    if (sole_[site] == by_name_.size()) mixed_.push_back(static_cast<std::uint32_t>(site));
   }
   entries_.resize(total);
   parallel_for(count, 4096, [&](std::size_t site) {
     thread_local std::vector<std::uint16_t> found;
     if (first_[site] == first_[site + 1]) return;
-    find(site, found);
+    find_materials_at(data, sites, site, found);
     for (std::size_t n = 0; n < found.size(); ++n)
       entries_[first_[site] + n] = {0, data.fraction(by_name_[found[n]], site), found[n]};
   });

@@ -10,6 +10,7 @@
 
 namespace adamas {
 
+class GridSites;
 class SheetValues;
 struct ThinSheets;
 
@@ -75,6 +76,9 @@ class SiteValues {
 
  private:
   void set_distances(const MultiMaterialData& data);
+  void find_sole_materials(const MultiMaterialData& data);
+  void find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
+                         std::vector<std::uint16_t>& found) const;
   void find_entries(const MultiMaterialData& data);
   void split_at_sheets(const MultiMaterialData& data);
   void find_layers(const MultiMaterialData& data, const ThinSheets& sheets, const SheetValues& values);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "core/base/hash.h"
+
 namespace adamas {
 
 namespace {
@@ -11,9 +13,7 @@ using Corners = std::array<std::uint32_t, 3>;
 
 struct CornersHash {
   std::size_t operator()(const Corners& c) const {
-    std::uint64_t hash = c[0];
-    hash = hash * 0x9e3779b97f4a7c15u + c[1];
-    hash = hash * 0x9e3779b97f4a7c15u + c[2];
+    const std::uint64_t hash = fibonacci_hash(fibonacci_hash(c[0]) + c[1]) + c[2];
     return static_cast<std::size_t>(hash ^ (hash >> 29));
   }
 };

@@ -13,7 +13,7 @@
 #include "interfaces/simplification/patch_decimater.h"
 #include "interfaces/simplification/patch_improvement.h"
 #include "interfaces/simplification/surface_guard.h"
-#include "interfaces/simplification/triangle_contacts.h"
+#include "interfaces/network/triangle_contacts.h"
 
 namespace adamas {
 

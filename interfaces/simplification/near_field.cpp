@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/hash.h"
 #include "interfaces/network/triangle_distance.h"
 
 namespace adamas {
@@ -36,7 +37,7 @@ NearField::NearField(const ClosestPointTree& tree, double reach)
 
 std::size_t NearField::slot_of(std::uint64_t cube) const {
   const std::size_t mask = cubes_.size() - 1;
-  std::size_t slot = (cube * 0x9e3779b97f4a7c15ull >> 20) & mask;
+  std::size_t slot = (fibonacci_hash(cube) >> 20) & mask;
   while (cubes_[slot].cube != cube && cubes_[slot].cube != kNoCube) slot = (slot + 1) & mask;
   return slot;
 }

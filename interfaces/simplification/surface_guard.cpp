@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "interfaces/network/domain_faces.h"
+#include "interfaces/network/triangle_contacts.h"
 #include "interfaces/network/triangle_distance.h"
-#include "interfaces/simplification/triangle_contacts.h"
 
 namespace adamas {
 
@@ -61,7 +61,7 @@ SurfaceGuard::SurfaceGuard(std::vector<Vec3> points, std::vector<ClosestPointTre
   std::vector<Box3> boxes;
   boxes.reserve(faces_.size());
   for (std::uint32_t f = 0; f < faces_.size(); ++f) boxes.push_back(box_of(corners_now(f)));
-  boxes_ = ChangingBoxTree(boxes);
+  boxes_ = BoxTree(boxes);
   cover_edges();
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
+#include "interfaces/network/box_tree.h"
 #include "interfaces/network/closest_point_tree.h"
-#include "interfaces/simplification/changing_box_tree.h"
 #include "interfaces/simplification/near_field.h"
 
 namespace adamas {
@@ -101,7 +101,7 @@ class SurfaceGuard {
   std::vector<double> limit_parts_;
   std::vector<unsigned char> sides_;
   std::vector<char> moved_;
-  ChangingBoxTree boxes_;
+  BoxTree boxes_;
   /// Points of the original that each triangle is near, beside its corners: the surface may not leave them.
   std::vector<std::vector<std::uint32_t>> covered_;
   std::vector<std::vector<std::uint32_t>> covered_after_;  ///< by the last change that was allowed

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "interfaces/source/linear_fit.h"
 
@@ -162,7 +163,7 @@ void GridFieldSource::site_values(std::size_t field, MaterialId material, const 
   std::uint64_t key = material.value * fields_.size() + field;
   for (std::size_t a = 0; a < 3; ++a)
     key = key * static_cast<std::uint64_t>(sites(a) + 2) + static_cast<std::uint64_t>(site[a] + 1);
-  auto& shard = cache_->shards[(key * 0x9e3779b97f4a7c15ull) >> 58];
+  auto& shard = cache_->shards[fibonacci_slot(key, 6)];
   {
     const std::lock_guard lock(shard.mutex);
     if (const auto found = shard.rows.find(key); found != shard.rows.end()) {

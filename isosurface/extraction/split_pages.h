@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/arena.h"
+#include "core/base/stable_vector.h"
 #include "core/lattice/lattice_map.h"
 #include "isosurface/extraction/cut_of_page.h"
 #include "isosurface/extraction/diamond_stencil.h"
@@ -195,7 +195,7 @@ class SplitPages {
   StoredDiamonds<Sample>& diamonds_;
   const SplitLimits& limits_;
   std::vector<Lod> lods_;
-  Arena<PageMask> masks_;
+  StableVector<PageMask> masks_;
   typename StoredDiamonds<Sample>::Codes codes_;  ///< of the page that was looked into last
   PageId codes_of_{-1, {}};                       ///< by the LOD that was asked for, not by that of its page
   bool several_cuts_ = false;

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/lattice/mesh_laws.h"
-#include "core/refinement/forced_split.h"
+#include "core/refinement/forced_refinement.h"
 
 namespace adamas {
 

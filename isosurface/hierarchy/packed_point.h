@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstdint>
 
+#include "core/base/hash.h"
 #include "core/lattice/lattice_map.h"
 #include "core/lattice/lattice_point.h"
 
@@ -33,8 +34,7 @@ constexpr LatticePoint unpack(PackedPoint p, int shift) {
 
 /// A 64-bit hash; its high bits are good for points of every scale.
 constexpr std::uint64_t hash_value(PackedPoint p) {
-  const std::uint64_t h = p.word * 0x9e3779b97f4a7c15ull;
-  return (h ^ h >> 32) * 0xd6e8feb86659fd93ull;
+  return remix(fibonacci_hash(p.word));
 }
 
 template <>

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/base/arena.h"
+#include "core/base/stable_vector.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas {
@@ -78,7 +78,7 @@ class PageCache {
   /// Parts of pages, and those of them that have left.
   template <class Part>
   struct Parts {
-    Arena<Part> all;
+    StableVector<Part> all;
     std::vector<Part*> free;
   };
 

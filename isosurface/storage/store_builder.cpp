@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "isosurface/compression/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
@@ -209,8 +210,7 @@ class StoreBuilder {
   Codecs<Word> survey(const std::vector<std::uint64_t>& numbers) {
     std::vector<std::uint64_t> some;
     std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(some), [&](std::uint64_t number) {
-      constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15ull;
-      return numbers.size() <= kSurveyed || grid_.page(number).lod > 0 || number * kScatter >> 61 == 0;
+      return numbers.size() <= kSurveyed || grid_.page(number).lod > 0 || fibonacci_slot(number, 3) == 0;
     });
     const auto empty = [this] {
       return std::make_unique<Surveys<Word>>(coding(), ranks_, options_.gradients, volume_.spacing);

@@ -37,7 +37,8 @@ ExtractedSurface extract(const Inputs& inputs, const SurfaceRequest& request, bo
   StoreFile file(inputs.store);
   StoredPages<std::uint8_t> pages(file, 0, inputs.memory);
   ExtractedSurface found = SurfaceExtractor<std::uint8_t>(pages).extract(request);
-  if (normals && surface_normals<std::uint8_t>(pages, found.contour).normals.size() != found.contour.points.size())
+  if (normals &&
+      surface_normals<std::uint8_t>(pages, found.contour).normals.size() != found.contour.points.size())
     throw std::runtime_error("normals are missing");
   return found;
 }

@@ -18,8 +18,8 @@ TEST_F(Help, HelpAndCompletion) {
   write("completion.bash", script);
   const std::string check = "bash -n '" + (folder() / "completion.bash").string() + "'";
   EXPECT_EQ(std::system(check.c_str()), 0);
-  for (const std::string command :
-       {"info", "reconstruct", "resample", "select", "slice", "probe", "store", "restore", "verify", "isosurface"}) {
+  for (const std::string command : {"info", "reconstruct", "resample", "select", "slice", "probe", "store",
+                                    "restore", "verify", "isosurface"}) {
     EXPECT_NE(all.find("  " + command), std::string::npos);
     const std::string help = run_well({command, "--help"}).out;
     EXPECT_NE(help.find("Example:\n  adamas " + command), std::string::npos);
@@ -88,8 +88,8 @@ TEST_F(Help, TheManualKnowsEveryOption) {
 }
 
 TEST_F(Help, HelpFitsTheScreen) {
-  for (const std::string command : {"generate", "info", "reconstruct", "resample", "select", "slice", "probe", "store",
-                                    "restore", "verify", "isosurface"}) {
+  for (const std::string command : {"generate", "info", "reconstruct", "resample", "select", "slice", "probe",
+                                    "store", "restore", "verify", "isosurface"}) {
     const std::string help = run_well({command, "--help"}).out;
     std::istringstream lines(help);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;

@@ -37,6 +37,36 @@ TEST_F(WrongUsage, IsToldAsExpectedAndFound) {
   expect_wrong_usage({"info", "x.vtr", "--config", "none.toml"}, {"--config: expected a file", "none.toml"});
 }
 
+TEST_F(WrongUsage, MissingAndRepeatedValues) {
+  expect_wrong_usage({"store"}, {"expected INPUT, found none"});
+  expect_wrong_usage({"store", "v.nrrd"}, {"expected -o,--output FILE, found none"});
+  expect_wrong_usage({"store", "-o", "v.adm"}, {"expected INPUT, found none"});
+  expect_wrong_usage({"generate", "scene"}, {"expected NAME, found none"});
+  const std::string none = "--json: expected a value FILE, found none";
+  expect_wrong_usage({"info", "x.vtr", "--json"}, {none});
+  expect_wrong_usage({"info", "x.vtr", "--json="}, {none});
+  expect_wrong_usage({"info", "x.vtr", "--json", "a.json", "--json"}, {none});
+  expect_wrong_usage({"info", "x.vtr", "-c"}, {"--config: expected a value FILE, found none"});
+  expect_wrong_usage({"info", "x.vtr", "-qc"}, {"--config: expected a value FILE, found none"});
+  expect_wrong_usage({"slice", "x.vtr", "--field", "a", "--field"},
+                     {"--field: expected a value", "found none"});
+  expect_wrong_usage({"info", "x.vtr", "--json", "a.json", "-v", "--json", "b.json"},
+                     {"--json: expected one value, found 'a.json', 'b.json'"});
+}
+
+TEST_F(WrongUsage, FlagsWithValues) {
+  const std::string expected = "expected no value, or true or false, found ";
+  expect_wrong_usage({"info", "x.vtr", "--quiet=maybe"}, {"--quiet: " + expected + "'maybe'"});
+  expect_wrong_usage({"--version=maybe"}, {"--version: " + expected + "'maybe'"});
+  expect_wrong_usage({"info", "x.vtr", "--quiet", "--verbose=2x"}, {"--verbose: " + expected + "'2x'"});
+  write("c.toml", "quiet = perhaps\n");
+  expect_wrong_usage({"info", "x.vtr", "-c", "c.toml"}, {"--quiet: " + expected + "'perhaps'"});
+  make_scene("sphere", 4);
+  EXPECT_EQ(run_well({"info", "scene.vtr", "--quiet=true"}).out, "");
+  EXPECT_EQ(run_well({"info", "scene.vtr", "--quiet=on"}).out, "");
+  EXPECT_NE(run_well({"info", "scene.vtr", "--quiet=false"}).out, "");
+}
+
 TEST_F(WrongUsage, EmptyAndSwallowedValues) {
   for (const std::string option : {"-o", "--json", "--interfaces-out", "--labels"}) {
     expect_wrong_usage({"resample", "x.vtr", option, ""}, {"expected a value, found an empty one"});
@@ -173,7 +203,13 @@ TEST_F(WrongUsage, OutputNames) {
 
 TEST_F(WrongUsage, Configurations) {
   make_scene("sphere", 4);
-  expect_wrong_usage({"resample", "scene.vtr", "--config", "none.toml"}, {"none.toml"});
+  for (const std::string file : {"none.toml", "."}) {
+    expect_wrong_usage({"resample", "scene.vtr", "--config", file},
+                       {"--config: expected a file that can be read, found '" + file + "'"});
+  }
+  write("a.toml", "quiet = true\n");
+  expect_wrong_usage({"info", "scene.vtr", "--config", "a.toml", "--config", "none.toml"},
+                     {"--config: expected one value, found 'a.toml', 'none.toml'"});
   write("c.toml", "nonsense = 3\n");
   expect_wrong_usage({"resample", "scene.vtr", "--config", "c.toml"}, {"expected options", "'nonsense'"});
   write("c.toml", "[nonsense]\nghost = \"linear\"\n");

@@ -113,7 +113,7 @@ Extracted extract(const RandomLattice& lattice) {
     OwnershipProblem problem = lattice.problem(c);
     const std::array<Vec3, 4> x{lattice.position(c[0]), lattice.position(c[1]), lattice.position(c[2]),
                                 lattice.position(c[3])};
-    drop_hopeless(problem);
+    drop_dominated(problem);
     std::vector<OwnedTetrahedron> parts;
     partition_tetrahedron(problem, parts);
     const double volume = std::abs(signed_volume(x[0], x[1], x[2], x[3]));

@@ -114,7 +114,7 @@ TEST(Partition, PartsBelongToTheGreatestOfTheLeast) {
 TEST(Partition, OwnersOfPointsAreThoseOfBruteForce) {
   on_random_problems(3, 4000, [](const OwnershipProblem& problem, std::mt19937_64& random) {
     OwnershipProblem fewer = problem;
-    drop_hopeless(fewer);
+    drop_dominated(fewer);
     const OwnershipProblem other = test::shuffled(problem, random);
     for (int i = 0; i < 10; ++i) {
       Weights w = test::random_weights(random);
@@ -132,7 +132,7 @@ TEST(Partition, TheOrderOfCandidatesChangesNothing) {
     const OwnershipProblem other = test::shuffled(problem, random);
     auto mine = volumes(problem), its = volumes(other);
     OwnershipProblem fewer = problem;
-    drop_hopeless(fewer);
+    drop_dominated(fewer);
     auto left = volumes(fewer);
     for (const auto& candidate : problem.candidates) {
       ASSERT_NEAR(mine[candidate.owner], its[candidate.owner], 1e-13);

@@ -30,4 +30,7 @@ foreach(config IN LISTS configs)
   endif()
 endforeach()
 run(${SCRATCH}/prefix/bin/adamas --help)
+# The installed program finds the one that reads files for it.
+run(${SCRATCH}/prefix/bin/adamas generate scene sphere --dimensions 8 -o ${SCRATCH}/scene.vtr)
+run(${SCRATCH}/prefix/bin/adamas info ${SCRATCH}/scene.vtr)
 file(REMOVE_RECURSE ${SCRATCH})

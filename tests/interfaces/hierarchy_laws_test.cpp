@@ -5,8 +5,7 @@
 #include <random>
 #include <set>
 
-#include "core/refinement/forced_merge.h"
-#include "core/refinement/forced_split.h"
+#include "core/refinement/forced_refinement.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "tests/support/bisection_reference.h"
 

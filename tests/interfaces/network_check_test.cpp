@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "interfaces/network/check.h"
+#include "interfaces/network/triangle_contacts.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {

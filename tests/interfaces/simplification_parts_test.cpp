@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <random>
 
-#include "interfaces/simplification/changing_box_tree.h"
+#include "interfaces/network/triangle_contacts.h"
 #include "interfaces/simplification/near_field.h"
 #include "interfaces/simplification/openmesh_patches.h"
 #include "interfaces/simplification/patch_improvement.h"
 #include "interfaces/simplification/surface_guard.h"
-#include "interfaces/simplification/triangle_contacts.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
@@ -51,37 +50,6 @@ TEST(TriangleContacts, TetrahedraHoldWhatIsInsideOrOnThem) {
   EXPECT_TRUE(holds(tetrahedron, {0.5, 0.5, 0}));
   EXPECT_FALSE(holds(tetrahedron, {0.5, 0.5, 1e-12}));
   EXPECT_FALSE(holds({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}}, {0.5, 0.5, 0})) << "no volume";
-}
-
-TEST(ChangingBoxTree, FindsWhatLookingAtAllFinds) {
-  std::mt19937_64 random(3);
-  const auto random_box = [&random] {
-    Box3 box;
-    const Vec3 p = test::random_point(random, test::unit_box());
-    box.extend(p);
-    box.extend(p + 0.2 * test::random_point(random, test::unit_box()));
-    return box;
-  };
-  for (const std::size_t count : {0u, 1u, 2u, 3u, 17u, 200u}) {
-    std::vector<Box3> boxes(count);
-    for (Box3& box : boxes) box = random_box();
-    ChangingBoxTree tree(boxes);
-    for (int step = 0; step < 200; ++step) {
-      if (count > 0) {
-        const auto i = static_cast<std::uint32_t>(random() % count);
-        boxes[i] = step % 5 == 0 ? Box3{} : random_box();
-        tree.set(i, boxes[i]);
-      }
-      const Box3 query = random_box();
-      std::vector<std::uint32_t> expected, found;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        if (boxes[i].touches(query)) expected.push_back(i);
-      }
-      tree.for_each_touching(query, [&found](std::uint32_t i) { return found.push_back(i), true; });
-      std::sort(found.begin(), found.end());
-      ASSERT_EQ(found, expected);
-    }
-  }
 }
 
 /// What it takes as near is near at every sample; what is nearer than most of the limit it takes.

@@ -7,7 +7,7 @@
 #include "interfaces/network/check.h"
 #include "interfaces/network/junction_lines.h"
 #include "interfaces/network/network_measures.h"
-#include "interfaces/simplification/triangle_contacts.h"
+#include "interfaces/network/triangle_contacts.h"
 #include "tests/interfaces/simplification_scenes.h"
 #include "tests/support/closed_surface.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/utf8.h"
+#include "core/base/text.h"
 
 namespace adamas {
 namespace {

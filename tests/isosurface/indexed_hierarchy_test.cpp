@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/refinement/forced_merge.h"
-#include "core/refinement/forced_split.h"
+#include "core/refinement/forced_refinement.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "tests/support/bisection_reference.h"
 

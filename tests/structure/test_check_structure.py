@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Breaks each rule of check_structure.py in a small tree of its own and expects it to be found."""
+"""Breaks each rule of check_structure.py and check_licences.py in small files of its own and expects it to be found."""
 
 import os
 import sys
@@ -8,6 +8,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import check_licences  # noqa: E402
 from check_structure import breaches  # noqa: E402
 
 SOUND = {
@@ -85,6 +86,39 @@ class StructureTest(unittest.TestCase):
         self.expect({"core/base/a.cpp": "// as SPEC 2.1 says\n"}, "line 1 cites SPEC")
         self.expect({"core/base/a.cpp": "// SPECIAL, DESIGNS\n", "core/base/CMakeLists.txt": "install(TARGETS a)\n"}, None)
         self.expect({"interfaces/README.md": None}, "interfaces: has no README.md")
+
+
+class LicencesTest(unittest.TestCase):
+    def test_licences_of_headers(self):
+        strict = [
+            "// SPDX-License-Identifier: GPL-3.0-or-later OR LicenseRef-Commercial\n",
+            "/* SPDX-License-Identifier: AGPL-3.0-or-later */\n",
+            " * under the terms of the GNU General Public\n * License as published\n",
+            "# GNU Affero General Public License\n",
+        ]
+        free = [
+            "",
+            "// SPDX-License-Identifier: LGPL-3.0-or-later OR LicenseRef-Commercial\n",
+            "// SPDX-License-Identifier: GPL-2.0 OR BSD-3-Clause\n",
+            "/* SPDX-License-Identifier: GPL-2.0 WITH Linux-syscall-note */\n",
+            "// the GNU General Public License ... the GCC Runtime Library Exception\n",
+            "// the GNU Lesser General Public License\n",
+        ]
+        for text in strict:
+            self.assertIsNotNone(check_licences.strict_licence(text), text)
+        for text in free:
+            self.assertIsNone(check_licences.strict_licence(text), text)
+
+    def test_breaches(self):
+        with tempfile.TemporaryDirectory() as folder:
+            header = os.path.join(folder, "a.h")
+            with open(header, "w", encoding="utf-8") as file:
+                file.write("// SPDX-License-Identifier: GPL-3.0-or-later\n")
+            found = {"a/CMakeFiles/one.dir/a.cpp.o": ["own.h", header], "a/CMakeFiles/two.dir/a.cpp.o": [header]}
+            self.assertEqual(list(check_licences.breaches(found, ["three"])), [])
+            (breach,) = check_licences.breaches(found, ["one"])
+            self.assertIn(header, breach)
+            self.assertIn("one.dir", breach)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,210 @@
+#include "cli/data_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "cli/store_options.h"
+#include "core/io/file_summary.h"
+#include "core/io/input_file.h"
+#include "core/io/nifti_header.h"
+#include "isosurface/storage/sample_range.h"
+#include "isosurface/volume/samples.h"
+
+namespace adamas {
+
+namespace {
+
+Figures vector_figures(const Vec3& v) { return Figures{v.x, v.y, v.z}; }
+
+/// Sets the array's range to that of the finite samples.
+void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
+  std::vector<std::byte> plane(reader.grid().plane_bytes());
+  array.min = std::numeric_limits<double>::infinity();
+  array.max = -array.min;
+  const std::uint64_t planes = reader.grid().dimensions[2];
+  for (std::uint64_t k = 0; k < planes; ++k) {
+    progress.step("reading", static_cast<double>(k) / static_cast<double>(planes));
+    reader.read_plane(k, plane);
+    with_sample_type(reader.grid().type, [&](auto sample) {
+      for (std::size_t at = 0; at < plane.size(); at += sizeof(sample)) {
+        std::memcpy(&sample, plane.data() + at, sizeof(sample));
+        const auto value = static_cast<double>(sample);
+        if (!std::isfinite(value)) continue;
+        array.min = std::min(array.min, value);
+        array.max = std::max(array.max, value);
+      }
+    });
+  }
+}
+
+/// Prints the least and the greatest sample, which the store knows.
+void print_range(StoreFile& file, Console& console, Figures& figures) {
+  with_sample_type(file.header().grid.type, [&](auto sample) {
+    using Sample = decltype(sample);
+    StoredPages<OrderedWord<Sample>> pages(file, 0, 0);
+    const auto found = sample_range<Sample>(pages);
+    if (!found) return console.note_damage("{}: what tells the range of values is damaged", file.name());
+    const auto [low, high] = *found;
+    if (low > high) return;
+    console.print("  values from {:.6g} to {:.6g}\n", low, high);
+    figures["min"] = low;
+    figures["max"] = high;
+  });
+}
+
+}  // namespace
+
+void print_places(const VolumeGrid& grid, Console& console) {
+  console.print("  {}, spacing {:.6g}, {:.6g}, {:.6g}\n", box_text(grid.box()), grid.spacing.x,
+                grid.spacing.y, grid.spacing.z);
+  print_axes(grid, console);
+}
+
+void print_axes(const VolumeGrid& grid, Console& console) {
+  if (!grid.is_straight()) {
+    const auto& [i, j, k] = grid.directions;
+    console.print("  axes {}, {}, {}, first sample at {}{}\n", place_text(i), place_text(j), place_text(k),
+                  place_text(grid.origin), grid.is_left_handed() ? ", left-handed" : "");
+  }
+  if (!grid.space.empty()) console.print("  coordinates are {}\n", grid.space);
+}
+
+void add_places(const VolumeGrid& grid, Figures& figures) {
+  figures["box"] = box_figures(grid.box());
+  figures["spacing"] = vector_figures(grid.spacing);
+  figures["origin"] = vector_figures(grid.origin);
+  figures["directions"] = Figures::array();
+  for (const Vec3& direction : grid.directions) figures["directions"].push_back(vector_figures(direction));
+  figures["space"] = grid.space.empty() ? Figures(nullptr) : Figures(grid.space);
+}
+
+void print_grid(const FileSummary& s, Console& console, Figures& figures) {
+  if (s.nodes[0] > 0) {
+    figures["nodes"] = s.nodes;
+    console.print("  {} x {} x {} nodes\n", s.nodes[0], s.nodes[1], s.nodes[2]);
+  }
+  figures["points"] = s.points;
+  figures["cells"] = s.cells;
+  console.print("  {} points, {} cells\n", s.points, s.cells);
+  if (s.points > 0) {
+    figures["box"] = box_figures(s.box);
+    console.print("  {}\n", box_text(s.box));
+  }
+  VolumeGrid places;
+  places.directions = s.directions;
+  places.origin = s.origin;
+  places.space = s.space;
+  print_axes(places, console);
+  if (!places.is_straight() || !s.space.empty()) {
+    Figures all;
+    add_places(places, all);
+    figures["directions"] = all["directions"];
+    figures["space"] = all["space"];
+  }
+}
+
+void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
+  figures["arrays"] = Figures::array();
+  std::vector<std::vector<std::string>> rows{{"array", "on", "type", "components", "from", "to"}};
+  for (const ArraySummary& a : s.arrays) {
+    const bool ranged = a.min <= a.max;
+    figures["arrays"].push_back({{"name", a.name},
+                                 {"on", a.of},
+                                 {"type", a.type},
+                                 {"components", a.components},
+                                 {"min", ranged ? Figures(a.min) : Figures(nullptr)},
+                                 {"max", ranged ? Figures(a.max) : Figures(nullptr)}});
+    rows.push_back({a.name, a.of, a.type, std::to_string(a.components),
+                    ranged ? fmt::format("{:.6g}", a.min) : "-",
+                    ranged ? fmt::format("{:.6g}", a.max) : "-"});
+  }
+  if (rows.size() > 1) console.table(rows);
+}
+
+Figures print_volume(VolumeReader reader, const std::string& path, Session& session) {
+  const VolumeGrid& grid = reader.grid();
+  FileSummary summary;
+  summary.kind = file_extension(path).starts_with(".nii") ? "NIfTI" : "volume";
+  summary.points = summary.cells = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    summary.nodes[axis] = grid.dimensions[axis];
+    summary.points *= grid.dimensions[axis];
+    summary.cells *= grid.dimensions[axis] - 1;
+  }
+  summary.box = grid.box();
+  summary.directions = grid.directions;
+  summary.origin = grid.origin;
+  summary.space = grid.space;
+  summary.arrays.push_back({file_stem(path), stored_name(reader.source().stored), "points", 1, 0, 0});
+  set_range(reader, summary.arrays.front(), session.console);
+  Figures figures{{"file", path}, {"kind", summary.kind}};
+  session.console.print("{}: {}\n", path, summary.kind);
+  print_grid(summary, session.console, figures);
+  add_places(grid, figures);
+  print_arrays(summary, session.console, figures);
+  if (const std::string note = reader.note(); !note.empty()) session.console.note("{}", note);
+  return figures;
+}
+
+void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,
+                       Console& console) {
+  const auto text = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
+  const auto ratio = [uncompressed](std::uint64_t n) {
+    return n > 0 ? fmt::format("{:.2f}", static_cast<double>(uncompressed) / static_cast<double>(n)) : "-";
+  };
+  const std::uint64_t parts = bytes.samples + bytes.values + bytes.gradients;
+  const std::uint64_t others = file_bytes - std::min(parts, file_bytes);
+  console.table({{"", "bytes", "ratio"},
+                 {"uncompressed", text(uncompressed), ""},
+                 {"samples", text(bytes.samples), ratio(bytes.samples)},
+                 {"errors and ranges", text(bytes.values), ""},
+                 {"gradients", text(bytes.gradients), ""},
+                 {"directory and copies", text(others), ""},
+                 {"file", text(file_bytes), ratio(file_bytes)}});
+}
+
+Figures print_store(const std::string& path, Session& session) {
+  StoreInput input;
+  input.path = path;
+  const std::unique_ptr<StoreFile> file = open_store(input, session);
+  const StoreHeader& header = file->header();
+  const VolumeGrid& grid = header.grid;
+  const auto [nx, ny, nz] = grid.dimensions;
+  Console& console = session.console;
+  const std::uint64_t before = grid.bytes() * header.steps;
+  const int levels = file->grid().top() + 1;
+  const char* coding = header.coding == SampleCoding::kSplitEdge ? "split-edge"
+                       : header.coding == SampleCoding::kRanks   ? "interpolation of ranks"
+                                                                 : "interpolation";
+  console.print("{}: stored volume\n", path);
+  console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
+  print_places(grid, console);
+  Figures figures{{"file", path},
+                  {"kind", "store"},
+                  {"dimensions", grid.dimensions},
+                  {"type", sample_name(grid.type)},
+                  {"steps", header.steps},
+                  {"levels", levels},
+                  {"pages", file->grid().page_count()},
+                  {"coding", coding},
+                  {"subtree_depth", header.subtree_depth},
+                  {"gradients", header.gradients},
+                  {"bytes_input", before},
+                  {"bytes_data", header.bytes.samples},
+                  {"bytes_errors", header.bytes.values},
+                  {"bytes_gradients", header.bytes.gradients},
+                  {"bytes_file", file->size()}};
+  add_places(grid, figures);
+  print_range(*file, console, figures);
+  console.print("  levels 0 to {}, {} pages, coding {}, subtrees {}, {} gradients\n\n", levels - 1,
+                file->grid().page_count(), coding, header.subtree_depth,
+                header.gradients ? "with" : "without");
+  print_store_bytes(before, header.bytes, file->size(), console);
+  return figures;
+}
+
+}  // namespace adamas

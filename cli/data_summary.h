@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/figures.h"
+#include "core/data/volume.h"
+#include "core/io/file_summary.h"
+#include "core/io/volume_reader.h"
+#include "isosurface/storage/store_format.h"
+
+namespace adamas {
+
+// What is told of files, volumes and stores: printed on the console, and as figures for `--json`.
+
+/// A line on the box and the spacing of a volume, and those of print_axes.
+void print_places(const VolumeGrid& grid, Console& console);
+/// A line on the axes where they are not x, y and z in this order, and one on the space, where it has a name.
+void print_axes(const VolumeGrid& grid, Console& console);
+
+/// The same as figures: `box`, `spacing`, `origin` (of the first sample), `directions` (unit vectors of the
+/// axes), `space` (null where nothing says).
+void add_places(const VolumeGrid& grid, Figures& figures);
+
+/// Numbers of points and cells, the box, axes and space.
+void print_grid(const FileSummary& s, Console& console, Figures& figures);
+/// A line for each array.
+void print_arrays(const FileSummary& s, Console& console, Figures& figures);
+
+/// What is in a volume, which is read plane by plane.
+Figures print_volume(VolumeReader reader, const std::string& path, Session& session);
+
+/// A table of what the bytes of a store are.
+void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,
+                       Console& console);
+
+/// What a store is, as `info` tells it.
+Figures print_store(const std::string& path, Session& session);
+
+}  // namespace adamas

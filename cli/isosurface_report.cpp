@@ -1,0 +1,115 @@
+#include "cli/isosurface_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/store_options.h"
+#include "core/base/error.h"
+#include "core/picture/interface_picture.h"
+#include "core/picture/palette.h"
+
+namespace adamas {
+
+namespace {
+
+/// Says why there is no triangle. `range`: least and greatest sample; none are known where the first is
+/// greater.
+std::string reason_for_none(const SurfaceRequest& request, const std::array<double, 2>& range) {
+  if (range[0] > range[1]) return "no sample is a finite number";
+  if (request.isovalue <= range[0] || request.isovalue > range[1])
+    return fmt::format("samples are from {:.6g} to {:.6g}", range[0], range[1]);
+  if (request.max_triangles) return "so few triangles do not show it";
+  const std::string where = request.region ? "nothing of it is in the region" : "";
+  if (request.error == 0) return where;
+  return (where.empty() ? "" : where + ", or ") + "it is smaller than the error";
+}
+
+std::string damaged_pages(std::size_t count) {
+  return fmt::format("{} damaged page{}", count, count == 1 ? "" : "s");
+}
+
+/// The colour of a single surface, light so that shading shows its form.
+constexpr Colour kBone{0.93, 0.85, 0.71};
+
+}  // namespace
+
+void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurface& surface,
+                            const std::array<double, 2>& range) {
+  Console& console = session_.console;
+  tetrahedra_ += surface.tetrahedra;
+  diamonds_ += surface.diamonds;
+  max_error_ = std::max(max_error_, stretch_ * surface.max_error);
+  if (surface.contour.triangles.empty()) {
+    const std::string reason = reason_for_none(request, range);
+    console.note("no surface at isovalue {:.6g}{}{}", request.isovalue, reason.empty() ? "" : ": ", reason);
+  } else if (surface.max_error > request.error && surface.lost.empty() &&
+             (!request.max_triangles || request.error > 0)) {
+    console.note("the error wanted was not reached{}: {:.4g} instead of {:.4g}",
+                 request.max_triangles ? " with so few triangles" : "", stretch_ * surface.max_error,
+                 stretch_ * request.error);
+  }
+  if (!surface.lost.empty()) {
+    console.note_damage("{}: the surface at isovalue {:.6g} is coarser there",
+                        damaged_pages(surface.lost.size()), request.isovalue);
+  }
+}
+
+void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
+                                    const std::vector<PageId>& lost) {
+  std::size_t count = 0;
+  for (const PageId& page : lost) {
+    if (request.strict) fail("{} is damaged, on which normals depend", page_name(page));
+    // Pages without which the surface itself is coarser were told of before.
+    if (std::find(surface.lost.begin(), surface.lost.end(), page) == surface.lost.end()) ++count;
+  }
+  if (count == 0) return;
+  session_.console.note_damage("{}: normals of the surface at isovalue {:.6g} are less exact there",
+                               damaged_pages(count), request.isovalue);
+}
+
+void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts& counts) {
+  Console& console = session_.console;
+  const double seconds = console.seconds();
+  std::vector<std::vector<std::string>> rows{
+      {"triangles", std::to_string(surface.triangles.size())},
+      {"vertices", std::to_string(surface.points.size())},
+      {"tetrahedra", std::to_string(tetrahedra_)},
+      {"isosurface error", fmt::format("{:.4g}", max_error_)},
+      {"pages read", fmt::format("{}, and {} to predict them", counts.pages, counts.predictors)},
+      {"bytes read", bytes_text(static_cast<double>(counts.bytes))},
+      {"seconds", fmt::format("{:.2f}", seconds)}};
+  if (!space_.empty()) rows.push_back({"coordinates", space_});
+  console.table(rows);
+  Figures figures{{"triangles", surface.triangles.size()},
+                  {"vertices", surface.points.size()},
+                  {"tetrahedra", tetrahedra_},
+                  {"diamonds", diamonds_},
+                  {"max_isosurface_error", max_error_}};
+  if (!space_.empty()) figures["space"] = space_;
+  add_page_counts(counts, figures);
+  figures["seconds"] = seconds;
+  figures["peak_memory_bytes"] = peak_memory_bytes();
+  session_.outputs.write(session_.json, [&figures](const auto& path) { write_figures(path, figures); });
+}
+
+void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
+                              const std::vector<std::size_t>& ends, const std::vector<double>& isovalues,
+                              const Box3& domain, const PictureOptions& camera) {
+  InterfacePicture picture;
+  picture.domain = domain;
+  camera.aim(picture);
+  picture.triangles.reserve(surface.triangles.size());
+  for (std::size_t n = 0; n < ends.size(); ++n) {
+    const Colour colour = ends.size() > 1 ? material_colour(n) : kBone;
+    if (ends.size() > 1) picture.materials.push_back({fmt::format("{:.6g}", isovalues[n]), colour});
+    for (std::size_t t = picture.triangles.size(); t < ends[n]; ++t) {
+      const auto [a, b, c] = surface.triangles[t];
+      picture.triangles.push_back({{surface.points[a], surface.points[b], surface.points[c]}, colour});
+    }
+  }
+  write_interfaces(picture, path, camera.sizes());
+}
+
+}  // namespace adamas

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/surface_picture.h"
+#include "core/data/triangle_surface.h"
+#include "core/data/volume.h"
+#include "isosurface/extraction/surface_request.h"
+#include "isosurface/storage/stored_pages.h"
+
+namespace adamas {
+
+/// What is told of the surfaces of a run.
+class IsosurfaceFigures {
+ public:
+  /// Of a store with this grid.
+  IsosurfaceFigures(Session& session, const VolumeGrid& grid)
+      : session_(session), stretch_(grid.greatest_stretch()), space_(grid.space) {}
+
+  /// `range`: least and greatest sample of the store.
+  void add(const SurfaceRequest& request, const ExtractedSurface& surface,
+           const std::array<double, 2>& range);
+  /// `lost`: what the normals of the surface do without. Throws Error where the request is strict.
+  void add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
+                   const std::vector<PageId>& lost);
+  void report(const TriangleSurface& surface, const PageCounts& counts);
+
+ private:
+  Session& session_;
+  double stretch_;     ///< from errors in the grid's frame to those in space
+  std::string space_;  ///< of coordinates
+  std::uint64_t tetrahedra_ = 0, diamonds_ = 0;
+  double max_error_ = 0;
+};
+
+/// A picture of isosurfaces as a picture file. `isovalues[n]` is that of the triangles before `ends[n]`, from
+/// the one before it on; several have colours and a legend.
+void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
+                              const std::vector<std::size_t>& ends, const std::vector<double>& isovalues,
+                              const Box3& domain, const PictureOptions& camera);
+
+}  // namespace adamas

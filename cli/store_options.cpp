@@ -1,0 +1,48 @@
+#include "cli/store_options.h"
+
+#include <nlohmann/json.hpp>
+
+#include "cli/option_values.h"
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+
+namespace adamas {
+
+void add_store_input(const Command& command, StoreInput& input) {
+  command.add_option("input", input.path, "A store, from adamas store").required().type_name("FILE");
+  command.add_option("--memory", input.memory, "What decoded pages may take: bytes, or with K, M or G")
+      .type_name("SIZE")
+      .show_default()
+      .group("Paging");
+  command
+      .add_option("--paging", input.paging,
+                  "Pages are read one by one, or by a mapping of the file, which the system pages")
+      .one_of({"read", "map"})
+      .show_default()
+      .group("Paging");
+}
+
+std::size_t store_memory(const StoreInput& input) { return parse_size("--memory", input.memory); }
+
+std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session) {
+  session.outputs.protect(input.path);
+  try {
+    return std::make_unique<StoreFile>(input.path, input.paging == "map" ? Paging::kMap : Paging::kRead);
+  } catch (const Error& e) {
+    std::error_code code;
+    if (is_store(input.path) || !std::filesystem::is_regular_file(input.path, code)) throw;
+    fail("{}: adamas store makes one of a volume", e.what());
+  }
+}
+
+bool is_store(const std::string& path) { return file_extension(path) == ".adm"; }
+
+void add_page_counts(const PageCounts& counts, Figures& figures) {
+  figures["pages_read"] = counts.pages;
+  figures["pages_read_as_predictors"] = counts.predictors;
+  figures["bytes_read"] = counts.bytes;
+  figures["pages_from_copies"] = counts.copies;
+  figures["damaged_pages"] = counts.damaged;
+}
+
+}  // namespace adamas

@@ -1,0 +1,263 @@
+#include "cli/volume_options.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/option_values.h"
+#include "cli/usage_error.h"
+#include "core/base/error.h"
+#include "core/io/grid_axes.h"
+#include "core/io/input_file.h"
+#include "core/io/meta_image_fields.h"
+#include "core/io/nifti_header.h"
+#include "core/io/nrrd_header.h"
+#include "core/io/number_list.h"
+#include "core/io/volume_format.h"
+#include "core/io/volume_stack.h"
+#include "core/io/volume_writer.h"
+#include "core/io/xml_tags.h"
+#include "isosurface/volume/page_grid.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr StoredType kStoredTypes[] = {
+    StoredType::kUint8, StoredType::kInt8,   StoredType::kUint16, StoredType::kInt16,   StoredType::kUint32,
+    StoredType::kInt32, StoredType::kUint64, StoredType::kInt64,  StoredType::kFloat32, StoredType::kFloat64};
+
+std::vector<std::string> type_names() {
+  std::vector<std::string> names;
+  for (const StoredType type : kStoredTypes) names.emplace_back(stored_name(type));
+  return names;
+}
+
+Vec3 parse_spacing(const std::string& text) {
+  const Vec3 spacing = parse_vector("--spacing", text);
+  if (!(spacing.x > 0 && spacing.y > 0 && spacing.z > 0))
+    wrong_usage("--spacing: expected positive numbers, found '{}'", text);
+  return spacing;
+}
+
+RawVolume raw_volume(const VolumeInput& input) {
+  RawVolume raw;
+  const auto n = parse_dimensions("--dimensions", input.dimensions);
+  raw.dimensions = {n[0], n[1], n[2]};
+  if (input.type.empty()) wrong_usage("--dimensions: expected --type as well");
+  raw.type = *find_stored_type(input.type);
+  raw.big_endian = input.endian == "big";
+  if (!input.header_bytes.empty()) raw.header_bytes = parse_count("--header-bytes", input.header_bytes, 0);
+  return raw;
+}
+
+/// Throws UsageError where an option names an array, but files of this format have only one.
+void check_array(const VolumeInput& input) {
+  if (input.array.empty()) return;
+  const VolumeFormat format = find_volume_format(input.path);
+  if (format == VolumeFormat::kVti || format == VolumeFormat::kHdf5 || format == VolumeFormat::kOtherGrid)
+    return;
+  wrong_usage("--array: expected a file that may have several arrays, found {}", input.path);
+}
+
+}  // namespace
+
+std::string VolumeInput::option() const {
+  if (stack) return "--stack";
+  const std::pair<const char*, const std::string*> options[] = {
+      {"--array", &array},     {"--dimensions", &dimensions},     {"--type", &type},
+      {"--spacing", &spacing}, {"--first-sample", &origin},       {"--endian", &endian},
+      {"--time", &time},       {"--header-bytes", &header_bytes}, {"--scratch", &scratch}};
+  for (const auto& [name, text] : options) {
+    if (!text->empty()) return name;
+  }
+  return {};
+}
+
+VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
+  const Vec3 spacing = input.spacing.empty() ? Vec3{1, 1, 1} : parse_spacing(input.spacing);
+  const Vec3 origin = input.origin.empty() ? Vec3{} : parse_vector("--first-sample", input.origin);
+  const bool raw = !input.dimensions.empty();
+  const auto needs_raw = [&](const char* option, const std::string& text) {
+    if (!raw && !text.empty()) wrong_usage("{}: expected --dimensions as well", option);
+  };
+  needs_raw("--type", input.type);
+  needs_raw("--endian", input.endian);
+  needs_raw("--header-bytes", input.header_bytes);
+  if (!raw && !input.stack) {
+    if (!input.spacing.empty()) wrong_usage("--spacing: expected --dimensions or --stack as well");
+    if (!input.origin.empty()) wrong_usage("--first-sample: expected --dimensions or --stack as well");
+  }
+  if ((raw || input.stack) && !input.array.empty())
+    wrong_usage("--array: expected a file with several arrays, not {}", raw ? "--dimensions" : "--stack");
+  if ((raw || input.stack) && !input.time.empty())
+    wrong_usage("--time: expected a file with several times, not {}", raw ? "--dimensions" : "--stack");
+  if (raw && input.stack) wrong_usage("--stack and --dimensions: expected one of them");
+  session.outputs.protect(input.path);
+  session.outputs.protect_other(input.scratch);
+  if (raw) {
+    RawVolume volume = raw_volume(input);
+    volume.spacing = spacing;
+    volume.origin = origin;
+    return open_raw_volume(input.path, volume);
+  }
+  if (input.stack) {
+    const auto files = match_stack(input.path);
+    for (const auto& file : files) session.outputs.protect(file);
+    return open_volume_stack(files, spacing, origin, {{}, input.scratch, {}}, session.console);
+  }
+  check_array(input);
+  VolumeOptions options{input.array, input.scratch, {}};
+  if (!input.time.empty()) options.time = parse_count("--time", input.time, 0);
+  return open_volume(input.path, options, session.console);
+}
+
+bool has_one_array(const std::string& path) {
+  const std::string extension = file_extension(path);
+  const auto is = [&extension](std::initializer_list<const char*> list) {
+    return std::find(list.begin(), list.end(), extension) != list.end();
+  };
+  if (is({".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".h5", ".hdf5", ".he5"})) return true;
+  if (is({".nrrd", ".nhdr"})) return parse_nrrd_header(read_beginning(path), path).components == 1;
+  if (!is({".mha", ".mhd"})) return false;
+  const std::string channels =
+      parse_meta_image_fields(read_beginning(path), path).value("ElementNumberOfChannels");
+  return channels.empty() || channels == "1";
+}
+
+bool is_aslant_image(const std::string& path) {
+  if (file_extension(path) != ".vti") return false;
+  const std::string text = read_beginning(path);
+  XmlTags tags(text, path);
+  while (const auto tag = tags.next()) {
+    if (tag->name != "ImageData") continue;
+    const auto numbers = parse_number_list<double>(tag->value("Direction"));
+    if (!numbers || numbers->size() != 9) return false;
+    GridAxes axes;
+    for (std::size_t column = 0; column < 3; ++column)
+      axes.directions[column] = {(*numbers)[column], (*numbers)[3 + column], (*numbers)[6 + column]};
+    return !are_parallel(axes);
+  }
+  return false;
+}
+
+void check_two_samples(const std::string& name, const VolumeGrid& grid) {
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
+  }
+}
+
+void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
+  constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n > kMost) fail("{}: expected at most {} samples along each axis, found {}", name, kMost, n);
+  }
+}
+
+std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session) {
+  const std::string path = input.path, extension = file_extension(path);
+  const auto is = [&extension](const char* one) { return extension == one; };
+  volume.path = path;
+  if (!volume.option().empty() || is(".h5") || is(".hdf5") || is(".he5"))
+    return open_volume_input(volume, session);
+  if (!input.grid_option().empty()) return {};
+  const bool pair = is(".hdr") || is(".hdr.gz") || is(".img") || is(".img.gz");
+  // The names of pictures of high dynamic range end in .hdr too.
+  if (pair && !read_beginning(path).starts_with("#?")) return open_volume_input(volume, session);
+  if (!(is(".nii") || is(".nii.gz"))) return {};
+  // A file of colours is not a volume.
+  if (!NiftiHeader::parse(read_nifti_header(path), path).type()) return {};
+  return open_volume_input(volume, session);
+}
+
+void add_volume_input(const Command& command, VolumeInput& input) {
+  command
+      .add_option(
+          "input", input.path,
+          "The volume: .nrrd, .nhdr, .mha, .mhd, .vti, .vtr, .vtk, .nii, .nii.gz, .hdr, .h5, .tif, .png "
+          "or .slc; with --dimensions a raw file, with --stack a pattern")
+      .required()
+      .type_name("FILE");
+  add_volume_options(command, input, "--origin,--first-sample");
+}
+
+void add_volume_options(const Command& command, VolumeInput& input, const char* origin) {
+  command
+      .add_flag("--stack", input.stack,
+                "INPUT is a pattern of slices, as \"ct_*.tif\" (in quotes) or ct_%04d.png")
+      .group("Input");
+  command.add_option("--array", input.array, "Which array or data set of a file with several")
+      .type_name("NAME")
+      .group("Input");
+  command.add_option("--dimensions", input.dimensions, "Of a raw file: numbers of samples")
+      .type_name("X,Y,Z")
+      .group("Input");
+  command.add_option("--type", input.type, "Of a raw file: the type of samples")
+      .one_of(type_names())
+      .group("Input");
+  command.add_option("--endian", input.endian, "Of a raw file: the order of bytes (default little)")
+      .one_of({"little", "big"})
+      .group("Input");
+  command.add_option("--header-bytes", input.header_bytes, "Of a raw file: bytes to pass over (default 0)")
+      .type_name("N")
+      .group("Input");
+  command
+      .add_option("--spacing", input.spacing, "Between the samples of a raw file or a stack (default 1,1,1)")
+      .type_name("x,y,z")
+      .group("Input");
+  command
+      .add_option(origin, input.origin,
+                  "The place of the first sample of a raw file or a stack (default 0,0,0)")
+      .type_name("x,y,z")
+      .group("Input");
+  command
+      .add_option("--time", input.time, "Of a file with several times (NIfTI): the number of one, from 0 on")
+      .type_name("N")
+      .group("Input");
+  command
+      .add_option("--scratch", input.scratch,
+                  "Folder for scratch data, up to four times the volume's samples (default: that "
+                  "of the system, $TMPDIR or /tmp)")
+      .type_name("FOLDER");
+}
+
+void add_volume_output(const Command& command, std::string& output) {
+  command
+      .add_option(
+          "-o,--output", output,
+          "The volume: .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw alone")
+      .required()
+      .type_name("FILE");
+}
+
+void declare_volume_output(const std::string& output, OutputSet& outputs) {
+  outputs.declare("-o", output, {".vti", ".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".raw"});
+  outputs.declare("-o", volume_data_file(output).string());
+}
+
+std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
+                                const std::function<void(const PlaneSink&)>& make, Session& session) {
+  OutputSet& outputs = session.outputs;
+  VolumeWriterOptions options;
+  options.array = array;
+  const auto write = [&](const std::filesystem::path& path) {
+    VolumeWriter writer(path, grid, options);
+    make([&](std::span<const std::byte> samples) { writer.write_plane(samples); });
+    writer.finish();
+  };
+  if (const std::string lost = lost_places(output, grid); !lost.empty()) session.console.note("{}", lost);
+  const std::string data = volume_data_file(output).string();
+  if (data.empty()) {
+    outputs.write(output, write);
+    return outputs.bytes(output);
+  }
+  outputs.write(output, [&](const auto& path) {
+    outputs.write(data, [&](const auto& data_path) {
+      options.data_file = data_path;
+      options.data_name = std::filesystem::path(data).filename().string();
+      write(path);
+    });
+  });
+  return outputs.bytes(output) + outputs.bytes(data);
+}
+
+}  // namespace adamas

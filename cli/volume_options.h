@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/input_options.h"
+#include "core/data/volume.h"
+#include "core/io/volume_reader.h"
+
+namespace adamas {
+
+/// The options that say which volume is the input and, where the file does not, what it holds.
+struct VolumeInput {
+  std::string path;
+  bool stack = false;
+  std::string array, scratch;
+  std::string dimensions, type, spacing, origin, endian, header_bytes, time;
+
+  /// The first option given that only a volume can mean, for messages; empty where there is none.
+  [[nodiscard]] std::string option() const;
+};
+
+/// The input and its options.
+void add_volume_input(const Command& command, VolumeInput& input);
+/// The options alone. `origin`: the names of that for the first sample.
+void add_volume_options(const Command& command, VolumeInput& input, const char* origin);
+
+/// Opens it. Throws UsageError where options do not go together.
+VolumeReader open_volume_input(const VolumeInput& input, Session& session);
+
+/// The volume that a file is, if it is to be read as one: where the options say so, and where no other reader
+/// knows it or all that it may say of places.
+std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session);
+
+/// Whether a file is of a format that has nothing but the samples of one array, one number each; by its name
+/// and, of NRRD, its header.
+bool has_one_array(const std::string& path);
+
+/// Whether a .vti says that its axes are not parallel to x, y and z, so that it is no grid laid out along
+/// these.
+bool is_aslant_image(const std::string& path);
+
+/// Throws Error where a volume has more samples along an axis than pages can be made of.
+void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
+
+/// Throws Error where an axis has fewer than two samples: nothing lies between them.
+void check_two_samples(const std::string& name, const VolumeGrid& grid);
+
+/// The option -o of a command that makes a volume.
+void add_volume_output(const Command& command, std::string& output);
+
+/// Declares the file and, where its samples go to another, that one.
+void declare_volume_output(const std::string& output, OutputSet& outputs);
+
+/// Takes one plane after another.
+using PlaneSink = std::function<void(std::span<const std::byte>)>;
+
+/// Writes the declared files from the planes that `make(sink)` gives in ascending order; returns their bytes.
+std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
+                                const std::function<void(const PlaneSink&)>& make, Session& session);
+
+}  // namespace adamas

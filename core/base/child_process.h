@@ -1,0 +1,66 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/abrupt_end.h"
+
+namespace adamas {
+
+/// A program to start, and what it may use.
+struct ChildSetup {
+  std::filesystem::path program;
+  /// Begins the Error where no process can be made: "F.vtk: no process for its reader".
+  std::string complaint;
+  /// Open files that become its standard input, output and error. Of one that is -1, there is nothing to
+  /// read, and what is written to it is lost.
+  std::array<int, 3> streams{-1, -1, -1};
+  /// Whether it and what it starts are a process group, which is ended as a whole. A child that is none gets
+  /// the signals of the terminal, as this program does.
+  bool own_group = false;
+  std::size_t memory_bytes = 0;  ///< of address space; 0: no limit but that of this process
+  std::size_t file_bytes = 0;    ///< of any file that it writes; likewise
+  double cpu_seconds = 0;        ///< likewise
+  unsigned alarm_seconds = 0;    ///< until it gets SIGALRM; 0: never
+};
+
+/// A program that runs apart from this one, which may have any number of threads. It has no open files but
+/// its streams, leaves no core, and is ended with this object, or with the thread that made it.
+class ChildProcess {
+ public:
+  /// The status with which a child exits whose program could not be started, as shells have it.
+  static constexpr int kNotStarted = 127;
+
+  /// Throws Error where no process can be made.
+  explicit ChildProcess(const ChildSetup& setup);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Whether it has ended, without waiting.
+  [[nodiscard]] bool has_ended();
+  /// Waits for its end. Returns how it ended, as waitpid tells it.
+  int wait();
+
+ private:
+  bool wait(int how);
+
+  pid_t child_ = 0;
+  bool own_group_;
+  std::optional<EndedAtAbruptEnd> at_abrupt_end_;
+  int status_ = 0;
+  bool ended_ = false;
+};
+
+/// Finds a program that is installed with this library: where the environment variable says, beside the
+/// running program, in ../libexec of that, or where this library was to be installed when it was configured.
+/// Throws Error where there is none.
+std::filesystem::path find_own_program(const std::string& name, const std::string& variable);
+
+}  // namespace adamas

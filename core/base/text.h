@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace adamas {
+
+/// A text without the blanks that it begins and ends with; `blanks` are what counts as such.
+inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r") {
+  const auto first = text.find_first_not_of(blanks), last = text.find_last_not_of(blanks);
+  return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
+}
+
+/// Length in bytes of the character of UTF-8 at the start of the text (RFC 3629: no overlong forms,
+/// surrogates or code points beyond the last); 0 where there is none.
+std::size_t utf8_length(std::string_view text);
+
+/// Text of files and of names of files as a terminal may have it: control characters, bytes that are no UTF-8
+/// and characters that turn the direction of writing or end a line appear as \x1b and \u202e, all else as it
+/// is.
+std::string visible_text(std::string_view text);
+
+}  // namespace adamas

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace adamas {
+
+/// The longest frame, in bytes.
+inline constexpr std::size_t kFrameBytes = std::size_t{1} << 20;
+
+/// Where a stream of bytes ends before its data are whole.
+struct TruncatedStream {};
+
+/// Writes values to a pipe or file in frames, so that its reader sees whether all of them came. Throws Error
+/// where they cannot be written.
+class ByteSink {
+ public:
+  explicit ByteSink(int descriptor) : descriptor_(descriptor) {}
+  ByteSink(const ByteSink&) = delete;
+  ByteSink& operator=(const ByteSink&) = delete;
+
+  void write(const void* data, std::size_t size);
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void put(const T& value) { write(&value, sizeof(T)); }
+  void put(const std::string& text);
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void put(const std::vector<T>& values) {
+    put(static_cast<std::uint64_t>(values.size()));
+    write(values.data(), values.size() * sizeof(T));
+  }
+  /// Ends the stream: whole, or with an error for its reader to throw.
+  void finish();
+  void finish_with_error(const std::string& message);
+
+ private:
+  void flush();
+  void send(char kind, const void* data, std::size_t size);
+
+  int descriptor_;
+  std::vector<char> buffer_;
+};
+
+/// The other end: throws Error where the writer reported one, and TruncatedStream where it stopped before its
+/// data were whole. Nothing that comes through is trusted: counts are bounded by what does arrive.
+class ByteSource {
+ public:
+  explicit ByteSource(int descriptor) : descriptor_(descriptor) {}
+  ByteSource(const ByteSource&) = delete;
+  ByteSource& operator=(const ByteSource&) = delete;
+
+  void read(void* data, std::size_t size);
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  [[nodiscard]] T get() {
+    T value;
+    read(&value, sizeof(T));
+    return value;
+  }
+  [[nodiscard]] std::string get_string();
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  [[nodiscard]] std::vector<T> get_vector() {
+    constexpr std::size_t kStep = std::size_t{1} << 22;
+    const auto count = static_cast<std::size_t>(get<std::uint64_t>());
+    std::vector<T> values;
+    if (count <= kStep * 64) values.reserve(count);
+    while (values.size() < count) {
+      const std::size_t old = values.size();
+      values.resize(count - old < kStep ? count : old + kStep);
+      read(values.data() + old, (values.size() - old) * sizeof(T));
+    }
+    return values;
+  }
+  /// Waits for the end of the stream.
+  void expect_end();
+
+ private:
+  /// False at the stream's proper end.
+  bool next_frame();
+
+  int descriptor_;
+  std::vector<char> frame_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace adamas

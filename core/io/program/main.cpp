@@ -1,0 +1,8 @@
+// adamas-reader: runs readers of libraries that may crash on corrupt files, for read_in_child.
+
+#include <unistd.h>
+
+#include "core/io/reader_program.h"
+
+/// No destructors of libraries are run, which may fail on what they have of a corrupt file.
+int main() { ::_exit(adamas::run_reader_program()); }

@@ -1,0 +1,187 @@
+#include "core/io/reader_program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include "core/base/child_process.h"
+#include "core/base/error.h"
+#include "core/base/stopping_signals.h"
+#include "core/base/unnamed_file.h"
+
+namespace adamas {
+
+namespace {
+
+/// Sanitizers map more address space than there is memory.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+#else
+constexpr bool kSanitized = false;
+#endif
+
+/// A program of another version may send other things.
+const std::string kVersion = ADAMAS_VERSION;
+
+void send(const ReaderRequest& request, ByteSink& sink) {
+  sink.put(kVersion);
+  sink.put(request.reader);
+  sink.put(request.name);
+  sink.put(request.input_bytes);
+  sink.put(static_cast<std::uint64_t>(request.paths.size()));
+  for (const std::string& path : request.paths) sink.put(path);
+  sink.put(request.array);
+  sink.put(request.spacing);
+  sink.put(request.origin);
+  sink.finish();
+}
+
+ReaderRequest receive(ByteSource& source) {
+  const std::string version = source.get_string();
+  if (version != kVersion) {
+    fail("expected the program adamas-reader of version {}, found that of {}", version, kVersion);
+  }
+  ReaderRequest request;
+  request.reader = source.get<LibraryReader>();
+  request.name = source.get_string();
+  request.input_bytes = source.get<std::uint64_t>();
+  const auto paths = source.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < paths; ++i) request.paths.push_back(source.get_string());
+  request.array = source.get_string();
+  request.spacing = source.get<Vec3>();
+  request.origin = source.get<Vec3>();
+  source.expect_end();
+  return request;
+}
+
+void run_reader(const ReaderRequest& request, ByteSink& sink) {
+  switch (request.reader) {
+    case LibraryReader::kGrid:
+      return send_grid(request, sink);
+    case LibraryReader::kMesh:
+      return send_mesh(request, sink);
+    case LibraryReader::kPolygons:
+      return send_polygons(request, sink);
+    case LibraryReader::kGridVolume:
+      return send_grid_volume(request, sink);
+    case LibraryReader::kHdf5Volume:
+      return send_hdf5_volume(request, sink);
+    case LibraryReader::kStackVolume:
+      return send_stack_volume(request, sink);
+  }
+  fail("{}: expected a reader, found none of that number", request.name);
+}
+
+ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out) {
+  ChildSetup setup;
+  setup.program = find_own_program("adamas-reader", "ADAMAS_READER_PROGRAM");
+  setup.complaint = request.name + ": no process for its reader";
+  setup.streams = {in.descriptor(), out, -1};
+  if (!kSanitized) {
+    setup.memory_bytes = static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) *
+                         static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  }
+  setup.alarm_seconds =
+      static_cast<unsigned>(std::min<std::uint64_t>(20 + request.input_bytes / 1'000'000, 86'400));
+  return setup;
+}
+
+[[noreturn]] void fail_stopped(const std::string& name, int status) {
+  if (WIFSIGNALED(status)) {
+    const int number = WTERMSIG(status);
+    const auto& stopping = kStoppingSignals;
+    if (std::find(stopping.begin(), stopping.end(), number) != stopping.end()) throw Cancelled();
+    if (number == SIGALRM) fail("{}: expected a readable file, found none within the time limit", name);
+    fail("{}: expected a readable file, found a corrupt one (its reader ended by signal {}, {})", name,
+         number, ::strsignal(number));
+  }
+  if (WEXITSTATUS(status) == ChildProcess::kNotStarted) {
+    fail("{}: its reader, the program adamas-reader, could not be started", name);
+  }
+  fail("{}: expected a readable file, found a corrupt one (its reader ended with status {})", name,
+       WEXITSTATUS(status));
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int number() const { return number_; }
+  void close() {
+    if (number_ >= 0) ::close(std::exchange(number_, -1));
+  }
+
+ private:
+  int number_;
+};
+
+}  // namespace
+
+void read_in_child(const ReaderRequest& request, const std::function<void(ByteSource&)>& consume) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    fail("{}: no pipe for its reader: {}", request.name, std::strerror(errno));
+  const Descriptor output(ends[0]);
+  Descriptor input(ends[1]);
+  ::fcntl(input.number(), F_SETPIPE_SZ, static_cast<int>(kFrameBytes));
+  const MemoryFile question("adamas-request");
+  ByteSink sink(question.descriptor());
+  send(request, sink);
+  ::lseek(question.descriptor(), 0, SEEK_SET);
+  ChildProcess child(setup_of(request, question, input.number()));
+  input.close();
+  try {
+    ByteSource source(output.number());
+    consume(source);
+    source.expect_end();
+  } catch (const TruncatedStream&) {
+    fail_stopped(request.name, child.wait());
+  }
+}
+
+int run_reader_program() {
+  // What libraries print must not get among what is sent.
+  ByteSink sink(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3));
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
+  ReaderRequest request;
+  std::string failure;
+  try {
+    ByteSource source(STDIN_FILENO);
+    request = receive(source);
+    run_reader(request, sink);
+    sink.finish();
+    return 0;
+  } catch (const TruncatedStream&) {
+    std::fputs("adamas-reader: expected a request of adamas, found something else\n", stderr);
+    return 1;
+  } catch (const Error& error) {
+    failure = error.what();
+  } catch (const std::bad_alloc&) {
+    failure = request.name + ": expected data that fit into memory, found more";
+  } catch (const std::exception& error) {
+    failure = request.name + ": could not be read: " + error.what();
+  } catch (...) {
+    failure = request.name + ": could not be read";
+  }
+  sink.finish_with_error(failure);
+  return 0;
+}
+
+}  // namespace adamas

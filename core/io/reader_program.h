@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "core/io/framed_bytes.h"
+
+namespace adamas {
+
+/// The readers that use libraries which may crash on corrupt files. They run in a process of their own, that
+/// of the program adamas-reader.
+enum class LibraryReader : std::uint8_t {
+  kGrid,         ///< a grid file by VTK or libtiff
+  kMesh,         ///< .vtu or .vtp by VTK
+  kPolygons,     ///< a surface by CGAL
+  kGridVolume,   ///< a volume on a grid by VTK
+  kHdf5Volume,   ///< a volume by HDF5
+  kStackVolume,  ///< pictures, one plane each, by libtiff and libpng
+};
+
+/// What a reader is asked for.
+struct ReaderRequest {
+  LibraryReader reader = LibraryReader::kGrid;
+  std::string name{};                ///< begins messages
+  std::uint64_t input_bytes = 0;     ///< of all files: more of them may take longer
+  std::vector<std::string> paths{};  ///< the one file, or those of a stack
+  std::string array{};               ///< of a volume: the name of one, or empty
+  Vec3 spacing{1, 1, 1}, origin{};   ///< of a stack
+};
+
+/// Has adamas-reader run the reader, with its memory and time limited, and calls `consume` here on what it
+/// sends, while it sends it. What goes wrong there, a crash of a library included, is thrown here as an Error
+/// that begins with the request's name; Cancelled where a signal that asks programs to end has ended it.
+/// Throws Error where the program is not found (find_own_program; the variable is ADAMAS_READER_PROGRAM).
+void read_in_child(const ReaderRequest& request, const std::function<void(ByteSource&)>& consume);
+
+/// The main function of adamas-reader: takes a request from standard input and sends what the reader finds to
+/// standard output. Returns the program's status.
+int run_reader_program();
+
+/// The readers, which run there; each lies beside the function that takes what it sends.
+void send_grid(const ReaderRequest& request, ByteSink& sink);
+void send_mesh(const ReaderRequest& request, ByteSink& sink);
+void send_polygons(const ReaderRequest& request, ByteSink& sink);
+void send_grid_volume(const ReaderRequest& request, ByteSink& sink);
+void send_hdf5_volume(const ReaderRequest& request, ByteSink& sink);
+void send_stack_volume(const ReaderRequest& request, ByteSink& sink);
+
+}  // namespace adamas

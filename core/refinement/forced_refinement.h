@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/base/assert.h"
+#include "core/lattice/diamond.h"
+#include "core/lattice/domain.h"
+
+namespace adamas {
+
+/// Calls `split_one(point)` for the diamond at `point` and all its ancestors that are not split yet, parents
+/// first, so that each is complete when its turn comes (D 2). A hierarchy offers `domain()` and
+/// `is_split(point)`, which must be true once `split_one(point)` has returned.
+template <class Hierarchy, class SplitOne>
+void forced_split(const Hierarchy& hierarchy, LatticePoint point, SplitOne&& split_one) {
+  // A chain of ancestors has three diamonds a level; each leaves at most three other parents behind.
+  std::array<LatticePoint, static_cast<std::size_t>(3 * kRootBits * 3 + 2)> pending;
+  std::size_t count = 0;
+  pending[count++] = point;
+  while (count > 0) {
+    const LatticePoint p = pending[count - 1];
+    if (hierarchy.is_split(p)) {
+      --count;
+      continue;
+    }
+    const Diamond diamond(p);
+    const std::size_t before = count;
+    for (int c = 0; c < diamond.parent_count(); ++c) {
+      const LatticePoint parent = diamond.parent(c);
+      if (!hierarchy.domain().contains(parent) || hierarchy.is_split(parent)) continue;
+      ADAMAS_ASSERT(count < pending.size());
+      pending[count++] = parent;
+    }
+    if (count == before) {
+      split_one(p);
+      --count;
+    }
+  }
+}
+
+/// Whether the diamond at `point` is split and none of its children is.
+template <class Hierarchy>
+[[nodiscard]] bool is_mergeable(const Hierarchy& hierarchy, LatticePoint point) {
+  if (!hierarchy.is_split(point)) return false;
+  for (const LatticePoint child : Diamond(point).children(hierarchy.domain())) {
+    if (hierarchy.is_split(child)) return false;
+  }
+  return true;
+}
+
+/// Calls `merge_one(point)` for the diamond at `point` and all its descendants that are split, children
+/// first. A hierarchy offers `domain()` and `is_split(point)`, which must be false once `merge_one(point)`
+/// has returned.
+template <class Hierarchy, class MergeOne>
+void forced_merge(const Hierarchy& hierarchy, LatticePoint point, MergeOne&& merge_one) {
+  // A chain of descendants has three diamonds a level; each leaves at most seven other children behind.
+  std::array<LatticePoint, static_cast<std::size_t>(3 * kRootBits * 7 + 2)> pending;
+  std::size_t count = 0;
+  pending[count++] = point;
+  while (count > 0) {
+    const LatticePoint p = pending[count - 1];
+    if (!hierarchy.is_split(p)) {
+      --count;
+      continue;
+    }
+    const std::size_t before = count;
+    for (const LatticePoint child : Diamond(p).children(hierarchy.domain())) {
+      if (!hierarchy.is_split(child)) continue;
+      ADAMAS_ASSERT(count < pending.size());
+      pending[count++] = child;
+    }
+    if (count == before) {
+      merge_one(p);
+      --count;
+    }
+  }
+}
+
+}  // namespace adamas

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace adamas {
+
+/// A point of a plane by two coordinates, and a line between two of them.
+using PlanePoint = std::array<double, 2>;
+using PlaneSegment = std::array<PlanePoint, 2>;
+
+/// What is bounded by two segments and by two lines along the second axis; a triangle where the segments
+/// meet.
+struct Trapezoid {
+  std::vector<PlanePoint> corners;  ///< three or four, counter-clockwise
+  /// The mean of the corners, which lies inside.
+  [[nodiscard]] PlanePoint middle() const;
+};
+
+/// The trapezoidal decomposition of what lies between segments (de Berg et al., Computational Geometry,
+/// chapter 6): the bounded faces, each cut along the second axis above and below every end and every crossing
+/// of segments. The segments may cross, touch, and lie on each other in any way; numbers must be finite.
+/// Which trapezoids there are, and what bounds them, is exact; the corners are rounded. Parts without a width
+/// are left out.
+std::vector<Trapezoid> trapezoidal_decomposition(std::span<const PlaneSegment> segments);
+
+}  // namespace adamas

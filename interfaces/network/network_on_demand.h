@@ -1,0 +1,34 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "core/base/typed_id.h"
+#include "interfaces/network/body_winding.h"
+#include "interfaces/network/interface_network.h"
+#include "interfaces/network/vertex_tree.h"
+
+namespace adamas {
+
+/// What a network builds when it is needed for the first time.
+struct InterfaceNetwork::OnDemand {
+  /// A vertex as a corner of one of its triangles.
+  struct Corner {
+    std::uint32_t triangle;
+    TriangleFeature feature;
+  };
+  /// For distances to the nearest vertex of an interface.
+  struct Vertices {
+    std::vector<Corner> corners;  ///< of the vertex of each index in the tree
+    VertexTree tree;
+  };
+  std::once_flag vertices_built;
+  IdVector<InterfaceId, Vertices> vertices;
+
+  /// Winding numbers, for networks with gaps.
+  std::once_flag winding_built;
+  std::optional<BodyWinding> winding;
+};
+
+}  // namespace adamas
