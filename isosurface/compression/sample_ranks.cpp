@@ -7,7 +7,6 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "isosurface/compression/bit_stream.h"
-#include "isosurface/compression/elias_codes.h"
 #include "isosurface/compression/page_order.h"
 #include "isosurface/compression/wide_lanes.h"
 
