@@ -119,4 +119,78 @@ class BitReader {
   int missing_ = 0;  ///< bytes that were asked for beyond the end
 };
 
+/// Reads bits from the front of bytes in memory that kSlack readable bytes follow, which are zeros. Bits
+/// beyond the end are zeros; how many were taken tells whether that happened.
+class BitCursor {
+ public:
+  static constexpr std::size_t kSlack = 8;
+  static constexpr int kMost = 57;  ///< bits that can be taken at once
+
+  BitCursor(const std::byte* begin, std::size_t size) : begin_(begin), size_(size) {}
+
+  [[nodiscard]] std::uint64_t take(int count) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, next(), sizeof bits);
+    bits = little_endian(bits) >> taken_ % 8 & ((std::uint64_t{1} << count) - 1);
+    taken_ += static_cast<std::size_t>(count);
+    return bits;
+  }
+  void skip(std::size_t count) { taken_ += count; }
+
+  [[nodiscard]] std::size_t taken() const { return taken_; }
+  /// The byte that the next bit lies in, or the zeros after the end; and how many bytes there are from there
+  /// to the end.
+  [[nodiscard]] const std::byte* next() const { return begin_ + std::min(taken_ / 8, size_); }
+  [[nodiscard]] std::size_t left() const { return size_ - std::min(taken_ / 8, size_); }
+
+  /// The end of the bytes of which bits were taken; null unless all bits there that were not are zeros.
+  [[nodiscard]] const std::byte* end() const {
+    const std::size_t bytes = (taken_ + 7) / 8;
+    if (bytes > size_) return nullptr;
+    if (taken_ % 8 != 0 && std::to_integer<unsigned>(begin_[bytes - 1]) >> taken_ % 8 != 0) return nullptr;
+    return begin_ + bytes;
+  }
+
+ private:
+  const std::byte* begin_;
+  std::size_t size_;
+  std::size_t taken_ = 0;
+};
+
+// Elias codes of numbers from 1 on (P. Elias, "Universal codeword sets and representations of the integers",
+// IEEE Trans. Inf. Theory 21(2), 1975).
+
+/// A number of 1 to 2^16 - 1 in twice as many bits as it has, less one.
+inline void put_gamma(BitWriter& out, std::uint32_t value) {
+  const auto bits = static_cast<int>(std::bit_width(value));
+  out.put(1u << (bits - 1), bits);
+  out.put(value & ((1u << (bits - 1)) - 1), bits - 1);
+}
+
+/// 0 where there is no such number.
+inline std::uint32_t take_gamma(BitReader& in) {
+  in.refill();
+  const int bits = std::countr_zero(in.window() | 1u << 16) + 1;
+  if (bits > 16) return 0;
+  in.skip(bits);
+  return 1u << (bits - 1) | static_cast<std::uint32_t>(in.take(bits - 1));
+}
+
+/// A number below 2^kMostDeltaBits by a gamma code of how many bits it has, and all but the first of these.
+inline constexpr int kMostDeltaBits = 56;
+
+inline void put_delta(BitWriter& out, std::uint64_t value) {
+  const auto bits = static_cast<int>(std::bit_width(value));
+  put_gamma(out, static_cast<std::uint32_t>(bits));
+  out.put(value & ((std::uint64_t{1} << (bits - 1)) - 1), bits - 1);
+}
+
+/// 0 where there is no such number.
+inline std::uint64_t take_delta(BitReader& in) {
+  const std::uint32_t bits = take_gamma(in);
+  if (bits == 0 || bits > kMostDeltaBits) return 0;
+  in.refill();
+  return std::uint64_t{1} << (bits - 1) | in.take(static_cast<int>(bits) - 1);
+}
+
 }  // namespace adamas

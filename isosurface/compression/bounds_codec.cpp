@@ -14,10 +14,18 @@ namespace adamas {
 namespace {
 
 // A page is a byte of modes, errors lowest; the code of all errors where that is their mode; and where
-// something is coded the length of the symbols' bytes in two bytes, these, and the bits that symbols leave
-// open.
+// something is coded the bytes of a RansEncoder, in which the bits that a stage's symbols leave open come
+// after its escaped symbols.
 constexpr int kRangeModeAt = 2;
-constexpr std::size_t kLengthBytes = 2;
+/// Fewer than samples have: pages have few coded symbols, and each state takes about two bytes of a page.
+constexpr std::size_t kStates = 4;
+
+/// The tables of symbols in these contexts, from `base` on.
+void find_tables(const ContextTables& all, std::size_t base, std::span<const std::uint8_t> contexts,
+                 std::uint8_t* tables) {
+  const std::uint8_t* const of_contexts = all.of_contexts().data() + base;
+  for (std::size_t n = 0; n < contexts.size(); ++n) tables[n] = of_contexts[contexts[n]];
+}
 
 std::byte head(ErrorMode errors, RangeMode ranges) {
   return static_cast<std::byte>(static_cast<int>(errors) | static_cast<int>(ranges) << kRangeModeAt);
@@ -27,15 +35,14 @@ std::byte head(ErrorMode errors, RangeMode ranges) {
 template <class Word>
 class BoundsReader {
  public:
-  BoundsReader(const ContextCoder& coder, std::span<const std::byte> symbols,
-               std::span<const std::byte> extras, const PageShape& shape, ErrorMode error_mode,
-               RangeMode range_mode, BoundsFields<Word>& fields)
+  BoundsReader(const ContextTables& contexts, const RansTables& tables, std::span<const std::byte> bytes,
+               const PageShape& shape, ErrorMode error_mode, RangeMode range_mode, BoundsFields<Word>& fields)
       : shape_(shape),
         error_mode_(error_mode),
         range_mode_(range_mode),
         fields_(fields),
-        decoder_(coder, symbols),
-        extras_(extras) {}
+        contexts_(contexts),
+        decoder_(tables, bytes) {}
 
   [[nodiscard]] bool needs_errors() const { return is_coded(error_mode_); }
   [[nodiscard]] bool needs_ranges() const { return range_mode_ != RangeMode::kEmpty; }
@@ -89,7 +96,7 @@ class BoundsReader {
   /// Whether the page is one that is coded so.
   [[nodiscard]] bool finish() {
     const bool coded = is_coded(error_mode_) || is_coded(range_mode_);
-    if (!good_ || (coded && (!decoder_.finish() || !extras_.at_end()))) return false;
+    if (!good_ || (coded && !decoder_.at_end())) return false;
     summary_.add_errors(shape_, fields_);
     if (needs_ranges()) summary_.add_ranges(shape_, fields_);
     return summary_.error_mode() == error_mode_ && summary_.range_mode() == range_mode_;
@@ -100,7 +107,11 @@ class BoundsReader {
   static_assert(Token::kPredicted == 0);
 
   void decode(const BoundsStage& stage) {
-    decoder_.decode(stage.base, {stage.contexts.data(), stage.size}, {symbols_.data(), stage.size});
+    std::array<std::uint8_t, BoundsStage::kMost> tables;
+    find_tables(contexts_, stage.base, {stage.contexts.data(), stage.size}, tables.data());
+    if (decoder_.take({tables.data(), stage.size}, symbols_.data())) return;
+    good_ = false;
+    symbols_.fill(0);
   }
 
   /// Where determined points are coded: whether any of them is not as expected.
@@ -175,14 +186,11 @@ class BoundsReader {
         cells[count++] =
             static_cast<std::uint16_t>(first + static_cast<std::size_t>(std::countr_zero(open)) / 8);
     });
-    constexpr std::size_t kBetweenRefills = sizeof(Word) < 4 ? 4 / sizeof(Word) : 1;
-    static_assert(kBetweenRefills * Token::kBits <= BitReader::kRefilled);
     const Word* const known = fields_.known[side].data();
     const Word* const limits = fields_.limits[side].data();
-    BitReader extras = extras_;
+    BitCursor extras = decoder_.bits();
     bool good = true;
     for (std::size_t n = 0; n < count; ++n) {
-      if (n % kBetweenRefills == 0) extras.refill();
       const std::size_t cell = cells[n];
       const std::uint8_t symbol = symbols[cell];
       const Far far = kFar[std::min(symbol, Token::kBehind)];
@@ -194,7 +202,7 @@ class BoundsReader {
       good &= symbol <= Token::kBehind && value != limits[cell] && (value > predicted) == behind;
       ranges[cell] = value;
     }
-    extras_ = extras;
+    decoder_.bits() = extras;
     good_ = good_ && good;
   }
 
@@ -215,8 +223,8 @@ class BoundsReader {
   ErrorMode error_mode_;
   RangeMode range_mode_;
   BoundsFields<Word>& fields_;
-  ContextDecoder decoder_;
-  BitReader extras_;
+  const ContextTables& contexts_;
+  RansDecoder<kStates> decoder_;
   BoundsSummary summary_;
   bool good_ = true;
   std::array<std::uint8_t, BoundsStage::kMost + BoundsStage::kSlack> symbols_;
@@ -242,7 +250,7 @@ template <class Word>
 std::vector<std::byte> BoundsCodec<Word>::tables() const {
   std::vector<std::byte> bytes;
   BitWriter out(bytes);
-  coder_.write(out);
+  contexts_.write(out);
   out.finish();
   return bytes;
 }
@@ -251,10 +259,10 @@ template <class Word>
 BoundsCodec<Word> BoundsCodec<Word>::parse(std::span<const std::byte> tables, const Vec3& spacing,
                                            std::string_view name) {
   BitReader in(tables);
-  ContextCoder coder =
-      ContextCoder::read(in, BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols, name);
+  ContextTables contexts =
+      ContextTables::read(in, BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols, name);
   if (!in.at_end()) fail("{}: expected the end after the tables of bounds, found more data", name);
-  return BoundsCodec(OwnErrorGeometry(spacing), std::move(coder));
+  return BoundsCodec(OwnErrorGeometry(spacing), std::move(contexts));
 }
 
 template <class Word>
@@ -266,17 +274,14 @@ void BoundsCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>&
   out.push_back(head(errors, ranges));
   if (errors == ErrorMode::kEqual) out.push_back(static_cast<std::byte>(symbols.summary().any_error));
   if (!is_coded(errors) && !is_coded(ranges)) return;
-  ContextEncoder encoder(coder_);
-  for (const auto& stage : symbols.stages()) encoder.put(stage.base, stage.contexts, stage.symbols);
-  const std::size_t at = out.size();
-  out.resize(at + kLengthBytes);
+  RansEncoder<kStates> encoder(tables_, 0);
+  std::array<std::uint8_t, BoundsStage::kMost> tables;
+  for (const auto& stage : symbols.stages()) {
+    find_tables(contexts_, stage.base, stage.contexts, tables.data());
+    encoder.put(std::span(tables).first(stage.symbols.size()), stage.symbols);
+    for (const auto& [bits, count] : stage.extras) encoder.put_bits(bits, count);
+  }
   encoder.finish(out);
-  const std::size_t length = out.size() - at - kLengthBytes;
-  out[at] = static_cast<std::byte>(length & 0xff);
-  out[at + 1] = static_cast<std::byte>(length >> 8);
-  BitWriter extras(out);
-  for (const auto& [bits, count] : symbols.extras()) extras.put(bits, count);
-  extras.finish();
 }
 
 template <class Word>
@@ -298,20 +303,11 @@ bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape
     bytes = bytes.subspan(1);
   }
   const bool coded = is_coded(errors) || is_coded(ranges);
-  std::size_t length = 0;
-  if (coded) {
-    if (bytes.size() < kLengthBytes) return false;
-    length = std::to_integer<std::size_t>(bytes[0]) | std::to_integer<std::size_t>(bytes[1]) << 8;
-    bytes = bytes.subspan(kLengthBytes);
-    if (bytes.size() < length) return false;
-  } else if (!bytes.empty()) {
-    return false;
-  }
+  if (!coded && !bytes.empty()) return false;
   BoundsFields<Word> fields;
   fields.load(shape, around, samples);
   if (!is_coded(errors)) fields.fill_errors(shape, error);
-  BoundsReader<Word> reader(coder_, bytes.first(length), bytes.subspan(length), shape, errors, ranges,
-                            fields);
+  BoundsReader<Word> reader(contexts_, tables_, bytes, shape, errors, ranges, fields);
   if (shape.complete) {
     walk_complete_bounds<Word>(fields, shape, reader);
   } else {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
-#include "isosurface/compression/context_coder.h"
+#include "isosurface/compression/rans_coder.h"
 #include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/volume/page.h"
 
@@ -41,7 +41,7 @@ template <class Word>
 class BoundsCodec {
  public:
   explicit BoundsCodec(const BoundsSurvey<Word>& survey)
-      : geometry_(survey.geometry()), coder_(survey.counts()) {}
+      : BoundsCodec(survey.geometry(), ContextTables(survey.counts())) {}
 
   /// From which `parse` makes the codec again; the same bytes for equal surveys.
   [[nodiscard]] std::vector<std::byte> tables() const;
@@ -62,11 +62,12 @@ class BoundsCodec {
                             PageBounds<Word>& bounds) const;
 
  private:
-  BoundsCodec(const OwnErrorGeometry& geometry, ContextCoder coder)
-      : geometry_(geometry), coder_(std::move(coder)) {}
+  BoundsCodec(const OwnErrorGeometry& geometry, ContextTables contexts)
+      : geometry_(geometry), contexts_(std::move(contexts)), tables_(contexts_) {}
 
   OwnErrorGeometry geometry_;
-  ContextCoder coder_;
+  ContextTables contexts_;
+  RansTables tables_;
 };
 
 }  // namespace adamas

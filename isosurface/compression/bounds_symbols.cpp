@@ -57,7 +57,6 @@ void BoundsSymbols<Word>::collect(const OwnErrorGeometry& geometry, Omissions om
   summary_.any_other = false;
   stages_.clear();
   range_stages_.clear();
-  extras_.clear();
   if (shape_.complete) {
     walk_complete_bounds<Word>(*fields_, shape_, *this);
   } else {
@@ -110,7 +109,7 @@ void BoundsSymbols<Word>::range(std::size_t side, const BoundsStage& stage) {
     const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->limits[side][cell]);
     summary_.any_other = summary_.any_other || token.symbol != RangeToken<Word>::kPredicted;
     const int count = RangeToken<Word>::extra_bits(token.symbol);
-    if (count > 0) extras_.push_back({token.extra, count});
+    if (count > 0) stages_.back().extras.push_back({token.extra, count});
     return token.symbol;
   });
   summary_.any_determined_range_other |= other;
@@ -120,7 +119,6 @@ void BoundsSymbols<Word>::range(std::size_t side, const BoundsStage& stage) {
 template <class Word>
 void BoundsSymbols<Word>::leave_out_what_modes_tell() {
   const bool errors = is_coded(summary_.error_mode()), ranges = is_coded(summary_.range_mode());
-  if (!ranges) extras_.clear();
   std::size_t next_range = 0;
   for (std::size_t n = 0; n < stages_.size(); ++n) {
     const bool is_range = next_range < range_stages_.size() && range_stages_[next_range] == n;

@@ -60,20 +60,19 @@ class BoundsSymbols {
   BoundsSymbols(const OwnErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
                 const Page<Word>& page);
 
-  struct Stage {
-    std::size_t base = 0;  ///< to which contexts are added
-    std::vector<std::uint8_t> contexts, symbols;
-  };
   struct Extra {
     std::uint32_t bits;
     int count;
+  };
+  struct Stage {
+    std::size_t base = 0;  ///< to which contexts are added
+    std::vector<std::uint8_t> contexts, symbols;
+    std::vector<Extra> extras;  ///< the bits that symbols leave open, in their order
   };
 
   [[nodiscard]] const BoundsSummary& summary() const { return summary_; }
   /// Those to be coded, by stages.
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
-  /// The bits that symbols leave open, in their order.
-  [[nodiscard]] const std::vector<Extra>& extras() const { return extras_; }
 
   // For walk_bounds.
   [[nodiscard]] static bool needs_errors() { return true; }
@@ -95,7 +94,6 @@ class BoundsSymbols {
   BoundsSummary summary_;
   std::vector<Stage> stages_;
   std::vector<std::size_t> range_stages_;  ///< which of them
-  std::vector<Extra> extras_;
 };
 
 }  // namespace adamas

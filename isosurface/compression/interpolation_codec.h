@@ -6,21 +6,18 @@
 #include <vector>
 
 #include "isosurface/compression/activity_context.h"
-#include "isosurface/compression/context_groups.h"
+#include "isosurface/compression/context_tables.h"
 #include "isosurface/compression/interpolation_cells.h"
-#include "isosurface/compression/range_coder.h"
-#include "isosurface/compression/residual_reader.h"
+#include "isosurface/compression/residual_tokens.h"
 #include "isosurface/compression/sample_codec.h"
 
 namespace adamas {
 
-/// SampleCoding::kInterpolation. A page is predicted in the sets of InterpolationPrediction; the activity
-/// round a point and its set are the context of its residual, all of a set known before any of its residuals.
-/// Tokens are coded by RangeTables, with the contexts and frequencies of the whole file; what tokens leave
-/// open are plain bits. A complete page is predicted as in SplitEdgeCodec, and has a context of its own.
-///
-/// Bytes: the kind; the states, 4 bits for the length of each and the bits below its leading 1; the plain
-/// bits; zeros up to a whole byte; words of 16 bits, which are read from the last to the first.
+/// SampleCoding::kInterpolation. A page is predicted in the sets of InterpolationPrediction. The activity
+/// round a point and its set are the context of its residual; all activities of a set are known before any of
+/// its residuals. A ResidualWriter codes the residuals set by set, with the tables of the whole file, after a
+/// byte with the page's kind. A complete page is predicted as in SplitEdgeCodec, and has one context of its
+/// own.
 template <class Depth>
 class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
  public:
@@ -31,7 +28,7 @@ class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
   static constexpr std::size_t kComplete = InterpolationCells<Depth>::kSets * kContextsOfSet;
   static constexpr std::size_t kContexts = kComplete + 1;
 
-  explicit InterpolationCodec(ContextGroups groups);
+  explicit InterpolationCodec(ContextTables contexts);
   /// Throws Error, which begins with `name`.
   static InterpolationCodec parse(std::span<const std::byte> tables, std::string_view name);
 
@@ -44,18 +41,15 @@ class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
  private:
   using Reader = ResidualReader<Word>;
 
-  /// The group of an activity of the set.
-  [[nodiscard]] auto group_of(int set) const;
+  /// What gives the table of an activity of the set.
+  [[nodiscard]] auto table_of(int set) const;
   bool decode_smooth(const PageShape& shape, const Around& around, Samples& samples) const;
   bool decode_sets(Reader& reader, const PageShape& shape, const Around& around, Samples& samples) const;
   bool decode_complete(Reader& reader, const PageShape& shape, Samples& samples) const;
-  /// Appends the code of residuals, of which point n is in groups[n].
-  void write(std::span<const std::uint8_t> groups, std::span<const Word> folded,
-             std::vector<std::byte>& out) const;
 
-  ContextGroups groups_;
-  RangeTables tables_;
-  std::vector<std::uint8_t> group_of_activity_;  ///< by set, where they have a table
+  ContextTables contexts_;
+  RansTables tables_;
+  std::vector<std::uint8_t> table_of_activity_;  ///< by set, where activities are few enough
 };
 
 template <class Depth>
@@ -71,7 +65,7 @@ class InterpolationSurvey final : public SampleSurvey<typename Depth::Word> {
   [[nodiscard]] std::unique_ptr<SampleCodec<Word>> codec() const override;
 
  private:
-  ContextTallies counts_;
+  ContextCounts counts_;
 };
 
 }  // namespace adamas

@@ -9,7 +9,7 @@
 #include "isosurface/compression/activity_context.h"
 #include "isosurface/compression/interpolation_cells.h"
 #include "isosurface/compression/interpolation_prediction.h"
-#include "isosurface/compression/residual_token.h"
+#include "isosurface/compression/residual_tokens.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas {

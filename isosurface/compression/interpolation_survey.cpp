@@ -11,14 +11,13 @@ namespace adamas {
 
 template <class Depth>
 InterpolationSurvey<Depth>::InterpolationSurvey()
-    : counts_(InterpolationCodec<Depth>::kContexts,
-              std::vector<std::uint64_t>(static_cast<std::size_t>(ResidualToken<Word>::kTokens), 0)) {}
+    : counts_(InterpolationCodec<Depth>::kContexts, ResidualToken<Word>::kTokens) {}
 
 template <class Depth>
 void InterpolationSurvey<Depth>::add(const PageShape& shape, const Around& around, const Samples& samples) {
   using Token = ResidualToken<Word>;
   const auto count = [this](std::size_t context, Word folded) {
-    ++counts_[context][static_cast<std::size_t>(Token::token(folded))];
+    counts_.add(context, static_cast<std::size_t>(Token::token(folded)));
   };
   if (shape.complete) {
     for_each_own_point(shape, [&](LatticePoint q, std::uint64_t) {
@@ -49,15 +48,12 @@ template <class Depth>
 void InterpolationSurvey<Depth>::merge(const SampleSurvey<Word>& other) {
   const auto* same = dynamic_cast<const InterpolationSurvey*>(&other);
   ADAMAS_ASSERT(same != nullptr);
-  for (std::size_t context = 0; context < counts_.size(); ++context) {
-    for (std::size_t s = 0; s < counts_[context].size(); ++s)
-      counts_[context][s] += same->counts_[context][s];
-  }
+  counts_.merge(same->counts_);
 }
 
 template <class Depth>
 std::unique_ptr<SampleCodec<typename Depth::Word>> InterpolationSurvey<Depth>::codec() const {
-  return std::make_unique<InterpolationCodec<Depth>>(ContextGroups(counts_, ResidualToken<Word>::kTokenBits));
+  return std::make_unique<InterpolationCodec<Depth>>(ContextTables(counts_));
 }
 
 template class InterpolationSurvey<Depth8>;

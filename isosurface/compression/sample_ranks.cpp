@@ -8,7 +8,6 @@
 #include "core/base/error.h"
 #include "core/base/simd.h"
 #include "isosurface/compression/bit_stream.h"
-#include "isosurface/compression/elias_codes.h"
 #include "isosurface/compression/page_order.h"
 
 namespace adamas {

@@ -89,7 +89,7 @@ inline constexpr int kCopiedLod = 2;
 /// What a file begins with; everything else is found from here.
 struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   std::uint64_t root_offset = 0, root_size = 0;
 
