@@ -25,6 +25,9 @@ namespace adamas {
 /// Computing with several numbers at a time, by the vector extension that g++ and clang share: where the
 /// processor has no vectors of a length, the compiler makes the same of shorter ones or of single numbers.
 /// Each number comes out as if it were computed with alone, so that no result depends on the length.
+///
+/// Highway (1.0.3) was tried in its place. It made a kernel of floats as fast and one of bytes 1.3 times as
+/// fast, which is less than 2% of decoding a page, and such files took from 4 to 15 times as long to compile.
 
 /// For tests: while it is set, vectors have 16 bytes on every processor.
 inline std::atomic<bool> only_short_vectors{false};
