@@ -1,13 +1,12 @@
 #include "interfaces/network/closest_point_tree.h"
 
-#include <emmintrin.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/simd.h"
 #include "interfaces/network/closest_point_tree_builder.h"
 
 namespace adamas {
@@ -22,23 +21,25 @@ float round_down(double x) {
   return static_cast<double>(f) > x ? std::nextafter(f, -kFloatInfinity) : f;
 }
 
+using Lanes = Simd<float, 16>;
+
 /// Squared distances between the boxes of a node's children and a box round a point, and a bit for each child
 /// that is within the bound.
 template <class Node, std::size_t kWidth>
-unsigned children_within(const Node& node, const __m128 (&low)[3], const __m128 (&high)[3], float bound,
-                         float (&distances)[kWidth]) {
-  const __m128 zero = _mm_setzero_ps();
+unsigned children_within(const Node& node, const Lanes::Numbers (&low)[3], const Lanes::Numbers (&high)[3],
+                         float bound, float (&distances)[kWidth]) {
+  using Numbers = Lanes::Numbers;
   unsigned hits = 0;
-  for (std::size_t half = 0; half < kWidth; half += 4) {
-    __m128 sum = zero;
+  for (std::size_t half = 0; half < kWidth; half += Lanes::kCount) {
+    Numbers sum{};
     for (int axis = 0; axis < 3; ++axis) {
-      const __m128 under = _mm_sub_ps(_mm_load_ps(node.lower[axis] + half), high[axis]);
-      const __m128 over = _mm_sub_ps(low[axis], _mm_load_ps(node.upper[axis] + half));
-      const __m128 gap = _mm_max_ps(_mm_max_ps(under, over), zero);
-      sum = _mm_add_ps(sum, _mm_mul_ps(gap, gap));
+      const Numbers under = Lanes::load(node.lower[axis] + half) - high[axis];
+      const Numbers over = low[axis] - Lanes::load(node.upper[axis] + half);
+      const Numbers gap = Lanes::greater(Lanes::greater(under, over), Numbers{});
+      sum += gap * gap;
     }
-    _mm_store_ps(distances + half, sum);
-    hits |= static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(sum, _mm_set1_ps(bound)))) << half;
+    Lanes::store(sum, distances + half);
+    hits |= bits_not_greater(sum, Numbers{} + bound) << half;
   }
   return hits;
 }
@@ -84,10 +85,10 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
   if (nodes_.empty() || !(max_distance >= 0)) return std::nullopt;
   const Vec3 local = to_tree(q);
   if (!std::isfinite(local.x) || !std::isfinite(local.y) || !std::isfinite(local.z)) return std::nullopt;
-  __m128 low[3], high[3];
+  Lanes::Numbers low[3], high[3];
   for (int axis = 0; axis < 3; ++axis) {
-    low[axis] = _mm_set1_ps(round_down(local[axis]));
-    high[axis] = _mm_set1_ps(-round_down(-local[axis]));
+    low[axis] = Lanes::Numbers{} + round_down(local[axis]);
+    high[axis] = Lanes::Numbers{} - round_down(-local[axis]);
   }
 
   ClosestPoint best;

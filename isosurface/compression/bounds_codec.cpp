@@ -6,9 +6,9 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/base/simd.h"
 #include "isosurface/compression/bit_stream.h"
 #include "isosurface/compression/bounds_symbols.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {
@@ -33,7 +33,7 @@ std::byte head(ErrorMode errors, RangeMode ranges) {
   return static_cast<std::byte>(static_cast<int>(errors) | static_cast<int>(ranges) << kRangeModeAt);
 }
 
-/// The decoder's part of walk_values.
+/// The decoder's part of walk_bounds.
 template <class Word>
 class BoundsReader {
  public:
@@ -52,7 +52,7 @@ class BoundsReader {
   void errors(const BoundsStage& stage) {
     decode(stage);
     if (error_mode_ == ErrorMode::kCoded)
-      summary_.any_sure_error_other |= any_sure_symbol(stage, ErrorStages<Word>::kSure);
+      summary_.any_determined_error_other |= any_determined_symbol(stage, ErrorStages<Word>::kDetermined);
     const auto parity = static_cast<std::size_t>(stage.parity);
     const std::uint8_t* const predicted = fields_.predicted[parity].data();
     std::uint8_t* const errors = fields_.errors[parity].data();
@@ -75,8 +75,8 @@ class BoundsReader {
       decode(stage);
     }
     if (range_mode_ == RangeMode::kCoded)
-      summary_.any_sure_range_other |= any_sure_symbol(stage, RangeStages<Word>::kSure);
-    Word* const values = fields_.values[side][static_cast<std::size_t>(stage.parity)].data();
+      summary_.any_determined_range_other |= any_determined_symbol(stage, RangeStages<Word>::kDetermined);
+    Word* const ranges = fields_.ranges[side][static_cast<std::size_t>(stage.parity)].data();
     with_wide_lanes([&](auto bytes) {
       ParityCells<std::uint8_t> symbols{};
       ParityCells<Word> words;
@@ -87,11 +87,11 @@ class BoundsReader {
       });
       summary_.any_other |= all != 0;
       bool any_open = false;
-      good_ = good_ && put_near<bytes()>(symbols, fields_.known[side], fields_.bounds[side], words, any_open);
+      good_ = good_ && put_near<bytes()>(symbols, fields_.known[side], fields_.limits[side], words, any_open);
       stage.box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
-        std::copy_n(words.data() + cell, static_cast<int>(count), values + cell);
+        std::copy_n(words.data() + cell, static_cast<int>(count), ranges + cell);
       });
-      if (any_open) put_far(stage.box, symbols, side, values);
+      if (any_open) put_far(stage.box, symbols, side, ranges);
     });
   }
 
@@ -116,10 +116,11 @@ class BoundsReader {
     symbols_.fill(0);
   }
 
-  /// Where points that are sure are coded: whether any of them is not as expected.
-  bool any_sure_symbol(const BoundsStage& stage, std::uint8_t sure_context) const {
+  /// Where determined points are coded: whether any of them is not as expected.
+  bool any_determined_symbol(const BoundsStage& stage, std::uint8_t determined_context) const {
     unsigned any = 0;
-    for (std::size_t n = 0; n < stage.size; ++n) any |= stage.contexts[n] == sure_context ? symbols_[n] : 0u;
+    for (std::size_t n = 0; n < stage.size; ++n)
+      any |= stage.contexts[n] == determined_context ? symbols_[n] : 0u;
     return any != 0;
   }
 
@@ -141,9 +142,9 @@ class BoundsReader {
   template <std::size_t Bytes>
   [[gnu::always_inline]] static inline bool put_near(const ParityCells<std::uint8_t>& symbols,
                                                      const ParityCells<Word>& known,
-                                                     const ParityCells<Word>& bounds,
+                                                     const ParityCells<Word>& limits,
                                                      ParityCells<Word>& words, bool& any_open) {
-    using Lanes = WideLanes<Word, Bytes>;
+    using Lanes = Simd<Word, Bytes>;
     using Numbers = typename Lanes::Numbers;
     using Symbols [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
     Numbers bad{}, greatest{};
@@ -151,15 +152,15 @@ class BoundsReader {
       Symbols row;
       std::memcpy(&row, symbols.data() + n, sizeof row);
       const Numbers symbol = __builtin_convertvector(row, Numbers);
-      const Numbers predicted = Lanes::load(known.data() + n), bound = Lanes::load(bounds.data() + n);
+      const Numbers predicted = Lanes::load(known.data() + n), limit = Lanes::load(limits.data() + n);
       const Numbers distance = symbol < Token::kFirst ? Numbers{} : symbol - (Token::kFirst - 1);
       const Numbers before = predicted - distance;
-      Lanes::store(symbol == Token::kBound ? bound : before, words.data() + n);
+      Lanes::store(symbol == Token::kLimit ? limit : before, words.data() + n);
       // Else another token would stand for the word.
-      const Numbers wrong = symbol == Token::kBound  ? (bound == predicted ? ~Numbers{} : Numbers{})
+      const Numbers wrong = symbol == Token::kLimit  ? (limit == predicted ? ~Numbers{} : Numbers{})
                             : symbol < Token::kFirst ? Numbers{}
                                                      : (before > predicted ? ~Numbers{} : Numbers{}) |
-                                                           (before == bound ? ~Numbers{} : Numbers{});
+                                                           (before == limit ? ~Numbers{} : Numbers{});
       bad |= symbol < Token::kFirstOpen ? wrong : Numbers{};
       greatest = Lanes::greater(greatest, symbol);
     }
@@ -179,7 +180,7 @@ class BoundsReader {
 
   /// The words for these.
   void put_far(const ParityBox& box, const ParityCells<std::uint8_t>& symbols, std::size_t side,
-               Word* values) {
+               Word* ranges) {
     std::array<std::uint16_t, BoundsStage::kMost> cells;
     std::size_t count = 0;
     box.for_each_row([&](std::size_t first, std::size_t, int) {
@@ -188,7 +189,7 @@ class BoundsReader {
             static_cast<std::uint16_t>(first + static_cast<std::size_t>(std::countr_zero(open)) / 8);
     });
     const Word* const known = fields_.known[side].data();
-    const Word* const bounds = fields_.bounds[side].data();
+    const Word* const limits = fields_.limits[side].data();
     BitCursor extras = decoder_.bits();
     bool good = true;
     for (std::size_t n = 0; n < count; ++n) {
@@ -200,8 +201,8 @@ class BoundsReader {
       const bool behind = symbol == Token::kBehind;
       const auto value = static_cast<Word>(behind ? extra : predicted - (far.lead | extra));
       // Else another token would stand for it.
-      good &= symbol <= Token::kBehind && value != bounds[cell] && (value > predicted) == behind;
-      values[cell] = value;
+      good &= symbol <= Token::kBehind && value != limits[cell] && (value > predicted) == behind;
+      ranges[cell] = value;
     }
     decoder_.bits() = extras;
     good_ = good_ && good;
@@ -262,8 +263,8 @@ BoundsCodec<Word> BoundsCodec<Word>::parse(std::span<const std::byte> tables, co
   BitReader in(tables);
   ContextTables contexts =
       ContextTables::read(in, BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols, name);
-  if (!in.at_end()) fail("{}: expected the end after the tables of values, found more data", name);
-  return BoundsCodec(ErrorGeometry(spacing), std::move(contexts));
+  if (!in.at_end()) fail("{}: expected the end after the tables of bounds, found more data", name);
+  return BoundsCodec(OwnErrorGeometry(spacing), std::move(contexts));
 }
 
 template <class Word>
@@ -288,7 +289,7 @@ void BoundsCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>&
 template <class Word>
 bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape& shape,
                                const Surroundings<Word>& around, const PageSamples<Word>& samples,
-                               PageBounds<Word>& values) const {
+                               PageBounds<Word>& bounds) const {
   if (bytes.empty()) return false;
   const auto modes = std::to_integer<std::uint8_t>(bytes[0]);
   const auto errors = static_cast<ErrorMode>(modes & 3);
@@ -310,12 +311,12 @@ bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape
   if (!is_coded(errors)) fields.fill_errors(shape, error);
   BoundsReader<Word> reader(contexts_, tables_, bytes, shape, errors, ranges, fields);
   if (shape.complete) {
-    walk_complete_values<Word>(fields, shape, reader);
+    walk_complete_bounds<Word>(fields, shape, reader);
   } else {
-    const BoundsTrust trust{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
-    walk_values<Word>(fields, geometry_, shape, trust, reader);
+    const Omissions omitted{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
+    walk_bounds<Word>(fields, geometry_, shape, omitted, reader);
   }
-  fields.store_values(shape, values);
+  fields.store_bounds(shape, bounds);
   return reader.finish();
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
-#include "isosurface/compression/known_errors.h"
 #include "isosurface/compression/rans_coder.h"
+#include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas {
@@ -26,11 +26,11 @@ class BoundsSurvey {
   /// Adds what another survey has counted. The order of pages and of merging does not matter.
   void merge(const BoundsSurvey& other) { counts_.merge(other.counts_); }
 
-  [[nodiscard]] const ErrorGeometry& geometry() const { return geometry_; }
+  [[nodiscard]] const OwnErrorGeometry& geometry() const { return geometry_; }
   [[nodiscard]] const ContextCounts& counts() const { return counts_; }
 
  private:
-  ErrorGeometry geometry_;
+  OwnErrorGeometry geometry_;
   ContextCounts counts_;
 };
 
@@ -50,22 +50,22 @@ class BoundsCodec {
   [[nodiscard]] static BoundsCodec parse(std::span<const std::byte> tables, const Vec3& spacing,
                                          std::string_view name);
 
-  /// Appends the values of the page's own points, in whole bytes. `around` is not read where the page is
+  /// Appends the bounds of the page's own points, in whole bytes. `around` is not read where the page is
   /// complete; of `page` only places that have points are read.
   void encode(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page,
               std::vector<std::byte>& out) const;
   /// Fills the errors and ranges of all places that have points, those of coarser LODs from `around`; the
-  /// samples are those with which the page was encoded. Returns false, and leaves anything in `values`, where
+  /// samples are those with which the page was encoded. Returns false, and leaves anything in `bounds`, where
   /// the bytes are not what `encode` of some page gives.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape,
                             const Surroundings<Word>& around, const PageSamples<Word>& samples,
-                            PageBounds<Word>& values) const;
+                            PageBounds<Word>& bounds) const;
 
  private:
-  BoundsCodec(const ErrorGeometry& geometry, ContextTables contexts)
+  BoundsCodec(const OwnErrorGeometry& geometry, ContextTables contexts)
       : geometry_(geometry), contexts_(std::move(contexts)), tables_(contexts_) {}
 
-  ErrorGeometry geometry_;
+  OwnErrorGeometry geometry_;
   ContextTables contexts_;
   RansTables tables_;
 };

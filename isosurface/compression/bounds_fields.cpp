@@ -5,15 +5,14 @@
 #include <cstring>
 #include <limits>
 
-#include "isosurface/compression/eight_lanes.h"
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
 namespace {
 
-/// Squares of it are far from overflow.
-constexpr float kMostHeight = 1e15f;
+/// Numbers are not greater: their squares are far from overflow.
+constexpr float kMostNumber = 1e15f;
 
 template <class Word>
 bool is_finite(Word word) {
@@ -26,11 +25,11 @@ bool is_finite(Word word) {
 }
 
 template <class Word>
-float height(Word word) {
+float number(Word word) {
   if constexpr (sizeof(Word) < 4) {
     return static_cast<float>(word);
   } else {
-    return is_finite(word) ? std::clamp(from_ordered<float>(word), -kMostHeight, kMostHeight) : 0;
+    return is_finite(word) ? std::clamp(from_ordered<float>(word), -kMostNumber, kMostNumber) : 0;
   }
 }
 
@@ -79,16 +78,16 @@ class ParentRows {
 /// The last even coordinate round the page whose points are known.
 std::int32_t last_even(std::int32_t count) { return count & ~1; }
 
-/// Heights of a row of 16 samples that are all finite, by the parity of their coordinates.
+/// A row of 16 samples that are all finite as numbers, by the parity of their coordinates.
 template <class Word>
 void load_whole_row(const Word* row, float* even, float* odd) {
   using Lanes = EightLanes<Word>;
-  using Heights [[gnu::vector_size(8 * sizeof(float))]] = float;
+  using Numbers [[gnu::vector_size(8 * sizeof(float))]] = float;
   std::array<Lanes, 2> lanes;
   Lanes::load_by_turns(row, lanes[0], lanes[1]);
   // Of words that are no longer than two bytes all eight are in one part.
-  const Heights first = __builtin_convertvector(lanes[0].parts[0], Heights),
-                second = __builtin_convertvector(lanes[1].parts[0], Heights);
+  const Numbers first = __builtin_convertvector(lanes[0].parts[0], Numbers),
+                second = __builtin_convertvector(lanes[1].parts[0], Numbers);
   std::memcpy(even, &first, sizeof first);
   std::memcpy(odd, &second, sizeof second);
 }
@@ -115,7 +114,7 @@ void BoundsFields<Word>::load(const PageShape& shape, const Surroundings<Word>& 
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t parity = 0; parity < 8; ++parity) {
         samples[side][parity].fill(kUnknown);
-        values[side][parity].fill(kUnknown);
+        ranges[side][parity].fill(kUnknown);
       }
     }
     for (auto& cells : errors) cells.fill(0);
@@ -123,7 +122,7 @@ void BoundsFields<Word>::load(const PageShape& shape, const Surroundings<Word>& 
     if (shape.complete) return;
     load_coarser(around);
     load_parents(shape, around);
-    if (shape.lod == 0) load_heights(shape, around, page);
+    if (shape.lod == 0) load_numbers(shape, around, page);
   });
 }
 
@@ -170,7 +169,7 @@ template <class Word>
 void BoundsFields<Word>::load_coarser(const Surroundings<Word>& around) {
   Word* const least = samples[0][0].data();
   Word* const greatest = samples[1][0].data();
-  Word* const high = values[1][0].data();
+  Word* const high = ranges[1][0].data();
   ADAMAS_INDEPENDENT
   for (std::size_t n = 0; n < around.samples.size(); ++n) {
     const Word word = around.samples[n];
@@ -178,25 +177,25 @@ void BoundsFields<Word>::load_coarser(const Surroundings<Word>& around) {
     greatest[n] = is_finite(word) ? static_cast<Word>(~word) : kUnknown;
     high[n] = static_cast<Word>(~around.high[n]);
   }
-  values[0][0] = around.low;
+  ranges[0][0] = around.low;
   errors[0] = around.errors;
 }
 
 template <class Word>
-void BoundsFields<Word>::load_heights(const PageShape& shape, const Surroundings<Word>& around,
+void BoundsFields<Word>::load_numbers(const PageShape& shape, const Surroundings<Word>& around,
                                       const PageSamples<Word>& page) {
   const LatticePoint count = shape.count;
-  if (count != LatticePoint{16, 16, 16}) heights.fill(0);
+  if (count != LatticePoint{16, 16, 16}) numbers.fill(0);
   for (std::int32_t k = 0; k < count.k; ++k) {
     for (std::int32_t j = 0; j < count.j; ++j) {
       const Word* row = page.samples.data() + PageGrid::place({0, j, k}, 0);
       if constexpr (sizeof(Word) < sizeof(float)) {
         if (count.i == PageGrid::kSide) {
-          load_whole_row(row, heights.at({0, j, k}), heights.at({1, j, k}));
+          load_whole_row(row, numbers.at({0, j, k}), numbers.at({1, j, k}));
           continue;
         }
       }
-      for (std::int32_t i = 0; i < count.i; ++i) *heights.at({i, j, k}) = height(row[i]);
+      for (std::int32_t i = 0; i < count.i; ++i) *numbers.at({i, j, k}) = number(row[i]);
     }
   }
   // Behind the page, where the samples of coarser LODs are known.
@@ -206,7 +205,7 @@ void BoundsFields<Word>::load_heights(const PageShape& shape, const Surroundings
       const bool behind = k >= count.k || j >= count.j;
       for (std::int32_t i = behind ? 0 : last.i; i <= last.i; i += 2) {
         if (behind || i >= count.i)
-          *heights.at({i, j, k}) = height(around.samples[surrounding_place({i, j, k})]);
+          *numbers.at({i, j, k}) = number(around.samples[surrounding_place({i, j, k})]);
       }
     }
   }
@@ -215,7 +214,7 @@ void BoundsFields<Word>::load_heights(const PageShape& shape, const Surroundings
   mirror<2>(shape);
 }
 
-/// Before the page, and behind it, where a neighbour's height is not known, stands that of the other
+/// Before the page, and behind it, where a neighbour's number is not known, stands that of the other
 /// neighbour; between two points that are known behind the page, their mean.
 template <class Word>
 template <int Axis>
@@ -229,18 +228,18 @@ void BoundsFields<Word>::mirror(const PageShape& shape) {
     for (std::int32_t x = -1; x <= shape.count[kA] && x <= 16; ++x) {
       LatticePoint q{};
       q[kA] = x, q[kB] = y, q[Axis] = -1;
-      *heights.at(q) = *heights.at(q + 2 * step);
+      *numbers.at(q) = *numbers.at(q + 2 * step);
       q[Axis] = end;
       if (even && ((x | y) & 1) == 0) continue;
       const bool inside = x >= 0 && y >= 0 && x < shape.count[kA] && y < shape.count[kB];
       if (!even || !inside) {
-        *heights.at(q) = *heights.at(q - (end >= 2 ? 2 : 1) * step);
+        *numbers.at(q) = *numbers.at(q - (end >= 2 ? 2 : 1) * step);
         continue;
       }
       LatticePoint d{};
       d[kA] = x & 1, d[kB] = y & 1;
       if (d[kA] != 0 && d[kB] != 0 && (((x ^ y) & 2) != 0)) d[kA] = -1;
-      *heights.at(q) = 0.5f * (*heights.at(q - d) + *heights.at(q + d));
+      *numbers.at(q) = 0.5f * (*numbers.at(q - d) + *numbers.at(q + d));
     }
   }
 }
@@ -248,7 +247,7 @@ void BoundsFields<Word>::mirror(const PageShape& shape) {
 template <class Word>
 void BoundsFields<Word>::load_parents(const PageShape& shape, const Surroundings<Word>& around) {
   using Words = EightLanes<Word>;
-  for (auto& cells : cube_bounds) cells.fill(0);
+  for (auto& cells : cube_limits) cells.fill(0);
   cube_error_room.fill(0);
   const ParityBox box = ParityBox::of(shape.count, 7);
   std::int32_t j = 1, k = 1;
@@ -259,8 +258,8 @@ void BoundsFields<Word>::load_parents(const PageShape& shape, const Surroundings
       lanes.store(row.data());
       std::copy_n(row.begin(), static_cast<int>(count), cells.begin() + static_cast<std::ptrdiff_t>(cell));
     };
-    store(rows.find(around.low.data(), Words::greatest), cube_bounds[0]);
-    store(rows.find(around.high.data(), Words::least).inverted(), cube_bounds[1]);
+    store(rows.find(around.low.data(), Words::greatest), cube_limits[0]);
+    store(rows.find(around.high.data(), Words::least).inverted(), cube_limits[1]);
     store(error_room_of(rows.find(around.errors.data(), Codes::least)), cube_error_room);
     j += 2;
     if (j > 2 * box.nj) j = 1, k += 2;
@@ -268,13 +267,31 @@ void BoundsFields<Word>::load_parents(const PageShape& shape, const Surroundings
 }
 
 template <class Word>
-void BoundsFields<Word>::load_values(const PageShape& shape, const PageBounds<Word>& page) {
+void BoundsFields<Word>::predict_errors(const PageShape& shape, const OwnErrorGeometry& geometry) {
+  if (shape.lod > 0) {
+    for (auto& cells : predicted) cells.fill(0);
+    return;
+  }
+  OwnErrorCodes codes;
+  own_errors(numbers, numbers, geometry, shape.count, codes);
+  for (std::int32_t k = 0; k < shape.count.k; ++k) {
+    for (std::int32_t j = 0; j < shape.count.j; ++j) {
+      const auto even = static_cast<std::size_t>((j & 1) << 1 | (k & 1) << 2);
+      const std::size_t cell = surrounding_place({0, j & ~1, k & ~1});
+      std::copy_n(codes.even(j, k), 8, predicted[even].data() + cell);
+      std::copy_n(codes.odd(j, k), 8, predicted[even + 1].data() + cell);
+    }
+  }
+}
+
+template <class Word>
+void BoundsFields<Word>::load_bounds(const PageShape& shape, const PageBounds<Word>& page) {
   for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
     const auto p = static_cast<std::size_t>(parity);
     for_each_row(shape, parity, [&](std::size_t cell, std::size_t place, int count) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        values[0][p][cell + i] = page.low[place + 2 * i];
-        values[1][p][cell + i] = static_cast<Word>(~page.high[place + 2 * i]);
+        ranges[0][p][cell + i] = page.low[place + 2 * i];
+        ranges[1][p][cell + i] = static_cast<Word>(~page.high[place + 2 * i]);
         errors[p][cell + i] = page.errors[place + 2 * i];
       }
     });
@@ -292,7 +309,7 @@ void BoundsFields<Word>::fill_errors(const PageShape& shape, std::uint8_t code) 
 }
 
 template <class Word>
-void BoundsFields<Word>::store_values(const PageShape& shape, PageBounds<Word>& page) const {
+void BoundsFields<Word>::store_bounds(const PageShape& shape, PageBounds<Word>& page) const {
   with_wide_lanes([&](auto) {
     for (std::int32_t k = 0; k < shape.count.k; ++k) {
       for (std::int32_t j = 0; j < shape.count.j; ++j) {
@@ -304,8 +321,8 @@ void BoundsFields<Word>::store_values(const PageShape& shape, PageBounds<Word>& 
                                 change(Lanes::load(all[even + 1].data() + cell)), row + to);
         };
         const auto same = [](const auto& lanes) { return lanes; };
-        join(values[0], page.low.data(), same);
-        join(values[1], page.high.data(), [](const auto& lanes) { return lanes.inverted(); });
+        join(ranges[0], page.low.data(), same);
+        join(ranges[1], page.high.data(), [](const auto& lanes) { return lanes.inverted(); });
         join(errors, page.errors.data(), same);
       }
     }

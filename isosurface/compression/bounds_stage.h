@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "isosurface/compression/parity_cells.h"
-#include "isosurface/compression/row_bytes.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas {
@@ -29,7 +28,7 @@ template <class F>
 }
 
 /// The greatest numbers of the cubes that points are in or on; `cube`: that whose centre is in the same cell
-/// as the first point. Lanes: see WideLanes.
+/// as the first point. Lanes: see Simd.
 template <int Parity, class Lanes, class T>
 [[gnu::always_inline]] inline typename Lanes::Numbers greatest_of_cubes(const T* cube) {
   typename Lanes::Numbers greatest = Lanes::load(cube);
@@ -45,22 +44,24 @@ template <int Parity, class Lanes, class T>
   return greatest;
 }
 
-/// Of which points of a parity all that matters is on their page.
-class SurePoints {
+/// The points of a parity whose errors or ranges follow from their page: all samples in and on their
+/// diamonds, and all children on the page's LOD, are the page's own. In a store they are what follows, so
+/// they need not be coded; of a page of which this is not so all points are coded.
+class DeterminedPoints {
  public:
-  /// Whether the errors of points are sure on the finest LOD, or the ranges, those of edges on that LOD
-  /// alone.
+  /// Errors are determined on the finest LOD alone, and so are the ranges of edges; those of faces and
+  /// centres are on every LOD.
   enum class Of : std::uint8_t { kErrors, kRanges };
 
   /// None.
-  SurePoints() = default;
-  SurePoints(const PageShape& shape, int parity, Of of) {
-    /// By axis: all bits of a cell's byte where its coordinate is sure.
+  DeterminedPoints() = default;
+  DeterminedPoints(const PageShape& shape, int parity, Of of) {
+    /// By axis: all bits of a cell's byte where its coordinate lets points be determined.
     std::array<RowBytes, 3> along{};
     for (int axis = 0; axis < 3; ++axis) {
       const int odd = parity >> axis & 1;
       for (std::int32_t c = 0; c < 8; ++c) {
-        if (is_sure(2 * c + odd, shape.count[axis], phase_of(parity), of))
+        if (is_determined(2 * c + odd, shape.count[axis], phase_of(parity), of))
           along[static_cast<std::size_t>(axis)] |= RowBytes{255} << 8 * c;
       }
     }
@@ -77,12 +78,12 @@ class SurePoints {
 
  private:
   /// As far as a coordinate tells, where there are `count` of them.
-  static bool is_sure(std::int32_t x, std::int32_t count, int phase, Of of) {
+  static bool is_determined(std::int32_t x, std::int32_t count, int phase, Of of) {
     const bool odd = (x & 1) != 0;
-    // Cubes along both sides of edges and faces, and the children of these and of centres.
+    // The samples of edges and faces lie in the cubes on both sides, and so do the children of all.
     if (of == Of::kErrors) return odd ? phase == 2 || x + 1 < count : x > 0 && x + 1 < count;
-    // What is before the page round edges, whose range comes from the samples there; and what is behind it
-    // round others, whose children are there.
+    // The range of an edge comes from samples, some of which may lie before the page; that of others from
+    // children, some of which may lie behind it.
     if (phase == 2) return odd || x > 0;
     return !odd || x < PageGrid::kSide - 1 || count < PageGrid::kSide;
   }
@@ -90,7 +91,7 @@ class SurePoints {
   std::array<RowBytes, 64> rows_{};
 };
 
-/// What is coded of a page at once: one number of each of some of the points of a parity.
+/// The points of a parity of which a symbol is coded, one after another.
 struct BoundsStage {
   static constexpr std::size_t kMost = 512, kSlack = 8;
 
@@ -106,14 +107,14 @@ struct BoundsStage {
     box = points;
     size = 0;
   }
-  /// row(cell, those of the row that are sure) gives the contexts of the row's points, and all bits of those
-  /// that are coded. Wide: see with_wide_lanes.
+  /// row(cell, those of the row that are determined) gives the contexts of the row's points, and all bits of
+  /// those that are coded. Wide: see with_wide_lanes.
   template <bool Wide, class Row>
-  void add_rows(const SurePoints& points, Row row);
+  void add_rows(const DeterminedPoints& points, Row row);
 };
 
 template <bool Wide, class Row>
-void BoundsStage::add_rows(const SurePoints& points, Row row) {
+void BoundsStage::add_rows(const DeterminedPoints& points, Row row) {
   std::size_t n = 0;
   box.for_each_row([&](std::size_t cell, std::size_t, int count) {
     const auto [all_contexts, all_coded] = row(cell, points.row(n));

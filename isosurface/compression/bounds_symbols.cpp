@@ -34,33 +34,33 @@ void BoundsSummary::add_errors(const PageShape& shape, const BoundsFields<Word>&
 template <class Word>
 void BoundsSummary::add_ranges(const PageShape& shape, const BoundsFields<Word>& fields) {
   for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
-    const Word* words = fields.values[0][parity].data() + cell;
+    const Word* words = fields.ranges[0][parity].data() + cell;
     for (int n = 0; !any_word && n < count; ++n) any_word = words[n] != BoundsFields<Word>::kUnknown;
   });
 }
 
 template <class Word>
-BoundsSymbols<Word>::BoundsSymbols(const ErrorGeometry& geometry, const PageShape& shape,
+BoundsSymbols<Word>::BoundsSymbols(const OwnErrorGeometry& geometry, const PageShape& shape,
                                    const Surroundings<Word>& around, const Page<Word>& page)
     : shape_(shape), fields_(std::make_unique_for_overwrite<BoundsFields<Word>>()) {
   fields_->load(shape, around, page);
-  fields_->load_values(shape, page);
+  fields_->load_bounds(shape, page);
   collect(geometry, {true, true});
   // Of what is not as foreseen all is coded.
-  const BoundsTrust trust{!summary_.any_sure_error_other, !summary_.any_sure_range_other};
-  if (!trust.errors || !trust.ranges) collect(geometry, trust);
+  const Omissions omitted{!summary_.any_determined_error_other, !summary_.any_determined_range_other};
+  if (!omitted.errors || !omitted.ranges) collect(geometry, omitted);
   leave_out_what_modes_tell();
 }
 
 template <class Word>
-void BoundsSymbols<Word>::collect(const ErrorGeometry& geometry, BoundsTrust trust) {
+void BoundsSymbols<Word>::collect(const OwnErrorGeometry& geometry, Omissions omitted) {
   summary_.any_other = false;
   stages_.clear();
   range_stages_.clear();
   if (shape_.complete) {
-    walk_complete_values<Word>(*fields_, shape_, *this);
+    walk_complete_bounds<Word>(*fields_, shape_, *this);
   } else {
-    walk_values<Word>(*fields_, geometry, shape_, trust, *this);
+    walk_bounds<Word>(*fields_, geometry, shape_, omitted, *this);
   }
   summary_.add_errors(shape_, *fields_);
   summary_.add_ranges(shape_, *fields_);
@@ -94,7 +94,7 @@ template <class Word>
 void BoundsSymbols<Word>::errors(const BoundsStage& stage) {
   const auto& found = fields_->errors[static_cast<std::size_t>(stage.parity)];
   const auto& expected = fields_->predicted[static_cast<std::size_t>(stage.parity)];
-  summary_.any_sure_error_other |= add(stage, found, expected, [&](std::size_t cell) {
+  summary_.any_determined_error_other |= add(stage, found, expected, [&](std::size_t cell) {
     ADAMAS_ASSERT(found[cell] < BoundsContexts<Word>::kErrorSymbols);
     return static_cast<std::uint8_t>((found[cell] - expected[cell]) & 63);
   });
@@ -103,16 +103,16 @@ void BoundsSymbols<Word>::errors(const BoundsStage& stage) {
 template <class Word>
 void BoundsSymbols<Word>::range(std::size_t side, const BoundsStage& stage) {
   range_stages_.push_back(stages_.size());
-  const auto& found = fields_->values[side][static_cast<std::size_t>(stage.parity)];
+  const auto& found = fields_->ranges[side][static_cast<std::size_t>(stage.parity)];
   const auto& expected = fields_->known[side];
   const bool other = add(stage, found, expected, [&](std::size_t cell) {
-    const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->bounds[side][cell]);
+    const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->limits[side][cell]);
     summary_.any_other = summary_.any_other || token.symbol != RangeToken<Word>::kPredicted;
     const int count = RangeToken<Word>::extra_bits(token.symbol);
     if (count > 0) stages_.back().extras.push_back({token.extra, count});
     return token.symbol;
   });
-  summary_.any_sure_range_other |= other;
+  summary_.any_determined_range_other |= other;
   summary_.any_other |= other;
 }
 

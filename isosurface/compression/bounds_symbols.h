@@ -11,28 +11,28 @@ namespace adamas {
 
 /// How a page's errors are coded, and its ranges. The first that serves is taken.
 enum class ErrorMode : std::uint8_t {
-  kZero,          ///< all are 0
-  kEqual,         ///< all are the same
-  kCodedButSure,  ///< those that were sure are as predicted, the others are coded
+  kZero,                ///< all are 0
+  kEqual,               ///< all are the same
+  kCodedButDetermined,  ///< determined points are as predicted, the others are coded
   kCoded
 };
 enum class RangeMode : std::uint8_t {
-  kEmpty,         ///< all have nothing in them
-  kPredicted,     ///< all as predicted
-  kCodedButSure,  ///< as of errors
+  kEmpty,               ///< all have nothing in them
+  kPredicted,           ///< all as predicted
+  kCodedButDetermined,  ///< as of errors
   kCoded
 };
 
-constexpr bool is_coded(ErrorMode mode) { return mode >= ErrorMode::kCodedButSure; }
-constexpr bool is_coded(RangeMode mode) { return mode >= RangeMode::kCodedButSure; }
+constexpr bool is_coded(ErrorMode mode) { return mode >= ErrorMode::kCodedButDetermined; }
+constexpr bool is_coded(RangeMode mode) { return mode >= RangeMode::kCodedButDetermined; }
 
 /// What is to be found of a page's errors and ranges to know their modes.
 struct BoundsSummary {
-  std::uint8_t any_error = 0;                                       ///< the bits that any of the codes has
-  std::uint8_t all_errors = 63;                                     ///< the bits that all have
-  bool any_word = false;                                            ///< a range that is not empty
-  bool any_other = false;                                           ///< a range that is not as predicted
-  bool any_sure_error_other = false, any_sure_range_other = false;  ///< among those that are sure
+  std::uint8_t any_error = 0;    ///< the bits that some code has
+  std::uint8_t all_errors = 63;  ///< the bits that all have
+  bool any_word = false;         ///< whether a range is not empty
+  bool any_other = false;        ///< whether a range is not as predicted
+  bool any_determined_error_other = false, any_determined_range_other = false;  ///< of determined points
 
   /// Takes in the page's own errors.
   template <class Word>
@@ -44,12 +44,12 @@ struct BoundsSummary {
   [[nodiscard]] ErrorMode error_mode() const {
     if (any_error == 0) return ErrorMode::kZero;
     if (any_error == all_errors) return ErrorMode::kEqual;
-    return any_sure_error_other ? ErrorMode::kCoded : ErrorMode::kCodedButSure;
+    return any_determined_error_other ? ErrorMode::kCoded : ErrorMode::kCodedButDetermined;
   }
   [[nodiscard]] RangeMode range_mode() const {
     if (!any_word) return RangeMode::kEmpty;
     if (!any_other) return RangeMode::kPredicted;
-    return any_sure_range_other ? RangeMode::kCoded : RangeMode::kCodedButSure;
+    return any_determined_range_other ? RangeMode::kCoded : RangeMode::kCodedButDetermined;
   }
 };
 
@@ -57,7 +57,7 @@ struct BoundsSummary {
 template <class Word>
 class BoundsSymbols {
  public:
-  BoundsSymbols(const ErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
+  BoundsSymbols(const OwnErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
                 const Page<Word>& page);
 
   struct Extra {
@@ -74,14 +74,14 @@ class BoundsSymbols {
   /// Those to be coded, by stages.
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
 
-  // For walk_values.
+  // For walk_bounds.
   [[nodiscard]] static bool needs_errors() { return true; }
   [[nodiscard]] static bool needs_ranges() { return true; }
   void errors(const BoundsStage& stage);
   void range(std::size_t side, const BoundsStage& stage);
 
  private:
-  void collect(const ErrorGeometry& geometry, BoundsTrust trust);
+  void collect(const OwnErrorGeometry& geometry, Omissions omitted);
   void leave_out_what_modes_tell();
   /// Adds the stage, with the symbols that symbol(cell) gives of the points that are coded. Returns whether
   /// any other point is not as expected.

@@ -9,14 +9,12 @@
 #include "isosurface/compression/bounds_fields.h"
 #include "isosurface/compression/bounds_stage.h"
 #include "isosurface/compression/error_stage.h"
-#include "isosurface/compression/known_errors.h"
 #include "isosurface/compression/range_stage.h"
-#include "isosurface/compression/range_token.h"
 
 namespace adamas {
 
-/// All contexts of a page's symbols: those of errors, those of ranges, then of complete pages one for the
-/// errors and one for each side of the ranges.
+/// The contexts of a page's symbols: first those of errors, then those of ranges; then those of complete
+/// pages, which are one for the errors and one for each side of the ranges.
 template <class Word>
 struct BoundsContexts {
   static constexpr std::size_t kRanges = ErrorStages<Word>::kContexts;
@@ -26,49 +24,44 @@ struct BoundsContexts {
   static constexpr std::size_t kSymbols = std::max(kErrorSymbols, RangeToken<Word>::kSymbols);
 };
 
-/// Whether points of which nothing is expected but what is predicted are not coded.
-struct BoundsTrust {
+/// Whether points in the contexts kDetermined are left out, being as predicted.
+struct Omissions {
   bool errors, ranges;
 };
 
-/// The order in which the values of a page are coded: its errors, then its ranges, in stages of each. Calls
-/// port.errors(stage) and port.range(side, stage), in which an encoder reads the fields' errors and values
-/// and a decoder fills those of the stage's parity, as predicted where they are not coded. The fields are
-/// loaded.
+/// The order in which the bounds of a page are coded: its errors, then its ranges, in stages of each. Calls
+/// port.errors(stage) and port.range(side, stage). There an encoder reads the fields' errors and ranges; a
+/// decoder fills those of the stage's parity, and makes them as predicted where they are not coded. The
+/// fields have been loaded.
 template <class Word, class Port>
-void walk_values(BoundsFields<Word>& fields, const ErrorGeometry& geometry, const PageShape& shape,
-                 BoundsTrust trust, Port& port) {
+void walk_bounds(BoundsFields<Word>& fields, const OwnErrorGeometry& geometry, const PageShape& shape,
+                 Omissions omitted, Port& port) {
   std::array<BoundsStage, 2> stages;
   if (port.needs_errors()) {
-    if (shape.lod == 0) {
-      known_errors(fields.heights, geometry, shape, fields.predicted);
-    } else {
-      // What the samples of a coarse LOD tell of its errors is not worth working out.
-      for (auto& cells : fields.predicted) cells.fill(0);
-    }
+    fields.predict_errors(shape, geometry);
     for (const int parity : kCodedParities) {
-      ErrorStages<Word>::make(fields, shape, parity, trust.errors, stages[0]);
+      ErrorStages<Word>::make(fields, shape, parity, omitted.errors, stages[0]);
       port.errors(stages[0]);
     }
   }
   if (!port.needs_ranges()) return;
   for (BoundsStage& stage : stages) stage.base = BoundsContexts<Word>::kRanges;
   for (const int parity : kCodedParities) {
-    RangeStages<Word>::make(fields, shape, parity, trust.ranges, stages);
+    RangeStages<Word>::make(fields, shape, parity, omitted.ranges, stages);
     for (std::size_t side = 0; side < 2; ++side) port.range(side, stages[side]);
   }
 }
 
-/// The same of a complete page, of which nothing but the samples is known: errors predicted as 0 and ranges
-/// as the samples.
+/// The same of a complete page, of which nothing but the samples is known: errors are predicted as 0, and
+/// ranges as the samples.
 template <class Word, class Port>
-void walk_complete_values(BoundsFields<Word>& fields, const PageShape& shape, Port& port) {
+void walk_complete_bounds(BoundsFields<Word>& fields, const PageShape& shape, Port& port) {
   for (auto& cells : fields.predicted) cells.fill(0);
-  for (auto& cells : fields.bounds) cells.fill(0);
+  for (auto& cells : fields.limits) cells.fill(0);
   BoundsStage stage;
   for (int parity = 0; parity < 8; ++parity) {
     stage.begin(parity, ParityBox::of(shape.count, parity));
-    // Nothing is sure, as it would be in the context 0.
+    // No point is determined, as it would be in the context 0.
     stage.add_rows<false>({}, [](std::size_t, RowBytes) { return std::pair(kEachByte, ~RowBytes{0}); });
     stage.base = BoundsContexts<Word>::kComplete - 1;
     if (port.needs_errors()) port.errors(stage);

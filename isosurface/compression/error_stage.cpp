@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 
 namespace adamas {
 namespace {
@@ -31,7 +31,7 @@ constexpr CellNeighbour child(int parity, std::size_t number) {
 template <int Parity, std::size_t Bytes>
 [[gnu::always_inline]] inline void predict(const AllCells<std::uint8_t>& errors, const Codes& cube_room,
                                            Codes& predicted, Codes& parts) {
-  using Lanes = WideLanes<std::uint8_t, Bytes>;
+  using Lanes = Simd<std::uint8_t, Bytes>;
   using Numbers = typename Lanes::Numbers;
   for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
     Numbers least{};
@@ -54,7 +54,7 @@ template <int Parity, std::size_t Bytes>
 }  // namespace
 
 template <class Word>
-void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool omitted,
                              BoundsStage& stage) {
   stage.begin(parity, ParityBox::of(shape.count, parity));
   with_wide_lanes([&](auto bytes) {
@@ -64,16 +64,16 @@ void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
     });
     // Samples that are not whole numbers are worked with in another precision.
     const bool is_finest = shape.lod == 0, are_exact = is_finest && sizeof(Word) < sizeof(float);
-    // Parts begin with 1, and so do the contexts of points that are not sure.
+    // Parts begin with 1, and so do the contexts of points that are not determined.
     const int base = (phase_of(parity) * 2 + (is_finest ? 0 : 1)) * 2 * 2 * kRoomClasses;
     constexpr int kMissing = 2 * kRoomClasses;
-    const SurePoints points(shape, parity, SurePoints::Of::kErrors);
+    const DeterminedPoints points(shape, parity, DeterminedPoints::Of::kErrors);
     stage.add_rows<bytes() == 32>(points, [&](std::size_t cell, RowBytes have_all) {
       const RowBytes part = load_row(parts.data() + cell);
       const RowBytes open = bytes_not_zero(part) & (are_exact ? ~have_all : ~RowBytes{0});
       const RowBytes contexts =
           part + kEachByte * static_cast<RowBytes>(base) + (~have_all & kEachByte * kMissing);
-      return std::pair(contexts & open, trust ? open : ~RowBytes{0});
+      return std::pair(contexts & open, omitted ? open : ~RowBytes{0});
     });
   });
 }

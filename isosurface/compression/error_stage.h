@@ -7,21 +7,22 @@
 
 namespace adamas {
 
-/// What is expected of the error codes of a parity's points: on the finest LOD that which the known samples
-/// in and on the diamond and its children give, on others that of the children.
+/// Predicts the error codes of a parity's points: an error is at least that of each child. On the finest LOD
+/// it is also at least the own error (own_errors), which follows from the samples in and on the diamond, as
+/// far as these are known.
 template <class Word>
 class ErrorStages {
  public:
   static constexpr int kRoomClasses = 7;
-  /// The context of points whose error is known but for the unforeseen: of those on the finest LOD that
-  /// have all samples and children on the page, and of those that have a child with the greatest error that
-  /// the coarser LOD lets them have.
-  static constexpr std::uint8_t kSure = 0;
+  /// The context of determined points, and of points with a child that has the greatest error that the
+  /// parents on the coarser LOD let the point have: another error is possible only in a page that no volume
+  /// gives.
+  static constexpr std::uint8_t kDetermined = 0;
   static constexpr int kContexts = 1 + 3 * 2 * 2 * 2 * kRoomClasses;
 
-  /// Fills fields.predicted of the parity, and the stage with the points that are coded. `trust`: whether
-  /// sure points are not.
-  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+  /// Fills fields.predicted of the parity, and the stage with the points that are coded. `omitted`: whether
+  /// determined points are left out.
+  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool omitted,
                    BoundsStage& stage);
 };
 

@@ -7,9 +7,9 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "core/base/simd.h"
 #include "isosurface/compression/interpolation_page.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/base/simd.h"
 #include "isosurface/compression/parity_cells.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 

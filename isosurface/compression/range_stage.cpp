@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 
 namespace adamas {
 namespace {
@@ -64,14 +64,14 @@ inline void to_bit_widths(std::uint8_t*) {}
 template <class Word, int Parity, std::size_t Bytes>
 class RangeLanes {
  public:
-  using Lanes = WideLanes<Word, Bytes>;
+  using Lanes = Simd<Word, Bytes>;
   using Numbers = typename Lanes::Numbers;
   /// Whether bits are those of numbers as they are until to_bit_widths.
   static constexpr bool kBitsFollow = sizeof(Word) == 1 && Bytes == 32;
 
   /// The least of what is known of each point.
   [[gnu::always_inline]] static inline void find_known(const AllCells<Word>& samples,
-                                                       const AllCells<Word>& values,
+                                                       const AllCells<Word>& ranges,
                                                        ParityCells<Word>& known) {
     for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
       const auto at = [n](const AllCells<Word>& cells, CellNeighbour near) {
@@ -83,22 +83,22 @@ class RangeLanes {
       }
       (std::make_index_sequence<kNear.sample_count>());
       [&]<std::size_t... N>(std::index_sequence<N...>) {
-        ((least = Lanes::lesser(least, at(values, kNear.children[N]))), ...);
+        ((least = Lanes::lesser(least, at(ranges, kNear.children[N]))), ...);
       }
       (std::make_index_sequence<kNear.child_count>());
       Lanes::store(least, known.data() + n);
     }
   }
 
-  /// Makes the bounds of a side, and how many bits the room to them has.
-  [[gnu::always_inline]] static inline void find_bounds(const ParityCells<Word>& cube_bounds,
+  /// Makes the limits of a side, and how many bits the room to them has.
+  [[gnu::always_inline]] static inline void find_limits(const ParityCells<Word>& cube_limits,
                                                         const ParityCells<Word>& known,
-                                                        ParityCells<Word>& bounds, Bits& bits) {
+                                                        ParityCells<Word>& limits, Bits& bits) {
     for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
       const Numbers most = Lanes::load(known.data() + n);
-      const Numbers bound = Lanes::lesser(greatest_of_cubes<Parity, Lanes>(cube_bounds.data() + n), most);
-      Lanes::store(bound, bounds.data() + n);
-      put_bits(most - bound, bits.data() + n);
+      const Numbers limit = Lanes::lesser(greatest_of_cubes<Parity, Lanes>(cube_limits.data() + n), most);
+      Lanes::store(limit, limits.data() + n);
+      put_bits(most - limit, bits.data() + n);
     }
   }
 
@@ -132,13 +132,13 @@ class RangeLanes {
   }
 };
 
-/// Contexts by the room to the bound and by how far the samples inside may be from the interpolation, as the
-/// error tells, seen from the bound: by error and by how many bits more the samples' spread has than the
+/// Contexts by the room to the limit and by how far the samples inside may be from the interpolation, as the
+/// error tells, seen from the limit: by error and by how many bits more the samples' spread has than the
 /// room.
 template <class Word, std::size_t Bytes>
 [[gnu::always_inline]] inline void find_contexts(int base, const Bits& errors, const Bits& spread_bits,
                                                  const Bits& room_bits, Bits& contexts) {
-  using Lanes = WideLanes<std::uint8_t, Bytes>;
+  using Lanes = Simd<std::uint8_t, Bytes>;
   using Numbers = typename Lanes::Numbers;
   constexpr std::uint8_t kErrorClasses = RangeStages<Word>::kErrorClasses;
   constexpr int kStep = std::countr_zero(sizeof(Word));
@@ -152,14 +152,14 @@ template <class Word, std::size_t Bytes>
                   kShift;
     const Numbers context = static_cast<std::uint8_t>(base) + ((room - 1) >> kStep) * kErrorClasses +
                             (error == 0 ? Numbers{} : error_class);
-    Lanes::store(room == 0 ? Numbers{} + RangeStages<Word>::kSure : context, contexts.data() + n);
+    Lanes::store(room == 0 ? Numbers{} + RangeStages<Word>::kDetermined : context, contexts.data() + n);
   }
 }
 
 }  // namespace
 
 template <class Word>
-void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool omitted,
                              std::array<BoundsStage, 2>& stages) {
   const int phase = phase_of(parity);
   const bool are_known = phase < 2 || shape.lod == 0;
@@ -171,23 +171,23 @@ void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
     with_parity(parity, [&](auto of) {
       using Lanes = RangeLanes<Word, of(), bytes()>;
       for (std::size_t side = 0; side < 2; ++side) {
-        Lanes::find_known(fields.samples[side], fields.values[side], fields.known[side]);
-        Lanes::find_bounds(fields.cube_bounds[side], fields.known[side], fields.bounds[side], room[side]);
+        Lanes::find_known(fields.samples[side], fields.ranges[side], fields.known[side]);
+        Lanes::find_limits(fields.cube_limits[side], fields.known[side], fields.limits[side], room[side]);
       }
       Lanes::find_spread(fields.known[0], fields.known[1], spread);
       if constexpr (Lanes::kBitsFollow) {
         for (Bits* bits : {&room[0], &room[1], &spread}) to_bit_widths(bits->data());
       }
     });
-    const SurePoints points(shape, parity, SurePoints::Of::kRanges);
+    const DeterminedPoints points(shape, parity, DeterminedPoints::Of::kRanges);
     for (std::size_t side = 0; side < 2; ++side) {
-      find_contexts<Word, bytes()>(1 + group * kBoundClasses * kErrorClasses,
+      find_contexts<Word, bytes()>(1 + group * kRoomClasses * kErrorClasses,
                                    fields.errors[static_cast<std::size_t>(parity)], spread, room[side],
                                    contexts);
       stages[side].template add_rows<bytes() == 32>(points, [&](std::size_t cell, RowBytes have_all) {
         const RowBytes row = load_row(contexts.data() + cell);
         const RowBytes open = bytes_not_zero(row) & (are_known ? ~have_all : ~RowBytes{0});
-        return std::pair(row & open, trust ? open : ~RowBytes{0});
+        return std::pair(row & open, omitted ? open : ~RowBytes{0});
       });
     }
   });

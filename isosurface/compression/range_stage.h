@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "isosurface/compression/bounds_fields.h"
@@ -8,21 +10,75 @@
 
 namespace adamas {
 
-/// What is expected of the two sides of the ranges of a parity's points: `known` is the least known word in
-/// and on the diamond, from which the range begins or before which; before the bound it should not begin.
-/// The diamond of a centre is that of its faces together, and these those of their edges, so that where all
-/// are known there is nothing to be coded.
+/// Codes the end of a range as a distance below the word `predicted`. The limit is the least end that is
+/// expected, and not above `predicted`. A symbol stands for the distance; where symbols stand for several
+/// distances, bits tell which one it is.
+template <class Word>
+struct RangeToken {
+  static constexpr int kBits = 8 * sizeof(Word);
+  static constexpr std::uint8_t kPredicted = 0;  ///< the end is the predicted word
+  static constexpr std::uint8_t kLimit = 1;      ///< the end is the limit, which is another word
+  static constexpr std::uint8_t kFirst = 2;      ///< the distance is 1
+  /// Shorter distances have a symbol each, others one for each leading 1 and the bit below it.
+  static constexpr int kDirectBits = 5;
+  static constexpr std::uint8_t kFirstOpen =
+      kFirst + (1 << kDirectBits) - 1;  ///< from this symbol on, bits follow
+  static constexpr std::uint8_t kBehind = static_cast<std::uint8_t>(
+      kFirstOpen + 2 * (kBits - kDirectBits));  ///< the end is above the predicted word; all its bits follow
+  static constexpr std::size_t kSymbols = kBehind + 1;
+
+  std::uint8_t symbol = 0;
+  std::uint32_t extra = 0;
+
+  static constexpr RangeToken of(Word value, Word predicted, Word limit) {
+    if (value == predicted) return {kPredicted, 0};
+    if (value == limit) return {kLimit, 0};
+    if (value > predicted) return {kBehind, value};
+    const auto distance = static_cast<std::uint32_t>(predicted - value);
+    if (distance < 1u << kDirectBits) return {static_cast<std::uint8_t>(kFirst + distance - 1), 0};
+    const auto bits = static_cast<int>(std::bit_width(distance));
+    const std::uint32_t half = distance >> (bits - 2) & 1;
+    return {static_cast<std::uint8_t>(kFirstOpen + 2 * (bits - kDirectBits - 1) + static_cast<int>(half)),
+            distance & ((1u << (bits - 2)) - 1)};
+  }
+
+  /// Of a symbol from kFirst on.
+  static constexpr int extra_bits(std::uint8_t symbol) {
+    if (symbol == kBehind) return kBits;
+    return symbol < kFirstOpen ? 0 : (symbol - kFirstOpen) / 2 + kDirectBits - 1;
+  }
+
+  /// The least distance of a symbol from kFirstOpen to before kBehind; its lowest bits are the extra ones.
+  static constexpr std::uint32_t lead(std::uint8_t symbol) {
+    const int number = symbol - kFirstOpen;
+    return (2u | static_cast<std::uint32_t>(number & 1)) << (number / 2 + kDirectBits - 1);
+  }
+
+  /// The word from a symbol from kFirst on. Another token may stand for it too, or none if the symbol is not
+  /// one that `of` gives.
+  [[nodiscard]] constexpr Word value(Word predicted) const {
+    if (symbol == kBehind) return static_cast<Word>(extra);
+    if (symbol < kFirstOpen) return static_cast<Word>(predicted - (symbol - kFirst) - 1);
+    return static_cast<Word>(predicted - (lead(symbol) | extra));
+  }
+};
+
+/// Predicts the ranges of a parity's points, each side alike (see BoundsFields). A range ends at `known`, the
+/// least word that is known in and on the diamond, or below it; it does not end below its limit, which the
+/// ranges of the parents on the coarser LOD give. The diamond of a centre is covered by those of its faces,
+/// and that of a face by those of its edges: where all these are known, the range follows from them.
 template <class Word>
 class RangeStages {
  public:
-  static constexpr int kBoundClasses = 8, kErrorClasses = 8, kGroups = 3;
-  /// The context of points whose range is known but for the unforeseen, also from the bound.
-  static constexpr std::uint8_t kSure = 0;
-  static constexpr int kContexts = 1 + kGroups * kBoundClasses * kErrorClasses;
+  static constexpr int kRoomClasses = 8, kErrorClasses = 8, kGroups = 3;
+  /// The context of determined points, and of points whose limit is the predicted word: another range is
+  /// possible only in a page that no volume gives.
+  static constexpr std::uint8_t kDetermined = 0;
+  static constexpr int kContexts = 1 + kGroups * kRoomClasses * kErrorClasses;
 
-  /// Fills fields.known and fields.bounds, and the stages of both sides with the points that are coded. All
-  /// errors are known. `trust`: whether sure points are not coded.
-  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool trust,
+  /// Fills fields.known and fields.limits, and the stages of both sides with the points that are coded. All
+  /// errors are known. `omitted`: whether determined points are not coded.
+  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool omitted,
                    std::array<BoundsStage, 2>& stages);
 };
 

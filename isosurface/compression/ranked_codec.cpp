@@ -7,10 +7,10 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "core/base/simd.h"
 #include "isosurface/compression/bit_stream.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/wide_lanes.h"
 
 namespace adamas {
 namespace {

@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 
 namespace adamas {
 namespace {

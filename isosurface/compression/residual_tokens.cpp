@@ -8,8 +8,8 @@
 #endif
 
 #include "core/base/assert.h"
-#include "isosurface/compression/row_bytes.h"
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
+#include "isosurface/compression/parity_cells.h"
 
 namespace adamas {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "isosurface/compression/wide_lanes.h"
+#include "core/base/simd.h"
 
 namespace adamas {
 
@@ -17,7 +17,7 @@ namespace {
 template <class Word>
 void select_crossed(const PageBounds<Word>& page, Word least, PagePoints<std::uint8_t>& codes) {
   with_wide_lanes([&](auto bytes) {
-    using Lanes = WideLanes<Word, bytes()>;
+    using Lanes = Simd<Word, bytes()>;
     using Codes [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
     for (std::size_t n = 0; n < PageGrid::kPoints; n += Lanes::kCount) {
       const auto crossed =

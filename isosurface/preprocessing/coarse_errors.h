@@ -8,17 +8,63 @@
 #include <type_traits>
 #include <vector>
 
-#include "isosurface/preprocessing/ancestor.h"
-#include "isosurface/preprocessing/coarse_samples.h"
+#include "core/base/assert.h"
+#include "core/base/simd.h"
+#include "core/lattice/diamond.h"
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/error_code.h"
-#include "isosurface/preprocessing/lanes.h"
+#include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/preprocessing/leaf_points.h"
 #include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
+
+/// A tetrahedron that bisection makes of a lattice cube of side 2^depth, and the larger ones that it is part
+/// of. Coordinates count samples.
+class Ancestor {
+ public:
+  Ancestor(const std::array<LatticePoint, 4>& corners, LatticePoint split_vertex, int depth)
+      : corners_(corners), split_vertex_(split_vertex), depth_(depth) {}
+
+  [[nodiscard]] const std::array<LatticePoint, 4>& corners() const { return corners_; }
+  /// Of the diamond that the tetrahedron belongs to.
+  [[nodiscard]] LatticePoint split_vertex() const { return split_vertex_; }
+  [[nodiscard]] int scale_bits() const { return trailing_zeros(split_vertex_); }
+
+  /// Goes on to the tetrahedron of which this one is a half; false where this one is not made by bisection.
+  bool ascend() {
+    LatticePoint* newest = nullptr;
+    int latest = -1;
+    for (LatticePoint& c : corners_) {
+      const int zeros = trailing_zeros(c);
+      if (zeros >= depth_) continue;
+      const int generation = 3 * (depth_ - zeros) + 3 - odd_count(c, zeros);
+      if (generation > latest) newest = &c, latest = generation;
+    }
+    if (newest == nullptr) return false;
+    // The newest corner split the larger tetrahedron, and took the place of one end of the split edge.
+    const LatticePoint middle = *newest;
+    const int zeros = trailing_zeros(middle);
+    const LatticePoint half =
+        (1 << zeros) * split_direction({middle.i >> zeros, middle.j >> zeros, middle.k >> zeros});
+    bool has_upper = false;
+    for (const LatticePoint c : corners_) has_upper = has_upper || c == middle + half;
+    *newest = has_upper ? middle - half : middle + half;
+    split_vertex_ = middle;
+    return true;
+  }
+
+ private:
+  static int odd_count(LatticePoint p, int zeros) {
+    return (p.i >> zeros & 1) + (p.j >> zeros & 1) + (p.k >> zeros & 1);
+  }
+
+  std::array<LatticePoint, 4> corners_;
+  LatticePoint split_vertex_;
+  int depth_;
+};
 
 /// Own errors of the diamonds of scale 8 and more, as far as they come from the samples of one cube of 16^3
 /// cells: of every tetrahedron that has part of the cube.
@@ -207,8 +253,8 @@ class CoarseErrors {
     const T *x = leaf_points_.coordinates<T>(0) + part.first,
             *y = leaf_points_.coordinates<T>(1) + part.first,
             *z = leaf_points_.coordinates<T>(2) + part.first;
-    using Vector = LanesOf<T>;
-    using Lanes = typename Vector::Lanes;
+    using Vector = Simd<T, 16>;
+    using Lanes = typename Vector::Numbers;
     const Lanes zero{}, constant = zero + static_cast<T>(linear.constant);
     const Lanes i = zero + static_cast<T>(linear.slope[0]), j = zero + static_cast<T>(linear.slope[1]),
                 k = zero + static_cast<T>(linear.slope[2]);
@@ -220,7 +266,7 @@ class CoarseErrors {
       least = Vector::greater(least, -above);
     }
     std::array<T, Vector::kCount> errors;
-    Vector::store(errors.data(), Vector::greater(greatest, least));
+    Vector::store(Vector::greater(greatest, least), errors.data());
     return static_cast<double>(*std::max_element(errors.begin(), errors.end()));
   }
 

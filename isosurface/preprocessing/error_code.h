@@ -1,21 +1,33 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
+#include <cstring>
+
+#include "core/base/simd.h"
 
 namespace adamas {
 
-/// The code on the ErrorScale of an LOD, from the square of the error's ratio to the scale's greatest error.
-/// Rounds up, also what rounding may have taken off `squared`: by 2^-20 at most. 0 for 0 alone.
-inline std::uint8_t error_code(float squared) {
-  if (!(squared > 0)) return 0;
+/// The codes on the ErrorScale of an LOD, from the squares of the errors' ratios to the scale's greatest
+/// error. Rounds up, also what rounding may have taken off `squared`: by 2^-20 at most. 0 for 0 alone.
+template <std::size_t Bytes>
+[[gnu::always_inline]] inline typename Simd<std::int32_t, Bytes>::Numbers error_codes(
+    typename Simd<float, Bytes>::Numbers squared) {
+  using Lanes = Simd<std::int32_t, Bytes>;
+  using Codes = typename Lanes::Numbers;
   // Codes are quarters of octaves of the error, so halves of octaves of its square.
-  constexpr std::uint32_t kRootOfTwo = 0x3504f3;  // its mantissa, rounded down
-  const auto bits = std::bit_cast<std::uint32_t>(std::min(squared, 1.0f) * (1 + 0x1p-20f));
-  const int exponent = static_cast<int>(bits >> 23) - 127;
-  const int code = 64 + 2 * exponent + ((bits & 0x7fffffu) > kRootOfTwo ? 1 : 0);
-  return static_cast<std::uint8_t>(std::clamp(code, 1, 63));
+  constexpr std::int32_t kRootOfTwo = 0x3504f3;  // its mantissa, rounded down
+  constexpr std::int32_t kMantissa = 0x7fffff, kGreatest = 63;
+  const auto raised = (squared > 1 ? decltype(squared){} + 1 : squared) * (1 + 0x1p-20f);
+  Codes bits;
+  std::memcpy(&bits, &raised, sizeof bits);
+  // A comparison that holds gives -1.
+  const Codes code = 64 + 2 * ((bits >> 23) - 127) - ((bits & kMantissa) > kRootOfTwo);
+  return Lanes::lesser(Lanes::greater(code, Codes{} + 1), Codes{} + kGreatest) & (squared > 0);
+}
+
+inline std::uint8_t error_code(float squared) {
+  return static_cast<std::uint8_t>(error_codes<16>(Simd<float, 16>::Numbers{} + squared)[0]);
 }
 inline std::uint8_t error_code(double squared) {
   if (!(squared > 0)) return 0;

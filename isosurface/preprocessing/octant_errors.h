@@ -4,14 +4,15 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/simd.h"
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/error_code.h"
-#include "isosurface/preprocessing/lanes.h"
+#include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/preprocessing/octant_stencils.h"
 
 namespace adamas {
 
-/// Own errors of the diamonds of scales 1, 2 and 4, as far as their tetrahedra lie in one cube of 16^3 cells.
+/// Own errors of the diamonds of scales 2 and 4, as far as their tetrahedra lie in one cube of 16^3 cells.
 template <class Sample>
 class OctantErrors {
  public:
@@ -20,7 +21,7 @@ class OctantErrors {
   /// Codes of the cube's points, i running fastest.
   using Codes = std::array<std::uint8_t, kCube * kCube * kCube>;
 
-  explicit OctantErrors(const OctantStencils& stencils) : stencils_(stencils) {
+  OctantErrors(const OctantStencils& stencils, const Vec3& spacing) : stencils_(stencils) {
     for (int n = 0; n < OctantStencils::kPoints; ++n) {
       const LatticePoint p{n % 9, n / 9 % 9, n / 81};
       for (int octant = 0; octant < 8; ++octant) {
@@ -29,8 +30,8 @@ class OctantErrors {
             static_cast<std::uint16_t>(at(p.i, 0) + kCube * (at(p.j, 1) + kCube * at(p.k, 2)));
       }
     }
-    for (int axis = 0; axis < 3; ++axis)
-      factors_[axis] = static_cast<Real>(stencils.slope_factors()[static_cast<std::size_t>(axis)]);
+    const std::array<double, 3> factors = slope_factors(spacing);
+    for (std::size_t axis = 0; axis < 3; ++axis) factors_[axis] = static_cast<Real>(factors[axis]);
   }
 
   void measure(const CubeSamples<Sample>& cube, Codes& codes) const {
@@ -42,7 +43,7 @@ class OctantErrors {
       alignas(16) std::array<Real, 8> squared;
       for (std::size_t lane = 0; lane < 8; lane += Vector::kCount) {
         const auto at = first + static_cast<std::ptrdiff_t>(lane);
-        Vector::store(squared.data() + lane, by_phase(diamond, value + at, counted + at));
+        Vector::store(by_phase(diamond, value + at, counted + at), squared.data() + lane);
       }
       for (int octant = 0; octant < stencils_.octants(); ++octant) {
         std::uint8_t& code = codes[places_[static_cast<std::size_t>(first + octant)]];
@@ -52,8 +53,8 @@ class OctantErrors {
   }
 
  private:
-  using Vector = LanesOf<Real>;
-  using Lanes = typename Vector::Lanes;
+  using Vector = Simd<Real, 16>;
+  using Lanes = typename Vector::Numbers;
 
   /// Of the four corners.
   struct Corners {

@@ -48,21 +48,9 @@ std::array<std::int32_t, 3> step_axes(const Corners& c, int phase) {
 
 }  // namespace
 
-std::array<double, 3> slope_factors(const Vec3& spacing) {
-  const double greatest = lod_error_scale(spacing, 0).greatest();
-  std::array<double, 3> factors{};
-  // No greater ones: their squares have to fit in a float. Errors come out too large rather than too small.
-  for (int axis = 0; axis < 3; ++axis) {
-    const double factor = std::min(greatest / spacing[axis], 0x1p40);
-    factors[static_cast<std::size_t>(axis)] = factor * factor;
-  }
-  return factors;
-}
-
-OctantStencils::OctantStencils(int depth, const Vec3& spacing)
-    : slope_factors_(adamas::slope_factors(spacing)), octants_(depth > 3 ? kOctants : 1) {
+OctantStencils::OctantStencils(int depth, const Vec3& spacing) : octants_(depth > 3 ? kOctants : 1) {
   const int bits = std::min(depth, 3);
-  for (int scale_bits = 0; scale_bits < bits; ++scale_bits) add_shapes(scale_bits, spacing);
+  for (int scale_bits = kLeastBits; scale_bits < bits; ++scale_bits) add_shapes(scale_bits, spacing);
   add_diamonds(bits);
 }
 
@@ -111,17 +99,17 @@ void OctantStencils::add_diamonds(int bits) {
   };
   for (int n = 0; n < kPoints; ++n) {
     const LatticePoint p{n % kSide, n / kSide % kSide, n / kSide / kSide};
-    if (!is_inside(p) || trailing_zeros(p) >= bits) continue;
-    const Diamond diamond({p.i << shift, p.j << shift, p.k << shift});
     const int scale_bits = trailing_zeros(p);
+    if (!is_inside(p) || scale_bits < kLeastBits || scale_bits >= bits) continue;
+    const Diamond diamond({p.i << shift, p.j << shift, p.k << shift});
     SmallDiamond small{place(p), diamond.phase(), static_cast<std::uint32_t>(shape_indices_.size()), 0};
     for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
       const Corners corners = ordered_corners(diamond.type(), slot);
       if (!std::all_of(corners.begin(), corners.end(),
                        [&](LatticePoint c) { return is_inside(p + (1 << scale_bits) * c); }))
         continue;
-      shape_indices_.push_back(
-          static_cast<std::uint16_t>((scale_bits * kDiamondTypeCount + diamond.type_index()) * 8 + slot));
+      shape_indices_.push_back(static_cast<std::uint16_t>(
+          ((scale_bits - kLeastBits) * kDiamondTypeCount + diamond.type_index()) * 8 + slot));
     }
     small.last = static_cast<std::uint32_t>(shape_indices_.size());
     diamonds_.push_back(small);

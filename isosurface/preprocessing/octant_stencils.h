@@ -12,13 +12,15 @@ namespace adamas {
 /// Octants of a cube of 16^3 cells whose corner is a multiple of 16. They are mirror images of each other,
 /// with the diagonal of each one's first split running from the cube's corner to its centre: seen from their
 /// corner of the cube all eight are cut by bisection in the same way, as the cube from (0, 0, 0) to (8, 8, 8)
-/// is. That way is worked out here once, and measured in all eight at a time.
+/// is. That way is worked out here once, and measured in all eight at a time: for the diamonds of scales 2
+/// and 4.
 class OctantStencils {
  public:
   static constexpr int kSide = 9;  ///< points
   static constexpr int kPoints = kSide * kSide * kSide;
   static constexpr int kOctants = 8;
-  static constexpr int kCube = 17;  ///< points of the whole cube per axis
+  static constexpr int kCube = 17;      ///< points of the whole cube per axis
+  static constexpr int kLeastBits = 1;  ///< the least scale is 2 to this
 
   /// `depth`: of the lattice, which may be smaller than an octant.
   OctantStencils(int depth, const Vec3& spacing);
@@ -47,9 +49,6 @@ class OctantStencils {
   [[nodiscard]] const std::vector<std::uint16_t>& shape_indices() const { return shape_indices_; }
   [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
-  /// For each axis: the square of what turns a slope, per half the tetrahedron's cube, into the ratio of the
-  /// scale's greatest error to the distance over which a value changes by one.
-  [[nodiscard]] const std::array<double, 3>& slope_factors() const { return slope_factors_; }
   /// How many octants are in the lattice: 8, or the first one alone.
   [[nodiscard]] int octants() const { return octants_; }
 
@@ -65,11 +64,7 @@ class OctantStencils {
   std::vector<std::uint16_t> shape_indices_;
   std::vector<Shape> shapes_;  ///< by scale, type, slot
   std::vector<Point> points_;
-  std::array<double, 3> slope_factors_{};
   int octants_;
 };
-
-/// For each axis, what OctantStencils::slope_factors says.
-std::array<double, 3> slope_factors(const Vec3& spacing);
 
 }  // namespace adamas

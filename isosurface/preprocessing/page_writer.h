@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "isosurface/preprocessing/coarse_samples.h"
 #include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/volume/samples.h"
@@ -57,7 +56,7 @@ class PageWriter {
         if (grid_.is_complete(id)) {
           for (std::int32_t i = 0; i < count.i; ++i) fill_point({i, j, k}, id.lod);
         } else {
-          fill_values(id, j, k, count.i);
+          fill_bounds(id, j, k, count.i);
         }
       }
     }
@@ -84,7 +83,7 @@ class PageWriter {
   }
 
   /// Those of the points that the LOD adds, and anything at the others.
-  void fill_values(const PageId& id, std::int32_t j, std::int32_t k, std::int32_t count) {
+  void fill_bounds(const PageId& id, std::int32_t j, std::int32_t k, std::int32_t count) {
     const LatticePoint p = PageGrid::kSide * id.block + LatticePoint{0, j, k};
     const std::size_t at = place({0, j, k});
     if (id.lod < subtree_depth_) {

@@ -7,7 +7,6 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/lattice/diamond_type.h"
-#include "isosurface/preprocessing/coarse_samples.h"
 #include "isosurface/preprocessing/lod_sweep.h"
 #include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/preprocessing/page_writer.h"

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/preprocessing/coarse_errors.h"
 #include "isosurface/preprocessing/cube_samples.h"
+#include "isosurface/preprocessing/finest_errors.h"
 #include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/preprocessing/octant_errors.h"
 #include "isosurface/volume/samples.h"
@@ -25,8 +26,9 @@ class SlabErrors {
   SlabErrors(const PageGrid& grid, const Vec3& spacing, const CoarseSamples<Word>& coarse)
       : depth_(grid.depth()),
         last_(grid.last()),
+        finest_(depth_, last_, spacing),
         stencils_(depth_, spacing),
-        small_(stencils_),
+        small_(stencils_, spacing),
         large_(depth_, last_, spacing, coarse) {
     // Cubes that touch the data with one side alone count: they have tetrahedra of diamonds on that side.
     const std::int32_t cubes = std::max(1, (std::int32_t{1} << depth_) >> 4);
@@ -37,6 +39,7 @@ class SlabErrors {
 
   /// Raises own codes by what slab `k` has; its samples are in LODs.front(), up to the plane 16 k + 16.
   void measure(std::int32_t k, Lods& lods) const {
+    measure_finest(k, lods.front());
     // Cubes that are worked on at the same time have no point in common.
     for (const LatticePoint first : {LatticePoint{0, 0, k}, {1, 0, k}, {0, 1, k}, {1, 1, k}}) {
       const auto columns = static_cast<std::size_t>((cubes_.i - first.i + 1) / 2);
@@ -57,11 +60,27 @@ class SlabErrors {
     typename OctantErrors<Sample>::Codes codes;
   };
 
+  /// Of scale 1: of the planes that begin with the slab, in the last slab those up to the end.
+  void measure_finest(std::int32_t slab, LodValues<Word>& lod) const {
+    const auto blocks = [](std::int32_t size) { return static_cast<std::size_t>((size + 15) / 16); };
+    const std::size_t columns = blocks(lod.size().i), rows = blocks(lod.size().j);
+    const std::int32_t end = slab + 1 == slabs() ? lod.size().k : 16 * (slab + 1);
+    for (std::int32_t first = 16 * slab; first < end; first += 16) {
+      parallel_chunks(columns * rows, 4, [&](std::size_t begin, std::size_t chunk_end) {
+        const auto work = std::make_unique_for_overwrite<typename FinestErrors<Sample>::Work>();
+        for (std::size_t n = begin; n < chunk_end; ++n) {
+          const auto i = static_cast<std::int32_t>(n % columns), j = static_cast<std::int32_t>(n / columns);
+          finest_.measure(lod, {16 * i, 16 * j, first}, *work);
+        }
+      });
+    }
+  }
+
   void measure_cube(LatticePoint base, Lods& lods, Work& work) const {
     work.samples.load(lods.front(), last_, base);
-    if (!work.samples.is_constant()) {
+    if (depth_ > OctantStencils::kLeastBits && !work.samples.is_constant()) {
       small_.measure(work.samples, work.codes);
-      for (int lod = 0; lod < std::min(depth_, 3); ++lod)
+      for (int lod = OctantStencils::kLeastBits; lod < std::min(depth_, 3); ++lod)
         raise(lods[static_cast<std::size_t>(lod)], lod, base, work.codes.data());
     }
     if (depth_ > 3) large_.measure(work.samples, lods);
@@ -83,6 +102,7 @@ class SlabErrors {
 
   int depth_;
   LatticePoint last_, cubes_{};
+  FinestErrors<Sample> finest_;
   OctantStencils stencils_;
   OctantErrors<Sample> small_;
   CoarseErrors<Sample> large_;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/base/assert.h"
-#include "isosurface/compression/eight_lanes.h"
+#include "core/base/simd.h"
 
 namespace adamas {
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "isosurface/compression/ranked_codec.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/volume_pages.h"
 

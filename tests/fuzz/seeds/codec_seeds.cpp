@@ -1,4 +1,4 @@
-// Makes the seeds of the fuzz targets of codecs of samples, of values and of gradients, and of the store's
+// Makes the seeds of the fuzz targets of codecs of samples, of bounds and of gradients, and of the store's
 // own bytes: FOLDER is that of all seeds. To be run again where such bytes change.
 
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "core/base/checksum.h"
 #include "isosurface/compression/bounds_walk.h"
 #include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/storage/store_format.h"
 #include "tests/fuzz/bounds_targets.h"
@@ -109,7 +110,7 @@ void make_gradients(const std::filesystem::path& folder, const Seed& seed) {
   write(folder / "gradient_codec", seed.name, bytes);
 }
 
-/// Makes a page's values those that are expected, but for some of those that are coded.
+/// Makes a page's bounds those that are expected, but for some of those that are coded.
 template <class Word>
 struct Expectations {
   BoundsFields<Word>& fields;
@@ -126,7 +127,7 @@ struct Expectations {
   void range(std::size_t side, const BoundsStage& stage) {
     for_each(stage, [&](std::size_t cell, bool other) {
       const Word known = fields.known[side][cell];
-      fields.values[side][static_cast<std::size_t>(stage.parity)][cell] =
+      fields.ranges[side][static_cast<std::size_t>(stage.parity)][cell] =
           static_cast<Word>(known - (other && known > 0 ? met % 9 : 0));
     });
   }
@@ -143,11 +144,12 @@ struct Expectations {
   }
 };
 
-/// `seed`: of the samples and of what is round the page. Without trust no value is as expected but by chance.
+/// `seed`: of the samples and of what is round the page. Without omitted points no bound is as expected but
+/// by chance.
 template <class Word>
-void make_values(const std::filesystem::path& folder, const std::string& name, const PageShape& shape,
-                 std::uint8_t seed, bool trust) {
-  const ErrorGeometry geometry({1, 1, 1});
+void make_bounds(const std::filesystem::path& folder, const std::string& name, const PageShape& shape,
+                 std::uint8_t seed, bool omitted) {
+  const OwnErrorGeometry geometry({1, 1, 1});
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
   seeded_page(seed, *page, *around);
@@ -155,11 +157,11 @@ void make_values(const std::filesystem::path& folder, const std::string& name, c
   fields->load(shape, *around, *page);
   Expectations<Word> expected{*fields};
   if (shape.complete) {
-    walk_complete_values<Word>(*fields, shape, expected);
+    walk_complete_bounds<Word>(*fields, shape, expected);
   } else {
-    walk_values<Word>(*fields, geometry, shape, {trust, trust}, expected);
+    walk_bounds<Word>(*fields, geometry, shape, {omitted, omitted}, expected);
   }
-  fields->store_values(shape, *page);
+  fields->store_bounds(shape, *page);
   BoundsSurvey<Word> survey({1, 1, 1});
   survey.add(shape, *around, *page);
   const BoundsCodec<Word> codec(survey);
@@ -227,12 +229,12 @@ void make(const std::filesystem::path& folder) {
   make_samples<std::uint16_t>(folder, {"short_ranks", kRanks, {6, 4, 3}, false, 9, 2000});
   make_samples<std::uint32_t>(folder, {"word_ranks", kRanks, {4, 3, 5}, false, 3, 1u << 22});
   make_samples<std::uint32_t>(folder, {"complete_ranks", kRanks, {4, 4, 3}, true, 3, 1u << 26});
-  make_values<std::uint8_t>(folder, "bytes", {{9, 5, 7}, false, 1}, 5, false);
-  make_values<std::uint8_t>(folder, "sure", {{16, 5, 4}, false, 0}, 12, true);
-  make_values<std::uint8_t>(folder, "empty", {{16, 16, 16}, false, 0}, 0, true);
-  make_values<std::uint16_t>(folder, "shorts", {{6, 3, 5}, false, 0}, 20, true);
-  make_values<std::uint32_t>(folder, "words", {{4, 3, 3}, true, 2}, 60, false);
-  make_values<std::uint32_t>(folder, "floats", {{5, 4, 3}, false, 0}, 60, false);
+  make_bounds<std::uint8_t>(folder, "bytes", {{9, 5, 7}, false, 1}, 5, false);
+  make_bounds<std::uint8_t>(folder, "sure", {{16, 5, 4}, false, 0}, 12, true);
+  make_bounds<std::uint8_t>(folder, "empty", {{16, 16, 16}, false, 0}, 0, true);
+  make_bounds<std::uint16_t>(folder, "shorts", {{6, 3, 5}, false, 0}, 20, true);
+  make_bounds<std::uint32_t>(folder, "words", {{4, 3, 3}, true, 2}, 60, false);
+  make_bounds<std::uint32_t>(folder, "floats", {{5, 4, 3}, false, 0}, 60, false);
   make_gradients(folder, {"page", kOurs, {6, 5, 3}, false, 2});
   make_gradients(folder, {"complete", kOurs, {4, 4, 4}, true, 2});
   make_gradients(folder, {"raw", kOurs, {3, 3, 3}, false, 1});

@@ -1,4 +1,4 @@
-#include "isosurface/compression/known_errors.h"
+#include "isosurface/preprocessing/own_errors.h"
 
 #include <gtest/gtest.h>
 
@@ -19,16 +19,16 @@ namespace {
 using Dimensions = std::array<std::uint64_t, 3>;
 constexpr Dimensions kDimensions{39, 35, 33};
 
-/// Calls check(cell, coordinates in the page) for the points of a parity whose errors are sure.
+/// Calls check(cell, coordinates in the page) for the points of a parity whose errors are determined.
 template <class Check>
-void for_each_sure(const PageShape& shape, int parity, Check check) {
-  const SurePoints sure(shape, parity, SurePoints::Of::kErrors);
+void for_each_determined(const PageShape& shape, int parity, Check check) {
+  const DeterminedPoints determined(shape, parity, DeterminedPoints::Of::kErrors);
   const ParityBox box = ParityBox::of(shape.count, parity);
   const LatticePoint odd{parity & 1, parity >> 1 & 1, parity >> 2};
   std::size_t count = 0;
   for (std::int32_t n = 0; n < box.size(); ++n) {
     const LatticePoint c{n % box.ni, n / box.ni % box.nj, n / box.ni / box.nj};
-    if ((sure.row(static_cast<std::size_t>(n / box.ni)) >> 8 * c.i & 1) == 0) continue;
+    if ((determined.row(static_cast<std::size_t>(n / box.ni)) >> 8 * c.i & 1) == 0) continue;
     ++count;
     check(kFirstCell + static_cast<std::size_t>(c.i + 11 * (c.j + 11 * c.k)), 2 * c + odd);
   }
@@ -40,14 +40,14 @@ void for_each_sure(const PageShape& shape, int parity, Check check) {
 
 /// Of the finest LOD: own errors, raised by the children that preprocessing found, are what it found.
 template <class Sample>
-void expect_known(const Dimensions& dimensions, const std::function<Sample(std::size_t)>& sample,
-                  const Vec3& spacing) {
+void expect_found_again(const Dimensions& dimensions, const std::function<Sample(std::size_t)>& sample,
+                        const Vec3& spacing) {
   using Word = OrderedWord<Sample>;
   std::vector<Sample> samples;
   for (std::size_t n = 0; n < dimensions[0] * dimensions[1] * dimensions[2]; ++n)
     samples.push_back(sample(n));
   const test::PreparedVolume<Sample> volume(dimensions, samples, spacing);
-  const ErrorGeometry geometry(spacing);
+  const OwnErrorGeometry geometry(spacing);
   const auto fields = std::make_unique<BoundsFields<Word>>();
   const LatticePoint blocks = volume.grid().blocks(0);
   for (int n = 0; n < blocks.i * blocks.j * blocks.k; ++n) {
@@ -56,9 +56,9 @@ void expect_known(const Dimensions& dimensions, const std::function<Sample(std::
     const PageShape shape = volume.shape(id);
     const Page<Word> page = volume.page(id);
     fields->load(shape, volume.around(id), page);
-    known_errors(fields->heights, geometry, shape, fields->predicted);
+    fields->predict_errors(shape, geometry);
     for (const int parity : kCodedParities) {
-      for_each_sure(shape, parity, [&](std::size_t cell, LatticePoint q) {
+      for_each_determined(shape, parity, [&](std::size_t cell, LatticePoint q) {
         int code = fields->predicted[static_cast<std::size_t>(parity)][cell];
         for (int axis = 0; phase_of(parity) < 2 && axis < 3; ++axis) {
           if (q[axis] % 2 == 0) continue;
@@ -78,23 +78,23 @@ void expect_known(const Dimensions& dimensions, const std::function<Sample(std::
 const Vec3 kSpacings[] = {{1, 1, 1}, {1, 1, 2.5}, {0.957, 0.31, 1.5}, {1e-9, 3, 1e9}, {0.1, 0.1, 0.1}};
 
 template <class Sample>
-class KnownErrorsOf : public testing::Test {};
+class OwnErrorsOf : public testing::Test {};
 using Samples = testing::Types<std::uint8_t, std::uint16_t, std::int16_t>;
-TYPED_TEST_SUITE(KnownErrorsOf, Samples);
+TYPED_TEST_SUITE(OwnErrorsOf, Samples);
 
-TYPED_TEST(KnownErrorsOf, AreThoseOfPreprocessingOfRandomSamples) {
+TYPED_TEST(OwnErrorsOf, AreThoseOfPreprocessingOfRandomSamples) {
   for (const Vec3& spacing : kSpacings) {
     std::mt19937_64 random(1);
-    expect_known<TypeParam>(
+    expect_found_again<TypeParam>(
         kDimensions, [&](std::size_t) { return static_cast<TypeParam>(random()); }, spacing);
   }
 }
 
-TYPED_TEST(KnownErrorsOf, AreThoseOfPreprocessingOfPlateaus) {
+TYPED_TEST(OwnErrorsOf, AreThoseOfPreprocessingOfPlateaus) {
   for (const Vec3& spacing : kSpacings) {
     std::mt19937_64 random(2);
     const auto greatest = std::numeric_limits<TypeParam>::max();
-    expect_known<TypeParam>(
+    expect_found_again<TypeParam>(
         kDimensions,
         [&](std::size_t) {
           const auto number = random() % 40;
@@ -104,10 +104,10 @@ TYPED_TEST(KnownErrorsOf, AreThoseOfPreprocessingOfPlateaus) {
   }
 }
 
-TYPED_TEST(KnownErrorsOf, AreThoseOfPreprocessingOfSmoothSamples) {
+TYPED_TEST(OwnErrorsOf, AreThoseOfPreprocessingOfSmoothSamples) {
   for (const Vec3& spacing : kSpacings) {
     const double scale = static_cast<double>(std::numeric_limits<TypeParam>::max()) / 2.1;
-    expect_known<TypeParam>(
+    expect_found_again<TypeParam>(
         kDimensions,
         [&](std::size_t n) {
           const auto i = static_cast<double>(n % kDimensions[0]), j = static_cast<double>(n / kDimensions[0]);
@@ -117,10 +117,10 @@ TYPED_TEST(KnownErrorsOf, AreThoseOfPreprocessingOfSmoothSamples) {
   }
 }
 
-TEST(KnownErrors, AreThoseOfPreprocessingInVolumesOfAllSizes) {
+TEST(OwnErrors, AreThoseOfPreprocessingInVolumesOfAllSizes) {
   std::mt19937_64 random(3);
   for (const Dimensions dimensions : {Dimensions{17, 16, 32}, {33, 18, 2}, {16, 47, 30}, {20, 1, 40}}) {
-    expect_known<std::uint8_t>(
+    expect_found_again<std::uint8_t>(
         dimensions, [&](std::size_t) { return static_cast<std::uint8_t>(random() & 7); }, {1, 2, 1});
   }
 }

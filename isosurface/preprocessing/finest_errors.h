@@ -1,0 +1,122 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "core/base/simd.h"
+#include "isosurface/preprocessing/cube_samples.h"
+#include "isosurface/preprocessing/lod_values.h"
+#include "isosurface/preprocessing/own_errors.h"
+#include "isosurface/volume/samples.h"
+
+namespace adamas {
+
+/// Own errors of the diamonds of scale 1, in blocks of 16^3 points.
+template <class Sample>
+class FinestErrors {
+ public:
+  using Real = RealOf<Sample>;
+  using Word = OrderedWord<Sample>;
+  struct Work {
+    SampleBlock<Real> samples, counted;
+    OwnErrorCodes codes;
+  };
+
+  /// `depth`: of the lattice; `last`: of the samples.
+  FinestErrors(int depth, LatticePoint last, const Vec3& spacing)
+      : side_(std::int32_t{1} << depth), last_(last), geometry_(spacing) {}
+
+  /// Sets the codes of the LOD's points from `base` on, for which the samples one step round them are there;
+  /// they were 0.
+  void measure(LodValues<Word>& lod, LatticePoint base, Work& work) const {
+    LatticePoint count;
+    bool all_count = std::is_integral_v<Sample>;
+    for (int axis = 0; axis < 3; ++axis) {
+      count[axis] = std::min(SampleBlock<Real>::kPoints, lod.size()[axis] - base[axis]);
+      const std::int32_t end = base[axis] + count[axis];
+      all_count = all_count && std::max(end - 1, inside(end)) <= last_[axis];
+    }
+    load(lod, base, count, all_count, work);
+    if (all_count && count == LatticePoint{16, 16, 16} && is_constant(work.samples)) return;
+    own_errors(work.samples, all_count ? work.samples : work.counted, geometry_, count, work.codes);
+    for (std::int32_t k = 0; k < count.k; ++k) {
+      for (std::int32_t j = 0; j < count.j; ++j) {
+        using Lanes = EightLanes<std::uint8_t>;
+        std::array<std::uint8_t, 16> row;
+        Lanes::store_by_turns(Lanes::load(work.codes.even(j, k)), Lanes::load(work.codes.odd(j, k)),
+                              row.data());
+        std::copy_n(row.begin(), count.i, lod.codes(0, base.j + j, base.k + k) + base.i);
+      }
+    }
+  }
+
+ private:
+  static bool is_constant(const SampleBlock<Real>& block) {
+    const auto& numbers = block.numbers();
+    return std::all_of(numbers.begin(), numbers.end(), [&](Real x) { return x == numbers[0]; });
+  }
+
+  /// A coordinate mirrored into the lattice: at its border diamonds have but half their tetrahedra, and the
+  /// mirrored samples make others that are like these.
+  [[nodiscard]] std::int32_t inside(std::int32_t x) const {
+    return x < 0 ? -x : x > side_ ? 2 * side_ - x : x;
+  }
+
+  void load(const LodValues<Word>& lod, LatticePoint base, LatticePoint count, bool all_count,
+            Work& work) const {
+    for (std::int32_t k = -1; k <= count.k; ++k) {
+      for (std::int32_t j = -1; j <= count.j; ++j) {
+        const std::int32_t y = inside(base.j + j), z = inside(base.k + k);
+        const Word* row = lod.samples(std::min(y, last_.j), std::min(z, last_.k));
+        const LatticePoint first{-1, j, k};
+        load_row(row, base.i, work.samples.at(first));
+        if (!all_count)
+          load_counted(work.samples.at(first), base.i, y <= last_.j && z <= last_.k ? last_.i : -1,
+                       work.counted.at(first));
+      }
+    }
+  }
+
+  /// The row's samples from -1 to 16, those with odd coordinates first.
+  void load_row(const Word* row, std::int32_t base, Real* to) const {
+    constexpr std::ptrdiff_t kHalf = SampleBlock<Real>::kHalf;
+    if (base > 0 && base + 2 * kHalf - 2 <= last_.i) {
+      const Word* from = row + base - 1;
+      for (std::ptrdiff_t n = 0; n < kHalf; ++n) to[n] = real(from[2 * n]);
+      for (std::ptrdiff_t n = 0; n < kHalf; ++n) to[kHalf + n] = real(from[2 * n + 1]);
+      return;
+    }
+    for (std::int32_t n = 0; n < 2 * kHalf; ++n)
+      to[n] = real(row[std::clamp(inside(coordinate(base, n)), 0, last_.i)]);
+  }
+
+  /// What the row's samples are compared with; `last`: the last one that counts.
+  void load_counted(const Real* samples, std::int32_t base, std::int32_t last, Real* to) const {
+    for (std::int32_t n = 0; n < 2 * SampleBlock<Real>::kHalf; ++n) {
+      Real number = samples[n];
+      if (inside(coordinate(base, n)) > last) {
+        number = std::numeric_limits<Real>::quiet_NaN();
+      } else if (std::is_same_v<Sample, float> && !std::isfinite(number)) {
+        number = std::numeric_limits<Real>::infinity();
+      }
+      to[n] = number;
+    }
+  }
+
+  /// Of the nth number of a row of a block.
+  static std::int32_t coordinate(std::int32_t base, std::int32_t n) {
+    constexpr std::int32_t kHalf = SampleBlock<Real>::kHalf;
+    return n < kHalf ? base + 2 * n - 1 : base + 2 * (n - kHalf);
+  }
+  static Real real(Word word) { return static_cast<Real>(from_ordered<Sample>(word)); }
+
+  std::int32_t side_;
+  LatticePoint last_;
+  OwnErrorGeometry geometry_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,99 @@
+#include "tests/support/golden_stores.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "core/base/simd.h"
+#include "isosurface/storage/stored_pages.h"
+#include "isosurface/storage/verify.h"
+#include "tests/support/prepared_volume.h"
+
+namespace adamas {
+namespace {
+
+using test::GoldenStore;
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Vectors of 16 bytes for a while, as on a processor that has no wider ones.
+struct ShortVectors {
+  ShortVectors() { only_short_vectors = true; }
+  ~ShortVectors() { only_short_vectors = false; }
+  ShortVectors(const ShortVectors&) = delete;
+  ShortVectors& operator=(const ShortVectors&) = delete;
+};
+
+/// f(store, volume) for each golden store.
+template <class F>
+void for_each_store(F f) {
+  for (const GoldenStore& store : test::golden_stores()) {
+    SCOPED_TRACE(store.name);
+    with_sample_type(store.type,
+                     [&](auto sample) { f(store, test::golden_volume<decltype(sample)>(store)); });
+    if (testing::Test::HasFatalFailure()) return;
+  }
+}
+
+/// The samples are those of the volume, and the bounds those that preprocessing finds.
+template <class Sample>
+void expect_contents(const GoldenStore& store, const test::MemoryVolume<Sample>& volume) {
+  using Word = OrderedWord<Sample>;
+  StoreFile file(store.path());
+  ASSERT_EQ(verify_store(file, 0, SilentProgress::instance()).bad_pages, 0u);
+  ASSERT_EQ(test::restored<Sample>(file), test::bits_of(volume.samples));
+  const test::PreparedVolume<Sample> prepared(store.dimensions, volume.samples, store.spacing,
+                                              store.options.subtree_depth);
+  StoredPages<Word> pages(file, 0, std::size_t{1} << 24);
+  const std::uint64_t end = std::uint64_t{2} << (3 * file.grid().top());
+  for (std::uint64_t number = 1; number < end; ++number) {
+    const PageId id = file.grid().page(number);
+    if (!file.grid().contains(id)) continue;
+    Page<Word> found{};
+    ASSERT_TRUE(pages.copy(id, found)) << page_name(id);
+    const Page<Word> page = prepared.page(id);
+    for_each_own_place(prepared.shape(id), [&](std::size_t at) {
+      ASSERT_EQ(found.samples[at], page.samples[at]) << page_name(id) << " place " << at;
+      ASSERT_EQ(found.low[at], page.low[at]) << page_name(id) << " place " << at;
+      ASSERT_EQ(found.high[at], page.high[at]) << page_name(id) << " place " << at;
+      ASSERT_EQ(found.errors[at], page.errors[at]) << page_name(id) << " place " << at;
+    });
+  }
+}
+
+TEST(GoldenStores, HoldTheirVolumes) {
+  for_each_store([](const auto& store, const auto& volume) { expect_contents(store, volume); });
+}
+
+TEST(GoldenStores, AreReadAlikeWithShortVectors) {
+  const ShortVectors scope;
+  for_each_store([](const auto& store, const auto& volume) { expect_contents(store, volume); });
+}
+
+/// With ADAMAS_WRITE_GOLDEN set, makes the files anew where they are kept.
+TEST(GoldenStores, AreBuiltAlike) {
+  const bool is_new = std::getenv("ADAMAS_WRITE_GOLDEN") != nullptr;
+  for_each_store([&](const auto& store, const auto& volume) {
+    const test::Scratch folder;
+    const auto path = is_new ? store.path() : folder / "a.adm";
+    test::build(path, volume, store.options);
+    ASSERT_TRUE(bytes_of(path) == bytes_of(store.path()));
+  });
+}
+
+TEST(GoldenStores, AreBuiltAlikeWithShortVectors) {
+  const ShortVectors scope;
+  for_each_store([&](const auto& store, const auto& volume) {
+    const test::Scratch folder;
+    test::build(folder / "a.adm", volume, store.options);
+    ASSERT_TRUE(bytes_of(folder / "a.adm") == bytes_of(store.path()));
+  });
+}
+
+}  // namespace
+}  // namespace adamas
