@@ -85,7 +85,7 @@ CLI::Validator true_or_false() {
 /// empty, no file or name is another option, whose own value would then be lost, and flags are true or false.
 void add_common_checks(CLI::App& command) {
   for (CLI::Option* option : command.get_options()) {
-    if (option->get_type_size() == 0) {
+    if (option->get_items_expected_max() == 0) {  // a flag
       if (option != command.get_help_ptr()) option->check(true_or_false());
       continue;
     }
