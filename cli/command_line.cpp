@@ -203,7 +203,10 @@ std::string several_values(const CLI::App& command) {
     const std::vector<std::string>& values = option->results();
     if (option->get_multi_option_policy() != CLI::MultiOptionPolicy::Throw) continue;
     if (values.size() <= static_cast<std::size_t>(option->get_items_expected_max())) continue;
-    return fmt::format("{}: expected one value, found '{}'", option->get_name(), fmt::join(values, "', '"));
+    // CLI11 tells no name of an option that --help does not show, as --config of the root.
+    const std::string name =
+        option->get_group().empty() ? "--" + option->get_lnames().front() : option->get_name();
+    return fmt::format("{}: expected one value, found '{}'", name, fmt::join(values, "', '"));
   }
   return {};
 }
