@@ -11,7 +11,7 @@
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
-#include "isosurface/storage/sample_range.h"
+#include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -156,12 +156,12 @@ void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std:
   const auto ratio = [uncompressed](std::uint64_t n) {
     return n > 0 ? fmt::format("{:.2f}", static_cast<double>(uncompressed) / static_cast<double>(n)) : "-";
   };
-  const std::uint64_t parts = bytes.samples + bytes.values + bytes.gradients;
+  const std::uint64_t parts = bytes.samples + bytes.bounds + bytes.gradients;
   const std::uint64_t others = file_bytes - std::min(parts, file_bytes);
   console.table({{"", "bytes", "ratio"},
                  {"uncompressed", text(uncompressed), ""},
                  {"samples", text(bytes.samples), ratio(bytes.samples)},
-                 {"errors and ranges", text(bytes.values), ""},
+                 {"errors and ranges", text(bytes.bounds), ""},
                  {"gradients", text(bytes.gradients), ""},
                  {"directory and copies", text(others), ""},
                  {"file", text(file_bytes), ratio(file_bytes)}});
@@ -195,7 +195,7 @@ Figures print_store(const std::string& path, Session& session) {
                   {"gradients", header.gradients},
                   {"bytes_input", before},
                   {"bytes_data", header.bytes.samples},
-                  {"bytes_errors", header.bytes.values},
+                  {"bytes_errors", header.bytes.bounds},
                   {"bytes_gradients", header.bytes.gradients},
                   {"bytes_file", file->size()}};
   add_places(grid, figures);

@@ -65,7 +65,7 @@ void report(const VolumeReader& reader, const StoreFigures& store, Session& sess
                   {"bytes_input", input},
                   {"bytes_data", store.bytes.samples},
                   {"bytes_gradients", store.bytes.gradients},
-                  {"bytes_errors", store.bytes.values},
+                  {"bytes_errors", store.bytes.bounds},
                   {"bytes_file", store.file_bytes},
                   {"ratio_data", ratio(input, store.bytes.samples)},
                   {"ratio", ratio(input, store.file_bytes)},

@@ -12,13 +12,12 @@
 #include "core/base/large_pages.h"
 #include "core/lattice/diamond.h"
 #include "isosurface/contour/contour_clip.h"
-#include "isosurface/contour/point_between.h"
 
 namespace adamas {
 
 namespace {
 
-/// Parameter of the isovalue between two finite values, one of them below it and one not.
+/// The parameter of the isovalue between two finite values, one of them below it and one not.
 double crossing(double first, double second, double isovalue) {
   // Differences of halves cannot overflow; those of small values lose no bits.
   const double scale = std::max(std::abs(first), std::abs(second)) > 1 ? 0.5 : 1;
@@ -117,7 +116,7 @@ DiamondsInSpace::DiamondsInSpace(const IndexedHierarchy& hierarchy,
     diamonds_.push_back({ZOrder::interleave({p.i >> shift_, p.j >> shift_, p.k >> shift_}), slots});
     last = std::max(last, diamonds_.back().place);
   });
-  // By some bits after others, from the lowest on.
+  // This is a radix sort from the lowest digit on.
   constexpr int kDigitBits = 11;
   std::vector<PlacedDiamond> sorted;
   reserve_in_large_pages(sorted, diamonds_.size());

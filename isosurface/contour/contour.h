@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -59,6 +60,17 @@ struct ContourOptions {
 /// Whether the tetrahedron has at most a face in the data's box.
 bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample);
 
+/// The point at parameter t from a to b. Rounding never puts it beyond them, and where they have the same
+/// coordinate it has that too.
+inline Vec3 point_between(const Vec3& a, const Vec3& b, double t) {
+  Vec3 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double p = a[axis], q = b[axis];
+    result[axis] = std::clamp(p + t * (q - p), std::min(p, q), std::max(p, q));
+  }
+  return result;
+}
+
 /// A contour that grows by a triangle at a time. Points are numbered as they are first met.
 class ContourBuilder {
  public:
@@ -69,11 +81,11 @@ class ContourBuilder {
   /// The number of the point on an edge of the mesh between two finite values, one of them below the isovalue
   /// and one not. Throws Error where the surface has more points than 32 bits can number.
   std::uint32_t edge_point(LatticePoint a, LatticePoint b, double value_a, double value_b);
-  /// By the numbers of its points.
+  /// Adds a triangle by the numbers of its points.
   void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }
   /// Makes room for about so many triangles.
   void expect(std::size_t triangles);
-  /// The contour, clipped; the builder is not to be used then.
+  /// The contour, clipped to the data's box; the builder is not to be used after this.
   [[nodiscard]] Contour finish();
 
  private:
@@ -84,14 +96,15 @@ class ContourBuilder {
   PointNumbers numbers_;
 };
 
-/// The triangles of one diamond after another.
+/// Adds the triangles of one diamond after another to a contour.
 class DiamondContour {
  public:
   /// The builder must outlive this, and have the same isovalue and last sample.
   DiamondContour(ContourBuilder& builder, double isovalue, const std::optional<LatticePoint>& last_sample)
       : builder_(builder), isovalue_(isovalue), last_sample_(last_sample) {}
 
-  /// Those in some of the diamond's tetrahedra, by slot as bits. `values`: see extract_contour.
+  /// Adds the triangles in some of the diamond's tetrahedra: those of `slots`, as bits. `values(p)` is the
+  /// value at a lattice point.
   template <class Values>
   void add(const Diamond& diamond, unsigned slots, const Values& values);
 
@@ -104,8 +117,8 @@ class DiamondContour {
   ContourBuilder& builder_;
   double isovalue_;
   std::optional<LatticePoint> last_sample_;
-  /// Of the diamond at hand.
-  std::size_t ring_ = 0;
+  // All of these are the present diamond's.
+  std::size_t ring_ = 0;  ///< how many points the ring has
   std::array<LatticePoint, kMembers> points_;
   std::array<double, kMembers> values_;
   std::array<bool, kMembers> above_;
@@ -136,7 +149,8 @@ class DiamondsInSpace {
   std::vector<PlacedDiamond> diamonds_;
 };
 
-/// The contour of the piecewise linear function on the current mesh with the given values at its vertices.
+/// The contour of the piecewise linear function on a mesh that is kept as a table, with the given values at
+/// its vertices: of stores with subtrees, and what tests compare the contours of other stores with.
 /// `values(p)` gives the value at the lattice point p as a double; it is asked once for each vertex of a
 /// diamond, so several times for a vertex of the mesh, and not for diamonds beyond the last sample. A value
 /// equal to the isovalue counts as above it. Tetrahedra with a value that is not finite have no surface. The

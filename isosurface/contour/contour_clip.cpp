@@ -11,7 +11,6 @@
 
 #include "core/base/error.h"
 #include "core/lattice/diamond.h"
-#include "isosurface/contour/point_between.h"
 
 namespace adamas {
 

@@ -6,45 +6,32 @@ namespace adamas {
 
 namespace {
 
-DiamondStencil stencil_of(const DiamondType& type) {
-  DiamondStencil stencil{};
-  stencil.phase = type.phase;
-  stencil.tetrahedron_count = static_cast<std::size_t>(type.tetrahedron_count);
-  stencil.count = DiamondStencil::kRing + stencil.tetrahedron_count;
-  stencil.offsets[DiamondStencil::kBegin] = -type.direction;
-  stencil.offsets[DiamondStencil::kEnd] = type.direction;
-  const auto corners = [&](std::size_t slot) {
-    const std::size_t next = slot + 1 == stencil.tetrahedron_count ? 0 : slot + 1;
-    // As DiamondType::ChildTetrahedron numbers them: the split vertex comes last.
-    return std::array<std::size_t, 5>{DiamondStencil::kBegin, DiamondStencil::kEnd,
-                                      DiamondStencil::kRing + slot, DiamondStencil::kRing + next,
-                                      DiamondStencil::kMiddle};
-  };
-  for (std::size_t slot = 0; slot < stencil.tetrahedron_count; ++slot) {
-    stencil.offsets[DiamondStencil::kRing + slot] = type.ring[slot];
-    for (std::size_t v = 0; v < 4; ++v) stencil.tetrahedra[slot] |= 1u << corners(slot)[v];
+/// The vertices of a tetrahedron and the split vertex as members, in the order in which
+/// DiamondType::ChildTetrahedron numbers them.
+std::array<std::size_t, 5> corners_of(std::size_t slot, std::size_t tetrahedron_count) {
+  const std::size_t next = slot + 1 == tetrahedron_count ? 0 : slot + 1;
+  return {DiamondStencil::kBegin, DiamondStencil::kEnd, DiamondStencil::kRing + slot,
+          DiamondStencil::kRing + next, DiamondStencil::kMiddle};
+}
+
+DiamondStencil::Half half_of(const DiamondType::ChildTetrahedron& from, const DiamondStencil& stencil) {
+  const auto corners = corners_of(from.slot, stencil.tetrahedron_count);
+  DiamondStencil::Half half{};
+  half.slot = from.slot;
+  for (std::size_t v = 0; v < 4; ++v) {
+    half.vertices[v] = static_cast<std::uint8_t>(corners[from.vertices[v]]);
+    half.members |= 1u << half.vertices[v];
   }
-  stencil.child_count = static_cast<std::size_t>(type.child_count);
-  for (std::size_t c = 0; c < stencil.child_count; ++c) {
-    const LatticePoint offset = type.child_offsets[c];
-    stencil.children[c] = type.phase == 2 ? offset : LatticePoint{offset.i / 2, offset.j / 2, offset.k / 2};
-    for (std::size_t h = 0; h < 2; ++h) {
-      const DiamondType::ChildTetrahedron& from = type.child_tetrahedra[c][h];
-      DiamondStencil::Half& half = stencil.halves[2 * c + h];
-      half.slot = from.slot;
-      for (std::size_t v = 0; v < 4; ++v) {
-        half.vertices[v] = static_cast<std::uint8_t>(corners(from.slot)[from.vertices[v]]);
-        half.members |= 1u << half.vertices[v];
-      }
-      for (std::size_t edge = 0; edge < half.edges.size(); ++edge) {
-        const auto [a, b] = kTetrahedronEdges[edge];
-        half.edges[edge] =
-            DiamondStencil::edge_place(stencil.offsets[half.vertices[a]] + stencil.offsets[half.vertices[b]]);
-      }
-    }
+  for (std::size_t edge = 0; edge < half.edges.size(); ++edge) {
+    const auto [a, b] = kTetrahedronEdges[edge];
+    half.edges[edge] =
+        DiamondStencil::edge_place(stencil.offsets[half.vertices[a]] + stencil.offsets[half.vertices[b]]);
   }
-  for (std::size_t m = 0; m < stencil.count; ++m)
-    stencil.places[m] = static_cast<std::int32_t>(PaddedGrid<int>::offset(stencil.offsets[m]));
+  return half;
+}
+
+/// Fills the tables by the members above a contour.
+void count_triangles(DiamondStencil& stencil) {
   for (DiamondStencil::Members above = 0; above < 1u << stencil.count; ++above) {
     unsigned crossed = 0;
     for (std::size_t n = 0; n < 2 * stencil.child_count; ++n)
@@ -52,6 +39,30 @@ DiamondStencil stencil_of(const DiamondType& type) {
     stencil.crossed.push_back(static_cast<std::uint16_t>(crossed));
     stencil.added.push_back(static_cast<std::int8_t>(stencil.added_in(0xff, above)));
   }
+}
+
+DiamondStencil stencil_of(const DiamondType& type) {
+  DiamondStencil stencil{};
+  stencil.phase = type.phase;
+  stencil.tetrahedron_count = static_cast<std::size_t>(type.tetrahedron_count);
+  stencil.count = DiamondStencil::kRing + stencil.tetrahedron_count;
+  stencil.offsets[DiamondStencil::kBegin] = -type.direction;
+  stencil.offsets[DiamondStencil::kEnd] = type.direction;
+  for (std::size_t slot = 0; slot < stencil.tetrahedron_count; ++slot) {
+    stencil.offsets[DiamondStencil::kRing + slot] = type.ring[slot];
+    const auto corners = corners_of(slot, stencil.tetrahedron_count);
+    for (std::size_t v = 0; v < 4; ++v) stencil.tetrahedra[slot] |= 1u << corners[v];
+  }
+  stencil.child_count = static_cast<std::size_t>(type.child_count);
+  for (std::size_t c = 0; c < stencil.child_count; ++c) {
+    const LatticePoint offset = type.child_offsets[c];
+    stencil.children[c] = type.phase == 2 ? offset : LatticePoint{offset.i / 2, offset.j / 2, offset.k / 2};
+    for (std::size_t h = 0; h < 2; ++h)
+      stencil.halves[2 * c + h] = half_of(type.child_tetrahedra[c][h], stencil);
+  }
+  for (std::size_t m = 0; m < stencil.count; ++m)
+    stencil.places[m] = static_cast<std::int32_t>(PaddedGrid<int>::offset(stencil.offsets[m]));
+  count_triangles(stencil);
   return stencil;
 }
 

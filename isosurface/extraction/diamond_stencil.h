@@ -6,17 +6,76 @@
 #include <vector>
 
 #include "core/lattice/diamond_type.h"
-#include "isosurface/extraction/padded_grid.h"
+#include "core/lattice/lattice_point.h"
 
 namespace adamas {
 
-/// A diamond that is split, as its members round the split vertex: the vertices of its tetrahedra and the
-/// split vertex. Sets of members are bits in the order of the members.
+/// Numbers of a page's points and of those one step round the page, so that points at its border have all
+/// their neighbours: coordinates from -1 to 16, i running fastest.
+template <class T>
+class PaddedGrid {
+ public:
+  static constexpr std::ptrdiff_t kSide = 18;
+  static constexpr std::size_t kPoints = kSide * kSide * kSide;
+
+  void fill(T value) { numbers_.fill(value); }
+
+  [[nodiscard]] const T* at(LatticePoint q) const { return numbers_.data() + place(q); }
+  [[nodiscard]] T* at(LatticePoint q) { return numbers_.data() + place(q); }
+  /// The place of a point in any grid.
+  static constexpr std::size_t place(LatticePoint q) {
+    return static_cast<std::size_t>(offset({q.i + 1, q.j + 1, q.k + 1}));
+  }
+  [[nodiscard]] T operator[](std::size_t place) const { return numbers_[place]; }
+  [[nodiscard]] T& operator[](std::size_t place) { return numbers_[place]; }
+  /// What a step adds to places.
+  static constexpr std::ptrdiff_t offset(LatticePoint d) { return d.i + kSide * (d.j + kSide * d.k); }
+
+ private:
+  std::array<T, kPoints> numbers_;
+};
+
+/// One of the two tetrahedra into which a split bisects a tetrahedron.
+struct TetrahedronHalf {
+  std::uint8_t child;  ///< the child diamond it belongs to
+  std::uint8_t slot;   ///< of that diamond
+  /// Its vertices: 0 to 3 are those of the tetrahedron that is bisected, 4 the split vertex.
+  std::array<std::uint8_t, 4> vertices;
+};
+
+/// What DiamondType::child_tetrahedra says, by the tetrahedron that is bisected.
+class DiamondHalves {
+ public:
+  /// The half of a tetrahedron, by the diamond's type, with the beginning of the split edge (`end` = 0) or
+  /// with its end (1).
+  static const TetrahedronHalf& of(int type, int slot, int end) {
+    static const DiamondHalves all;
+    return all.halves_[static_cast<std::size_t>(type)][static_cast<std::size_t>(slot)]
+                      [static_cast<std::size_t>(end)];
+  }
+
+ private:
+  DiamondHalves() {
+    for (std::size_t t = 0; t < kDiamondTypes.size(); ++t) {
+      const DiamondType& type = kDiamondTypes[t];
+      for (std::uint8_t child = 0; child < type.child_count; ++child) {
+        for (const DiamondType::ChildTetrahedron& half : type.child_tetrahedra[child])
+          halves_[t][half.slot][half.end] = {child, half.child_slot, half.vertices};
+      }
+    }
+  }
+
+  std::array<std::array<std::array<TetrahedronHalf, 2>, 8>, kDiamondTypeCount> halves_{};
+};
+
+/// A type of diamonds that are split, as tables for contours in their halves. A diamond's members are the
+/// split vertex and the vertices of the tetrahedra round it; a set of members is bits in the order of the
+/// members.
 struct DiamondStencil {
   using Members = std::uint32_t;
   static constexpr std::size_t kBegin = 0, kEnd = 1, kMiddle = 2, kRing = 3, kMost = kRing + 8;
-  /// Edges between points on or one step round a page are numbered by the sums of their ends, counted from
-  /// the least: in a grid of so many along each axis, i running fastest.
+  /// Edges between points on a page or one step round it are numbered by the sums of their ends, which lie in
+  /// a grid of so many points along each axis, i running fastest.
   static constexpr std::int32_t kEdgeSide = 2 * (PaddedGrid<int>::kSide - 1) + 1;
 
   static constexpr std::int32_t edge_place(LatticePoint sum) {
@@ -28,7 +87,7 @@ struct DiamondStencil {
     std::uint8_t slot;                     ///< of the tetrahedron
     std::array<std::uint8_t, 4> vertices;  ///< members, in the child diamond's order
     Members members;                       ///< the same as a set
-    /// `edge_place` of the edges, in the order of kTetrahedronEdges, from that of the split vertex with
+    /// `edge_place` of the edges, in the order of kTetrahedronEdges, less that of the split vertex with
     /// itself.
     std::array<std::int32_t, 6> edges;
   };
@@ -43,37 +102,36 @@ struct DiamondStencil {
   /// In phase 2 in units of half the scale: children belong to the next finer LOD there.
   std::array<LatticePoint, 8> children;
   std::array<Half, 16> halves;  ///< two for each child
-  /// By the members above a contour: the halves that it crosses, as bits; and how many triangles more it has
-  /// in all of them than in the tetrahedra.
+  /// By the set of members above a contour: the halves that it crosses, as bits; and how many triangles more
+  /// it has in all halves than in the tetrahedra.
   std::vector<std::uint16_t> crossed;
   std::vector<std::int8_t> added;
 
-  /// How many triangles a contour has in a tetrahedron with these vertices, of which those of `above` are
+  /// How many triangles a contour has in a tetrahedron with these vertices, where the members of `above` are
   /// above it.
   static int triangles(Members vertices, Members above) {
     const Members found = vertices & above;
     if (found == 0 || found == vertices) return 0;
-    // Of four vertices two where one is left without the first, and none without the next: counting bits may
-    // be a call.
+    // Two triangles where two of the four vertices are above. Bits are taken away one by one, since the
+    // compiler may make a call of counting them.
     const Members others = found & (found - 1);
     return others != 0 && (others & (others - 1)) == 0 ? 2 : 1;
   }
 
-  /// As bits.
+  /// All tetrahedra, as bits.
   [[nodiscard]] unsigned all_slots() const { return (1u << tetrahedron_count) - 1; }
 
-  /// `added` in the halves of these tetrahedra alone.
+  /// What `added` says, in some of the tetrahedra alone: those of `slots`, as bits.
   [[nodiscard]] int added_in(unsigned slots, Members above) const;
 
-  /// Of the type that points have whose coordinates, in units of the diamond's scale, end in the two lowest
-  /// bits of those of q.
+  /// The stencil of the diamond at q, in units of its scale: only the two lowest bits of coordinates matter.
   static const DiamondStencil& at(LatticePoint q) {
     static const DiamondStencil* const kAll = all();
     return kAll[static_cast<std::size_t>(diamond_type(q, 0))];
   }
 
  private:
-  /// Of all types.
+  /// By type.
   static const DiamondStencil* all();
 };
 

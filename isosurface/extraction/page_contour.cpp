@@ -24,7 +24,7 @@ template <class Sample>
 PageContour<Sample>::PageContour(StoredDiamonds<Sample>& diamonds, const SplitPages<Sample>& pages,
                                  const SplitLimits& limits, ContourBuilder& builder)
     : diamonds_(diamonds),
-      pages_(pages),
+      split_pages_(pages),
       limits_(limits),
       builder_(builder),
       page_(diamonds),
@@ -37,7 +37,7 @@ typename PageContour<Sample>::Neighbours PageContour<Sample>::neighbours(int lod
   for (std::int32_t dk = -1; dk <= 1; ++dk) {
     for (std::int32_t dj = -1; dj <= 1; ++dj) {
       for (std::int32_t di = -1; di <= 1; ++di) {
-        const PageOfLod* page = pages_.page(lod, block + LatticePoint{di, dj, dk});
+        const PageOfLod* page = split_pages_.page(lod, block + LatticePoint{di, dj, dk});
         if (page == nullptr) continue;
         found[neighbour(PageGrid::kSide * LatticePoint{di, dj, dk})] = page->split;
       }
@@ -51,7 +51,7 @@ void PageContour<Sample>::add(int lod, const PageOfLod& page) {
   const PageMask& split = *page.split;
   page_.load(lod, page.block, split);
   same_ = neighbours(lod, page.block);
-  // A page's next finer ones are two along each axis; but the coarsest one has all coarser LODs too.
+  // A page has eight next finer ones, except that the coarsest page has all coarser LODs too.
   const bool is_same_page = lod > diamonds_.grid().top();
   finer_ = neighbours(lod - 1, (is_same_page ? 1 : 2) * page.block);
   split.for_each([&](LatticePoint q) { add_diamond(DiamondStencil::at(q), q); });
@@ -75,7 +75,7 @@ void PageContour<Sample>::add_diamond(const DiamondStencil& stencil, LatticePoin
     const LatticePoint child = (finer ? 2 : 1) * q + stencil.children[n / 2];
     const PageMask* split = pages[neighbour(child)];
     if (split != nullptr && split->has({in_page(child.i), in_page(child.j), in_page(child.k)})) continue;
-    if (page_.is_inside() || pages_.is_in_data(page_.diamond(q).child(static_cast<int>(n / 2))))
+    if (page_.is_inside() || split_pages_.is_in_data(page_.diamond(q).child(static_cast<int>(n / 2))))
       add_half(stencil, q, half, above);
   }
 }
@@ -85,8 +85,9 @@ void PageContour<Sample>::note_lost_children(const Diamond& diamond) {
   for (int c = 0; c < diamond.child_count(); ++c) {
     // What cannot be had has no greater error than what it comes from.
     const LatticePoint child = diamond.child(c);
-    if (pages_.is_in_data(child) && pages_.is_lost(child))
-      greatest_rank_at_lost_ = std::max(greatest_rank_at_lost_, diamonds_.rank_if_crossed(diamond.point()));
+    if (split_pages_.is_in_data(child) && split_pages_.is_lost(child))
+      greatest_class_at_lost_ =
+          std::max(greatest_class_at_lost_, diamonds_.class_if_crossed(diamond.point()));
   }
 }
 

@@ -67,7 +67,7 @@ void PageDiamonds<Sample>::load(int lod, LatticePoint block, const PageMask& spl
   known_ = known_coarser_ = 0;
   // Of coarser LODs than the coarsest page's own no page has the points side by side.
   if (lod <= diamonds_.grid().top()) {
-    const auto& samples = diamonds_.samples({lod, block});
+    const PagePoints<Word>& samples = diamonds_.pages().needed_samples({lod, block}).samples;
     for (std::int32_t k = 0; k <= kLast; ++k) {
       for (std::int32_t j = 0; j <= kLast; ++j)
         std::copy_n(samples.data() + PageGrid::place({0, j, k}, 0), PageGrid::kSide, words_.at({0, j, k}));
@@ -118,7 +118,7 @@ void PageDiamonds<Sample>::get_from_neighbours(std::uint32_t pages) {
     if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
         block.k >= blocks.k)
       continue;
-    const PageSamples<Word>* page = diamonds_.held_samples({lod_, block});
+    const PageSamples<Word>* page = diamonds_.pages().held({lod_, block});
     if (page == nullptr) {
       get_coarser(step);
       continue;
@@ -149,7 +149,7 @@ void PageDiamonds<Sample>::get_coarser(LatticePoint step) {
   // Points one before the page are odd ones.
   if (std::min({step.i, step.j, step.k}) < 0 || lod_ == diamonds_.grid().top()) return;
   const LatticePoint block = block_ + step;
-  const PageSamples<Word>* page = diamonds_.held_samples({lod_ + 1, {block.i / 2, block.j / 2, block.k / 2}});
+  const PageSamples<Word>* page = diamonds_.pages().held({lod_ + 1, {block.i / 2, block.j / 2, block.k / 2}});
   if (page == nullptr) return;
   known_coarser_ |= bit_of_page(PageGrid::kSide * step);
   const LatticePoint first = PageGrid::kSide * step;

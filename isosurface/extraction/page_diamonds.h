@@ -4,14 +4,13 @@
 #include <cstdint>
 
 #include "isosurface/extraction/diamond_stencil.h"
-#include "isosurface/extraction/padded_grid.h"
 #include "isosurface/extraction/split_pages.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
 
-/// The samples of a page's diamonds, which reach to the points one step round the page. Points are in units
-/// of the page's LOD, and from the page's first one.
+/// The samples at the members of a page's diamonds: at the page's points and at those one step round them.
+/// Points are in units of the page's LOD, and counted from the page's first one.
 template <class Sample>
 class PageDiamonds {
  public:
@@ -29,7 +28,7 @@ class PageDiamonds {
   /// Whether all samples that were got are finite.
   [[nodiscard]] bool all_finite() const { return finite_; }
 
-  /// In the lattice of samples; in that of the domain.
+  /// A point in units of samples, and the same as a lattice point.
   [[nodiscard]] LatticePoint in_samples(LatticePoint q) const { return (1 << lod_) * (corner_ + q); }
   [[nodiscard]] LatticePoint in_lattice(LatticePoint q) const { return lattice_step_ * (corner_ + q); }
   [[nodiscard]] Diamond diamond(LatticePoint q) const { return Diamond(in_lattice(q)); }
@@ -37,10 +36,10 @@ class PageDiamonds {
   [[nodiscard]] double value(LatticePoint q) const {
     return static_cast<double>(from_ordered<Sample>(*words_.at(q)));
   }
-  /// Of a diamond's members, those that are not below the isovalue.
+  /// The members of a diamond whose samples are not below the isovalue.
   [[nodiscard]] DiamondStencil::Members above(const DiamondStencil& stencil, LatticePoint q) const {
     const Word* at = words_.at(q);
-    // Of constant numbers no loop is left.
+    // With a constant number of members the compiler unrolls the loop.
     if (stencil.phase == 0) return above_of<DiamondStencil::kRing + 6>(stencil, at);
     if (stencil.phase == 1) return above_of<DiamondStencil::kRing + 4>(stencil, at);
     return above_of<DiamondStencil::kRing + 8>(stencil, at);
@@ -67,14 +66,14 @@ class PageDiamonds {
       result |= DiamondStencil::Members{diamonds_.is_above(at[stencil.places[m]])} << m;
     return result;
   }
-  /// Copies what some of the pages round the page, as bits, have of the points round it, as far as they are
-  /// in memory.
+  /// Copies the points round the page from some of the pages round it, as bits, as far as they are in memory.
   void get_from_neighbours(std::uint32_t pages);
-  /// Of a page that is not in memory, one step from -1 to 1 away: copies those points that are coarser ones.
+  /// Copies from the next coarser page those points of a neighbour, at a step from -1 to 1, that belong to
+  /// coarser LODs. For neighbours that are not in memory.
   void get_coarser(LatticePoint step);
-  /// Of split diamonds, those that may have members which were not got together with the others.
+  /// The split diamonds that may have members which no page in memory had.
   [[nodiscard]] PageMask reaching_others(const PageMask& split) const;
-  /// Gets those members of a diamond.
+  /// Gets those members of a diamond one by one.
   void get_others(LatticePoint q);
   [[nodiscard]] bool is_there(LatticePoint q) const;
 
@@ -84,8 +83,8 @@ class PageDiamonds {
   std::int32_t lattice_step_ = 1;
   bool inside_ = false, finite_ = true;
   PaddedGrid<Word> words_;
-  /// Of the pages round the page, by steps from -1 to 1 along each axis, i running fastest: those whose
-  /// points are there, as bits; and those of which the coarser ones are.
+  /// Pages whose points were copied, as bits, by steps from -1 to 1 from this page along each axis, i running
+  /// fastest; and pages of which only the points of coarser LODs were.
   std::uint32_t known_ = 0, known_coarser_ = 0;
 };
 

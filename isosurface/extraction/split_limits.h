@@ -1,22 +1,62 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "core/geometry/vec3.h"
-#include "isosurface/extraction/lost_regions.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas {
 
-/// Which diamonds a surface may split at all. With a diamond all that come from it are kept from it too.
+/// How far the diamonds that come from splitting one, and from splitting those, reach from its point along
+/// each axis, in units of its scale, by its phase. The box that reaches so far round a diamond contains those
+/// of its children.
+constexpr std::int32_t nested_reach(int phase) { return 5 - phase; }
+
+/// Where a mesh must stay coarse because pages cannot be had: the diamonds that are never split. All that
+/// come from such a diamond are among them too, so that the others can be split in a conforming mesh.
+class LostRegions {
+ public:
+  /// `subtree_depth`: that of the store. With subtrees a tetrahedron stands for finer ones, whose samples it
+  /// needs.
+  explicit LostRegions(int subtree_depth = 0) : finer_lods_(subtree_depth > 0 ? subtree_depth + 1 : 0) {}
+
+  [[nodiscard]] bool empty() const { return pages_.empty(); }
+  void add(const PageId& page) { pages_.push_back(page); }
+
+  /// Whether the diamond of a phase and point, in samples, whose scale is 2^lod samples, is never split.
+  [[nodiscard]] bool blocks(LatticePoint p, int lod, int phase) const {
+    return std::any_of(pages_.begin(), pages_.end(),
+                       [&](const PageId& page) { return blocks(page, p, lod, phase); });
+  }
+
+ private:
+  [[nodiscard]] bool blocks(const PageId& page, LatticePoint p, int lod, int phase) const {
+    if (lod > page.lod + finer_lods_) return false;
+    const std::int32_t reach = (nested_reach(0) << (page.lod + finer_lods_)) - (nested_reach(phase) << lod);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t begin = page.block[axis] * PageGrid::kSide << page.lod;
+      const std::int32_t end = begin + ((PageGrid::kSide - 1) << page.lod);
+      if (p[axis] < begin - reach || p[axis] > end + reach) return false;
+    }
+    return true;
+  }
+
+  int finer_lods_;  ///< how many LODs finer than a diamond's own its tetrahedra need samples of
+  std::vector<PageId> pages_;
+};
+
+/// Which diamonds a surface may split at all. Where a diamond may not be split, none that comes from it may.
 struct SplitLimits {
-  std::optional<std::array<Vec3, 2>> region;  ///< in samples: only what reaches it
-  LostRegions lost;                           ///< nothing of these
+  std::optional<std::array<Vec3, 2>> region;  ///< in samples: only diamonds that reach it may be split
+  LostRegions lost;                           ///< diamonds in these may not be split
 
   [[nodiscard]] bool any() const { return region.has_value() || !lost.empty(); }
 
-  /// For the diamond of this phase and point, in samples, whose scale is 2^lod.
+  /// Whether the diamond of a phase and point, in samples, whose scale is 2^lod samples, may be split.
   [[nodiscard]] bool allow(LatticePoint p, int lod, int phase) const {
     return reaches_region(p, lod, phase) && (lost.empty() || !lost.blocks(p, lod, phase));
   }

@@ -14,19 +14,19 @@ namespace {
 
 constexpr std::int32_t kSide = PageGrid::kSide;
 
-/// Whether no diamond of a row is crossed with an error.
+/// Whether all codes of a row are 0: no diamond of it is crossed with an error.
 bool is_zero(const std::uint8_t* codes) {
   std::array<std::uint64_t, 2> row;
   std::memcpy(row.data(), codes, sizeof row);
   return (row[0] | row[1]) == 0;
 }
 
-/// Where along an axis the children of a point of phase 2 lie, in pages of the next finer LOD: from the one
-/// before the point's page to the last one in it, as three bits.
+/// The pages of the next finer LOD in which, along an axis, the children of a diamond of phase 2 at a
+/// coordinate lie: the one before the diamond's page and the two in it, as three bits.
 unsigned pages_of_children(std::int32_t x) { return (x == 0 ? 1 : 0) | (x <= 8 ? 2 : 0) | (x >= 8 ? 4 : 0); }
 
-/// The pages of the next finer LOD that have children of a page's diamonds, along i as three bits, for
-/// three rows along j of three planes along k.
+/// The pages of the next finer LOD that have children of a page's split diamonds: for three rows along j of
+/// three planes along k, three bits along i.
 std::array<unsigned, 9> pages_of_children(const PageMask& split) {
   std::array<unsigned, 9> pages{};
   for (std::int32_t k = 0; k < kSide; ++k) {
@@ -57,11 +57,11 @@ std::size_t SplitPages<Sample>::count() const {
 }
 
 template <class Sample>
-int SplitPages<Sample>::rank(LatticePoint p) {
+int SplitPages<Sample>::class_if_allowed(LatticePoint p) {
   if (!diamonds_.is_stored(p)) return 0;
   if (limits_.any() && !limits_.allow(diamonds_.in_samples(p), diamonds_.lod(p), Diamond(p).phase()))
     return 0;
-  return diamonds_.rank_if_crossed(p);
+  return diamonds_.class_if_crossed(p);
 }
 
 template <class Sample>
@@ -109,8 +109,8 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int lod) {
         add(2 * parent.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
     }
   }
-  // Where the LOD's last points lie in a page's first plane nothing comes from coarser diamonds but by way
-  // of the page before.
+  // Where the LOD's last points lie in a page's first plane, its diamonds are children of diamonds of the
+  // page before alone.
   const LatticePoint last = grid.extent(lod);
   for (std::size_t n = 0; n < found.size(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -189,7 +189,7 @@ void SplitPages<Sample>::find_finest_codes(const PageId& page) {
     return;
   }
   diamonds_.find_crossed(page, codes_);
-  diamonds_.drop_bounds(page);
+  diamonds_.pages().drop_bounds(page);
   if (!several_cuts_) return;
   *finest_.indices.insert(page.block).first = static_cast<std::uint32_t>(finest_.pages.size());
   CrossedCodes& found = finest_.pages.emplace_back();
@@ -217,8 +217,10 @@ bool SplitPages<Sample>::look_into(int lod, LatticePoint block, const SurfaceCut
   *of.indices.insert(block).first = static_cast<std::uint32_t>(of.pages.size());
   const int generation = 3 * (lods() - 1 - lod);
   PageOfLod page{.block = block, .cut = {cut, lod, generation, ZOrder::interleave(block)}};
-  // What is not split has no greater rank than this, and mostly just that.
-  const bool look_at_left = greatest_left_ < (cut.generation < generation + 3 ? cut.rank : cut.rank - 1);
+  // No diamond that is left has a greater class than this, and mostly one has just this class: then others
+  // need not be looked at.
+  const int greatest_possible = cut.generation < generation + 3 ? cut.error_class : cut.error_class - 1;
+  const bool look_at_left = greatest_left_ < greatest_possible;
   const std::uint32_t* index = before.indices.find(block);
   const PageOfLod* last = index == nullptr ? nullptr : &before.pages[*index];
   const bool is_as_before =
@@ -241,7 +243,7 @@ bool SplitPages<Sample>::look_into(int lod, LatticePoint block, const SurfaceCut
 template <class Sample>
 PageMask SplitPages<Sample>::split_of(int lod, bool look_at_left, PageOfLod& page) {
   if (lod < diamonds_.grid().top()) {
-    const int greatest = diamonds_.greatest_rank(id(lod, page.block));
+    const int greatest = diamonds_.greatest_class(id(lod, page.block));
     if (greatest < static_cast<int>(page.cut.least()) + 4 * lod) {
       page.greatest_left = greatest;
       return {};
@@ -273,7 +275,7 @@ PageMask SplitPages<Sample>::split_of(int lod, bool look_at_left, PageOfLod& pag
   if (look_at_left) {
     page.greatest_left = 0;
     left.for_each([&](LatticePoint q) {
-      page.greatest_left = std::max(page.greatest_left, all[PageGrid::place(q, 0)] + 4 * lod);
+      page.greatest_left = std::max(page.greatest_left, error_class(all[PageGrid::place(q, 0)], lod));
     });
   }
   return mask;

@@ -11,14 +11,14 @@
 
 #include "core/base/stable_vector.h"
 #include "core/lattice/lattice_map.h"
-#include "isosurface/extraction/cut_of_page.h"
 #include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/stored_diamonds.h"
+#include "isosurface/extraction/surface_cut.h"
 
 namespace adamas {
 
-/// Diamonds of a page: bit i of row j + 16 k.
+/// A set of a page's diamonds: bit i of row j + 16 k.
 struct PageMask {
   std::array<std::uint16_t, std::size_t{PageGrid::kSide} * PageGrid::kSide> rows{};
 
@@ -29,7 +29,7 @@ struct PageMask {
     return std::any_of(rows.begin(), rows.end(), [](std::uint16_t row) { return row != 0; });
   }
   [[nodiscard]] std::size_t count() const {
-    // Bits are counted in parts of two, four and eight bits, and summed up in 16, which they fit in.
+    // Bits are counted in fields of two, four and eight bits, and summed up in fields of 16.
     std::uint64_t sum = 0;
     for (std::size_t row = 0; row < rows.size(); row += 4) {
       std::uint64_t four;
@@ -53,8 +53,8 @@ struct PageMask {
   }
 };
 
-/// The diamonds that a cut splits, page by page. Points are in units of their LOD here. The coarsest page
-/// of a store counts as one page for each of its LODs.
+/// The diamonds that a cut splits, as masks of pages. Points of pages are in units of their LOD here, and the
+/// coarsest page of a store counts as one page for each of its LODs.
 template <class Sample>
 class SplitPages {
  public:
@@ -62,8 +62,10 @@ class SplitPages {
 
   struct PageOfLod {
     LatticePoint block;
-    const PageMask* split = nullptr;  ///< null where nothing is
-    CutOfPage cut;                    ///< which the mask is of
+    const PageMask* split = nullptr;  ///< null where nothing is split
+    CutOfPage cut;                    ///< the cut that the mask is of
+    /// The greatest class that is crossed and not split, or an upper bound where the page's diamonds were not
+    /// looked at.
     int greatest_left = kUnknown;
   };
 
@@ -71,9 +73,9 @@ class SplitPages {
   SplitPages(StoredDiamonds<Sample>& diamonds, const SplitLimits& limits)
       : diamonds_(diamonds), limits_(limits), lods_(static_cast<std::size_t>(diamonds.lods())) {}
 
-  /// Finds the split diamonds, from the coarsest LOD on, and calls visit(lod, page) for each page that
-  /// has some. The cut may rise meanwhile: it is looked at again for each page. Pages of which it splits
-  /// what the cut before did are not looked into again. Throws PageLost.
+  /// Finds the split diamonds, from the coarsest LOD on, and calls visit(lod, page) for each page that has
+  /// some. The caller may tighten the cut meanwhile, since it is read again for each page. A page is not
+  /// looked into again where the cut is the same on it as in the call before. Throws PageLost.
   template <class Visit>
   void find(const SurfaceCut& cut, Visit&& visit) {
     greatest_left_ = 0;
@@ -89,8 +91,8 @@ class SplitPages {
       }
     }
   }
-  /// Forgets what was found: before the contour or the limits change. `several_cuts`: `find` will be called
-  /// more than once.
+  /// Forgets what was found. To be called when the contour or the limits have changed. `several_cuts`:
+  /// whether find() will be called more than once.
   void forget(bool several_cuts) {
     lods_.assign(lods_.size(), {});
     masks_ = {};
@@ -104,11 +106,11 @@ class SplitPages {
   const typename StoredDiamonds<Sample>::Codes& codes(int lod, LatticePoint block);
 
   [[nodiscard]] int lods() const { return diamonds_.lods(); }
-  /// Pages of an LOD that were met, in z-order.
+  /// The pages of an LOD that were looked into, in z-order.
   [[nodiscard]] const std::vector<PageOfLod>& pages(int lod) const {
     return lods_[static_cast<std::size_t>(lod)].pages;
   }
-  /// Null where the page was not met.
+  /// Null where the page was not looked into.
   [[nodiscard]] const PageOfLod* page(int lod, LatticePoint block) const {
     if (lod < 0) return nullptr;
     const Lod& of = lods_[static_cast<std::size_t>(lod)];
@@ -135,17 +137,18 @@ class SplitPages {
     return diamonds_.lattice_step(lod) * (PageGrid::kSide * block + q);
   }
 
-  /// Of the diamond of any lattice point: its rank where it may be split, else 0. Throws PageLost.
-  int rank(LatticePoint p);
+  /// The error class of the diamond of any lattice point where it is crossed and the limits allow to split
+  /// it, else 0. Throws PageLost.
+  int class_if_allowed(LatticePoint p);
   [[nodiscard]] bool is_split(LatticePoint p) const;
-  /// Whether its diamond is not wholly outside.
+  /// Whether the diamond of a lattice point reaches into the data.
   [[nodiscard]] bool is_in_data(LatticePoint p) const;
-  /// Whether it is kept from being split by pages that cannot be had.
+  /// Whether the diamond is kept from being split by pages that cannot be had.
   [[nodiscard]] bool is_lost(LatticePoint p) const;
 
-  /// The greatest rank of the diamonds that are crossed and not split; where that is less, the greatest of a
-  /// page that was not looked into, since no diamond of it is split. A diamond of the mesh has it: ranks do
-  /// not grow from parents to children.
+  /// The greatest class of the diamonds that are crossed and not split. Of pages on which nothing is split
+  /// the greatest class that the directory tells counts too. A diamond of the mesh has this class, since
+  /// classes do not grow from parents to children.
   [[nodiscard]] int greatest_left() const { return greatest_left_; }
 
  private:
@@ -156,48 +159,49 @@ class SplitPages {
     LatticeMap<std::uint32_t> indices;  ///< into pages, by block
   };
 
-  /// Of a page: the codes of its crossed diamonds.
+  /// The codes of a page's crossed diamonds.
   struct CrossedCodes {
     PageMask crossed;
-    std::vector<std::uint8_t> codes;  ///< of these, i running fastest
+    std::vector<std::uint8_t> codes;  ///< of the crossed ones, i running fastest
   };
-  /// Of pages of the finest LOD, whose values nothing is predicted from and which are not kept.
+  /// The codes of pages of the finest LOD, whose bounds predict nothing and leave the memory at once.
   struct FinestCodes {
     std::vector<CrossedCodes> pages;
     LatticeMap<std::uint32_t> indices;  ///< into pages, by block
   };
 
-  /// How many LODs an LOD is coarser than that of the page that has it.
+  /// How many LODs an LOD is coarser than that of the page which has its points.
   [[nodiscard]] int lods_below(int lod) const {
     return lod > diamonds_.grid().top() ? lod - diamonds_.grid().top() : 0;
   }
   [[nodiscard]] PageId id(int lod, LatticePoint block) const { return {lod - lods_below(lod), block}; }
 
-  /// Where diamonds may be split, since coarser ones are.
+  /// The pages of an LOD on which diamonds may be split, since coarser ones are; in z-order.
   std::vector<LatticePoint> candidates(int lod);
-  /// The pages of the next finer LOD that have children of a page's diamonds which the limits allow: along
-  /// i as three bits, for three rows along j of three planes along k, from one page before.
+  /// The pages of the next finer LOD that have children of a page's split diamonds which the limits allow:
+  /// for three rows along j of three planes along k, from one page before the page's own on, three bits along
+  /// i.
   [[nodiscard]] std::array<unsigned, 9> allowed_children(int lod, const PageOfLod& parent) const;
-  /// Whether the limits allow any diamond of the page.
+  /// Whether the limits allow to split any diamond of the page.
   [[nodiscard]] bool may_split(int lod, LatticePoint block) const;
   static std::vector<LatticePoint> blocks_of(const Lod& lod);
   void find_finest_codes(const PageId& page);
-  /// Brings the codes of a coarser LOD than the coarsest page's own side by side.
+  /// Gathers the codes of an LOD that is coarser than the coarsest page's own, so that they lie side by side.
   void gather_codes(int lod);
-  /// Adds a page to its LOD. Whether it is as it was before.
+  /// Adds a page to its LOD. Returns whether the same is split on it as before.
   bool look_into(int lod, LatticePoint block, const SurfaceCut& cut, const Lod& before);
-  /// The diamonds of a page that its cut splits; and, where it is to be looked at, the greatest rank that is
-  /// left.
+  /// The diamonds of a page that its cut splits. Sets the greatest class that is left where that is wanted or
+  /// known without looking.
   PageMask split_of(int lod, bool look_at_left, PageOfLod& page);
-  /// Takes out what the limits keep from being split.
+  /// Takes the diamonds out of the mask that the limits keep from being split.
   void limit(int lod, LatticePoint block, PageMask& mask) const;
 
   StoredDiamonds<Sample>& diamonds_;
   const SplitLimits& limits_;
   std::vector<Lod> lods_;
   StableVector<PageMask> masks_;
-  typename StoredDiamonds<Sample>::Codes codes_;  ///< of the page that was looked into last
-  PageId codes_of_{-1, {}};                       ///< by the LOD that was asked for, not by that of its page
+  typename StoredDiamonds<Sample>::Codes codes_;  ///< of the page that was asked for last
+  PageId codes_of_{-1, {}};                       ///< which page that is: the LOD asked for and the block
   bool several_cuts_ = false;
   FinestCodes finest_;  ///< where there are several cuts
   int greatest_left_ = 0;

@@ -3,45 +3,45 @@
 #include <algorithm>
 #include <vector>
 
-#include "isosurface/extraction/contour_options.h"
-#include "isosurface/extraction/diamond_halves.h"
+#include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/hierarchy/indexed_hierarchy.h"
 
 namespace adamas {
 
 namespace {
 
-/// Bisections of neighbours of different generations do not meet by themselves: a table of the fine mesh
-/// splits what one needs of the other.
+/// The fine mesh, in a table. Where neighbours of different generations are bisected equally often they do
+/// not meet: the table splits what else must be split.
 template <class Sample>
 class SubtreeMesh {
  public:
   SubtreeMesh(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages, int bisections)
       : diamonds_(diamonds),
-        pages_(pages),
+        split_pages_(pages),
         bisections_(bisections),
         mesh_(diamonds.domain(), diamonds.lods()) {}
 
   [[nodiscard]] const IndexedHierarchy& mesh() const { return mesh_; }
-  [[nodiscard]] double greatest_error() const { return diamonds_.error(greatest_rank_); }
+  [[nodiscard]] double greatest_error() const { return diamonds_.error(greatest_class_); }
 
   void add_root(const Diamond& root) {
-    const int rank = pages_.rank(root.point());
-    greatest_rank_ = std::max(greatest_rank_, rank);
-    if (!has_subtree(root, rank)) return;
+    const int error_class = split_pages_.class_if_allowed(root.point());
+    greatest_class_ = std::max(greatest_class_, error_class);
+    if (!has_subtree(root, error_class)) return;
     for (int slot = 0; slot < root.tetrahedron_count(); ++slot) refine(root, slot, bisections_);
   }
 
-  /// A diamond that is split, and what of its children is part of the mesh.
+  /// Adds a diamond that is split, and bisects the tetrahedra of those of its children that are not.
   void add(const Diamond& diamond) {
     split(diamond);
     for (std::size_t c = 0; c < static_cast<std::size_t>(diamond.child_count()); ++c) {
       const Diamond child(diamond.child(static_cast<int>(c)));
-      if (!pages_.is_in_data(child.point()) || pages_.is_split(child.point())) continue;
+      if (!split_pages_.is_in_data(child.point()) || split_pages_.is_split(child.point())) continue;
       // What cannot be had has no greater error than what it comes from.
-      const int rank = pages_.rank(pages_.is_lost(child.point()) ? diamond.point() : child.point());
-      greatest_rank_ = std::max(greatest_rank_, rank);
-      if (!has_subtree(child, rank)) continue;
+      const int error_class = split_pages_.class_if_allowed(
+          split_pages_.is_lost(child.point()) ? diamond.point() : child.point());
+      greatest_class_ = std::max(greatest_class_, error_class);
+      if (!has_subtree(child, error_class)) continue;
       for (const auto& half : diamond.type().child_tetrahedra[c]) {
         if (is_in_domain(child, half.child_slot)) refine(child, half.child_slot, bisections_);
       }
@@ -49,10 +49,11 @@ class SubtreeMesh {
   }
 
  private:
-  /// What is exactly linear, or not crossed, or lost, stays as it is.
-  [[nodiscard]] bool has_subtree(const Diamond& diamond, int rank) const {
-    const bool has_values = 3 * diamonds_.lod(diamond.point()) >= bisections_;
-    return !has_values || (rank > 0 && !pages_.is_lost(diamond.point()));
+  /// Whether the diamond's tetrahedra stand for finer ones. Those of diamonds that are linear, not crossed or
+  /// lost do not; of the finest diamonds nothing is known, so that theirs do.
+  [[nodiscard]] bool has_subtree(const Diamond& diamond, int error_class) const {
+    const bool has_bounds = 3 * diamonds_.lod(diamond.point()) >= bisections_;
+    return !has_bounds || (error_class > 0 && !split_pages_.is_lost(diamond.point()));
   }
   [[nodiscard]] bool is_in_domain(const Diamond& diamond, int slot) const {
     const int next = slot + 1 == diamond.tetrahedron_count() ? 0 : slot + 1;
@@ -73,11 +74,11 @@ class SubtreeMesh {
   }
 
   StoredDiamonds<Sample>& diamonds_;
-  SplitPages<Sample>& pages_;
+  SplitPages<Sample>& split_pages_;
   int bisections_;
   IndexedHierarchy mesh_;
   std::vector<LatticePoint> done_;
-  int greatest_rank_ = 0;
+  int greatest_class_ = 0;
 };
 
 }  // namespace
@@ -91,17 +92,17 @@ ExtractedSurface contour_of_subtrees(StoredDiamonds<Sample>& diamonds, SplitPage
     constexpr std::int32_t kMiddle = std::int32_t{1} << (kRootBits - 1);
     subtrees.add_root(Diamond({kMiddle, kMiddle, kMiddle}));
   }
-  pages.for_each_page([&](int level, const auto& page, double part) {
+  pages.for_each_page([&](int lod, const auto& page, double part) {
     progress.step("extracting", part);
     page.split->for_each(
-        [&](LatticePoint q) { subtrees.add(Diamond(pages.in_lattice(level, page.block, q))); });
+        [&](LatticePoint q) { subtrees.add(Diamond(pages.in_lattice(lod, page.block, q))); });
   });
   surface.diamonds = pages.count();
   surface.max_error = subtrees.greatest_error();
   surface.tetrahedra = subtrees.mesh().tetrahedron_count();
   surface.contour = extract_contour(
       subtrees.mesh(), [&diamonds](LatticePoint p) { return diamonds.sample(p); }, request.isovalue,
-      contour_options(diamonds, request));
+      request.contour_options(diamonds.last_sample(), diamonds.spacing()));
   return surface;
 }
 

@@ -6,9 +6,9 @@
 
 namespace adamas {
 
-/// The surface of a store with subtrees: the contour of the mesh in which the diamonds of `pages` are split,
-/// and then each tetrahedron that is crossed is bisected so many times more. Not clipped to the request's
-/// region. Throws PageLost.
+/// The surface of a store with subtrees: the contour of the mesh in which the diamonds of `pages` are split
+/// and then each tetrahedron that is crossed is bisected `bisections` times more. It is not clipped to the
+/// request's region. Throws PageLost.
 template <class Sample>
 ExtractedSurface contour_of_subtrees(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages,
                                      const SurfaceRequest& request, int bisections, Progress& progress);

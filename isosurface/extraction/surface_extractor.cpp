@@ -6,7 +6,6 @@
 
 #include "core/base/error.h"
 #include "isosurface/contour/contour_clip.h"
-#include "isosurface/extraction/contour_options.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/subtree_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
@@ -16,25 +15,40 @@ namespace adamas {
 
 template <class Sample>
 SurfaceExtractor<Sample>::SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages)
-    : diamonds_(pages),
+    : pages_(pages),
+      diamonds_(pages),
       subtree_bisections_(3 * pages.file().header().subtree_depth),
-      pages_(diamonds_, limits_) {
+      split_pages_(diamonds_, limits_) {
   const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
   root_ = {middle, middle, middle};
 }
 
 template <class Sample>
+std::array<double, 2> SurfaceExtractor<Sample>::range() {
+  const auto found = sample_range<Sample>(pages_);
+  const PageId coarsest{pages_.grid().top(), {0, 0, 0}};
+  if (!found) throw PageLost{coarsest, coarsest};
+  return *found;
+}
+
+template <class Sample>
+ContourOptions SurfaceExtractor<Sample>::contour_options() const {
+  return request_.contour_options(diamonds_.last_sample(), diamonds_.spacing());
+}
+
+template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Progress& progress) {
-  pages_.find(cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / pages_.lods()); });
+  split_pages_.find(
+      cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / split_pages_.lods()); });
   ExtractedSurface surface;
   if (subtree_bisections_ > 0) {
-    surface = contour_of_subtrees(diamonds_, pages_, request_, subtree_bisections_, progress);
+    surface = contour_of_subtrees(diamonds_, split_pages_, request_, subtree_bisections_, progress);
   } else {
-    // What is split is known, and no more is asked of them.
-    if (!request_.others_follow) diamonds_.drop_bounds();
-    surface = pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
+    // Which diamonds are split is known now, so that bounds are no longer needed.
+    if (!request_.others_follow) pages_.drop_bounds();
+    surface = split_pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   }
-  const Vec3 spacing = contour_options(diamonds_, request_).spacing;
+  const Vec3 spacing = contour_options().spacing;
   if (request_.region) clip_contour(surface.contour, *request_.region, spacing);
   clip_contour(surface.contour, request_.sides, spacing);
   return surface;
@@ -43,41 +57,42 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Pro
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
   const Diamond root(root_);
-  ContourBuilder builder(domain(), request_.isovalue, contour_options(diamonds_, request_));
+  ContourBuilder builder(domain(), request_.isovalue, contour_options());
   DiamondContour(builder, request_.isovalue, diamonds_.last_sample())
       .add(root, (1u << root.tetrahedron_count()) - 1,
            [this](LatticePoint p) { return diamonds_.sample(p); });
   ExtractedSurface surface;
   surface.contour = builder.finish();
   surface.tetrahedra = static_cast<std::uint64_t>(root.tetrahedron_count());
-  surface.max_error = diamonds_.error(pages_.rank(root_));
+  surface.max_error = diamonds_.error(split_pages_.class_if_allowed(root_));
   return surface;
 }
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
-  ContourBuilder builder(domain(), request_.isovalue, contour_options(diamonds_, request_));
-  // A little more than surfaces have for each split diamond.
-  const std::uint64_t about = std::uint64_t{pages_.count()} * 3 / 2;
+  ContourBuilder builder(domain(), request_.isovalue, contour_options());
+  // Surfaces have a little less than 1.5 triangles for each split diamond.
+  const std::uint64_t about = std::uint64_t{split_pages_.count()} * 3 / 2;
   builder.expect(static_cast<std::size_t>(std::min(about, request_.max_triangles.value_or(about))));
-  PageContour<Sample> contour(diamonds_, pages_, limits_, builder);
-  pages_.for_each_page([&](int lod, const auto& page, double part) {
+  PageContour<Sample> contour(diamonds_, split_pages_, limits_, builder);
+  split_pages_.for_each_page([&](int lod, const auto& page, double part) {
     progress.step("extracting", part);
     contour.add(lod, page);
   });
   ExtractedSurface surface;
-  surface.diamonds = pages_.count();
+  surface.diamonds = split_pages_.count();
   surface.tetrahedra =
       static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count()) + contour.tetrahedra_added();
-  surface.max_error = diamonds_.error(std::max(contour.greatest_rank_at_lost(), pages_.greatest_left()));
+  surface.max_error =
+      diamonds_.error(std::max(contour.greatest_class_at_lost(), split_pages_.greatest_left()));
   surface.contour = builder.finish();
   return surface;
 }
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
-  const int least_rank = diamonds_.rank_within(request_.error) + 1;
-  if (!request_.max_triangles) return contour_of({.rank = least_rank}, progress);
+  const int least_class = diamonds_.class_within(request_.error) + 1;
+  if (!request_.max_triangles) return contour_of({.error_class = least_class}, progress);
   // With subtrees a split adds triangles to its neighbours too, which the choice does not know: it is then
   // repeated with other numbers, until it uses nearly all.
   constexpr double kEnough = 0.97;
@@ -87,9 +102,9 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   std::optional<ExtractedSurface> best;
   for (int turn = 0; turn < kMostTurns && refused - kept > 1; ++turn) {
     const std::uint64_t budget = turn == 0 ? most : (kept + refused) / 2;
-    TriangleBudget<Sample> chosen(diamonds_, pages_, request_, subtree_bisections_);
+    TriangleBudget<Sample> chosen(diamonds_, split_pages_, request_, subtree_bisections_);
     ExtractedSurface surface =
-        contour_of(chosen.find(budget, least_rank, Diamond(root_), progress), progress);
+        contour_of(chosen.find(budget, least_class, Diamond(root_), progress), progress);
     const std::uint64_t found = surface.contour.triangles.size();
     (found <= most ? kept : refused) = budget;
     if (found > most) continue;
@@ -97,7 +112,8 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
     if (!best || found > best->contour.triangles.size()) best = std::move(surface);
     if (is_enough) break;
   }
-  return best ? std::move(*best) : contour_of({.rank = StoredDiamonds<Sample>::kRanks}, progress);
+  return best ? std::move(*best)
+              : contour_of({.error_class = StoredDiamonds<Sample>::kErrorClasses}, progress);
 }
 
 template <class Sample>
@@ -118,7 +134,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
   }
   std::vector<PageId> lost;
   for (;;) {
-    pages_.forget(request.max_triangles.has_value());
+    split_pages_.forget(request.max_triangles.has_value());
     try {
       ExtractedSurface surface = extract_once(progress);
       surface.lost = lost;

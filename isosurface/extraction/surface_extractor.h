@@ -11,9 +11,10 @@
 
 namespace adamas {
 
-/// Isosurfaces of a store. The mesh they come from is that in which just those diamonds are split that the
-/// surface crosses with an error that is too great: since no child has a greater error or range than a
-/// parent, it is conforming, and a diamond at a time tells of it without a table of the mesh.
+/// Isosurfaces of a store. They are contours of the mesh in which just those diamonds are split that the
+/// surface crosses and whose error is too great. This mesh is conforming, since no child has a greater error
+/// or range than a parent; so whether a diamond is split can be told of each one alone, without a table of
+/// the mesh.
 template <class Sample>
 class SurfaceExtractor {
  public:
@@ -21,8 +22,9 @@ class SurfaceExtractor {
   explicit SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages);
 
   [[nodiscard]] const Domain& domain() const { return diamonds_.domain(); }
-  /// Least and greatest sample of the store.
-  std::array<double, 2> range() { return diamonds_.range(); }
+  /// The least and the greatest finite sample of the store, the first greater where there is none. Throws
+  /// PageLost.
+  std::array<double, 2> range();
 
   /// Throws Error where the store is too damaged for any surface, or damaged at all and the request strict.
   ExtractedSurface extract(const SurfaceRequest& request, Progress& progress = SilentProgress::instance());
@@ -31,15 +33,17 @@ class SurfaceExtractor {
   ExtractedSurface extract_once(Progress& progress);
   ExtractedSurface contour_of(const SurfaceCut& cut, Progress& progress);
   ExtractedSurface contour_of_mesh(Progress& progress);
-  /// Of the mesh in which nothing is split.
+  /// The surface of the mesh in which nothing is split.
   ExtractedSurface contour_of_root();
+  [[nodiscard]] ContourOptions contour_options() const;
 
+  StoredPages<OrderedWord<Sample>>& pages_;
   StoredDiamonds<Sample> diamonds_;
   int subtree_bisections_;
   LatticePoint root_;
   SurfaceRequest request_;
   SplitLimits limits_;
-  SplitPages<Sample> pages_;
+  SplitPages<Sample> split_pages_;
 };
 
 extern template class SurfaceExtractor<std::uint8_t>;

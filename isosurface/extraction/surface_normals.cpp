@@ -10,7 +10,6 @@
 #include "core/base/large_pages.h"
 #include "core/lattice/lattice_map.h"
 #include "isosurface/gradients/gradient_estimator.h"
-#include "isosurface/storage/stored_gradients.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -31,7 +30,7 @@ Vec3 downwards(const Vec3& gradient) {
 template <class Sample>
 class VertexGradients {
  public:
-  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages) : diamonds_(pages) {
+  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages) : samples_(pages) {
     if (pages.file().header().gradients) stored_.emplace(pages.file(), pages.step(), kStoredMemory);
   }
 
@@ -55,7 +54,7 @@ class VertexGradients {
 
  private:
   Vec3 stored(LatticePoint p, std::int32_t step) {
-    const std::optional<Vec3> direction = stored_->direction(diamonds_.in_samples(p));
+    const std::optional<Vec3> direction = stored_->direction(samples_.in_samples(p));
     if (direction) return *direction;
     note_lost(stored_->last_damaged());
     return -downwards(estimate(p, step));
@@ -67,9 +66,9 @@ class VertexGradients {
 
   /// Nearer, where along some axis there are no samples so far away.
   [[nodiscard]] std::int32_t step_inside(LatticePoint p, std::int32_t step) const {
-    const LatticePoint last = diamonds_.last_sample();
+    const LatticePoint last = samples_.last_sample();
     for (int axis = 0; axis < 3; ++axis) {
-      while (diamonds_.lod({step, step, step}) > 0 && p[axis] - step < 0 && p[axis] + step > last[axis])
+      while (samples_.lod({step, step, step}) > 0 && p[axis] - step < 0 && p[axis] + step > last[axis])
         step /= 2;
     }
     return step;
@@ -77,12 +76,12 @@ class VertexGradients {
 
   Vec3 estimate(LatticePoint p, std::int32_t wanted_step) {
     const std::int32_t step = step_inside(p, wanted_step);
-    std::array<OrderedWord<Sample>, 27> words;
+    typename LatticeSamples<Sample>::Block words;
     Neighbourhood values;
-    if (diamonds_.samples_round(p, step, words)) {
+    if (samples_.samples_round(p, step, words)) {
       // Their differences are those of the samples.
       if constexpr (std::is_integral_v<Sample>) return estimator(step).central(words);
-      std::ranges::transform(words, values.begin(), StoredDiamonds<Sample>::value);
+      std::ranges::transform(words, values.begin(), LatticeSamples<Sample>::value);
     } else {
       for (int dk = -1; dk <= 1; ++dk) {
         for (int dj = -1; dj <= 1; ++dj) {
@@ -96,10 +95,10 @@ class VertexGradients {
 
   double sample(LatticePoint p) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    const LatticePoint last = diamonds_.last_sample();
+    const LatticePoint last = samples_.last_sample();
     if (p.i < 0 || p.j < 0 || p.k < 0 || p.i > last.i || p.j > last.j || p.k > last.k) return kNone;
     try {
-      return diamonds_.sample(p);
+      return samples_.sample(p);
     } catch (const PageLost& missing) {
       note_lost(missing.damaged);
       return kNone;
@@ -108,7 +107,7 @@ class VertexGradients {
 
   const GradientEstimator& estimator(std::int32_t step) {
     auto& found = estimators_[static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(step)))];
-    if (!found) found = std::make_unique<GradientEstimator>(step * diamonds_.domain().spacing());
+    if (!found) found = std::make_unique<GradientEstimator>(step * samples_.domain().spacing());
     return *found;
   }
 
@@ -119,7 +118,7 @@ class VertexGradients {
   };
   static constexpr int kKnownBits = 12;
 
-  StoredDiamonds<Sample> diamonds_;
+  LatticeSamples<Sample> samples_;
   std::optional<StoredGradients> stored_;
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
   std::vector<PageId> lost_;

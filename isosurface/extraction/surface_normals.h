@@ -5,7 +5,7 @@
 #include "core/base/progress.h"
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
-#include "isosurface/extraction/stored_diamonds.h"
+#include "isosurface/extraction/lattice_samples.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {

@@ -17,18 +17,26 @@ struct SurfaceRequest {
   double isovalue = 0;
   /// Diamonds with a greater isosurface error are split; units of length in the grid's frame.
   double error = 0;
-  /// Never more triangles than these, but for those of the coarsest mesh: the greatest errors go first.
+  /// The surface has never more triangles than these, or those of the coarsest mesh: diamonds with the
+  /// greatest errors are split first.
   std::optional<std::uint64_t> max_triangles;
-  /// In the grid's frame; the surface is clipped to it, and coarse outside.
+  /// The surface is clipped to this box in the grid's frame, and the mesh stays coarse outside it.
   std::optional<Box3> region;
   /// What lies on the side of these that their normals point to is cut off too.
   std::vector<Plane> sides;
   /// See ContourOptions.
   double least_parameter = 1.0 / 1024;
-  /// Pages that cannot be had are an Error, not a coarser surface.
+  /// Whether a page that cannot be had is an Error, and not a coarser surface.
   bool strict = false;
-  /// Other surfaces will be asked for after this one: what was read of errors and ranges is kept.
+  /// Whether other surfaces will be asked for after this one: then what was read of errors and ranges is
+  /// kept.
   bool others_follow = false;
+
+  /// How the surface is contoured, by the lattice point of the last sample and the spacing of samples.
+  [[nodiscard]] ContourOptions contour_options(LatticePoint last_sample, const Vec3& spacing) const {
+    // Points that may come to lie on samples are moved nowhere else.
+    return {least_parameter, last_sample, least_parameter > 0 ? spacing : Vec3{}};
+  }
 };
 
 /// A surface and what it took to get it.

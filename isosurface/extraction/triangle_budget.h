@@ -1,57 +1,84 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/base/progress.h"
 #include "isosurface/extraction/page_diamonds.h"
 #include "isosurface/extraction/surface_cut.h"
-#include "isosurface/extraction/triangle_counter.h"
+#include "isosurface/extraction/surface_request.h"
 
 namespace adamas {
 
-/// Finds the cut that gives a surface as many triangles as are allowed: diamonds are split in the cut's order
-/// for as long as there is room.
+/// Counts the triangles of a surface before there is one. What a split adds does not depend on other splits,
+/// except with subtrees: there a split adds some to its neighbours too, which this leaves out.
+template <class Sample>
+class TriangleCounter {
+ public:
+  /// `bisections`: how often tetrahedra of the mesh are bisected before they are contoured. Both objects must
+  /// outlive this.
+  TriangleCounter(LatticeSamples<Sample>& samples, const SurfaceRequest& request, int bisections)
+      : samples_(samples), request_(request), bisections_(bisections) {}
+
+  /// How many triangles there are in the tetrahedra of a diamond. Throws PageLost.
+  std::int64_t triangles(const Diamond& diamond);
+  /// How many more there are once a diamond is split. Throws PageLost.
+  std::int64_t added_by_split(const Diamond& diamond);
+  /// Whether the surface in a diamond is not clipped.
+  [[nodiscard]] bool is_inside(const Diamond& diamond) const;
+
+ private:
+  std::int64_t count(const Diamond& diamond, int slot, const std::array<double, 4>& values, int bisections);
+  std::int64_t count_clipped(const Diamond& diamond, int slot);
+
+  LatticeSamples<Sample>& samples_;
+  const SurfaceRequest& request_;
+  int bisections_;
+};
+
+/// Finds the cut that gives a surface as many triangles as are allowed: diamonds are split in the order of
+/// SurfaceCut for as long as there is room for the triangles that this adds.
 template <class Sample>
 class TriangleBudget {
  public:
-  /// `bisections`: see TriangleCounter. All must outlive this.
+  /// `bisections`: see TriangleCounter. All of these must outlive this.
   TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages, const SurfaceRequest& request,
                  int bisections);
 
-  /// The cut with at most this many triangles that splits no diamond of less than `least_rank`. `root`: of
-  /// the mesh, with nothing split. Throws PageLost.
-  SurfaceCut find(std::uint64_t triangles, int least_rank, const Diamond& root, Progress& progress);
+  /// The cut with at most this many triangles that splits no diamond of a class below `least_class`. `root`:
+  /// the diamond of the mesh in which nothing is split. Throws PageLost.
+  SurfaceCut find(std::uint64_t triangles, int least_class, const Diamond& root, Progress& progress);
 
  private:
   using PageOfLod = typename SplitPages<Sample>::PageOfLod;
   using Counts = std::vector<std::int64_t>;
 
-  [[nodiscard]] int generations() const { return 3 * pages_.lods(); }
-  [[nodiscard]] std::int64_t& added(int rank, int generation) {
-    return added_[static_cast<std::size_t>(rank * generations() + generation)];
+  [[nodiscard]] int generations() const { return 3 * split_pages_.lods(); }
+  [[nodiscard]] std::int64_t& added(int error_class, int generation) {
+    return added_[static_cast<std::size_t>(error_class * generations() + generation)];
   }
-  /// Counts what the diamonds of ranks from low to high - 1 add, as far as there is room: the cut is that of
-  /// all of them, or up to the first rank and generation for which there is no room.
+  /// Counts what the diamonds of the classes from low to high - 1 add, as far as there is room. The result is
+  /// the cut of all of them, or of those up to the first class and generation for which there is no room.
   SurfaceCut count(int low, int high, std::int64_t room, Progress& progress);
-  /// Brings the cut to the first rank and generation for which there is no room.
+  /// Brings the cut to the first class and generation for which there is no room.
   void tighten(int high, std::int64_t room, SurfaceCut& cut);
-  /// What is added before the last generation of a cut, or in all of it where it has no last one.
+  /// How many triangles are added before the last generation of a cut, or by all of it where it has none.
   std::int64_t added_before_last(int high, const SurfaceCut& cut);
-  /// Where in its generation the room of a cut ends.
+  /// The cut that ends where in the last generation of `cut` the room ends.
   SurfaceCut find_place(SurfaceCut cut, std::int64_t room);
-  /// The split diamonds of a page of ranks from low to high - 1.
-  PageMask of_ranks(int lod, const PageOfLod& page, int low, int high);
-  /// Calls visit(q, rank, generation, added) for each of them.
+  /// The split diamonds of a page whose classes are from low to high - 1.
+  PageMask of_classes(int lod, const PageOfLod& page, int low, int high);
+  /// Calls visit(q, class, generation, added) for each of them.
   template <class Visit>
   void visit_page(int lod, const PageOfLod& page, int low, int high, Visit&& visit);
 
-  SplitPages<Sample>& pages_;
+  SplitPages<Sample>& split_pages_;
   const SurfaceRequest& request_;
   int bisections_;
   TriangleCounter<Sample> counter_;
   PageDiamonds<Sample> page_;
-  Counts added_;  ///< by rank and generation
+  Counts added_;  ///< triangles, by class and generation
 };
 
 extern template class TriangleBudget<std::uint8_t>;

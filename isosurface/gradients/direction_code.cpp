@@ -32,8 +32,7 @@ std::array<double, 2> folded(double u, double v) {
   return {(1 - std::abs(v)) * sign(u), (1 - std::abs(u)) * sign(v)};
 }
 
-/// Of the codes of the integers next to u and v the one whose direction is nearest to n: rounding need not
-/// give it.
+/// The code of integers next to u and v whose direction is nearest to n; rounding u and v need not give it.
 template <class Decode, class Code>
 Bytes nearest(const Vec3& n, double u, double v, Decode&& decode, Code&& code) {
   Bytes best{};
@@ -92,7 +91,7 @@ Bytes encode_two_components(const Vec3& n) {
 Bytes encode_direction(DirectionCode code, const Vec3& direction) {
   const double scale = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
   if (!(scale > 0) || !std::isfinite(direction.x + direction.y + direction.z)) return {};
-  // Components of any magnitude, without overflow.
+  // The squares of very great or small components would not be numbers.
   const Vec3 n = unit({direction.x / scale, direction.y / scale, direction.z / scale});
   switch (code) {
     case DirectionCode::kOctahedral:

@@ -7,6 +7,9 @@
 
 namespace adamas {
 
+/// The gradient at a sample as many of them are kept: in values per unit of length.
+using Gradient = std::array<float, 3>;
+
 /// A sample and its 26 neighbours, i running fastest: the neighbour at (di, dj, dk) from -1 to 1 is
 /// (di + 1) + 3 (dj + 1) + 9 (dk + 1). Those that are not there, as beyond the border, are NaN.
 using Neighbourhood = std::array<double, 27>;
@@ -44,12 +47,12 @@ class GradientEstimator {
 
 template <class Number>
 Vec3 GradientEstimator::central(const std::array<Number, 27>& values) const {
-  // Whole numbers are only as many as remain made floating-point ones; differences of those of 16 bits have
-  // room.
+  // Differences of whole numbers stay whole until they are weighted: those of 16 bits have room in an int,
+  // and fewer numbers have to be converted.
   const auto difference = [&values](int i, int j, int k) {
     return values[neighbour(i, j, k)] - values[neighbour(-i, -j, -k)];
   };
-  // Steps that differ in nothing but signs have weights of the same size.
+  // Directions that differ in nothing but signs have weights of the same magnitude.
   const auto x = difference(1, 0, 0), y = difference(0, 1, 0), z = difference(0, 0, 1);
   const auto xy = difference(1, 1, 0), x_y = difference(1, -1, 0), xz = difference(1, 0, 1),
              x_z = difference(1, 0, -1), yz = difference(0, 1, 1), y_z = difference(0, 1, -1);

@@ -11,7 +11,7 @@ namespace adamas {
 
 namespace {
 
-/// Relative to the root mean square.
+/// Gradients are degenerate below this part of the root mean square.
 constexpr double kDegenerate = 1e-6;
 
 double squared_length(const Gradient& g) {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/base/progress.h"
-#include "isosurface/gradients/gradient.h"
+#include "isosurface/gradients/gradient_estimator.h"
 
 namespace adamas {
 

@@ -58,7 +58,8 @@ inline Candidate candidate(Pair a, Pair b, Pair x, Pair y, Pair z) {
   return {a, b, dot * dot, u * u + v * v + height * height};
 }
 
-/// Keeps the better of the two; adds to `unsure` where that is for the one-by-one code to say.
+/// Keeps the better of the two. Adds to `unsure` where they are so near each other that encode_direction
+/// decides.
 inline void keep_better(Candidate& best, const Candidate& other, Mask& unsure) {
   const Pair mine = best.dot2 * other.length2, its = other.dot2 * best.length2;
   const Mask differ = (best.a != other.a) | (best.b != other.b);
@@ -70,13 +71,13 @@ inline void keep_better(Candidate& best, const Candidate& other, Mask& unsure) {
   best.length2 = better ? other.length2 : best.length2;
 }
 
-/// The whole steps, and where they are not sure.
+/// The whole steps of the best code, and the lanes in which encode_direction decides.
 struct Steps {
   Pair a, b;
   Mask unsure;
 };
 
-/// By the same formulas as encode_direction, with the same candidates.
+/// Uses the same formulas as encode_direction, with the same candidates.
 inline Steps steps_of(Pair x, Pair y, Pair z) {
   const Pair sum = magnitude(x) + magnitude(y) + magnitude(z);
   const Mask usable = (sum > both(kLeast)) & (sum < both(kMost));

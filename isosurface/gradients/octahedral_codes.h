@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "isosurface/gradients/gradient.h"
+#include "isosurface/gradients/gradient_estimator.h"
 
 namespace adamas {
 

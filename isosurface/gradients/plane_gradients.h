@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
-#include "isosurface/gradients/gradient.h"
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/gradients/octahedral_codes.h"
 

@@ -50,7 +50,7 @@ IndexedHierarchy::IndexedHierarchy(const Domain& domain, int levels)
   }
 }
 
-/// The diamonds that splitting or merging this one looks at lie all over memory.
+/// Fetches the diamonds that splitting or merging one looks at, which lie all over memory.
 void IndexedHierarchy::prefetch(LatticePoint p) const {
   const Diamond diamond(p);
   for (int c = 0; c < diamond.parent_count(); ++c) diamonds_.prefetch(key(diamond.parent(c)));

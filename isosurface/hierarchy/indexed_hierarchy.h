@@ -12,9 +12,9 @@
 namespace adamas {
 
 /// The indexed hierarchy (D 2): a conforming mesh of tetrahedra that is kept as a table of diamonds alone,
-/// without a link. A diamond is there while a tetrahedron of it is in the mesh or it is split; everything
-/// else follows from the bits of its point. For the same requests it holds the same mesh as the pointer-based
-/// hierarchy.
+/// without links. The table has the diamonds that are split or have a tetrahedron in the mesh; everything
+/// else follows from the bits of their points. For the same requests it holds the same mesh as the
+/// pointer-based hierarchy of interfaces/.
 class IndexedHierarchy {
  public:
   static constexpr int kMaxLevels = PackedPoint::kBits - 2;

@@ -12,8 +12,8 @@
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_normals.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/sample_range.h"
 #include "isosurface/storage/store_builder.h"
+#include "isosurface/storage/stored_pages.h"
 
 namespace adamas {
 

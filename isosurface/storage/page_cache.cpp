@@ -13,19 +13,19 @@ namespace {
 
 constexpr std::int32_t kAround = Surroundings<std::uint8_t>::kSide;
 
-/// Where along an axis places of Surroundings lie in the pages of the next coarser LOD.
+/// Where along an axis the places of Surroundings lie in the pages of the next coarser LOD.
 struct AxisPlaces {
-  std::array<std::int32_t, 2> blocks{};
+  std::array<std::int32_t, 2> blocks{};  ///< the coordinates of these pages
   int block_count = 0;
-  std::array<std::uint8_t, kAround> place{};
-  /// Those in each block: the first, how many, and whether their places follow each other.
+  std::array<std::uint8_t, kAround> place{};  ///< of each place of Surroundings that in its page
+  /// The places that lie in one page: the first, how many they are, and whether they follow each other there.
   struct Run {
     std::size_t first = 0, count = 0;
     bool is_run = true;
   };
   std::array<Run, 2> runs{};
 
-  /// Of the places from `first` to `last`.
+  /// For the places from `first` to `last`.
   AxisPlaces(std::int32_t block, std::int32_t extent, std::int32_t first, std::int32_t last) {
     for (std::int32_t c = first; c <= last; ++c) {
       const std::int32_t at = std::clamp(8 * block + c - 1, 0, extent);
@@ -51,17 +51,18 @@ struct BoxPlaces {
         z(block.k, extent.k, first, last) {}
 };
 
-/// Of a page round which something is: the part of Surroundings that one page of the next coarser LOD has.
+/// The part of Surroundings that one page of the next coarser LOD has.
 struct Part {
   const BoxPlaces& places;
-  std::array<int, 3> blocks;  ///< which of those of the axes
+  std::array<int, 3> blocks;  ///< by axis, which of AxisPlaces::blocks
 
   [[nodiscard]] AxisPlaces::Run run(const AxisPlaces& axis, std::size_t n) const {
     return axis.runs[static_cast<std::size_t>(blocks[n])];
   }
 };
 
-/// Copies numbers of it, for rows of N points side by side; of any, one by one, where N is 0.
+/// Copies the numbers of a part whose rows are N points side by side; with N = 0 those of any part, one by
+/// one.
 template <std::size_t N, class T>
 void copy_part(const Part& part, const PagePoints<T>& from, std::array<T, kAround * kAround * kAround>& to) {
   const auto& [x, y, z] = part.places;
@@ -81,7 +82,7 @@ void copy_part(const Part& part, const PagePoints<T>& from, std::array<T, kAroun
 
 template <class T>
 void copy_part(const Part& part, const PagePoints<T>& from, std::array<T, kAround * kAround * kAround>& to) {
-  // Away from the data's ends the numbers of points are these, and they lie side by side.
+  // Away from the data's ends rows have one of these numbers of points, which lie side by side.
   const AxisPlaces::Run xs = part.run(part.places.x, 0);
   if (xs.is_run && xs.count == 1) return copy_part<1>(part, from, to);
   if (xs.is_run && xs.count == 2) return copy_part<2>(part, from, to);
@@ -94,8 +95,7 @@ void copy_part(const Part& part, const PagePoints<T>& from, std::array<T, kAroun
 }  // namespace
 
 template <class Word>
-PageCache<Word>::PageCache(const PageGrid& grid, std::size_t memory, Loader loader)
-    : grid_(grid), memory_(memory), loader_(std::move(loader)) {
+PageCache<Word>::PageCache(const PageGrid& grid, std::size_t memory) : grid_(grid), memory_(memory) {
   for (int lod = 0; lod <= grid_.top(); ++lod) {
     const LatticePoint n = grid_.blocks(lod);
     const auto row = static_cast<std::size_t>(n.i), plane = row * static_cast<std::size_t>(n.j);
@@ -106,37 +106,37 @@ PageCache<Word>::PageCache(const PageGrid& grid, std::size_t memory, Loader load
 template <class Word>
 const typename PageCache<Word>::Slot* PageCache<Word>::get(const PageId& id, PageParts parts, bool wanted) {
   const std::uint32_t found = slot_of(id);
-  if (found == kNone) return load(id, parts, wanted);
+  if (found == kNone) return fetch(id, parts, wanted);
   Slot& slot = slots_[found];
   slot.used = true;
   if (wanted && !slot.wanted) {
     slot.wanted = true;
     --predictors_;
   }
-  return slot.values == nullptr && has_part(parts, PageParts::kBounds) ? load(id, parts, wanted) : &slot;
+  return slot.bounds == nullptr && has_part(parts, PageParts::kBounds) ? fetch(id, parts, wanted) : &slot;
 }
 
 template <class Word>
-const typename PageCache<Word>::Slot* PageCache<Word>::load(const PageId& id, PageParts parts, bool wanted) {
+const typename PageCache<Word>::Slot* PageCache<Word>::fetch(const PageId& id, PageParts parts, bool wanted) {
   Surroundings<Word> around;
   if (!surroundings(id, around, parts)) return nullptr;
-  // Not before: what predicts the page may have pushed others out. That may happen here, too, to the page
-  // itself where its samples were there.
-  PageBounds<Word>* values = has_part(parts, PageParts::kBounds) ? room_for(values_) : nullptr;
+  // The pages that predict this one may have pushed others out, and so may its bounds: even its own samples,
+  // where they were in memory. Only now is it known whether they still are.
+  PageBounds<Word>* const bounds = has_part(parts, PageParts::kBounds) ? room_in(bounds_) : nullptr;
   const std::uint32_t known = slot_of(id);
-  PageSamples<Word>* samples = known != kNone ? slots_[known].samples : room_for(samples_);
-  const PageParts missing = known == kNone ? parts : PageParts::kBounds;
-  const PageShape shape = page_shape(grid_, id);
-  if (!shape.complete) fill_coarser(shape, around, missing, *samples, values);
-  // A cube whose only point is a coarser one has no page.
+  PageSamples<Word>* const samples = known != kNone ? slots_[known].samples : room_in(samples_);
+  const PageToLoad<Word> page{
+      id, page_shape(grid_, id), known == kNone ? parts : PageParts::kBounds, around, *samples, bounds};
+  if (!page.shape.complete) fill_coarser(page);
+  // A cube whose only point belongs to coarser LODs has no page.
   const bool is_stored = grid_.contains(id);
-  if (is_stored && !loader_(id, shape, around, missing, *samples, values)) {
+  if (is_stored && !load(page)) {
     if (known == kNone) samples_.free.push_back(samples);
-    if (values != nullptr) values_.free.push_back(values);
+    if (bounds != nullptr) bounds_.free.push_back(bounds);
     return nullptr;
   }
   if (known != kNone) {
-    slots_[known].values = values;
+    slots_[known].bounds = bounds;
     return &slots_[known];
   }
   if (is_stored) {
@@ -145,7 +145,7 @@ const typename PageCache<Word>::Slot* PageCache<Word>::load(const PageId& id, Pa
   }
   const std::uint32_t fresh = free_slot();
   slot_of(id) = fresh;
-  slots_[fresh] = {id, samples, values, true, wanted || !is_stored};
+  slots_[fresh] = {id, samples, bounds, true, wanted || !is_stored};
   return &slots_[fresh];
 }
 
@@ -154,21 +154,21 @@ bool PageCache<Word>::copy(const PageId& id, Page<Word>& page) {
   const Slot* slot = get(id, PageParts::kAll, true);
   if (slot == nullptr) return false;
   static_cast<PageSamples<Word>&>(page) = *slot->samples;
-  static_cast<PageBounds<Word>&>(page) = *slot->values;
+  static_cast<PageBounds<Word>&>(page) = *slot->bounds;
   return true;
 }
 
 template <class Word>
 void PageCache<Word>::drop_bounds(const PageId& id) {
   const std::uint32_t found = slot_of(id);
-  if (found == kNone || slots_[found].values == nullptr) return;
-  values_.free.push_back(std::exchange(slots_[found].values, nullptr));
+  if (found == kNone || slots_[found].bounds == nullptr) return;
+  bounds_.free.push_back(std::exchange(slots_[found].bounds, nullptr));
 }
 
 template <class Word>
 void PageCache<Word>::drop_bounds() {
-  for (Slot& slot : slots_) slot.values = nullptr;
-  values_ = {};
+  for (Slot& slot : slots_) slot.bounds = nullptr;
+  bounds_ = {};
 }
 
 template <class Word>
@@ -189,15 +189,15 @@ bool PageCache<Word>::surroundings(const PageId& id, Surroundings<Word>& around,
           return axis.blocks[static_cast<std::size_t>(b)];
         };
         const LatticePoint of{block(all.x, bx), block(all.y, by), block(all.z, bz)};
-        const bool with_values = has_part(parts, PageParts::kBounds) && of == parent;
-        const Slot* from = get({id.lod + 1, of}, with_values ? PageParts::kAll : PageParts::kSamples, false);
+        const bool with_bounds = has_part(parts, PageParts::kBounds) && of == parent;
+        const Slot* from = get({id.lod + 1, of}, with_bounds ? PageParts::kAll : PageParts::kSamples, false);
         if (from == nullptr) return false;
         copy_part(Part{all, {bx, by, bz}}, from->samples->samples, around.samples);
-        if (!with_values) continue;
+        if (!with_bounds) continue;
         const Part inner_part{inner, {0, 0, 0}};
-        copy_part(inner_part, from->values->low, around.low);
-        copy_part(inner_part, from->values->high, around.high);
-        copy_part(inner_part, from->values->errors, around.errors);
+        copy_part(inner_part, from->bounds->low, around.low);
+        copy_part(inner_part, from->bounds->high, around.high);
+        copy_part(inner_part, from->bounds->errors, around.errors);
       }
     }
   }
@@ -205,48 +205,48 @@ bool PageCache<Word>::surroundings(const PageId& id, Surroundings<Word>& around,
 }
 
 template <class Word>
-void PageCache<Word>::fill_coarser(const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
-                                   PageSamples<Word>& samples, PageBounds<Word>* values) const {
-  for (std::int32_t k = 0; k < shape.count.k; k += 2) {
-    for (std::int32_t j = 0; j < shape.count.j; j += 2) {
+void PageCache<Word>::fill_coarser(const PageToLoad<Word>& page) {
+  const LatticePoint count = page.shape.count;
+  for (std::int32_t k = 0; k < count.k; k += 2) {
+    for (std::int32_t j = 0; j < count.j; j += 2) {
       const std::size_t to = PageGrid::place({0, j, k}, 0), from = surrounding_place({0, j, k});
       const auto fill = [=](const auto& coarser, auto& numbers) {
         using Lanes = EightLanes<typename std::remove_reference_t<decltype(numbers)>::value_type>;
         const Lanes lanes = Lanes::load(coarser.data() + from);
         Lanes::store_by_turns(lanes, lanes, numbers.data() + to);
       };
-      if (has_part(parts, PageParts::kSamples)) fill(around.samples, samples.samples);
-      if (values == nullptr) continue;
-      fill(around.low, values->low);
-      fill(around.high, values->high);
-      fill(around.errors, values->errors);
+      if (has_part(page.parts, PageParts::kSamples)) fill(page.around.samples, page.samples.samples);
+      if (page.bounds == nullptr) continue;
+      fill(page.around.low, page.bounds->low);
+      fill(page.around.high, page.bounds->high);
+      fill(page.around.errors, page.bounds->errors);
     }
   }
 }
 
 template <class Word>
-template <class PartOf>
-PartOf* PageCache<Word>::room_for(Parts<PartOf>& parts) {
+template <class Part>
+Part* PageCache<Word>::room_in(Pool<Part>& pool) {
   const std::size_t taken =
-      samples_.all.size() * sizeof(PageSamples<Word>) + values_.all.size() * sizeof(PageBounds<Word>);
-  if (parts.free.empty() && (taken + sizeof(PartOf) <= memory_ || parts.all.size() < kLeast))
-    return parts.all.add();
-  while (parts.free.empty()) leave();
-  PartOf* const part = parts.free.back();
-  parts.free.pop_back();
+      samples_.all.size() * sizeof(PageSamples<Word>) + bounds_.all.size() * sizeof(PageBounds<Word>);
+  if (pool.free.empty() && (taken + sizeof(Part) <= memory_ || pool.all.size() < kLeast))
+    return pool.all.add();
+  while (pool.free.empty()) evict();
+  Part* const part = pool.free.back();
+  pool.free.pop_back();
   return part;
 }
 
 template <class Word>
-void PageCache<Word>::leave() {
-  for (;; considered_ = considered_ + 1 == slots_.size() ? 0 : considered_ + 1) {
-    Slot& slot = slots_[considered_];
+void PageCache<Word>::evict() {
+  for (;; turn_ = turn_ + 1 == slots_.size() ? 0 : turn_ + 1) {
+    Slot& slot = slots_[turn_];
     if (slot.samples == nullptr) continue;
     if (std::exchange(slot.used, false)) continue;
     samples_.free.push_back(slot.samples);
-    if (slot.values != nullptr) values_.free.push_back(slot.values);
+    if (slot.bounds != nullptr) bounds_.free.push_back(slot.bounds);
     slot_of(slot.id) = kNone;
-    free_.push_back(static_cast<std::uint32_t>(considered_));
+    free_slots_.push_back(static_cast<std::uint32_t>(turn_));
     slot = {};
     return;
   }
@@ -254,12 +254,12 @@ void PageCache<Word>::leave() {
 
 template <class Word>
 std::uint32_t PageCache<Word>::free_slot() {
-  if (free_.empty()) {
+  if (free_slots_.empty()) {
     slots_.emplace_back();
     return static_cast<std::uint32_t>(slots_.size() - 1);
   }
-  const std::uint32_t slot = free_.back();
-  free_.pop_back();
+  const std::uint32_t slot = free_slots_.back();
+  free_slots_.pop_back();
   return slot;
 }
 

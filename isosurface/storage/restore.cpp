@@ -13,7 +13,7 @@ namespace adamas {
 
 namespace {
 
-/// The coordinates from `begin` to `end`, both included, that a block of an LOD has.
+/// The coordinates of a part that a block of its LOD has along an axis: from `begin` to `end`, both included.
 struct BlockSpan {
   std::int32_t begin, end;
   BlockSpan(std::int32_t block, std::int32_t first, std::int32_t last)
@@ -21,8 +21,9 @@ struct BlockSpan {
         end(std::min(last, PageGrid::kSide * block + PageGrid::kSide - 1)) {}
 };
 
-/// Bytes of the pages of a part that are worked with at a time: of those of its LOD each is needed once, of
-/// coarser ones those of a few rows; and as many again, since pages leave in no strict order.
+/// The bytes of the pages that restoring a part needs at a time: one row of pages of its LOD, each of which
+/// is needed once, and a few rows of coarser ones. They count twice, since pages leave a cache in no strict
+/// order.
 template <class Word>
 std::size_t working_set(const PageGrid& grid, const RestoredPart& part) {
   std::size_t pages = 0;

@@ -39,10 +39,11 @@ int scratch_file(const std::filesystem::path& folder) {
 }  // namespace
 
 template <class Word>
-ScratchPages<Word>::ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, PageParts parts)
-    : grid_(grid), parts_(parts), folder_(folder), file_(scratch_file(folder)) {
-  for (int lod = 0; lod <= grid_.top(); ++lod) {
-    const LatticePoint n = grid_.blocks(lod);
+ScratchPages<Word>::ScratchPages(const std::filesystem::path& folder, const PageGrid& grid,
+                                 std::size_t memory, PageParts parts)
+    : PageCache<Word>(grid, memory), parts_(parts), folder_(folder), file_(scratch_file(folder)) {
+  for (int lod = 0; lod <= grid.top(); ++lod) {
+    const LatticePoint n = grid.blocks(lod);
     offsets_.emplace_back(static_cast<std::size_t>(n.i) * static_cast<std::size_t>(n.j) *
                           static_cast<std::size_t>(n.k));
   }
@@ -55,19 +56,19 @@ ScratchPages<Word>::~ScratchPages() {
 
 template <class Word>
 std::uint64_t& ScratchPages<Word>::offset(const PageId& id) {
-  const LatticePoint n = grid_.blocks(id.lod), b = id.block;
+  const LatticePoint n = this->grid().blocks(id.lod), b = id.block;
   const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
   return offsets_[at(id.lod)][at(b.i) + at(n.i) * (at(b.j) + at(n.j) * at(b.k))];
 }
 
 template <class Word>
 void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
-  const PageShape shape = page_shape(grid_, id);
+  const PageShape shape = page_shape(this->grid(), id);
   buffer_.clear();
-  const auto append = [&](const auto& values) {
+  const auto append = [&](const auto& numbers) {
     for_each_own_row(shape, [&](std::size_t first, std::size_t count, std::size_t step) {
       for (std::size_t n = 0; n < count; ++n) {
-        const auto value = values[first + n * step];
+        const auto value = numbers[first + n * step];
         const auto* bytes = reinterpret_cast<const std::byte*>(&value);
         buffer_.insert(buffer_.end(), bytes, bytes + sizeof(value));
       }
@@ -93,26 +94,24 @@ void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
 }
 
 template <class Word>
-void ScratchPages<Word>::get(const PageId& id, PageParts parts, PageSamples<Word>& samples,
-                             PageBounds<Word>* values) {
-  const PageShape shape = page_shape(grid_, id);
+bool ScratchPages<Word>::load(const PageToLoad<Word>& page) {
   std::size_t points = 0;
-  for_each_own_row(shape, [&](std::size_t, std::size_t count, std::size_t) { points += count; });
+  for_each_own_row(page.shape, [&](std::size_t, std::size_t count, std::size_t) { points += count; });
   // Samples come first.
   const std::size_t sample_bytes = points * sizeof(Word);
-  const std::size_t begin = has_part(parts, PageParts::kSamples) ? 0 : sample_bytes;
-  const std::size_t end = values == nullptr ? sample_bytes : points * point_bytes();
+  const std::size_t begin = has_part(page.parts, PageParts::kSamples) ? 0 : sample_bytes;
+  const std::size_t end = page.bounds == nullptr ? sample_bytes : points * point_bytes();
   buffer_.resize(end - begin);
   for (std::size_t done = 0; done < buffer_.size();) {
     const ssize_t got = pread(file_, buffer_.data() + done, buffer_.size() - done,
-                              static_cast<off_t>(offset(id) + begin + done));
+                              static_cast<off_t>(offset(page.id) + begin + done));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) fail("{}: scratch data cannot be read: {}", folder_.string(), std::strerror(errno));
     done += static_cast<std::size_t>(got);
   }
   const std::byte* from = buffer_.data();
   const auto take = [&](auto& numbers) {
-    for_each_own_row(shape, [&](std::size_t first, std::size_t count, std::size_t step) {
+    for_each_own_row(page.shape, [&](std::size_t first, std::size_t count, std::size_t step) {
       for (std::size_t n = 0; n < count; ++n) {
         auto& value = numbers[first + n * step];
         std::memcpy(&value, from, sizeof(value));
@@ -120,11 +119,12 @@ void ScratchPages<Word>::get(const PageId& id, PageParts parts, PageSamples<Word
       }
     });
   };
-  if (has_part(parts, PageParts::kSamples)) take(samples.samples);
-  if (values == nullptr) return;
-  take(values->low);
-  take(values->high);
-  take(values->errors);
+  if (has_part(page.parts, PageParts::kSamples)) take(page.samples.samples);
+  if (page.bounds == nullptr) return true;
+  take(page.bounds->low);
+  take(page.bounds->high);
+  take(page.bounds->errors);
+  return true;
 }
 
 template class ScratchPages<std::uint8_t>;

@@ -5,33 +5,33 @@
 #include <filesystem>
 #include <vector>
 
-#include "isosurface/volume/page.h"
+#include "isosurface/storage/page_cache.h"
 
 namespace adamas {
 
-/// The own points of pages as they are, in a file without a name, which goes with this.
+/// The own points of pages, uncompressed in a file without a name, which the system deletes when this goes;
+/// and a cache of what is read of them.
 template <class Word>
-class ScratchPages {
+class ScratchPages : public PageCache<Word> {
  public:
-  /// Keeps these parts of pages. Throws Error where the folder cannot hold a file.
-  ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, PageParts parts = PageParts::kAll);
-  ~ScratchPages();
-  ScratchPages(const ScratchPages&) = delete;
-  ScratchPages& operator=(const ScratchPages&) = delete;
+  /// Keeps these parts of pages, and `memory` bytes of them in memory. Throws Error where the folder cannot
+  /// hold a file.
+  ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, std::size_t memory,
+               PageParts parts = PageParts::kAll);
+  ~ScratchPages() override;
 
-  /// Each page once. Throws Error where the disk is full.
+  /// Takes each page once, before pages are asked for. Throws Error where the disk is full.
   void put(const PageId& id, const Page<Word>& page);
-  /// Fills parts of the own points of a page that was put; `values` is null where they are not wanted.
-  void get(const PageId& id, PageParts parts, PageSamples<Word>& samples, PageBounds<Word>* values);
 
  private:
+  /// Throws Error where the file cannot be read.
+  bool load(const PageToLoad<Word>& page) override;
   std::uint64_t& offset(const PageId& id);
 
   [[nodiscard]] std::size_t point_bytes() const {
     return has_part(parts_, PageParts::kBounds) ? 3 * sizeof(Word) + 1 : sizeof(Word);
   }
 
-  PageGrid grid_;
   PageParts parts_;
   std::filesystem::path folder_;
   int file_ = -1;

@@ -13,24 +13,21 @@
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/preprocessing/preprocess.h"
-#include "isosurface/storage/page_cache.h"
-#include "isosurface/storage/page_summary.h"
 #include "isosurface/storage/scratch_pages.h"
-#include "isosurface/storage/store_file_writer.h"
-#include "isosurface/storage/stored_pages.h"
+#include "isosurface/storage/store_file.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
 
 namespace {
 
-/// Pages that are worked on together, by as many threads as there are.
+/// How many pages are worked on together, by as many threads as there are.
 constexpr std::size_t kBatch = 256;
-/// Pages that one thread takes at a time.
+/// How many pages a thread takes at a time.
 constexpr std::size_t kGrain = 16;
-/// Bytes of pages kept in memory.
+/// Bytes of scratch pages that are kept in memory.
 constexpr std::size_t kMemory = std::size_t{256} << 20;
-/// Where a volume has more pages than these, not all of the finest ones are looked at for the tables.
+/// In a volume of more pages than these one of eight finest pages is surveyed for the tables.
 constexpr std::uint64_t kSurveyed = 4096;
 
 /// Numbers of all pages, in the order of the file.
@@ -67,78 +64,53 @@ struct Job {
 template <class Word>
 struct Surveys {
   std::unique_ptr<SampleSurvey<Word>> samples;
-  BoundsSurvey<Word> values;
+  BoundsSurvey<Word> bounds;
   std::optional<GradientSurvey> gradients;
 
   /// `ranks`: see sample_survey.
   Surveys(SampleCoding coding, std::shared_ptr<const SampleRanks> ranks, bool with_gradients,
           const Vec3& spacing)
-      : samples(sample_survey<Word>(coding, std::move(ranks))), values(spacing) {
+      : samples(sample_survey<Word>(coding, std::move(ranks))), bounds(spacing) {
     if (with_gradients) gradients.emplace(coding_of_bytes(coding));
   }
 
   void add(const Job<Word>& job) {
     samples->add(job.shape, job.around.samples, job.page.samples);
-    values.add(job.shape, job.around, job.page);
+    bounds.add(job.shape, job.around, job.page);
     if (gradients) gradients->add(job.shape, job.gradients_around, job.gradients);
   }
   void merge(const Surveys& other) {
     samples->merge(*other.samples);
-    values.merge(other.values);
+    bounds.merge(other.bounds);
     if (gradients) gradients->merge(*other.gradients);
   }
 };
 
 /// The bytes of a page, and what the directory says of it.
 struct CodedPage {
-  std::vector<std::byte> samples, values, gradients;
+  std::vector<std::byte> samples, bounds, gradients;
   PageSummary summary;
 };
 
 template <class Word>
 struct Codecs {
   std::unique_ptr<SampleCodec<Word>> samples;
-  BoundsCodec<Word> values;
+  BoundsCodec<Word> bounds;
   std::optional<GradientCodec> gradients;
 
-  explicit Codecs(const Surveys<Word>& surveys) : samples(surveys.samples->codec()), values(surveys.values) {
+  explicit Codecs(const Surveys<Word>& surveys) : samples(surveys.samples->codec()), bounds(surveys.bounds) {
     if (surveys.gradients) gradients.emplace(surveys.gradients->codec());
   }
 
   void encode(const Job<Word>& job, CodedPage& coded) const {
     coded.samples.clear();
-    coded.values.clear();
+    coded.bounds.clear();
     coded.gradients.clear();
     samples->encode(job.shape, job.around.samples, job.page.samples, coded.samples);
-    values.encode(job.shape, job.around, job.page, coded.values);
+    bounds.encode(job.shape, job.around, job.page, coded.bounds);
     if (gradients) gradients->encode(job.shape, job.gradients_around, job.gradients, coded.gradients);
     coded.summary = summary(job.shape, job.page);
   }
-};
-
-/// Directions of gradients on their way to the file.
-class GradientScratch {
- public:
-  GradientScratch(const std::filesystem::path& folder, const PageGrid& grid)
-      : scratch_(folder, grid, PageParts::kSamples),
-        tree_(grid, kMemory,
-              [this](const PageId& id, const PageShape&, const Surroundings<std::uint16_t>&, PageParts parts,
-                     PageSamples<std::uint16_t>& samples, PageBounds<std::uint16_t>* values) {
-                scratch_.get(id, parts, samples, values);
-                return true;
-              }) {}
-
-  void put(const PageId& id, const Page<std::uint16_t>& page) { scratch_.put(id, page); }
-  void get(const PageId& id, GradientCodes& codes, GradientCodesAround& around) {
-    tree_.surroundings(id, around_, PageParts::kSamples);
-    around = around_.samples;
-    codes = tree_.samples(id)->samples;
-  }
-
- private:
-  ScratchPages<std::uint16_t> scratch_;
-  PageCache<std::uint16_t> tree_;
-  Surroundings<std::uint16_t> around_;
 };
 
 template <class Sample>
@@ -151,14 +123,10 @@ class StoreBuilder {
         grid_(volume.dimensions),
         options_(options),
         progress_(progress),
-        scratch_(options.scratch, grid_),
-        tree_(grid_, kMemory,
-              [this](const PageId& id, const PageShape&, const Surroundings<Word>&, PageParts parts,
-                     PageSamples<Word>& samples, PageBounds<Word>* values) {
-                scratch_.get(id, parts, samples, values);
-                return true;
-              }) {
-    if (options.gradients) gradients_ = std::make_unique<GradientScratch>(options.scratch, grid_);
+        scratch_(options.scratch, grid_, kMemory) {
+    if (options.gradients)
+      gradients_ =
+          std::make_unique<ScratchPages<std::uint16_t>>(options.scratch, grid_, kMemory, PageParts::kSamples);
   }
 
   StoreFigures build(const std::filesystem::path& path, const std::string& shown, const PlaneSource& planes) {
@@ -199,12 +167,18 @@ class StoreBuilder {
         job.number = numbers[begin + n];
         const PageId id = grid_.page(job.number);
         job.shape = page_shape(grid_, id);
-        tree_.surroundings(id, job.around);
-        tree_.copy(id, job.page);
-        if (gradients_ != nullptr) gradients_->get(id, job.gradients, job.gradients_around);
+        scratch_.surroundings(id, job.around);
+        scratch_.copy(id, job.page);
+        if (gradients_ != nullptr) get_gradients(id, job);
       }
       fn(std::span<const Job<Word>>(jobs_).first(count));
     }
+  }
+
+  void get_gradients(const PageId& id, Job<Word>& job) {
+    gradients_->surroundings(id, around_gradients_, PageParts::kSamples);
+    job.gradients_around = around_gradients_.samples;
+    job.gradients = gradients_->samples(id)->samples;
   }
 
   Codecs<Word> survey(const std::vector<std::uint64_t>& numbers) {
@@ -243,17 +217,17 @@ class StoreBuilder {
       for (std::size_t n = 0; n < jobs.size(); ++n) {
         const CodedPage& page = coded[n];
         header.bytes.samples += page.samples.size();
-        header.bytes.values += page.values.size();
+        header.bytes.bounds += page.bounds.size();
         header.bytes.gradients += page.gradients.size();
-        writer.add_page(0, jobs[n].number, join_payload({page.samples, page.values, page.gradients}),
+        writer.add_page(0, jobs[n].number, join_payload({page.samples, page.bounds, page.gradients}),
                         page.summary);
       }
     });
     header.sample_tables = codecs.samples->tables();
-    header.bounds_tables = codecs.values.tables();
+    header.bounds_tables = codecs.bounds.tables();
     if (codecs.gradients) header.gradient_tables = codecs.gradients->tables();
     header.bytes.samples += header.sample_tables.size();
-    header.bytes.values += header.bounds_tables.size();
+    header.bytes.bounds += header.bounds_tables.size();
     header.bytes.gradients += header.gradient_tables.size();
     const StoreBytes bytes = header.bytes;
     return {bytes, writer.finish(std::move(header)), numbers.size()};
@@ -264,8 +238,8 @@ class StoreBuilder {
   StoreOptions options_;
   Progress& progress_;
   ScratchPages<Word> scratch_;
-  PageCache<Word> tree_;
-  std::unique_ptr<GradientScratch> gradients_;  ///< null where none are kept
+  std::unique_ptr<ScratchPages<std::uint16_t>> gradients_;  ///< OctahedralCodes; null where none are kept
+  Surroundings<std::uint16_t> around_gradients_;
   std::vector<Job<Word>> jobs_;
   SampleCensus<Word> census_;
   std::shared_ptr<const SampleRanks> ranks_;  ///< null where samples are coded as they are

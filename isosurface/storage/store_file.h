@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <span>
@@ -19,8 +20,8 @@ enum class Paging : std::uint8_t { kRead, kMap };
 /// What was found where a page lies.
 enum class PageState : std::uint8_t {
   kWhole,
-  kCopied,   ///< damaged, and its second copy is whole
-  kDamaged,  ///< or the part of the directory that tells of it is
+  kCopied,   ///< the page is damaged, and its second copy is whole
+  kDamaged,  ///< neither is whole, or the part of the directory that tells of the page is damaged
 };
 
 /// A store that is open. Reads the directory in parts, as pages are asked for.
@@ -54,14 +55,14 @@ class StoreFile {
   /// Whether a page's second copy, where it has one, is whole.
   bool copy_is_whole(const PageEntry& entry);
 
-  /// Of pages and the directory.
+  /// How many bytes of pages and the directory were read.
   [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
 
  private:
   using ChunkKey = std::pair<std::uint32_t, std::uint64_t>;
   struct Chunk {
     std::vector<std::uint64_t> numbers;
-    std::vector<PageEntry> entries;  ///< empty: damaged
+    std::vector<PageEntry> entries;  ///< none where the chunk is damaged
   };
 
   /// `size` bytes from `offset`, in the mapping or in buffer_. Bytes beyond the file's end are an Error.
@@ -77,6 +78,35 @@ class StoreFile {
   PageGrid grid_{{1, 1, 1}};
   std::map<ChunkKey, Chunk> chunks_;
   std::uint64_t bytes_read_ = 0;
+};
+
+/// Writes a store, page after page. The file is no store before finish().
+class StoreFileWriter {
+ public:
+  /// Throws Error where the file cannot be written; messages name `shown`, the file's final name.
+  StoreFileWriter(const std::filesystem::path& path, std::string shown, const StoreHeader& header);
+
+  /// Takes the pages that PageGrid::contains, every one, in ascending order of step and number.
+  void add_page(std::uint32_t step, std::uint64_t number, std::span<const std::byte> payload,
+                const PageSummary& summary);
+  /// Writes what is not pages, with a header of the bytes and tables that are known now. Returns the file's
+  /// size.
+  std::uint64_t finish(StoreHeader header);
+
+ private:
+  void write(std::span<const std::byte> bytes);
+  void begin_chunk(std::uint32_t step, std::uint64_t first);
+  void end_chunk();
+
+  std::string shown_;
+  std::ofstream stream_;
+  PageGrid grid_;
+  std::size_t word_bytes_;
+  std::uint64_t at_ = 0;
+  std::vector<DirectoryChunk> chunks_;
+  std::vector<PageEntry> entries_;                   ///< of the last chunk
+  std::vector<std::vector<std::byte>> entry_bytes_;  ///< of the chunks before
+  std::vector<std::byte> copies_;
 };
 
 }  // namespace adamas

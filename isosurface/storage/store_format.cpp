@@ -1,8 +1,10 @@
 #include "isosurface/storage/store_format.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
@@ -53,7 +55,7 @@ void write_header(ByteWriter& out, const StoreHeader& header) {
   out.number(header.subtree_depth);
   out.number(static_cast<std::uint8_t>(header.gradients));
   out.number(header.steps);
-  for (const std::uint64_t n : {header.bytes.samples, header.bytes.values, header.bytes.gradients})
+  for (const std::uint64_t n : {header.bytes.samples, header.bytes.bounds, header.bytes.gradients})
     out.number(n);
   for (const auto* tables : {&header.sample_tables, &header.bounds_tables, &header.gradient_tables})
     out.sized_bytes(*tables);
@@ -71,7 +73,7 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
   header.subtree_depth = choice("a depth of subtrees", 2);
   header.gradients = choice("a coding of gradients", 1) != 0;
   header.steps = in.number<std::uint32_t>();
-  for (std::uint64_t* n : {&header.bytes.samples, &header.bytes.values, &header.bytes.gradients})
+  for (std::uint64_t* n : {&header.bytes.samples, &header.bytes.bounds, &header.bytes.gradients})
     *n = in.number<std::uint64_t>();
   for (auto* tables : {&header.sample_tables, &header.bounds_tables, &header.gradient_tables}) {
     const auto bytes = in.sized_bytes();
@@ -153,6 +155,58 @@ void check_chunks(const StoreRoot& root, const PageGrid& grid, std::uint64_t end
 }
 
 }  // namespace
+
+template <class Word>
+PageSummary summary(const PageShape& shape, const PageBounds<Word>& page) {
+  PageSummary result;
+  result.low = std::numeric_limits<Word>::max();
+  for_each_own_place(shape, [&](std::size_t place) {
+    result.low = std::min<std::uint32_t>(result.low, page.low[place]);
+    result.high = std::max<std::uint32_t>(result.high, page.high[place]);
+    result.error = std::max(result.error, page.errors[place]);
+  });
+  if (shape.complete) result.error = ErrorScale::kCodes - 1;
+  const std::size_t count = result.part_count();
+  if (count == 0) return result;
+  if (shape.complete) {
+    std::fill_n(result.part_errors.begin(), count, result.error);
+    return result;
+  }
+  for_each_own_place(shape, [&](std::size_t place) {
+    const std::uint32_t low = page.low[place], high = page.high[place];
+    const std::uint8_t error = page.errors[place];
+    if (low >= high || error == 0) return;
+    for (std::size_t n = result.part(low + 1); n <= result.part(high); ++n)
+      result.part_errors[n] = std::max(result.part_errors[n], error);
+  });
+  const int least = result.error - PageSummary::kSpan;
+  for (std::uint8_t& error : result.part_errors) {
+    if (error > 0) error = static_cast<std::uint8_t>(std::max<int>(error, least));
+  }
+  return result;
+}
+
+template PageSummary summary(const PageShape&, const PageBounds<std::uint8_t>&);
+template PageSummary summary(const PageShape&, const PageBounds<std::uint16_t>&);
+template PageSummary summary(const PageShape&, const PageBounds<std::uint32_t>&);
+
+std::vector<std::byte> join_payload(const PagePayload& parts) {
+  std::vector<std::byte> bytes;
+  bytes.reserve(parts.samples.size() + parts.bounds.size() + parts.gradients.size() + 8);
+  ByteWriter out(bytes);
+  out.sized_bytes(parts.samples);
+  out.sized_bytes(parts.bounds);
+  out.bytes(parts.gradients);
+  return bytes;
+}
+
+bool split_payload(std::span<const std::byte> bytes, PagePayload& parts) {
+  ByteReader in(bytes);
+  parts.samples = in.sized_bytes();
+  parts.bounds = in.sized_bytes();
+  parts.gradients = in.rest();
+  return in.good();
+}
 
 std::vector<std::byte> StorePrologue::serialise() const {
   std::vector<std::byte> bytes;

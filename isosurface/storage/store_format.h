@@ -12,15 +12,16 @@
 
 #include "core/data/volume.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/volume/page_grid.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 
 // The stored volume as a file; docs/file_formats.md has its bytes.
 
-/// Bytes of what pages hold, as they lie in the file, the second copies of coarse pages apart.
+/// How many bytes of a file hold what pages are made of and its tables; second copies of coarse pages do not
+/// count.
 struct StoreBytes {
-  std::uint64_t samples = 0, values = 0, gradients = 0;
+  std::uint64_t samples = 0, bounds = 0, gradients = 0;  ///< bounds: errors and ranges
 };
 
 /// What a store says of itself as a whole.
@@ -36,14 +37,15 @@ struct StoreHeader {
 
 /// What is known of a page without reading it.
 struct PageSummary {
-  /// The union of the ranges of its points' diamonds, as ordered words; low > high where nothing is in them.
+  /// The union of the ranges of its points' diamonds, as ordered words; low > high where all are empty.
   std::uint32_t low = 0, high = 0;
   /// The greatest of their error codes, which are those of the page's LOD; of the coarsest page, which has
   /// diamonds of several LODs, the greatest code there is.
   std::uint8_t error = 0;
-  /// The same by isovalue. The words from low + 1 to high, each the least that is not below some isovalue,
-  /// lie in parts of 2^part_bits() words; no diamond that a contour for a part's isovalues crosses has a
-  /// greater code than the part's, which is 0 where there is none, and else at most kSpan below `error`.
+  /// The greatest codes by isovalue. The words from low + 1 to high, each the least that is not below some
+  /// isovalue, lie in parts of 2^part_bits() words; no diamond that a contour for a part's isovalues crosses
+  /// has a greater code than the part's, which is 0 where there is none, and else at most kSpan below
+  /// `error`.
   static constexpr std::size_t kParts = 32;
   static constexpr int kSpan = 14;
   std::array<std::uint8_t, kParts> part_errors{};
@@ -61,6 +63,23 @@ struct PageSummary {
   /// Which part has a word from low + 1 to high.
   [[nodiscard]] std::size_t part(std::uint32_t word) const { return (word - low - 1) >> part_bits(); }
 };
+
+/// The summary of a page, by the bounds of its own points.
+template <class Word>
+PageSummary summary(const PageShape& shape, const PageBounds<Word>& page);
+
+extern template PageSummary summary(const PageShape&, const PageBounds<std::uint8_t>&);
+extern template PageSummary summary(const PageShape&, const PageBounds<std::uint16_t>&);
+extern template PageSummary summary(const PageShape&, const PageBounds<std::uint32_t>&);
+
+/// The parts of a page's bytes in a store.
+struct PagePayload {
+  std::span<const std::byte> samples, bounds, gradients;
+};
+
+std::vector<std::byte> join_payload(const PagePayload& parts);
+/// The inverse. Returns false where the bytes are not those of three parts.
+[[nodiscard]] bool split_payload(std::span<const std::byte> bytes, PagePayload& parts);
 
 /// What the directory says of a page.
 struct PageEntry : PageSummary {
@@ -83,7 +102,7 @@ struct DirectoryChunk {
   std::uint64_t copies = 0;            ///< offset of the first copy
 };
 
-/// Lods from this on, the coarsest 1/64 of the samples, are in the file twice.
+/// LODs from this on, the coarsest 1/64 of the samples, are in the file twice.
 inline constexpr int kCopiedLod = 2;
 
 /// What a file begins with; everything else is found from here.

@@ -1,78 +1,127 @@
 #include "isosurface/storage/stored_pages.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
-#include "isosurface/compression/byte_stream.h"
+#include "core/base/error.h"
+#include "isosurface/gradients/direction_code.h"
 
 namespace adamas {
 
-std::vector<std::byte> join_payload(const PagePayload& parts) {
-  std::vector<std::byte> bytes;
-  bytes.reserve(parts.samples.size() + parts.values.size() + parts.gradients.size() + 8);
-  ByteWriter out(bytes);
-  out.sized_bytes(parts.samples);
-  out.sized_bytes(parts.values);
-  out.bytes(parts.gradients);
-  return bytes;
-}
-
-bool split_payload(std::span<const std::byte> bytes, PagePayload& parts) {
-  ByteReader in(bytes);
-  parts.samples = in.sized_bytes();
-  parts.values = in.sized_bytes();
-  parts.gradients = in.rest();
-  return in.good();
-}
-
 template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory)
-    : file_(file),
+    : PageCache<Word>(file.grid(), memory),
+      file_(file),
       step_(step),
-      sample_codec_(parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())),
-      tree_(file.grid(), memory,
-            [this](const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
-                   PageParts parts, PageSamples<Word>& samples,
-                   PageBounds<Word>* values) { return load(id, shape, around, parts, samples, values); }) {}
+      sample_codec_(
+          parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())) {}
 
 template <class Word>
-bool StoredPages<Word>::load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around,
-                             PageParts parts, PageSamples<Word>& samples, PageBounds<Word>* values) {
-  last_damaged_ = id;
-  if (std::find(damaged_.begin(), damaged_.end(), id) != damaged_.end()) return false;
-  const StoreFile::Payload payload = file_.read(step_, id);
-  if (payload.state == PageState::kDamaged || !decode(payload.bytes, shape, around, parts, samples, values)) {
-    damaged_.push_back(id);
+bool StoredPages<Word>::load(const PageToLoad<Word>& page) {
+  last_damaged_ = page.id;
+  if (std::find(damaged_.begin(), damaged_.end(), page.id) != damaged_.end()) return false;
+  const StoreFile::Payload payload = file_.read(step_, page.id);
+  if (payload.state == PageState::kDamaged || !decode(payload.bytes, page)) {
+    damaged_.push_back(page.id);
     return false;
   }
-  if (has_part(parts, PageParts::kSamples)) copies_ += payload.state == PageState::kCopied ? 1 : 0;
+  if (has_part(page.parts, PageParts::kSamples)) copies_ += payload.state == PageState::kCopied ? 1 : 0;
   return true;
 }
 
 template <class Word>
-bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageShape& shape,
-                               const Surroundings<Word>& around, PageParts wanted, PageSamples<Word>& samples,
-                               PageBounds<Word>* values) {
-  PagePayload parts;
-  if (!split_payload(payload, parts)) return false;
-  if (has_part(wanted, PageParts::kSamples) &&
-      !sample_codec_->decode(parts.samples, shape, around.samples, samples.samples))
+bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageToLoad<Word>& page) {
+  PagePayload coded;
+  if (!split_payload(payload, coded)) return false;
+  if (has_part(page.parts, PageParts::kSamples) &&
+      !sample_codec_->decode(coded.samples, page.shape, page.around.samples, page.samples.samples))
     return false;
-  if (values == nullptr) return true;
+  if (page.bounds == nullptr) return true;
   if (!bounds_codec_) {
     const StoreHeader& header = file_.header();
     bounds_codec_ = BoundsCodec<Word>::parse(header.bounds_tables, header.grid.spacing, file_.name());
   }
-  return bounds_codec_->decode(parts.values, shape, around, samples, *values);
+  return bounds_codec_->decode(coded.bounds, page.shape, page.around, page.samples, *page.bounds);
 }
 
 template <class Word>
 PageCounts StoredPages<Word>::counts() const {
-  return {tree_.loaded() - tree_.loaded_as_predictors(), tree_.loaded_as_predictors(), file_.bytes_read(),
-          copies_, damaged_.size()};
+  const std::uint64_t predictors = this->loaded_as_predictors();
+  return {this->loaded() - predictors, predictors, file_.bytes_read(), copies_, damaged_.size()};
 }
 
 template class StoredPages<std::uint8_t>;
 template class StoredPages<std::uint16_t>;
 template class StoredPages<std::uint32_t>;
+
+template <class Sample>
+std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample>>& pages) {
+  using Word = OrderedWord<Sample>;
+  const PageGrid& grid = pages.grid();
+  const PageId coarsest{grid.top(), {0, 0, 0}};
+  const auto value = [](auto word) {
+    return static_cast<double>(from_ordered<Sample>(static_cast<Word>(word)));
+  };
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (grid.depth() > 0) {
+    const std::optional<PageEntry> all = pages.entry(coarsest);
+    if (!all) return {};
+    // The words of an empty range are no numbers.
+    if (all->low > all->high) return std::array{kInfinity, -kInfinity};
+    return std::array{value(all->low), value(all->high)};
+  }
+  // No diamond has a range where all samples are corners of the domain.
+  const PageSamples<Word>* page = pages.samples(coarsest);
+  if (page == nullptr) return {};
+  std::array<double, 2> range{kInfinity, -kInfinity};
+  const LatticePoint last = grid.last();
+  for (std::int32_t corner = 0; corner < 8; ++corner) {
+    const LatticePoint p{corner & 1, corner >> 1 & 1, corner >> 2};
+    if (p.i > last.i || p.j > last.j || p.k > last.k) continue;
+    const double found = value(page->samples[PageGrid::place(p, 0)]);
+    if (std::isfinite(found)) range = {std::min(range[0], found), std::max(range[1], found)};
+  }
+  return range;
+}
+
+template std::optional<std::array<double, 2>> sample_range<std::uint8_t>(StoredPages<std::uint8_t>&);
+template std::optional<std::array<double, 2>> sample_range<std::uint16_t>(StoredPages<std::uint16_t>&);
+template std::optional<std::array<double, 2>> sample_range<std::int16_t>(StoredPages<std::uint16_t>&);
+template std::optional<std::array<double, 2>> sample_range<float>(StoredPages<std::uint32_t>&);
+
+namespace {
+
+GradientCodec gradient_codec_of(const StoreFile& file) {
+  const StoreHeader& header = file.header();
+  if (!header.gradients) fail("{}: expected gradients, found none", file.name());
+  return GradientCodec::parse(coding_of_bytes(header.coding), header.gradient_tables, file.name());
+}
+
+}  // namespace
+
+StoredGradients::StoredGradients(StoreFile& file, std::uint32_t step, std::size_t memory)
+    : PageCache(file.grid(), memory), file_(file), step_(step), codec_(gradient_codec_of(file)) {}
+
+bool StoredGradients::load(const PageToLoad<std::uint16_t>& page) {
+  const StoreFile::Payload payload = file_.read(step_, page.id);
+  PagePayload coded;
+  if (payload.state != PageState::kDamaged && split_payload(payload.bytes, coded) &&
+      codec_.decode(coded.gradients, page.shape, page.around.samples, page.samples.samples))
+    return true;
+  last_damaged_ = page.id;
+  return false;
+}
+
+std::optional<Vec3> StoredGradients::direction(LatticePoint p) {
+  // Not all points beyond the data are among those that pages have.
+  for (int axis = 0; axis < 3; ++axis) p[axis] = std::min(p[axis], grid().last()[axis]);
+  const PageId id = grid().page(p);
+  const PageSamples<std::uint16_t>* found = samples(id);
+  if (found == nullptr) return {};
+  const unsigned code = found->samples[PageGrid::place(p, id.lod)];
+  return decode_direction(DirectionCode::kOctahedral,
+                          {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), 0});
+}
 
 }  // namespace adamas

@@ -1,16 +1,19 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "core/geometry/vec3.h"
 #include "isosurface/compression/bounds_codec.h"
+#include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/storage/page_cache.h"
 #include "isosurface/storage/store_file.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas {
 
@@ -23,42 +26,29 @@ struct PageCounts {
   std::uint64_t damaged = 0;     ///< pages that cannot be had
 };
 
-/// The parts of a page's bytes in a store.
-struct PagePayload {
-  std::span<const std::byte> samples, values, gradients;
+/// A page that is needed cannot be had, since a page is damaged: it itself or one that it is predicted from.
+struct PageLost {
+  PageId page, damaged;
 };
 
-/// Joins the parts; the inverse.
-std::vector<std::byte> join_payload(const PagePayload& parts);
-/// False where the bytes are not those of three parts.
-[[nodiscard]] bool split_payload(std::span<const std::byte> bytes, PagePayload& parts);
-
-/// The decoded pages of one step of a store. Word: OrderedWord of the store's samples.
+/// The decoded samples and bounds of one step of a store. Pages that are damaged, or predicted from one that
+/// is, cannot be had. Word: OrderedWord of the store's samples.
 template <class Word>
-class StoredPages {
+class StoredPages : public PageCache<Word> {
  public:
-  /// `memory`: bytes that decoded pages may take. Throws Error where the tables are damaged, those of values
-  /// not before any are asked for. The file must outlive this.
+  /// `memory`: bytes that decoded pages may take. Throws Error where the tables are damaged, those of bounds
+  /// not before bounds are asked for. The file must outlive this.
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
 
   [[nodiscard]] StoreFile& file() { return file_; }
   [[nodiscard]] std::uint32_t step() const { return step_; }
-  [[nodiscard]] const PageGrid& grid() const { return file_.grid(); }
 
-  /// A part of a page, or null where it is damaged or predicted from one that is. Valid until the next call.
-  const PageSamples<Word>* samples(const PageId& id) { return tree_.samples(id); }
-  const PageBounds<Word>* values(const PageId& id) { return tree_.values(id); }
-  /// The samples of a page that is in memory; null for others.
-  const PageSamples<Word>* held(const PageId& id) { return tree_.find(id); }
-  /// All of a page; false where it cannot be had.
-  bool copy(const PageId& id, Page<Word>& page) { return tree_.copy(id, page); }
-  /// The values of the page, or of all, will hardly be asked for again.
-  void drop_bounds(const PageId& id) { tree_.drop_bounds(id); }
-  void drop_bounds() { tree_.drop_bounds(); }
-  /// What is known round a page; false where something cannot be had.
-  bool surroundings(const PageId& id, Surroundings<Word>& around) { return tree_.surroundings(id, around); }
-  /// What the directory says of it; nothing where that is damaged.
+  /// The same as samples() and bounds(), for pages without which there is no way to go on. Throw PageLost.
+  const PageSamples<Word>& needed_samples(const PageId& id) { return needed(id, this->samples(id)); }
+  const PageBounds<Word>& needed_bounds(const PageId& id) { return needed(id, this->bounds(id)); }
+  /// What the directory says of a page; nothing where that is damaged.
   std::optional<PageEntry> entry(const PageId& id) { return file_.entry(step_, id); }
+
   /// Pages that were found damaged, in the order in which they were met.
   [[nodiscard]] const std::vector<PageId>& damaged() const { return damaged_; }
   /// The damaged page for which a page could not be had, when that was last so.
@@ -66,16 +56,18 @@ class StoredPages {
   [[nodiscard]] PageCounts counts() const;
 
  private:
-  bool load(const PageId& id, const PageShape& shape, const Surroundings<Word>& around, PageParts parts,
-            PageSamples<Word>& samples, PageBounds<Word>* values);
-  bool decode(std::span<const std::byte> payload, const PageShape& shape, const Surroundings<Word>& around,
-              PageParts parts, PageSamples<Word>& samples, PageBounds<Word>* values);
+  bool load(const PageToLoad<Word>& page) override;
+  bool decode(std::span<const std::byte> payload, const PageToLoad<Word>& page);
+  template <class Part>
+  const Part& needed(const PageId& id, const Part* part) const {
+    if (part == nullptr) throw PageLost{id, last_damaged_};
+    return *part;
+  }
 
   StoreFile& file_;
   std::uint32_t step_;
   std::unique_ptr<SampleCodec<Word>> sample_codec_;
-  std::optional<BoundsCodec<Word>> bounds_codec_;  ///< none before values are asked for
-  PageCache<Word> tree_;
+  std::optional<BoundsCodec<Word>> bounds_codec_;  ///< none before bounds are asked for
   std::vector<PageId> damaged_;
   PageId last_damaged_;
   std::uint64_t copies_ = 0;
@@ -84,5 +76,34 @@ class StoredPages {
 extern template class StoredPages<std::uint8_t>;
 extern template class StoredPages<std::uint16_t>;
 extern template class StoredPages<std::uint32_t>;
+
+/// The least and the greatest finite sample of a store, the first greater where there is none; nothing where
+/// the part of the file that tells of them is damaged.
+template <class Sample>
+std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample>>& pages);
+
+/// The directions of gradients that one step of a store keeps: pages whose samples are the bytes of
+/// OctahedralCode, the first byte lowest.
+class StoredGradients : public PageCache<std::uint16_t> {
+ public:
+  /// `memory`: bytes that decoded pages may take. Throws Error where the store has no gradients or their
+  /// tables are damaged. The file must outlive this.
+  StoredGradients(StoreFile& file, std::uint32_t step, std::size_t memory);
+
+  /// The direction at a point, whose coordinates count samples and are not negative: a unit vector, or zero
+  /// where nothing changes. Beyond the data it is that of the nearest sample. Nothing where the page cannot
+  /// be had.
+  std::optional<Vec3> direction(LatticePoint p);
+  /// The damaged page for which a page could not be had, when that was last so.
+  [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }
+
+ private:
+  bool load(const PageToLoad<std::uint16_t>& page) override;
+
+  StoreFile& file_;
+  std::uint32_t step_;
+  GradientCodec codec_;
+  PageId last_damaged_;
+};
 
 }  // namespace adamas

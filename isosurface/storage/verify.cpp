@@ -5,9 +5,8 @@
 #include <optional>
 
 #include "core/lattice/diamond.h"
-#include "isosurface/storage/page_summary.h"
-#include "isosurface/storage/stored_gradients.h"
 #include "isosurface/storage/stored_pages.h"
+#include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -72,7 +71,7 @@ class Verifier {
     if (entry && !is_summary(id, page, *entry)) return "is not what the directory says of it";
     if (!is_lawful(id, page)) return "has errors or ranges greater than those of the diamonds they come from";
     if (!gradients_ && has_gradients) return "has gradients, which the store does not have";
-    if (gradients_ && gradients_->page(id) == nullptr) return "has gradients that are damaged";
+    if (gradients_ && gradients_->samples(id) == nullptr) return "has gradients that are damaged";
     return nullptr;
   }
 
@@ -104,8 +103,8 @@ class Verifier {
     return true;
   }
 
-  /// Whether the diamond of a point of an LOD, in units of the LOD, reaches into the data: those of the
-  /// coarsest page that do not have no values that could cover others.
+  /// Whether the diamond of a point of an LOD, in units of the LOD, reaches into the data. The coarsest page
+  /// has diamonds that do not; nothing is known of them, so that they bound no others.
   [[nodiscard]] bool reaches_data(LatticePoint at, int lod) const {
     const int zeros = trailing_zeros(at);
     const LatticePoint end = pages_.grid().reach(lod + zeros);
@@ -120,10 +119,8 @@ class Verifier {
   static bool is_within(const Page<Word>& page, LatticePoint child, LatticePoint parent, int child_zeros,
                         const PageId& id) {
     const std::size_t c = PageGrid::place(child, 0), p = PageGrid::place(parent, 0);
-    // A code of the next coarser LOD is twice the error, four codes more.
-    const int coarser = 4 * (trailing_zeros(PageGrid::kSide * id.block + parent) - child_zeros);
-    const int parent_rank = page.errors[p] == 0 ? 0 : page.errors[p] + coarser;
-    if (page.errors[c] != 0 && parent_rank < page.errors[c]) return false;
+    const int parent_zeros = trailing_zeros(PageGrid::kSide * id.block + parent);
+    if (error_class(page.errors[p], parent_zeros) < error_class(page.errors[c], child_zeros)) return false;
     return page.low[c] > page.high[c] || (page.low[p] <= page.low[c] && page.high[p] >= page.high[c]);
   }
 

@@ -47,7 +47,7 @@ ErrorScale lod_error_scale(const Vec3& spacing, int lod) {
           world_diameter({-type.direction, type.direction, type.ring[slot], type.ring[next]}, spacing));
     }
   }
-  // A power of two: codes of the same error differ by four from LOD to LOD.
+  // A power of two: see error_class.
   return ErrorScale(std::ldexp(greatest, lod));
 }
 

@@ -15,7 +15,7 @@ class ErrorScale {
  public:
   static constexpr int kCodes = 64;
 
-  /// `greatest`: of the LOD's errors; finite, not negative.
+  /// `greatest`: the greatest of the LOD's errors; finite, not negative.
   explicit ErrorScale(double greatest);
 
   /// The least code whose error is not less; the greatest one for errors beyond the scale and for NaN.
@@ -30,6 +30,11 @@ class ErrorScale {
 /// The error scale of an LOD: its greatest error is the greatest diameter of the tetrahedra of the diamonds
 /// whose scale is 2^lod samples.
 ErrorScale lod_error_scale(const Vec3& spacing, int lod);
+
+/// The scales of all LODs as one: the error class of a code, of the scale of an LOD. Class 0 is no error, and
+/// each class is an error 2^(1/4) times that of the class before. Scales of neighbouring LODs differ by a
+/// factor of two, so that equal errors of all LODs have the same class.
+constexpr int error_class(int code, int lod) { return code == 0 ? 0 : code + 4 * lod; }
 
 /// The greatest distance between two corners of a tetrahedron, where samples lie `spacing` apart.
 double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& spacing);

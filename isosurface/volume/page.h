@@ -8,8 +8,8 @@
 
 namespace adamas {
 
-/// Something of a page's points: of all 16^3 of its cube, those of coarser LODs too, by place (i running
-/// fastest). Places beyond PageGrid::count hold anything.
+/// Something for each point of a page: for all 16^3 of its cube, those of coarser LODs too, by place (i
+/// running fastest). Places beyond PageGrid::count hold anything.
 template <class T>
 using PagePoints = std::array<T, PageGrid::kPoints>;
 
@@ -19,13 +19,13 @@ struct PageSamples {
   PagePoints<Word> samples;
 };
 
-/// What is known of the points' diamonds.
+/// The bounds that are known of the points' diamonds.
 template <class Word>
 struct PageBounds {
-  /// The least and the greatest sample in and on it, NaN and infinities left out; low > high where nothing is
-  /// left.
+  /// The least and the greatest finite sample in and on each diamond, as words; low > high where there is
+  /// none.
   PagePoints<Word> low, high;
-  /// Its isosurface error, as a code of its LOD's ErrorScale.
+  /// Each diamond's isosurface error, as a code of its LOD's ErrorScale.
   PagePoints<std::uint8_t> errors;
 };
 
@@ -38,11 +38,11 @@ constexpr bool has_part(PageParts parts, PageParts part) {
   return (static_cast<int>(parts) & static_cast<int>(part)) != 0;
 }
 
-/// What the points of a page are predicted from: those of the next coarser LOD, round the page. Along each
-/// axis the place c from 0 to kSide - 1 is the point 16 block + 2 (c - 1) of the page's LOD: one before the
-/// page to two behind its last even point. Points beyond the data's extent repeat the last one before them.
-/// i runs fastest. Of errors and ranges those of the places from 1 to 9 are known, as far as one page has all
-/// of them, that with the page's own points; elsewhere stands what bounds nothing.
+/// What a page is predicted from: the points of the next coarser LOD in and round its cube, i running
+/// fastest. Along each axis the place c from 0 to kSide - 1 is the point 16 block + 2 (c - 1) of the page's
+/// LOD: these are the even points from the one before the page to the second behind its last one. Beyond the
+/// data's extent they repeat the last point before it. Bounds are known at the places from 1 to 9, as far as
+/// they lie on the coarser page that covers the cube; at other places stand bounds that exclude nothing.
 template <class Word>
 struct Surroundings {
   static constexpr int kSide = 11;
@@ -52,21 +52,21 @@ struct Surroundings {
   using Points = std::array<T, kPoints>;
 
   Points<Word> samples, low, high;
-  Points<std::uint8_t> errors;  ///< codes, of the LOD that the diamond of each point has
+  Points<std::uint8_t> errors;  ///< codes, each of the LOD of the point's diamond
 };
 
-/// Place in Surroundings of the point that lies at `q` of the page, whose coordinates are even.
+/// The place in Surroundings of the point that lies at `q` of the page, whose coordinates are even.
 constexpr std::size_t surrounding_place(LatticePoint q) {
   return static_cast<std::size_t>((q.i / 2 + 1) + 11 * ((q.j / 2 + 1) + 11 * (q.k / 2 + 1)));
 }
 
-/// A page of which one part after another becomes known, as who codes it sees it.
+/// All that codecs know of a page before they see its points.
 struct PageShape {
   LatticePoint count;  ///< PageGrid::count
   bool complete;       ///< PageGrid::is_complete
   int lod;             ///< PageId::lod
 
-  /// Whether a place has a point that is the page's own: whose values the page keeps.
+  /// Whether the point at q is the page's own, which it keeps in the file, and not one of a coarser LOD.
   [[nodiscard]] bool owns(LatticePoint q) const {
     return q.i < count.i && q.j < count.j && q.k < count.k && (complete || ((q.i | q.j | q.k) & 1) != 0);
   }
@@ -76,7 +76,7 @@ inline PageShape page_shape(const PageGrid& grid, const PageId& page) {
   return {grid.count(page), grid.is_complete(page), page.lod};
 }
 
-/// f(place) for the page's own points, i running fastest.
+/// Calls f(place) for the page's own points, i running fastest.
 template <class F>
 void for_each_own_place(const PageShape& shape, F&& f) {
   const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };

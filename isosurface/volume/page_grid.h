@@ -9,9 +9,9 @@
 
 namespace adamas {
 
-/// Which page: the points that an LOD adds in a cube of 16^3 points of the LOD. An LOD (level of detail) says
-/// which points there are: those whose coordinates, which count samples, are multiples of 2^lod. LOD 0 has
-/// all samples, unlike level 0 of a diamond, which is the coarsest.
+/// Names a page: the points that an LOD adds to coarser ones in a cube of 16^3 of its points. An LOD (level
+/// of detail) has those points whose coordinates, which count samples, are multiples of 2^lod. So LOD 0 has
+/// all samples, whereas level 0 of diamonds is the coarsest.
 struct PageId {
   int lod = 0;
   LatticePoint block{};  ///< the cube: points of the LOD from 16 block to 16 block + 15 per axis
@@ -82,7 +82,7 @@ class PageGrid {
     const int l = lod(p);
     return {l, {p.i >> (l + 4), p.j >> (l + 4), p.k >> (l + 4)}};
   }
-  /// Place of an LOD's point in its page, i running fastest.
+  /// The place of an LOD's point in its page, i running fastest.
   static constexpr std::size_t place(LatticePoint p, int lod) {
     const auto at = [lod](std::int32_t x) { return static_cast<std::size_t>(x >> lod & (kSide - 1)); };
     return at(p.i) + kSide * (at(p.j) + kSide * at(p.k));
@@ -96,7 +96,7 @@ class PageGrid {
   [[nodiscard]] PageId page(std::uint64_t number) const;
   /// Whether the page's points begin inside the LODs' extents: only such pages exist.
   [[nodiscard]] bool contains(const PageId& page) const;
-  /// Pages of all LODs.
+  /// The number of pages of all LODs.
   [[nodiscard]] std::uint64_t page_count() const;
 
  private:

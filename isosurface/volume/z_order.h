@@ -8,8 +8,8 @@
 namespace adamas {
 
 /// Hierarchical z-order (D A): the lattice points of a cube in one sequence, coarse lattices before finer
-/// ones and the points that a finer one adds in z-order. Neighbours in space are mostly neighbours in the
-/// sequence, and any LOD is a prefix.
+/// ones, and the points that a finer one adds in z-order. Neighbours in space are mostly neighbours in the
+/// sequence, and the points of any LOD are a prefix of it.
 class ZOrder {
  public:
   static constexpr int kMaxBits = 21;  ///< per coordinate, so that an index has 63 bits

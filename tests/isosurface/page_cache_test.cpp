@@ -3,71 +3,76 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <random>
+#include <utility>
 
 #include "isosurface/storage/scratch_pages.h"
 
 namespace adamas {
 namespace {
 
-/// Any function of a point of an LOD that the tree may not know beforehand.
+/// Any function of a point of an LOD, which a cache cannot know beforehand.
 std::uint16_t sample_at(LatticePoint p) { return static_cast<std::uint16_t>(hash_value(p) >> 40); }
 
 using Word = std::uint16_t;
 
-/// Fills parts of a page's own points.
-bool fill_own(const PageId& id, const PageShape& shape, PageParts parts, PageSamples<Word>& samples,
-              PageBounds<Word>* values) {
+/// Fills the missing parts of a page's own points.
+void fill_own(const PageToLoad<Word>& page) {
   LatticePoint q{};
-  for (q.k = 0; q.k < shape.count.k; ++q.k)
-    for (q.j = 0; q.j < shape.count.j; ++q.j)
-      for (q.i = 0; q.i < shape.count.i; ++q.i) {
-        if (!shape.owns(q)) continue;
+  for (q.k = 0; q.k < page.shape.count.k; ++q.k)
+    for (q.j = 0; q.j < page.shape.count.j; ++q.j)
+      for (q.i = 0; q.i < page.shape.count.i; ++q.i) {
+        if (!page.shape.owns(q)) continue;
         const std::size_t place = PageGrid::place(q, 0);
-        const Word sample = sample_at((1 << id.lod) * (PageGrid::kSide * id.block + q));
-        if (has_part(parts, PageParts::kSamples)) samples.samples[place] = sample;
-        EXPECT_EQ(samples.samples[place], sample);
-        EXPECT_EQ(values != nullptr, has_part(parts, PageParts::kBounds));
-        if (values == nullptr) continue;
-        values->low[place] = static_cast<Word>(sample ^ 1);
-        values->high[place] = static_cast<Word>(sample ^ 2);
-        values->errors[place] = static_cast<std::uint8_t>(sample & 63);
+        const Word sample = sample_at((1 << page.id.lod) * (PageGrid::kSide * page.id.block + q));
+        if (has_part(page.parts, PageParts::kSamples)) page.samples.samples[place] = sample;
+        EXPECT_EQ(page.samples.samples[place], sample);
+        EXPECT_EQ(page.bounds != nullptr, has_part(page.parts, PageParts::kBounds));
+        if (page.bounds == nullptr) continue;
+        page.bounds->low[place] = static_cast<Word>(sample ^ 1);
+        page.bounds->high[place] = static_cast<Word>(sample ^ 2);
+        page.bounds->errors[place] = static_cast<std::uint8_t>(sample & 63);
       }
-  return true;
 }
 
-/// A tree of pages that are filled so; `fill` may do more.
-template <class Fill>
-PageCache<Word> tree_of(const PageGrid& grid, std::size_t memory, Fill fill) {
-  return {grid, memory,
-          [fill](const PageId& id, const PageShape& shape, const Surroundings<Word>&, PageParts parts,
-                 PageSamples<Word>& samples, PageBounds<Word>* values) {
-            return fill(id, parts) && fill_own(id, shape, parts, samples, values);
-          }};
-}
-PageCache<Word> tree_of(const PageGrid& grid, std::size_t memory) {
-  return tree_of(grid, memory, [](const PageId&, PageParts) { return true; });
-}
+/// A cache of pages that are filled so; where `can_load` returns false they cannot be had.
+class FilledPages : public PageCache<Word> {
+ public:
+  using CanLoad = std::function<bool(const PageId&, PageParts)>;
+  FilledPages(
+      const PageGrid& grid, std::size_t memory,
+      CanLoad can_load = [](const PageId&, PageParts) { return true; })
+      : PageCache(grid, memory), can_load_(std::move(can_load)) {}
+
+ private:
+  bool load(const PageToLoad<Word>& page) override {
+    fill_own(page);
+    return can_load_(page.id, page.parts);
+  }
+  CanLoad can_load_;
+};
 
 class PageCacheOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
  protected:
-  /// Whether the samples or the values of all points of the page are right, those of coarser LODs too.
+  /// Expects that the samples or the bounds of all points of the page are right, of those of coarser LODs
+  /// too.
   static void check_samples(const PageGrid& grid, const PageId& id, const PagePoints<Word>& samples) {
     for_each_point(grid, id, [&](std::size_t place, Word expected) { ASSERT_EQ(samples[place], expected); });
   }
-  static void check_values(const PageGrid& grid, const PageId& id, const PageBounds<Word>& values) {
+  static void check_bounds(const PageGrid& grid, const PageId& id, const PageBounds<Word>& bounds) {
     for_each_point(grid, id, [&](std::size_t place, Word expected) {
-      ASSERT_EQ(values.low[place], expected ^ 1);
-      ASSERT_EQ(values.high[place], expected ^ 2);
-      ASSERT_EQ(values.errors[place], expected & 63);
+      ASSERT_EQ(bounds.low[place], expected ^ 1);
+      ASSERT_EQ(bounds.high[place], expected ^ 2);
+      ASSERT_EQ(bounds.errors[place], expected & 63);
     });
   }
-  static void check(const PageGrid& grid, const PageId& id, PageCache<Word>& tree) {
+  static void check(const PageGrid& grid, const PageId& id, PageCache<Word>& cache) {
     const auto page = std::make_unique<Page<Word>>();
-    ASSERT_TRUE(tree.copy(id, *page));
+    ASSERT_TRUE(cache.copy(id, *page));
     check_samples(grid, id, page->samples);
-    check_values(grid, id, *page);
+    check_bounds(grid, id, *page);
   }
 
   static std::vector<PageId> pages_in_random_order(const PageGrid& grid) {
@@ -98,69 +103,69 @@ class PageCacheOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> 
 TEST_P(PageCacheOf, PagesHaveTheirPointsAndThoseOfCoarserLods) {
   const PageGrid grid(GetParam());
   std::uint64_t loads = 0;
-  auto tree = tree_of(grid, std::size_t{1} << 40, [&loads](const PageId&, PageParts parts) {
+  FilledPages cache(grid, std::size_t{1} << 40, [&loads](const PageId&, PageParts parts) {
     loads += has_part(parts, PageParts::kSamples) ? 1 : 0;
     return true;
   });
-  for (const PageId& id : pages_in_random_order(grid)) check(grid, id, tree);
+  for (const PageId& id : pages_in_random_order(grid)) check(grid, id, cache);
   EXPECT_EQ(loads, grid.page_count());
-  EXPECT_EQ(tree.loaded(), grid.page_count());
-  EXPECT_EQ(tree.loaded_as_predictors(), 0u);
+  EXPECT_EQ(cache.loaded(), grid.page_count());
+  EXPECT_EQ(cache.loaded_as_predictors(), 0u);
 }
 
-TEST_P(PageCacheOf, SamplesAloneNeedNoValues) {
+TEST_P(PageCacheOf, SamplesAloneNeedNoBounds) {
   const PageGrid grid(GetParam());
-  auto tree = tree_of(grid, std::size_t{1} << 40,
-                      [](const PageId&, PageParts parts) { return parts == PageParts::kSamples; });
+  FilledPages cache(grid, std::size_t{1} << 40,
+                    [](const PageId&, PageParts parts) { return parts == PageParts::kSamples; });
   for (const PageId& id : pages_in_random_order(grid)) {
-    const PageSamples<Word>* page = tree.samples(id);
+    const PageSamples<Word>* page = cache.samples(id);
     ASSERT_NE(page, nullptr);
     check_samples(grid, id, page->samples);
   }
-  EXPECT_EQ(tree.loaded(), grid.page_count());
+  EXPECT_EQ(cache.loaded(), grid.page_count());
 }
 
 TEST_P(PageCacheOf, PartsThatLeftComeBack) {
   const PageGrid grid(GetParam());
   for (const std::size_t memory : {std::size_t{0}, 100 * sizeof(Page<Word>), std::size_t{1} << 40}) {
-    auto tree = tree_of(grid, memory);
+    FilledPages cache(grid, memory);
     std::mt19937 random(3);
     std::vector<PageId> pages = pages_in_random_order(grid);
     for (int step = 0; step < 3000; ++step) {
       const PageId& id = pages[random() % pages.size()];
       switch (random() % 8) {
         case 0:
-          tree.drop_bounds(id);
+          cache.drop_bounds(id);
           break;
         case 1:
-          check(grid, id, tree);
+          check(grid, id, cache);
           break;
         case 2:
-          if (random() % 64 == 0) tree.drop_bounds();
+          if (random() % 64 == 0) cache.drop_bounds();
           break;
         case 3:
-          if (const PageSamples<Word>* found = tree.find(id)) check_samples(grid, id, found->samples);
+          if (const PageSamples<Word>* found = cache.held(id)) check_samples(grid, id, found->samples);
           break;
         case 4:
         case 5:
-          check_samples(grid, id, tree.samples(id)->samples);
+          check_samples(grid, id, cache.samples(id)->samples);
           break;
         default:
-          check_values(grid, id, *tree.values(id));
+          check_bounds(grid, id, *cache.bounds(id));
       }
       if (HasFatalFailure()) return;
     }
-    EXPECT_GE(tree.loaded(), tree.loaded_as_predictors());
+    EXPECT_GE(cache.loaded(), cache.loaded_as_predictors());
   }
 }
 
 TEST_P(PageCacheOf, SurroundingsAreThePointsOfTheNextLod) {
   const PageGrid grid(GetParam());
-  auto tree = tree_of(grid, std::size_t{1} << 24);
+  FilledPages cache(grid, std::size_t{1} << 24);
   for (const PageId& id : pages_in_random_order(grid)) {
     if (grid.is_complete(id)) continue;
     Surroundings<Word> around;
-    ASSERT_TRUE(tree.surroundings(id, around));
+    ASSERT_TRUE(cache.surroundings(id, around));
     const LatticePoint extent = grid.extent(id.lod + 1);
     for (std::int32_t c = 0; c < 11; ++c)
       for (std::int32_t b = 0; b < 11; ++b)
@@ -182,22 +187,16 @@ TEST_P(PageCacheOf, SurroundingsAreThePointsOfTheNextLod) {
 
 TEST_P(PageCacheOf, ScratchKeepsOwnPoints) {
   const PageGrid grid(GetParam());
-  ScratchPages<Word> scratch(std::filesystem::temp_directory_path(), grid);
+  ScratchPages<Word> scratch(std::filesystem::temp_directory_path(), grid, 100);
   for (const PageId& id : pages_in_random_order(grid)) {
     if (!grid.contains(id)) continue;
     Page<Word> page{};
-    fill_own(id, page_shape(grid, id), PageParts::kAll, page, &page);
+    fill_own({id, page_shape(grid, id), PageParts::kAll, Surroundings<Word>{}, page, &page});
     scratch.put(id, page);
   }
-  PageCache<Word> tree(grid, 100,
-                       [&](const PageId& id, const PageShape&, const Surroundings<Word>&, PageParts parts,
-                           PageSamples<Word>& samples, PageBounds<Word>* values) {
-                         scratch.get(id, parts, samples, values);
-                         return true;
-                       });
   for (const PageId& id : pages_in_random_order(grid)) {
-    check_samples(grid, id, tree.samples(id)->samples);
-    check(grid, id, tree);
+    check_samples(grid, id, scratch.samples(id)->samples);
+    check(grid, id, scratch);
   }
 }
 
@@ -210,26 +209,26 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, PageCacheOf,
 TEST(PageCache, WhatCannotBeHadTakesWhatIsPredictedFromItAlong) {
   const PageGrid grid({100, 100, 100});
   const PageId bad{1, {1, 1, 1}};
-  auto tree = tree_of(grid, std::size_t{1} << 24, [bad](const PageId& id, PageParts) { return id != bad; });
-  EXPECT_EQ(tree.samples(bad), nullptr);
-  EXPECT_EQ(tree.samples({0, {2, 2, 2}}), nullptr);
-  EXPECT_NE(tree.samples({0, {0, 0, 0}}), nullptr);
-  EXPECT_EQ(tree.samples({0, {1, 1, 1}}), nullptr);  // one coarse point beyond its end
-  EXPECT_NE(tree.samples({0, {5, 0, 0}}), nullptr);
-  EXPECT_GT(tree.loaded_as_predictors(), 0u);
+  FilledPages cache(grid, std::size_t{1} << 24, [bad](const PageId& id, PageParts) { return id != bad; });
+  EXPECT_EQ(cache.samples(bad), nullptr);
+  EXPECT_EQ(cache.samples({0, {2, 2, 2}}), nullptr);
+  EXPECT_NE(cache.samples({0, {0, 0, 0}}), nullptr);
+  EXPECT_EQ(cache.samples({0, {1, 1, 1}}), nullptr);  // one coarse point beyond its end
+  EXPECT_NE(cache.samples({0, {5, 0, 0}}), nullptr);
+  EXPECT_GT(cache.loaded_as_predictors(), 0u);
 }
 
-TEST(PageCache, ValuesThatCannotBeHadLeaveSamples) {
+TEST(PageCache, BoundsThatCannotBeHadLeaveSamples) {
   const PageGrid grid({100, 100, 100});
   const PageId bad{1, {1, 1, 1}};
-  auto tree = tree_of(grid, std::size_t{1} << 24, [bad](const PageId& id, PageParts parts) {
+  FilledPages cache(grid, std::size_t{1} << 24, [bad](const PageId& id, PageParts parts) {
     return id != bad || parts == PageParts::kSamples;
   });
-  EXPECT_NE(tree.samples(bad), nullptr);
-  EXPECT_EQ(tree.values(bad), nullptr);
-  EXPECT_EQ(tree.values({0, {2, 2, 2}}), nullptr);
-  EXPECT_NE(tree.samples({0, {2, 2, 2}}), nullptr);
-  EXPECT_NE(tree.values({0, {0, 0, 0}}), nullptr);
+  EXPECT_NE(cache.samples(bad), nullptr);
+  EXPECT_EQ(cache.bounds(bad), nullptr);
+  EXPECT_EQ(cache.bounds({0, {2, 2, 2}}), nullptr);
+  EXPECT_NE(cache.samples({0, {2, 2, 2}}), nullptr);
+  EXPECT_NE(cache.bounds({0, {0, 0, 0}}), nullptr);
 }
 
 }  // namespace

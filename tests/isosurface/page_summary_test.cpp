@@ -1,11 +1,11 @@
-#include "isosurface/storage/page_summary.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <memory>
 #include <random>
+
+#include "isosurface/storage/store_format.h"
 
 namespace adamas {
 namespace {

@@ -43,7 +43,7 @@ Found found_by(SplitPages<Word>& pages, const SurfaceCut& cut) {
 
 SurfaceCut any_cut(std::mt19937& random, int lods) {
   SurfaceCut cut;
-  cut.rank = static_cast<int>(1 + random() % static_cast<unsigned>(4 * lods + 24));
+  cut.error_class = static_cast<int>(1 + random() % static_cast<unsigned>(4 * lods + 24));
   if (random() % 3 == 0) return cut;
   cut.generation = static_cast<int>(random() % static_cast<unsigned>(3 * lods + 1));
   if (random() % 2 == 0) return cut;
@@ -83,15 +83,15 @@ TEST(SplitPages, SplitWhatTheCutComesTo) {
   const SplitLimits limits;
   SplitPages<Word> pages(diamonds, limits);
   pages.forget(true);
-  const Found all = found_by(pages, {.rank = 1});
+  const Found all = found_by(pages, {.error_class = 1});
   ASSERT_GT(all.split.size(), 10'000u);
   EXPECT_EQ(all.greatest_left, 0);
   std::mt19937 random(6);
   for (int step = 0; step < 40; ++step) {
-    const SurfaceCut cut{.rank = static_cast<int>(1 + random() % 40)};
+    const SurfaceCut cut{.error_class = static_cast<int>(1 + random() % 40)};
     std::vector<LatticePoint> expected;
     std::copy_if(all.split.begin(), all.split.end(), std::back_inserter(expected),
-                 [&](LatticePoint p) { return diamonds.rank_if_crossed(p) >= cut.rank; });
+                 [&](LatticePoint p) { return diamonds.class_if_crossed(p) >= cut.error_class; });
     EXPECT_EQ(found_by(pages, cut).split, expected);
   }
 }

@@ -8,7 +8,6 @@
 #include "core/base/checksum.h"
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
-#include "isosurface/storage/store_file_writer.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {

@@ -1,4 +1,3 @@
-#include "isosurface/storage/stored_gradients.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
-#include "isosurface/storage/store_file_writer.h"
+#include "isosurface/storage/store_file.h"
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/storage/verify.h"
 #include "tests/support/scratch.h"
@@ -107,7 +106,7 @@ void expect_stored(const Stored<Sample>& volume) {
         for (q.i = 0; q.i <= n.i; ++q.i) {
           const PageId id{lod, {q.i / 16, q.j / 16, q.k / 16}};
           if (!grid.contains(id)) continue;
-          const PageSamples<std::uint16_t>* page = gradients.page(id);
+          const PageSamples<std::uint16_t>* page = gradients.samples(id);
           ASSERT_NE(page, nullptr);
           const auto [first, second] = code_at((1 << lod) * q);
           wrong += page->samples[PageGrid::place(q, 0)] != (first | second << 8) ? 1 : 0;
@@ -168,7 +167,7 @@ TEST(StoredGradients, ChangeNothingElse) {
     EXPECT_THROW(StoredGradients(file, 0, 0), Error);
   }
   EXPECT_EQ(figures[0].bytes.samples, figures[1].bytes.samples);
-  EXPECT_EQ(figures[0].bytes.values, figures[1].bytes.values);
+  EXPECT_EQ(figures[0].bytes.bounds, figures[1].bytes.bounds);
   EXPECT_EQ(figures[0].bytes.gradients, 0u);
   EXPECT_GT(figures[1].file_bytes, figures[0].file_bytes + figures[1].bytes.gradients);
 }
@@ -189,7 +188,7 @@ void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
       ASSERT_TRUE(split_payload(file.read(0, id).bytes, parts));
       std::vector<std::byte> gradients(parts.gradients.begin(), parts.gradients.end());
       if (id.lod == 0) change(header, gradients);
-      writer.add_page(0, number, join_payload({parts.samples, parts.values, gradients}), *file.entry(0, id));
+      writer.add_page(0, number, join_payload({parts.samples, parts.bounds, gradients}), *file.entry(0, id));
     }
   }
   writer.finish(header);

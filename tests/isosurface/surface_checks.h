@@ -75,7 +75,7 @@ class DiamondTable {
             const PageId id = grid.page(p);
             const LatticePoint q{p.i >> id.lod, p.j >> id.lod, p.k >> id.lod};
             if (PageShape{grid.count(id), true, id.lod}.owns(q - PageGrid::kSide * id.block)) {
-              diamonds_[p] = values_in(*pages.values(id), p, lod, id.lod);
+              diamonds_[p] = values_in(*pages.bounds(id), p, lod, id.lod);
             } else {
               beyond.push_back(p);
             }
@@ -91,7 +91,6 @@ class DiamondTable {
   [[nodiscard]] IndexedHierarchy mesh(double isovalue, double error) const {
     return mesh([&](const Values& values) { return values.error > error && values.is_crossed(isovalue); });
   }
-  /// The mesh in which every diamond is split that reaches into the data.
   /// The mesh of an error, each tetrahedron of which stands for finer ones where the surface may cross it.
   [[nodiscard]] IndexedHierarchy mesh_of_subtrees(double isovalue, double error, int subtree_depth) const {
     return finer_mesh(mesh(isovalue, error), 3 * subtree_depth, [&](LatticePoint p) {
@@ -102,6 +101,7 @@ class DiamondTable {
       return found != diamonds_.end() && found->second.error > 0 && found->second.is_crossed(isovalue);
     });
   }
+  /// The mesh in which every diamond is split that reaches into the data.
   [[nodiscard]] IndexedHierarchy full_mesh() const {
     return mesh([](const Values&) { return true; });
   }

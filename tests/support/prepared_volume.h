@@ -18,23 +18,10 @@ class PreparedVolume {
  public:
   using Word = OrderedWord<Sample>;
 
-  /// `samples`: i running fastest. Lods below `depth` have no values, as with subtrees.
+  /// `samples`: i running fastest. LODs below `depth` have no bounds, as with subtrees.
   PreparedVolume(const std::array<std::uint64_t, 3>& dimensions, const std::vector<Sample>& samples,
                  Vec3 spacing = {1, 1, 1}, int depth = 0)
-      : tree_(PageGrid(dimensions), std::size_t{1} << 40,
-              [this](const PageId& id, const PageShape& shape, const Surroundings<Word>&, PageParts parts,
-                     PageSamples<Word>& found, PageBounds<Word>* values) {
-                const Page<Word>& own = pages_.at(tree_.grid().number(id));
-                for (std::size_t at = 0; at < PageGrid::kPoints; ++at) {
-                  if (!shape.owns(point_at(at))) continue;
-                  if (has_part(parts, PageParts::kSamples)) found.samples[at] = own.samples[at];
-                  if (values == nullptr) continue;
-                  values->low[at] = own.low[at];
-                  values->high[at] = own.high[at];
-                  values->errors[at] = own.errors[at];
-                }
-                return true;
-              }) {
+      : pages_(dimensions) {
     VolumeGrid grid;
     grid.dimensions = dimensions;
     grid.spacing = spacing;
@@ -44,27 +31,49 @@ class PreparedVolume {
         [&](std::uint64_t k, std::span<std::byte> plane) {
           std::memcpy(plane.data(), samples.data() + k * grid.plane_samples(), plane.size());
         },
-        [this](const PageId& id, const Page<Word>& page) { pages_[tree_.grid().number(id)] = page; },
+        [this](const PageId& id, const Page<Word>& page) { pages_.own[pages_.grid().number(id)] = page; },
         {depth});
   }
 
-  [[nodiscard]] const PageGrid& grid() const { return tree_.grid(); }
+  [[nodiscard]] const PageGrid& grid() const { return pages_.grid(); }
   [[nodiscard]] PageShape shape(const PageId& id) const {
     return {grid().count(id), grid().is_complete(id), id.lod};
   }
   /// With the points of coarser LODs.
   [[nodiscard]] Page<Word> page(const PageId& id) const {
     Page<Word> found{};
-    tree_.copy(id, found);
+    pages_.copy(id, found);
     return found;
   }
   [[nodiscard]] Surroundings<Word> around(const PageId& id) const {
     Surroundings<Word> result{};
-    tree_.surroundings(id, result);
+    pages_.surroundings(id, result);
     return result;
   }
 
  private:
+  /// All pages, from those that preprocessing gave.
+  struct Pages : PageCache<Word> {
+    std::map<std::uint64_t, Page<Word>> own;  ///< by number
+
+    explicit Pages(const std::array<std::uint64_t, 3>& dimensions)
+        : PageCache<Word>(PageGrid(dimensions), std::size_t{1} << 40) {}
+
+   private:
+    bool load(const PageToLoad<Word>& page) override {
+      const Page<Word>& from = own.at(this->grid().number(page.id));
+      for (std::size_t at = 0; at < PageGrid::kPoints; ++at) {
+        if (!page.shape.owns(point_at(at))) continue;
+        if (has_part(page.parts, PageParts::kSamples)) page.samples.samples[at] = from.samples[at];
+        if (page.bounds == nullptr) continue;
+        page.bounds->low[at] = from.low[at];
+        page.bounds->high[at] = from.high[at];
+        page.bounds->errors[at] = from.errors[at];
+      }
+      return true;
+    }
+  };
+
   static LatticePoint point_at(std::size_t place) {
     const auto at = [place](int shift) { return static_cast<std::int32_t>(place >> shift & 15); };
     return {at(0), at(4), at(8)};
@@ -75,8 +84,7 @@ class PreparedVolume {
     return sizeof(Sample) == 1 ? SampleType::kUint8 : SampleType::kUint16;
   }
 
-  std::map<std::uint64_t, Page<Word>> pages_;
-  mutable PageCache<Word> tree_;
+  mutable Pages pages_;
 };
 
 }  // namespace adamas::test

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "core/lattice/diamond.h"
+#include "core/lattice/domain.h"
+#include "isosurface/storage/stored_pages.h"
+#include "isosurface/volume/samples.h"
+
+namespace adamas {
+
+/// The samples of a store as values at points of a lattice: the one whose diamonds make the meshes of
+/// surfaces. Its domain is the least cube of 2^n samples a side that holds the data, and may reach beyond
+/// them.
+template <class Sample>
+class LatticeSamples {
+ public:
+  using Word = OrderedWord<Sample>;
+
+  /// The pages must outlive this.
+  explicit LatticeSamples(StoredPages<Word>& pages);
+
+  [[nodiscard]] StoredPages<Word>& pages() const { return pages_; }
+  [[nodiscard]] const PageGrid& grid() const { return grid_; }
+  [[nodiscard]] const Domain& domain() const { return domain_; }
+  /// The spacing of samples in space.
+  [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, -grid_.depth()) * domain_.box().size(); }
+  /// The lattice point of the last sample.
+  [[nodiscard]] LatticePoint last_sample() const { return (1 << shift_) * grid_.last(); }
+  /// The number of LODs whose points are points of diamonds; those of coarser LODs are corners of the domain.
+  [[nodiscard]] int lods() const { return grid_.depth(); }
+  /// The LOD of a lattice point: its coordinates in samples are multiples of 2^lod. Negative between samples.
+  [[nodiscard]] int lod(LatticePoint p) const { return trailing_zeros(p) - shift_; }
+  /// How many lattice units there are between points of an LOD.
+  [[nodiscard]] std::int32_t lattice_step(int lod) const { return std::int32_t{1} << (lod + shift_); }
+  /// A lattice point in units of samples.
+  [[nodiscard]] LatticePoint in_samples(LatticePoint p) const {
+    return {p.i >> shift_, p.j >> shift_, p.k >> shift_};
+  }
+
+  /// The sample at a lattice point; beyond the data that of the nearest one. Throws PageLost.
+  double sample(LatticePoint p) { return value(word(in_samples(p))); }
+  /// The same, as a word, at a point in units of samples.
+  Word word(LatticePoint at) {
+    // Points farther out than the virtual ones of their LOD have the samples of those: no finer page than
+    // theirs is needed.
+    const int l = std::min(trailing_zeros(at), PageGrid::kMaxDepth + 1);
+    const LatticePoint end = ends_[static_cast<std::size_t>(l)];
+    for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], end[axis]);
+    const PageId id = grid_.page(at);
+    return pages_.needed_samples(id).samples[PageGrid::place(at, id.lod)];
+  }
+  /// A sample and its 26 neighbours, i running fastest.
+  using Block = std::array<Word, 27>;
+  /// The samples at a lattice point and at its 26 neighbours `step` lattice units away. Returns false where
+  /// they are not all to be had quickly, from pages of one LOD that are in memory.
+  bool samples_round(LatticePoint p, std::int32_t step, Block& samples);
+
+  [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
+
+ private:
+  bool block_of_page(const PageId& id, LatticePoint first, Block& samples);
+  bool block_of_pages(const PageId& id, LatticePoint first, Block& samples);
+
+  StoredPages<Word>& pages_;
+  PageGrid grid_;
+  int shift_;  ///< 2^shift lattice units are the spacing of samples
+  Domain domain_;
+  std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by LOD: the last point, in samples
+};
+
+extern template class LatticeSamples<std::uint8_t>;
+extern template class LatticeSamples<std::uint16_t>;
+extern template class LatticeSamples<std::int16_t>;
+extern template class LatticeSamples<float>;
+
+}  // namespace adamas
