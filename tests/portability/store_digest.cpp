@@ -11,7 +11,7 @@
 
 #include "core/base/checksum.h"
 #include "core/base/simd.h"
-#include "isosurface/storage/stored_gradients.h"
+#include "isosurface/storage/stored_pages.h"
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 
