@@ -48,7 +48,7 @@ std::uint32_t digest(StoreFile& file) {
   if (file.header().gradients) {
     StoredGradients gradients(file, 0, kMemory);
     for_each_page(file.grid(), [&](const PageId& id) {
-      const auto* page = gradients.page(id);
+      const auto* page = gradients.samples(id);
       if (page == nullptr) throw std::runtime_error("a page is damaged");
       for_each_own_place(page_shape(file.grid(), id), [&](std::size_t at) { add(page->samples[at]); });
     });
