@@ -88,7 +88,9 @@ std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
 std::optional<LabelImage> label_image(const Input& input) {
   if (!input.data || input.data->labels.empty()) return std::nullopt;
   const MultiMaterialData& data = *input.data;
-  return LabelImage{walls_of(data.grid, 0), walls_of(data.grid, 1), walls_of(data.grid, 2),
+  return LabelImage{walls_of(data.grid, 0),
+                    walls_of(data.grid, 1),
+                    walls_of(data.grid, 2),
                     {data.labels.begin(), data.labels.end()}};
 }
 

@@ -19,7 +19,7 @@ struct ImageArray {
   /// Where its numbers are. Of the grid of the source only the numbers of sites along the axes are set.
   VolumeSource source;
   std::string missing = {};  ///< why its numbers cannot be read, as the end of a message; mostly empty
-  bool other_form = false;  ///< that is since they are in a form that a library may know
+  bool other_form = false;   ///< that is since they are in a form that a library may know
   /// All values of a component lie together, one component behind the other.
   bool planar = false;
 };

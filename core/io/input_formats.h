@@ -28,7 +28,7 @@ enum class InputKind : std::uint8_t {
 struct InputFormat {
   std::string_view name;  ///< "NRRD"
   InputKind kind = InputKind::kGrid;
-  std::string_view endings;       ///< of names of files that have it, as ".nrrd .nhdr"; help texts list them
+  std::string_view endings;  ///< of names of files that have it, as ".nrrd .nhdr"; help texts list them
   std::string_view more_endings = {};  ///< further ones, which nobody lists
   /// Whether the first bytes of a file show that it is one; null where they never do.
   bool (*shown_by)(std::string_view beginning) = nullptr;

@@ -3,7 +3,6 @@
 #include <unordered_map>
 
 #include "core/base/hash.h"
-
 #include "core/io/interface_mesh_io.h"
 
 namespace adamas {

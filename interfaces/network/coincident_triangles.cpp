@@ -1,5 +1,3 @@
-#include "interfaces/network/mending.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -13,6 +11,7 @@
 #include "core/geometry/place_text.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/domain_faces.h"
+#include "interfaces/network/mending.h"
 
 namespace adamas {
 

@@ -1,5 +1,3 @@
-#include "interfaces/network/mending.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "interfaces/network/closest_point_tree.h"
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/edge_fans.h"
+#include "interfaces/network/mending.h"
 
 namespace adamas {
 

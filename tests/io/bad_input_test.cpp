@@ -263,8 +263,8 @@ TEST(BadInput, HugeSizesAreErrors) {
   put_bytes(
       scratch / "b.mha",
       "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL");
-  EXPECT_TRUE(
-      says(error_of([&] { read_grid_file(scratch / "b.mha"); }), "expected 8 bytes for 2 x 2 x 2 samples of uint8"));
+  EXPECT_TRUE(says(error_of([&] { read_grid_file(scratch / "b.mha"); }),
+                   "expected 8 bytes for 2 x 2 x 2 samples of uint8"));
 }
 
 TEST(BadInput, OneWholeNumberArraySaysWhatToPass) {

@@ -81,8 +81,7 @@ TEST(NrrdReader, EncodingsByteOrdersAndDetachedData) {
   EXPECT_EQ(read_grid_file(scratch / "t.nrrd").arrays.at(0).take_floats(),
             (std::vector<float>{1, 2.5f, -3, 1000}));
   put_bytes(scratch / "cut.nrrd", head + "type: float\nencoding: text\n\n1 2.5\n-3 1e3");
-  EXPECT_TRUE(
-      says(error_of([&] { read_grid_file(scratch / "cut.nrrd"); }), "expected 4 numbers, found 3"));
+  EXPECT_TRUE(says(error_of([&] { read_grid_file(scratch / "cut.nrrd"); }), "expected 4 numbers, found 3"));
   const auto bzip = [&](const std::string& more) {
     put_bytes(scratch / "z.nrrd", head + "type: uchar\nencoding: bzip2\n\n" + test::bzipped("abcd") + more);
     return std::get<1>(read_grid_file(scratch / "z.nrrd").arrays.at(0).values);

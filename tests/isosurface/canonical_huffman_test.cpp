@@ -1,10 +1,9 @@
-#include "isosurface/compression/prefix_code.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "core/base/error.h"
+#include "isosurface/compression/prefix_code.h"
 
 namespace adamas {
 namespace {

@@ -1,6 +1,6 @@
-#include "isosurface/compression/residual_code.h"
-
 #include <gtest/gtest.h>
+
+#include "isosurface/compression/residual_code.h"
 
 namespace adamas {
 namespace {

@@ -1,5 +1,3 @@
-#include "isosurface/compression/prefix_code.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,8 @@
 #include <map>
 #include <queue>
 #include <random>
+
+#include "isosurface/compression/prefix_code.h"
 
 namespace adamas {
 namespace {

@@ -1,5 +1,3 @@
-#include "isosurface/compression/page_order.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "core/lattice/diamond.h"
+#include "isosurface/compression/page_order.h"
 #include "isosurface/compression/residual_code.h"
 #include "isosurface/volume/samples.h"
 #include "isosurface/volume/z_order.h"

@@ -12,7 +12,6 @@
 #include "core/base/checksum.h"
 #include "core/base/simd.h"
 #include "isosurface/storage/stored_pages.h"
-#include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
