@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/base/text.h"
 
 namespace adamas {

@@ -3,10 +3,11 @@
 #include <cstdint>
 #include <string>
 
+#include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/figures.h"
-#include "core/data/volume.h"
+#include "core/geometry/vec3.h"
 #include "core/io/file_summary.h"
 #include "core/io/volume_reader.h"
 #include "isosurface/storage/store_format.h"

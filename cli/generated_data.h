@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/multi_material_data.h"
 
 namespace adamas {

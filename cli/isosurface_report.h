@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "adamas/meshes.h"
+#include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/surface_picture.h"
-#include "core/data/triangle_surface.h"
-#include "core/data/volume.h"
+#include "core/geometry/vec3.h"
 #include "isosurface/extraction/surface_request.h"
 #include "isosurface/storage/stored_pages.h"
 

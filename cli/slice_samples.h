@@ -3,13 +3,14 @@
 #include <functional>
 #include <string>
 
+#include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/slice_input.h"
 #include "cli/store_options.h"
 #include "cli/volume_options.h"
 #include "core/data/multi_material_data.h"
-#include "core/data/volume.h"
 #include "core/geometry/plane.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

@@ -8,9 +8,10 @@
 #include <span>
 #include <string>
 
+#include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/input_options.h"
-#include "core/data/volume.h"
+#include "core/geometry/vec3.h"
 #include "core/io/volume_reader.h"
 
 namespace adamas {

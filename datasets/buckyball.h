@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/data/volume.h"
+#include "adamas/volume.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {

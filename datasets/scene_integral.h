@@ -5,8 +5,10 @@
 #include <functional>
 #include <vector>
 
-#include "core/base/progress.h"
-#include "core/data/rectilinear_grid.h"
+#include "adamas/grid_data.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
+#include "core/geometry/vec3.h"
 #include "datasets/scene.h"
 
 namespace adamas {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "datasets/scene.h"
 

@@ -3,7 +3,8 @@
 #include <array>
 #include <cstddef>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/multi_material_data.h"
 #include "datasets/scene.h"
 #include "datasets/scene_integral.h"

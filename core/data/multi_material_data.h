@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "adamas/grid_data.h"
 #include "core/base/typed_id.h"
-#include "core/data/rectilinear_grid.h"
 #include "core/data/site_array.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

@@ -1,7 +1,8 @@
-#include "core/data/rectilinear_grid.h"
-
 #include <algorithm>
 #include <limits>
+
+#include "adamas/grid_data.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

@@ -1,9 +1,9 @@
-#include "core/data/triangle_surface.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "adamas/meshes.h"
 #include "core/base/error.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

@@ -1,9 +1,10 @@
-#include "core/data/volume.h"
+#include "adamas/volume.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

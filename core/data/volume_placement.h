@@ -2,9 +2,10 @@
 
 #include <vector>
 
-#include "core/data/triangle_surface.h"
-#include "core/data/volume.h"
+#include "adamas/meshes.h"
+#include "adamas/volume.h"
 #include "core/geometry/plane.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/data/volume.h"
+#include "adamas/volume.h"
+#include "core/geometry/vec3.h"
 #include "core/io/grid_centering.h"
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/data/rectilinear_grid.h"
+#include "adamas/grid_data.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/data/rectilinear_grid.h"
+#include "adamas/grid_data.h"
+#include "core/geometry/vec3.h"
 #include "core/io/grid_file.h"
 
 namespace adamas {

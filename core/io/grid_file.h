@@ -8,7 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/data/rectilinear_grid.h"
+#include "adamas/grid_data.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

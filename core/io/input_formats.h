@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/io/grid_file.h"
 #include "core/io/image_header.h"
 #include "core/io/volume_reader.h"

@@ -3,7 +3,8 @@
 #include <filesystem>
 
 #include "adamas/files.h"  // MaterialDataOptions
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/multi_material_data.h"
 
 namespace adamas {

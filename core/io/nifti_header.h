@@ -8,7 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/data/volume.h"
+#include "adamas/volume.h"
+#include "core/geometry/vec3.h"
 #include "core/io/image_header.h"
 #include "core/io/stored_type.h"
 

@@ -6,7 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "core/data/volume.h"
+#include "adamas/volume.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

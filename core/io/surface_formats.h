@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
-#include "core/data/triangle_surface.h"
+#include "adamas/meshes.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
+#include "core/geometry/vec3.h"
 #include "core/io/output_stream.h"
 
 namespace adamas {

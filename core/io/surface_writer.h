@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/base/progress.h"
-#include "core/data/triangle_surface.h"
+#include "adamas/meshes.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

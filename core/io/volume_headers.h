@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/data/volume.h"
+#include "adamas/volume.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

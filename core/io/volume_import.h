@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/io/reader_program.h"
 #include "core/io/volume_reader.h"
 

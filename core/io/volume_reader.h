@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
-#include "core/data/volume.h"
+#include "adamas/progress.h"
+#include "adamas/volume.h"
+#include "core/base/error.h"
+#include "core/geometry/vec3.h"
 #include "core/io/volume_source.h"
 
 namespace adamas {

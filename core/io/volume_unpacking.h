@@ -6,7 +6,8 @@
 #include <span>
 #include <string_view>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/io/volume_source.h"
 
 namespace adamas {

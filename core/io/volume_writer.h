@@ -7,7 +7,8 @@
 #include <span>
 #include <string>
 
-#include "core/data/volume.h"
+#include "adamas/volume.h"
+#include "core/geometry/vec3.h"
 #include "core/io/output_stream.h"
 
 namespace adamas {

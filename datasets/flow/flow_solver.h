@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
-#include "core/data/rectilinear_grid.h"
+#include "adamas/grid_data.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
+#include "core/geometry/vec3.h"
 #include "datasets/flow/line_sweep.h"
 
 namespace adamas {

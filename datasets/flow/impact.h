@@ -3,7 +3,8 @@
 #include <array>
 #include <cstddef>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "datasets/flow/flow_output.h"
 #include "datasets/flow/flow_solver.h"
 

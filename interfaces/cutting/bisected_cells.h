@@ -5,8 +5,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/base/hash.h"
-#include "core/base/progress.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 

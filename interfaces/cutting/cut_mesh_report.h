@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/mesh/resampled_mesh.h"

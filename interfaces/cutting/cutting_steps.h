@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "interfaces/cutting/bisected_cells.h"
 #include "interfaces/cutting/interface_target.h"
 #include "interfaces/cutting/labelled_mesh.h"

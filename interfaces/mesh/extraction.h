@@ -5,7 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/ownership/cell_ownership.h"
 

@@ -2,8 +2,9 @@
 
 #include <vector>
 
+#include "adamas/grid_data.h"
 #include "core/base/typed_id.h"
-#include "core/data/rectilinear_grid.h"
+#include "core/geometry/vec3.h"
 #include "interfaces/network/interface_network.h"
 
 namespace adamas {

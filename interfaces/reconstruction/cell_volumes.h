@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "core/data/rectilinear_grid.h"
+#include "adamas/grid_data.h"
+#include "core/geometry/vec3.h"
 #include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_cell.h"

@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/data/rectilinear_grid.h"
+#include "adamas/grid_data.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

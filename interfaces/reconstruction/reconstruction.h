@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/lost_bodies.h"

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"

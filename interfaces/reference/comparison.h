@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "interfaces/reference/mesh_figures.h"
 #include "interfaces/reference/reference_mesher.h"
 #include "interfaces/resampling/resampler.h"

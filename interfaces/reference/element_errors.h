@@ -4,7 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "interfaces/errors/field_error.h"
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"

@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/base/typed_id.h"
 #include "interfaces/errors/field_error.h"
 #include "interfaces/mesh/conforming_mesh.h"

@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/network/hausdorff.h"
 #include "interfaces/source/resampling_source.h"

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/resampler.h"

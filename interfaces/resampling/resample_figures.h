@@ -5,7 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {

@@ -9,7 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "interfaces/errors/field_error.h"
 #include "interfaces/errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"

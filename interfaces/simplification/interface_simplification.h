@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/resampling/interface_comparison.h"
 #include "interfaces/resampling/output.h"

@@ -8,7 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/geometry/vec3.h"
 #include "interfaces/network/closest_point_tree.h"
 #include "interfaces/simplification/near_field.h"

@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "interfaces/network/closest_point_tree.h"
 #include "interfaces/simplification/surface_guard.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "isosurface/extraction/split_pages.h"
 #include "isosurface/extraction/surface_request.h"
 

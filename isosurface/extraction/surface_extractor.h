@@ -3,7 +3,8 @@
 #include <array>
 #include <cstdint>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "isosurface/extraction/split_pages.h"
 #include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/extraction/surface_request.h"

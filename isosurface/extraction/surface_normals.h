@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/lattice_samples.h"

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "isosurface/extraction/page_diamonds.h"
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/extraction/surface_request.h"

@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <span>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "isosurface/gradients/gradient_estimator.h"
 
 namespace adamas {

@@ -2,8 +2,10 @@
 
 #include <functional>
 
-#include "core/base/progress.h"
-#include "core/data/volume.h"
+#include "adamas/progress.h"
+#include "adamas/volume.h"
+#include "core/base/error.h"
+#include "core/geometry/vec3.h"
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
 

@@ -7,7 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
 

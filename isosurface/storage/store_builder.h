@@ -6,8 +6,10 @@
 #include <span>
 #include <string>
 
-#include "core/base/progress.h"
-#include "core/data/volume.h"
+#include "adamas/progress.h"
+#include "adamas/volume.h"
+#include "core/base/error.h"
+#include "core/geometry/vec3.h"
 #include "isosurface/storage/store_format.h"
 #include "isosurface/volume/samples.h"
 

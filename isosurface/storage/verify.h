@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "adamas/progress.h"
+#include "core/base/error.h"
 #include "isosurface/storage/store_file.h"
 
 namespace adamas {

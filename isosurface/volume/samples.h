@@ -7,8 +7,9 @@
 #include <span>
 #include <type_traits>
 
+#include "adamas/volume.h"
 #include "core/base/assert.h"
-#include "core/data/volume.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas {
 

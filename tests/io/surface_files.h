@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/data/triangle_surface.h"
+#include "adamas/meshes.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas::test {
 

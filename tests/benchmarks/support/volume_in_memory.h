@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/data/volume.h"
+#include "adamas/volume.h"
+#include "core/geometry/vec3.h"
 
 namespace adamas::bench {
 

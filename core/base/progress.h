@@ -1,4 +1,0 @@
-#pragma once
-
-#include "adamas/progress.h"
-#include "core/base/error.h"

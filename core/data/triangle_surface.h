@@ -1,4 +1,0 @@
-#pragma once
-
-#include "adamas/meshes.h"
-#include "core/geometry/vec3.h"

@@ -1,4 +1,0 @@
-#pragma once
-
-#include "adamas/volume.h"
-#include "core/geometry/vec3.h"
