@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads the samples of stores by docs/file_formats.md alone, to see that the text says all that is needed.
+"""Reads the samples of stores by docs/file_formats.md and docs/stored_pages.md alone, to see that they say all that is needed.
 
 usage: read_store.py ADAMAS
 
@@ -91,7 +91,7 @@ class Store:
             page = Page(count, level == self.top, around)
             part = Bytes(Bytes(payload).sized())
             kind = part.number("B")
-            if kind in (0, 3):
+            if kind == 3 or kind == 0 and self.coding != 2:
                 words = {q: int.from_bytes(part.take(self.bytes), "little") for q in page.own()}
             else:
                 words = self.codec.decode(kind, part.rest(), page)
@@ -130,6 +130,8 @@ def volumes():
     size = (40, 33, 30)
     yield "uint16", "H", size, field(size, lambda *p: 7 * int(1000 + 280 * wave(*p)))
     yield "float32", "f", size, field(size, lambda *p: float(int(90 * wave(*p))))
+    for values in (200, 1000):
+        yield "uint16", "H", size, field(size, lambda *p: 7 * rng.randrange(values))
 
 
 def main(adamas):

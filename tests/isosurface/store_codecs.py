@@ -1,4 +1,4 @@
-"""The bits, tables and codecs of a store's samples, as docs/file_formats.md tells of them."""
+"""The bits, tables and codecs of a store's samples, as docs/stored_pages.md tells of them."""
 import struct
 
 
@@ -323,6 +323,9 @@ class Ranks:
             self.codec = Interpolation(stream.rest(), 16, 16)
 
     def decode(self, kind, data, page):
+        if kind == 0:
+            size = self.codec.bits // 8
+            return {q: self.values[int.from_bytes(data[size * n:size * n + size], "little")] for n, q in enumerate(page.own())}
         around = {q: self.rank.get(word, 0) for q, word in page.around.items()}
         ranks = self.codec.decode(kind, data, Page(page.count, page.complete, around))
         return {q: self.values[rank] for q, rank in ranks.items()}
