@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
 
 #include "core/lattice/diamond.h"
@@ -22,7 +23,7 @@ class Verifier {
 
   Verifier(StoreFile& file, std::uint32_t step, std::size_t memory, VerifiedStore& result)
       : file_(file), step_(step), pages_(file, step, memory), result_(result) {
-    if (file.header().gradients) gradients_.emplace(file, step, memory / 4);
+    if (file.header().gradients) gradients_ = std::make_unique<StoredGradients>(file, step, memory / 4);
   }
 
   void run(Progress& progress) {
@@ -133,7 +134,7 @@ class Verifier {
   std::uint32_t step_;
   StoredPages<Word> pages_;
   Page<Word> page_;
-  std::optional<StoredGradients> gradients_;
+  std::unique_ptr<StoredGradients> gradients_;  ///< null where the store has none
   VerifiedStore& result_;
 };
 
