@@ -15,7 +15,7 @@ class SampleRanks;
 
 /// How the samples of pages are coded; the numbers are those in files.
 enum class SampleCoding : std::uint8_t {
-  kSplitEdge = 0,      ///< mean of the split edge's ends, lead-1 codes: the dissertation (D), section 4.5
+  kSplitEdge = 0,      ///< mean of the split edge's ends, lead-1 codes: the dissertation (D), section 4.11
   kInterpolation = 1,  ///< cubic on edges, then faces, then centres; contexts of local variation
   kRanks = 2           ///< kInterpolation of the samples' ranks; of words of more than a byte
 };
