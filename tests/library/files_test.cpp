@@ -59,10 +59,10 @@ TEST(Files, MeshesOfEveryKindAreWrittenAndDrawn) {
 
   const AdaptiveMesh mesh = resample(scene.data.view(), {.interface_error = 0.1});
   for (const char* name : {"cut.vtu", "cut.msh", "cut.exo"}) write_mesh(scratch / name, mesh.cut_mesh());
-  write_picture(scratch / "surface.png", surface, {.width = 200, .height = 150});
-  write_picture(scratch / "interfaces.png", found.mesh, {.width = 200, .height = 150});
+  write_picture(scratch / "surface.png", surface, {.width = 300, .height = 240});
+  write_picture(scratch / "interfaces.png", found.mesh, {.width = 300, .height = 240});
   const Slice cut = slice(mesh, {{0.5, 0.5, 0.5}, {0, 0, 1}}, {.field = "smooth"});
-  write_picture(scratch / "slice.svg", cut, {.width = 200, .height = 150, .cells = true});
+  write_picture(scratch / "slice.svg", cut, {.width = 300, .height = 240, .cells = true});
   EXPECT_EQ(scratch.entries(), 8);
 
   InterfaceTriangles wrong = found.mesh;
