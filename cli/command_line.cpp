@@ -73,8 +73,11 @@ CLI::Validator no_option() {
 
 CLI::Validator true_or_false() {
   return {[](std::string& value) {
+            // CLI11 converts the beginning of "2x".
+            const bool number = !value.empty() && std::isdigit(static_cast<unsigned char>(value[0])) != 0;
+            const bool whole = value.find_first_not_of("0123456789") == std::string::npos;
             bool converted = false;
-            return CLI::detail::lexical_cast(value, converted)
+            return (!number || whole) && CLI::detail::lexical_cast(value, converted)
                        ? std::string()
                        : fmt::format("expected no value, or true or false, found '{}'", value);
           },
