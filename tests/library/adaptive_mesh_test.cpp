@@ -26,13 +26,13 @@ class AdaptiveMeshOfAScene : public testing::Test {
   static constexpr double kError = 0.04, kFieldError = 2;
 
   static const GridData& data() {
-    static const GeneratedScene scene = generate_scene("voronoi10", {9, 9, 9}, 3);
-    static const GridData data = scene.data.view();
-    return data;
+    static const GeneratedScene kScene = generate_scene("voronoi10", {9, 9, 9}, 3);
+    static const GridData kData = kScene.data.view();
+    return kData;
   }
   static const AdaptiveMesh& mesh() {
-    static const AdaptiveMesh mesh = resample(data(), options());
-    return mesh;
+    static const AdaptiveMesh kMesh = resample(data(), options());
+    return kMesh;
   }
   static ResampleOptions options() {
     ResampleOptions options;
