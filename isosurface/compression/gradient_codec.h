@@ -18,9 +18,8 @@ using GradientCodes = PagePoints<std::uint16_t>;
 using GradientCodesAround = Surroundings<std::uint16_t>::Points<std::uint16_t>;
 
 /// Makes the directions of a page's own points into bytes and back, lossless: each of the two bytes of the
-/// codes as if they were samples, with tables of its own (the dissertation (D), section 4.11, does so with the
-/// components). May be used by
-/// several threads at once.
+/// codes as if they were samples, with tables of its own (the dissertation (D), section 4.11, does so with
+/// the components). May be used by several threads at once.
 class GradientCodec {
  public:
   static constexpr std::size_t kComponents = 2;

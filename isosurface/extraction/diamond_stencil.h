@@ -49,8 +49,8 @@ class DiamondHalves {
   /// The half of a tetrahedron, by the diamond's type, with the beginning of the split edge (`end` = 0) or
   /// with its end (1).
   static const TetrahedronHalf& of(int type, int slot, int end) {
-    static const DiamondHalves all;
-    return all.halves_[static_cast<std::size_t>(type)][static_cast<std::size_t>(slot)]
+    static const DiamondHalves kAll;
+    return kAll.halves_[static_cast<std::size_t>(type)][static_cast<std::size_t>(slot)]
                       [static_cast<std::size_t>(end)];
   }
 

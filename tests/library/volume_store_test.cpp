@@ -33,25 +33,25 @@ std::span<const std::byte> bytes(const MemoryVolume<Sample>& volume) {
 template <class Sample>
 class VolumeStoreOf : public testing::Test {
  protected:
-  VolumeStoreOf() { VolumeStore::build(path(), volume_.grid, bytes(volume_)); }
-  [[nodiscard]] std::filesystem::path path() const { return scratch_ / "store.adm"; }
+  VolumeStoreOf() { VolumeStore::build(path(), volume.grid, bytes(volume)); }
+  [[nodiscard]] std::filesystem::path path() const { return scratch / "store.adm"; }
 
-  Scratch scratch_;
-  MemoryVolume<Sample> volume_ = hills<Sample>();
+  Scratch scratch;
+  MemoryVolume<Sample> volume = hills<Sample>();
 };
 using SampleTypes = testing::Types<std::uint8_t, std::uint16_t, std::int16_t, float>;
 TYPED_TEST_SUITE(VolumeStoreOf, SampleTypes);
 
 TYPED_TEST(VolumeStoreOf, IsTheFileOfTheBuilder) {
-  const auto other = this->scratch_ / "other.adm";
-  test::build(other, this->volume_);
+  const auto other = this->scratch / "other.adm";
+  test::build(other, this->volume);
   EXPECT_EQ(test::bytes_of(this->path()), test::bytes_of(other));
-  EXPECT_EQ(this->scratch_.entries(), 2);
+  EXPECT_EQ(this->scratch.entries(), 2);
 }
 
 TYPED_TEST(VolumeStoreOf, SurfacesAreThoseOfTheExtractor) {
   VolumeStore store = VolumeStore::open(this->path());
-  test::OpenStore<TypeParam> wanted(this->volume_);
+  test::OpenStore<TypeParam> wanted(this->volume);
   for (const double isovalue : {90.0, 120.0}) {
     for (const double error : {0.0, 0.7}) {
       const Isosurface found = store.isosurface({.isovalue = isovalue, .error = error});
@@ -76,7 +76,7 @@ TYPED_TEST(VolumeStoreOf, SamplesComeBackBitForBit) {
   const auto same = [](std::span<const TypeParam> a, const std::vector<TypeParam>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
   };
-  EXPECT_TRUE(same(store.restore().template as<TypeParam>(), this->volume_.samples));
+  EXPECT_TRUE(same(store.restore().template as<TypeParam>(), this->volume.samples));
   // Samples 4 to 8, 3 to 5 and 0 to 1 of every second one.
   const Volume part = store.restore(Box3{{13, 0, 2}, {21, 2, 7}}, 1);
   ASSERT_EQ(part.grid.dimensions, (test::Dimensions{5, 3, 2}));
@@ -85,7 +85,7 @@ TYPED_TEST(VolumeStoreOf, SamplesComeBackBitForBit) {
   std::vector<TypeParam> wanted;
   for (std::int32_t k = 0; k < 2; ++k)
     for (std::int32_t j = 3; j < 6; ++j)
-      for (std::int32_t i = 4; i < 9; ++i) wanted.push_back(this->volume_.at({2 * i, 2 * j, 2 * k}));
+      for (std::int32_t i = 4; i < 9; ++i) wanted.push_back(this->volume.at({2 * i, 2 * j, 2 * k}));
   EXPECT_TRUE(same(part.as<TypeParam>(), wanted));
   EXPECT_NE(
       test::error_of([&] {
@@ -97,11 +97,11 @@ TYPED_TEST(VolumeStoreOf, SamplesComeBackBitForBit) {
 
 TYPED_TEST(VolumeStoreOf, TellsWhatItHolds) {
   VolumeStore store = VolumeStore::open(this->path(), {.mapped = true});
-  EXPECT_EQ(store.grid().dimensions, this->volume_.grid.dimensions);
-  EXPECT_EQ(store.grid().spacing, this->volume_.grid.spacing);
-  EXPECT_EQ(store.grid().origin, this->volume_.grid.origin);
+  EXPECT_EQ(store.grid().dimensions, this->volume.grid.dimensions);
+  EXPECT_EQ(store.grid().spacing, this->volume.grid.spacing);
+  EXPECT_EQ(store.grid().origin, this->volume.grid.origin);
   EXPECT_EQ(store.file_bytes(), std::filesystem::file_size(this->path()));
-  const auto [low, high] = std::minmax_element(this->volume_.samples.begin(), this->volume_.samples.end());
+  const auto [low, high] = std::minmax_element(this->volume.samples.begin(), this->volume.samples.end());
   ASSERT_TRUE(store.range());
   EXPECT_EQ((*store.range())[0], static_cast<double>(*low));
   EXPECT_EQ((*store.range())[1], static_cast<double>(*high));
