@@ -51,7 +51,7 @@ class DiamondHalves {
   static const TetrahedronHalf& of(int type, int slot, int end) {
     static const DiamondHalves kAll;
     return kAll.halves_[static_cast<std::size_t>(type)][static_cast<std::size_t>(slot)]
-                      [static_cast<std::size_t>(end)];
+                       [static_cast<std::size_t>(end)];
   }
 
  private:
