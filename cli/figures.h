@@ -31,9 +31,6 @@ std::string difference_text(double before, double after);
 /// "1.5 GiB".
 std::string bytes_text(double bytes);
 
-/// "[0, 1] x [0, 1] x [0, 1]".
-std::string box_text(const Box3& box);
-
 /// A cell of a table of comma-separated values: in quotes where it would be taken for several.
 std::string csv_text(const std::string& text);
 

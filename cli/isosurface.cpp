@@ -10,7 +10,7 @@
 #include "cli/store_options.h"
 #include "cli/usage_error.h"
 #include "cli/volume_options.h"
-#include "core/base/error.h"
+#include "core/base/naming.h"
 #include "core/data/volume_placement.h"
 #include "core/io/surface_writer.h"
 #include "isosurface/extraction/surface_extractor.h"
@@ -72,11 +72,7 @@ SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
     request.error = parse_surface_error(options.error, grid) / grid.greatest_stretch();
   if (!options.max_triangles.empty())
     request.max_triangles = parse_count("--max-triangles", options.max_triangles);
-  if (const auto wanted = wanted_region(options)) {
-    const FrameRegion region = region_in_frame(grid, *wanted);
-    request.region = region.box;
-    request.sides = region.sides;
-  }
+  if (const auto wanted = wanted_region(options)) set_region(request, grid, *wanted);
   return request;
 }
 
@@ -95,43 +91,13 @@ void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isov
   surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
 
-/// Throws where no surface is possible: in a region outside of the data, or in data without cells.
-void check_data(const std::string& name, const VolumeGrid& grid, const SurfaceRequest& request,
-                const std::optional<Box3>& region) {
-  check_two_samples(name, grid);
-  const Box3 box = grid.frame_box();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (box.min[axis] < box.max[axis]) continue;
-    fail("{}: expected samples at places that differ, found all at {} along {}", name, box.min[axis],
-         "xyz"[axis]);
-  }
-  if (!request.region) return;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (request.region->min[axis] < box.max[axis] && request.region->max[axis] > box.min[axis]) continue;
-    fail("{}: expected a region in {}, found {}", name, box_text(grid.box()), box_text(*region));
-  }
-}
-
-/// Calls `work` and puts the name of the store before the messages of its errors.
-template <class Work>
-auto naming(const std::string& name, Work&& work) {
-  try {
-    return work();
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& e) {
-    if (std::string_view(e.what()).starts_with(name)) throw;
-    fail("{}: {}", name, e.what());
-  }
-}
-
 template <class Sample>
 void extract_all(const Options& options, StoreFile& file, Session& session) {
   Console& console = session.console;
   const VolumeGrid& grid = file.header().grid;
   SurfaceRequest request = request_of(options, grid);
   const std::string& name = options.input.path;
-  check_data(name, grid, request, wanted_region(options));
+  check_surface_request(name, grid, request, wanted_region(options));
   StoredPages<OrderedWord<Sample>> pages(file, 0, store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;

@@ -124,12 +124,6 @@ bool is_aslant_image(const std::string& path) {
   }
 }
 
-void check_two_samples(const std::string& name, const VolumeGrid& grid) {
-  for (const std::uint64_t n : grid.dimensions) {
-    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
-  }
-}
-
 void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
   constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
   for (const std::uint64_t n : grid.dimensions) {

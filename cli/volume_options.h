@@ -50,9 +50,6 @@ bool is_aslant_image(const std::string& path);
 /// Throws Error where a volume has more samples along an axis than pages can be made of.
 void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
 
-/// Throws Error where an axis has fewer than two samples: nothing lies between them.
-void check_two_samples(const std::string& name, const VolumeGrid& grid);
-
 /// The option -o of a command that makes a volume.
 void add_volume_output(const Command& command, std::string& output);
 

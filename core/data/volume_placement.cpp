@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/base/error.h"
+
 namespace adamas {
 
 namespace {
@@ -42,6 +44,12 @@ FrameRegion region_in_frame(const VolumeGrid& grid, const Box3& in_space) {
     region.sides.push_back(plane_in_frame(grid, {in_space.min, -normal}));
   }
   return region;
+}
+
+void check_two_samples(const std::string& name, const VolumeGrid& grid) {
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n < 2) fail("{}: expected two samples or more along each axis, found {}", name, n);
+  }
 }
 
 }  // namespace adamas

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "adamas/meshes.h"
@@ -25,5 +26,9 @@ struct FrameRegion {
   std::vector<Plane> sides;
 };
 FrameRegion region_in_frame(const VolumeGrid& grid, const Box3& in_space);
+
+/// Throws Error, which begins with `name`, where an axis has fewer than two samples: nothing lies between
+/// them, so that there is no place for a section or a surface.
+void check_two_samples(const std::string& name, const VolumeGrid& grid);
 
 }  // namespace adamas

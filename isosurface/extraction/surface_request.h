@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "adamas/volume.h"
 #include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
@@ -38,6 +40,14 @@ struct SurfaceRequest {
     return {least_parameter, last_sample, least_parameter > 0 ? spacing : Vec3{}};
   }
 };
+
+/// Confines the surface to a box in space.
+void set_region(SurfaceRequest& request, const VolumeGrid& grid, const Box3& region);
+
+/// Throws Error, which begins with `name`, where no surface is possible: in data without cells, or in a
+/// region outside of the data. `region`: the box that was given to set_region, for the message.
+void check_surface_request(const std::string& name, const VolumeGrid& grid, const SurfaceRequest& request,
+                           const std::optional<Box3>& region);
 
 /// A surface and what it took to get it.
 struct ExtractedSurface {

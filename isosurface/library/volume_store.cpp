@@ -4,9 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <string>
-#include <string_view>
 
-#include "core/base/error.h"
+#include "core/base/naming.h"
 #include "core/base/output_file.h"
 #include "core/data/volume_placement.h"
 #include "isosurface/extraction/surface_extractor.h"
@@ -19,61 +18,25 @@ namespace adamas {
 
 namespace {
 
-/// Calls `work`, whose errors name the store.
-template <class Work>
-auto naming(const std::string& name, Work&& work) {
-  try {
-    return work();
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& e) {
-    if (std::string_view(e.what()).starts_with(name)) throw;
-    fail("{}: {}", name, e.what());
-  }
-}
-
-std::string box_text(const Box3& box) {
-  const auto& [low, high] = box;
-  return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", low.x, high.x, low.y, high.y, low.z,
-                     high.z);
-}
-
-/// Throws Error where no surface can be.
-void check_request(const VolumeGrid& grid, const IsosurfaceRequest& request) {
+/// Throws Error where an isovalue or an error is none.
+void check_numbers(const IsosurfaceRequest& request) {
   if (!std::isfinite(request.isovalue)) fail("expected a finite isovalue, found {}", request.isovalue);
   if (!std::isfinite(request.error) || request.error < 0)
     fail("expected an isosurface error of at least 0, found {}", request.error);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (grid.dimensions[axis] < 2)
-      fail("expected two samples or more along each axis, found {} along {}", grid.dimensions[axis],
-           "xyz"[axis]);
-  }
-  const Box3 box = grid.frame_box();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(box.min[axis] < box.max[axis])) {
-      fail("expected samples at places that differ, found all at {} along {}", box.min[axis], "xyz"[axis]);
-    }
-  }
 }
 
 /// The request in the grid's frame.
-SurfaceRequest to_surface_request(const VolumeGrid& grid, const IsosurfaceRequest& request) {
-  check_request(grid, request);
+SurfaceRequest to_surface_request(const std::string& name, const VolumeGrid& grid,
+                                  const IsosurfaceRequest& request) {
+  check_numbers(request);
   SurfaceRequest result;
   result.isovalue = request.isovalue;
   result.error = request.error / grid.greatest_stretch();
   result.max_triangles = request.max_triangles;
   result.strict = request.strict;
   result.others_follow = true;
-  if (!request.region) return result;
-  FrameRegion region = region_in_frame(grid, *request.region);
-  const Box3 box = grid.frame_box();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (region.box.min[axis] < box.max[axis] && region.box.max[axis] > box.min[axis]) continue;
-    fail("expected a region in {}, found {}", box_text(grid.box()), box_text(*request.region));
-  }
-  result.region = region.box;
-  result.sides = std::move(region.sides);
+  if (request.region) set_region(result, grid, *request.region);
+  check_surface_request(name, grid, result, request.region);
   return result;
 }
 
@@ -109,7 +72,7 @@ class VolumeStore::ContentsOf final : public Contents {
   }
 
   Isosurface isosurface(const IsosurfaceRequest& request, Progress& progress) override {
-    const SurfaceRequest wanted = to_surface_request(grid(), request);
+    const SurfaceRequest wanted = to_surface_request(file().name(), grid(), request);
     try {
       return extract(wanted, request.normals, progress);
     } catch (...) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/base/error.h"
+
+namespace adamas {
+
+/// Calls `work` and returns what it gives. Messages of its errors begin with `name`, that of a file or of
+/// other data; those that do already stay as they are.
+template <class Work>
+auto naming(const std::string& name, Work&& work) {
+  try {
+    return work();
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {
+    if (std::string_view(e.what()).starts_with(name)) throw;
+    fail("{}: {}", name, e.what());
+  }
+}
+
+}  // namespace adamas
