@@ -26,7 +26,7 @@ struct Options {
   std::vector<std::string> isovalues;
   std::string error, max_triangles, region, output;
   PictureOptions picture;
-  bool no_normals = false, strict = false;
+  bool no_normals = false, plain = false, strict = false;
 };
 
 /// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
@@ -68,6 +68,7 @@ std::optional<Box3> wanted_region(const Options& options) {
 SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
   SurfaceRequest request;
   request.strict = options.strict;
+  request.join = !options.plain;
   if (!options.error.empty())
     request.error = parse_surface_error(options.error, grid) / grid.greatest_stretch();
   if (!options.max_triangles.empty())
@@ -160,16 +161,21 @@ void add_isosurface(const Command& app, Session& session) {
       .type_name("V")
       .one_value_each();
   command
-      .add_option("--error", options->error,
-                  "The greatest isosurface error: in units of length, of voxels (the least spacing) or of "
-                  "the data's diagonal; default 0: all that the samples say")
+      .add_option(
+          "--error", options->error,
+          "The greatest isosurface error, an estimate of the distance to the surface of all samples: in "
+          "units of length, of voxels (the least spacing) or of the data's diagonal; default 0: all that "
+          "the samples say")
       .type_name("E|Evoxels|E%");
   command
-      .add_option("--max-triangles", options->max_triangles,
-                  "Never more triangles for an isovalue, whatever the error: the greatest errors are "
-                  "refined first")
+      .add_option(
+          "--max-triangles", options->max_triangles,
+          "Never more triangles for an isovalue, whatever the error: a finer surface is decimated; with "
+          "--plain the greatest errors are refined first")
       .type_name("N");
   command.add_option("--region", options->region, "Only the surface in a box").type_name("x0,x1,y0,y1,z0,z1");
+  command.add_flag("--plain", options->plain,
+                   "The contour of the tetrahedra as it is: three times the triangles, many of them narrow");
   command.add_flag("--no-normals", options->no_normals, "Points without the normals of gradients");
   command.add_flag("--strict", options->strict, "Stop at damaged pages, instead of going on coarser there");
   command.add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")

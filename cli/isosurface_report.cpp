@@ -50,6 +50,12 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
                  request.max_triangles ? " with so few triangles" : "", stretch_ * surface.max_error,
                  stretch_ * request.error);
   }
+  bodies_left_out_ += surface.bodies_left_out;
+  if (surface.bodies_left_out > 0) {
+    console.note("with so few triangles {} small bod{} of the surface at isovalue {:.6g} {} left out",
+                 surface.bodies_left_out, surface.bodies_left_out == 1 ? "y" : "ies", request.isovalue,
+                 surface.bodies_left_out == 1 ? "is" : "are");
+  }
   if (!surface.lost.empty()) {
     console.note_damage("{}: the surface at isovalue {:.6g} is coarser there",
                         damaged_pages(surface.lost.size()), request.isovalue);
@@ -76,7 +82,7 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
       {"triangles", std::to_string(surface.triangles.size())},
       {"vertices", std::to_string(surface.points.size())},
       {"tetrahedra", std::to_string(tetrahedra_)},
-      {"isosurface error", fmt::format("{:.4g}", max_error_)},
+      {"isosurface error", fmt::format("{:.4g} (estimate)", max_error_)},
       {"pages read", fmt::format("{}, and {} to predict them", counts.pages, counts.predictors)},
       {"bytes read", bytes_text(static_cast<double>(counts.bytes))},
       {"seconds", fmt::format("{:.2f}", seconds)}};
@@ -86,7 +92,8 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
                   {"vertices", surface.points.size()},
                   {"tetrahedra", tetrahedra_},
                   {"diamonds", diamonds_},
-                  {"max_isosurface_error", max_error_}};
+                  {"isosurface_error_estimate", max_error_},
+                  {"bodies_left_out", bodies_left_out_}};
   if (!space_.empty()) figures["space"] = space_;
   add_page_counts(counts, figures);
   figures["seconds"] = seconds;

@@ -36,7 +36,7 @@ class IsosurfaceFigures {
   Session& session_;
   double stretch_;     ///< from errors in the grid's frame to those in space
   std::string space_;  ///< of coordinates
-  std::uint64_t tetrahedra_ = 0, diamonds_ = 0;
+  std::uint64_t tetrahedra_ = 0, diamonds_ = 0, bodies_left_out_ = 0;
   double max_error_ = 0;
 };
 

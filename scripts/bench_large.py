@@ -89,7 +89,7 @@ def surface_row(adamas, path, what, centres, *options):
     # Samples are rounded, by up to 0.05 voxel of the distance, and linear between, which is as much again.
     if distance > error + 0.1:
         sys.exit(f"bench: large: expected vertices within {error + 0.1} voxels of the spheres, found one at {distance}")
-    return row(f"isosurface, {what}", figures, f"isosurface error {figures['max_isosurface_error']:.3g} (wanted {error})",
+    return row(f"isosurface, {what}", figures, f"isosurface error {figures['isosurface_error_estimate']:.3g} (wanted {error})",
                f"{figures['triangles']:,} triangles, closed, vertices within {distance:.3f} voxel of spheres")
 
 

@@ -38,12 +38,17 @@ struct OpenOptions {
 /// Which surface of a store is wanted.
 struct IsosurfaceRequest {
   double isovalue = 0;
-  /// The greatest isosurface error, in units of length; 0: all that the samples say.
+  /// The greatest isosurface error, an estimate of the distance to the surface of all samples, in units of
+  /// length; 0: all that the samples say.
   double error = 0;
-  /// Never more triangles, whatever the error: the greatest errors are refined first.
+  /// Never more triangles, whatever the error: a finer surface is decimated (quadric error metric, topology
+  /// kept); a plain one is refined where its errors are greatest.
   std::optional<std::uint64_t> max_triangles{};
   /// Only the surface in this box, in space, which must meet the data's.
   std::optional<Box3> region{};
+  /// The contour of the tetrahedra as it is: three times the triangles, many of them narrow. Otherwise points
+  /// next to a vertex of the mesh are joined, where that changes no topology.
+  bool plain = false;
   bool normals = true;  ///< of points, from gradients of the samples
   /// Damaged pages are an Error, not a coarser surface round them.
   bool strict = false;
@@ -53,9 +58,12 @@ struct IsosurfaceRequest {
 struct Isosurface {
   /// Triangles face values below the isovalue, and so do normals; a normal is zero where nothing changes.
   TriangleSurface surface;
-  double max_error = 0;          ///< the greatest isosurface error that is left, in units of length
-  std::uint64_t tetrahedra = 0;  ///< of the mesh that the surface is from
-  std::uint64_t diamonds = 0;    ///< of it that are split
+  /// The greatest isosurface error that is left and the greatest of decimation, in units of length: an
+  /// estimate.
+  double max_error = 0;
+  std::uint64_t bodies_left_out = 0;  ///< small ones for which there were too few triangles
+  std::uint64_t tetrahedra = 0;       ///< of the mesh that the surface is from
+  std::uint64_t diamonds = 0;         ///< of it that are split
   /// Pages of the file that could not be had: the surface is coarser round them, or normals less exact.
   std::size_t damaged_pages = 0;
 };

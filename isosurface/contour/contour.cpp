@@ -12,6 +12,7 @@
 #include "core/base/large_pages.h"
 #include "core/lattice/diamond.h"
 #include "isosurface/contour/contour_clip.h"
+#include "isosurface/contour/join_points.h"
 
 namespace adamas {
 
@@ -34,6 +35,30 @@ bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sa
     }
   }
   return false;
+}
+
+void remove_unused_points(Contour& contour) {
+  std::vector<std::uint32_t> numbers(contour.points.size(), ContourBuilder::kNone);
+  for (const auto& triangle : contour.triangles) {
+    for (const std::uint32_t p : triangle) numbers[p] = 0;
+  }
+  Contour kept;
+  const std::size_t edge_count = contour.edge_points.size();
+  for (std::size_t p = 0; p < numbers.size(); ++p) {
+    if (numbers[p] == ContourBuilder::kNone) continue;
+    numbers[p] = static_cast<std::uint32_t>(kept.points.size());
+    kept.points.push_back(contour.points[p]);
+    if (p < edge_count) {
+      kept.edge_points.push_back(contour.edge_points[p]);
+    } else {
+      kept.mean_points.push_back(contour.mean_points[p - edge_count]);
+    }
+  }
+  for (auto& triangle : contour.triangles) {
+    for (std::uint32_t& p : triangle) p = numbers[p];
+  }
+  kept.triangles.swap(contour.triangles);
+  contour = std::move(kept);
 }
 
 ContourBuilder::ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options)
@@ -72,6 +97,10 @@ void ContourBuilder::expect(std::size_t triangles) {
 }
 
 Contour ContourBuilder::finish() {
+  if (options_.join) {
+    numbers_ = {};
+    join_points(contour_);
+  }
   if (options_.last_sample)
     clip_contour(contour_, {domain_.box().min, domain_.position(*options_.last_sample)}, options_.spacing);
   return std::move(contour_);

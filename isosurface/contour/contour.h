@@ -25,25 +25,28 @@ struct EdgePoint {
   bool operator==(const EdgePoint&) const = default;
 };
 
-/// Where the border of the data cuts a contour inside a tetrahedron: a mean of the tetrahedron's vertices. A
-/// vertex of weight 0 may be any point.
-struct BorderPoint {
+/// A point that is on no edge of the mesh, as a mean of vertices: where the border of the data cuts a contour
+/// inside a tetrahedron, or what points on edges were joined to. A vertex of weight 0 may be any point.
+struct MeanPoint {
   std::array<LatticePoint, 4> vertices{};
   std::array<double, 4> weights{};  ///< 1 in all
 
-  bool operator==(const BorderPoint&) const = default;
+  bool operator==(const MeanPoint&) const = default;
 };
 
 /// A triangle surface with shared points: every edge inside the data has two triangles, which run along it in
 /// opposite directions.
 struct Contour {
-  std::vector<Vec3> points;                             ///< in space: first edge points, then border points
+  std::vector<Vec3> points;                             ///< in space: first edge points, then means
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< normals point to values below the isovalue
   std::vector<EdgePoint> edge_points;                   ///< of the first points, in the same order
-  std::vector<BorderPoint> border_points;               ///< of the points after these
+  std::vector<MeanPoint> mean_points;                   ///< of the points after these
 
   bool operator==(const Contour&) const = default;
 };
+
+/// Keeps the points of triangles, in their order.
+void remove_unused_points(Contour& contour);
 
 struct ContourOptions {
   /// Parameters of edge points are kept in [least_parameter, 1 - least_parameter]. With 0 the triangles at
@@ -55,6 +58,8 @@ struct ContourOptions {
   std::optional<LatticePoint> last_sample;
   /// The spacing of samples in space; see clip_contour.
   Vec3 spacing{};
+  /// Whether the points next to a vertex of the mesh are joined (join_points).
+  bool join = false;
 };
 
 /// Whether the tetrahedron has at most a face in the data's box.

@@ -18,19 +18,19 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-BorderPoint as_mean(const Contour& contour, std::uint32_t point) {
+MeanPoint as_mean(const Contour& contour, std::uint32_t point) {
   const std::size_t edge_count = contour.edge_points.size();
-  if (point >= edge_count) return contour.border_points[point - edge_count];
+  if (point >= edge_count) return contour.mean_points[point - edge_count];
   const EdgePoint& p = contour.edge_points[point];
   return {{p.first, p.second, p.first, p.first}, {1 - p.parameter, p.parameter, 0, 0}};
 }
 
 /// The mean of two points of one tetrahedron. Where a neighbour has become one of them, there may be other
 /// vertices too: the four that matter most are kept.
-BorderPoint between(const BorderPoint& a, const BorderPoint& b, double t) {
+MeanPoint between(const MeanPoint& a, const MeanPoint& b, double t) {
   std::array<std::pair<double, LatticePoint>, 8> parts;
   std::size_t count = 0;
-  const auto add = [&](const BorderPoint& p, double weight) {
+  const auto add = [&](const MeanPoint& p, double weight) {
     for (std::size_t v = 0; v < 4; ++v) {
       if (p.weights[v] == 0) continue;
       std::size_t place = 0;
@@ -48,7 +48,7 @@ BorderPoint between(const BorderPoint& a, const BorderPoint& b, double t) {
     count = 4;
     total = parts[0].first + parts[1].first + parts[2].first + parts[3].first;
   }
-  BorderPoint result;
+  MeanPoint result;
   for (std::size_t v = 0; v < count; ++v) {
     result.vertices[v] = parts[v].second;
     result.weights[v] = parts[v].first / total;
@@ -177,9 +177,9 @@ class PlaneClip {
     return entry->second;
   }
 
-  std::uint32_t add(const Vec3& point, const BorderPoint& border_point) {
+  std::uint32_t add(const Vec3& point, const MeanPoint& mean) {
     if (contour_.points.size() >= kNone) fail("a contour has more than 2^32 - 1 points at the data's border");
-    contour_.border_points.push_back(border_point);
+    contour_.mean_points.push_back(mean);
     contour_.points.push_back(point);
     return static_cast<std::uint32_t>(contour_.points.size() - 1);
   }
@@ -218,31 +218,6 @@ class PlaneClip {
   std::unordered_map<std::uint64_t, std::uint32_t> cuts_;    ///< by the two points of an edge
   std::unordered_map<std::uint32_t, std::uint32_t> merged_;  ///< points to lesser ones
 };
-
-/// Keeps the points of triangles, in their order.
-void remove_unused_points(Contour& contour) {
-  std::vector<std::uint32_t> numbers(contour.points.size(), kNone);
-  for (const auto& triangle : contour.triangles) {
-    for (const std::uint32_t p : triangle) numbers[p] = 0;
-  }
-  Contour kept;
-  const std::size_t edge_count = contour.edge_points.size();
-  for (std::size_t p = 0; p < numbers.size(); ++p) {
-    if (numbers[p] == kNone) continue;
-    numbers[p] = static_cast<std::uint32_t>(kept.points.size());
-    kept.points.push_back(contour.points[p]);
-    if (p < edge_count) {
-      kept.edge_points.push_back(contour.edge_points[p]);
-    } else {
-      kept.border_points.push_back(contour.border_points[p - edge_count]);
-    }
-  }
-  for (auto& triangle : contour.triangles) {
-    for (std::uint32_t& p : triangle) p = numbers[p];
-  }
-  kept.triangles.swap(contour.triangles);
-  contour = std::move(kept);
-}
 
 /// How near places along an axis count as one: some units in the last place of single precision, which is
 /// what surfaces are written with, but more than double precision rounds places of samples by.

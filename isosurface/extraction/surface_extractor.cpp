@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "isosurface/contour/contour_clip.h"
+#include "isosurface/contour/decimate.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/subtree_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
@@ -93,6 +94,7 @@ template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   const int least_class = diamonds_.class_within(request_.error) + 1;
   if (!request_.max_triangles) return contour_of({.error_class = least_class}, progress);
+  if (request_.join) return decimated(least_class, progress);
   // With subtrees a split adds triangles to its neighbours too, which the choice does not know: it is then
   // repeated with other numbers, until it uses nearly all.
   constexpr double kEnough = 0.97;
@@ -102,9 +104,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   std::optional<ExtractedSurface> best;
   for (int turn = 0; turn < kMostTurns && refused - kept > 1; ++turn) {
     const std::uint64_t budget = turn == 0 ? most : (kept + refused) / 2;
-    TriangleBudget<Sample> chosen(diamonds_, split_pages_, request_, subtree_bisections_);
-    ExtractedSurface surface =
-        contour_of(chosen.find(budget, least_class, Diamond(root_), progress), progress);
+    ExtractedSurface surface = contour_of(cut_of(budget, least_class, progress), progress);
     const std::uint64_t found = surface.contour.triangles.size();
     (found <= most ? kept : refused) = budget;
     if (found > most) continue;
@@ -114,6 +114,30 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   }
   return best ? std::move(*best)
               : contour_of({.error_class = StoredDiamonds<Sample>::kErrorClasses}, progress);
+}
+
+template <class Sample>
+SurfaceCut SurfaceExtractor<Sample>::cut_of(std::uint64_t triangles, int least_class, Progress& progress) {
+  TriangleBudget<Sample> chosen(diamonds_, split_pages_, request_, subtree_bisections_);
+  return chosen.find(triangles, least_class, Diamond(root_), progress);
+}
+
+template <class Sample>
+ExtractedSurface SurfaceExtractor<Sample>::decimated(int least_class, Progress& progress) {
+  // A mesh that is finer than wanted, of whose triangles joining points leaves about a third.
+  constexpr double kFiner = 12;
+  constexpr double kJoined = 2.7;
+  const std::uint64_t most = *request_.max_triangles;
+  for (auto budget = static_cast<std::uint64_t>(kJoined * kFiner * static_cast<double>(most));; budget /= 2) {
+    ExtractedSurface surface = contour_of(cut_of(budget, least_class, progress), progress);
+    if (surface.contour.triangles.size() > most) {
+      progress.step("decimating", -1);
+      const Decimation done = decimate_contour(surface.contour, most);
+      surface.max_error += done.error;
+      surface.bodies_left_out = done.bodies;
+    }
+    if (surface.contour.triangles.size() <= most || budget == 0) return surface;
+  }
 }
 
 template <class Sample>

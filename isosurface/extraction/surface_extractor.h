@@ -32,6 +32,10 @@ class SurfaceExtractor {
 
  private:
   ExtractedSurface extract_once(Progress& progress);
+  /// See TriangleBudget.
+  SurfaceCut cut_of(std::uint64_t triangles, int least_class, Progress& progress);
+  /// The surface of at most as many triangles as are wanted, made of a finer one by decimation.
+  ExtractedSurface decimated(int least_class, Progress& progress);
   ExtractedSurface contour_of(const SurfaceCut& cut, Progress& progress);
   ExtractedSurface contour_of_mesh(Progress& progress);
   /// The surface of the mesh in which nothing is split.

@@ -141,7 +141,7 @@ SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Co
     const Vec3 a = gradients.at(edge.first, step), b = gradients.at(edge.second, step);
     normals.push_back(downwards((1 - edge.parameter) * a + edge.parameter * b));
   }
-  for (const BorderPoint& point : contour.border_points) {
+  for (const MeanPoint& point : contour.mean_points) {
     std::int32_t step = std::int32_t{1} << kRootBits;
     for (std::size_t v = 1; v < 4; ++v) {
       const LatticePoint way = point.vertices[v] - point.vertices[0];

@@ -28,6 +28,9 @@ struct SurfaceRequest {
   std::vector<Plane> sides;
   /// See ContourOptions.
   double least_parameter = 1.0 / 1024;
+  /// Whether points next to a vertex of the mesh are joined; and a number of triangles is reached by
+  /// decimation of a finer surface, not by a coarser mesh alone.
+  bool join = false;
   /// Whether a page that cannot be had is an Error, and not a coarser surface.
   bool strict = false;
   /// Whether other surfaces will be asked for after this one: then what was read of errors and ranges is
@@ -37,7 +40,7 @@ struct SurfaceRequest {
   /// How the surface is contoured, by the lattice point of the last sample and the spacing of samples.
   [[nodiscard]] ContourOptions contour_options(LatticePoint last_sample, const Vec3& spacing) const {
     // Points that may come to lie on samples are moved nowhere else.
-    return {least_parameter, last_sample, least_parameter > 0 ? spacing : Vec3{}};
+    return {least_parameter, last_sample, least_parameter > 0 ? spacing : Vec3{}, join};
   }
 };
 
@@ -54,9 +57,11 @@ struct ExtractedSurface {
   Contour contour;
   std::uint64_t diamonds = 0;    ///< that are split
   std::uint64_t tetrahedra = 0;  ///< of the mesh; with subtrees of the fine one
-  /// The greatest isosurface error among the diamonds that the surface crosses.
+  /// The greatest isosurface error among the diamonds that the surface crosses, and what decimation adds: an
+  /// estimate.
   double max_error = 0;
-  std::vector<PageId> lost;  ///< pages that could not be had: round them the surface is coarser
+  std::uint64_t bodies_left_out = 0;  ///< small ones for which there were too few triangles
+  std::vector<PageId> lost;           ///< pages that could not be had: round them the surface is coarser
 };
 
 }  // namespace adamas

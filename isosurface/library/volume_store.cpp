@@ -34,6 +34,7 @@ SurfaceRequest to_surface_request(const std::string& name, const VolumeGrid& gri
   result.error = request.error / grid.greatest_stretch();
   result.max_triangles = request.max_triangles;
   result.strict = request.strict;
+  result.join = !request.plain;
   result.others_follow = true;
   if (request.region) set_region(result, grid, *request.region);
   check_surface_request(name, grid, result, request.region);
@@ -101,6 +102,7 @@ class VolumeStore::ContentsOf final : public Contents {
     result.max_error = grid().greatest_stretch() * found.max_error;
     result.tetrahedra = found.tetrahedra;
     result.diamonds = found.diamonds;
+    result.bodies_left_out = found.bodies_left_out;
     if (normals) {
       SurfaceNormals own = surface_normals<Sample>(pages, found.contour, progress);
       if (wanted.strict && !own.lost.empty())

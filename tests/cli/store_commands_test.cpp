@@ -110,8 +110,8 @@ TEST_F(StoreCommands, SurfacesInEveryFormat) {
     EXPECT_GT(f["triangles"], 1000);
     EXPECT_LT(f["vertices"], f["triangles"]);
     EXPECT_GT(f["tetrahedra"], f["diamonds"]);
-    EXPECT_LE(f["max_isosurface_error"].get<double>(), 0.7);
-    EXPECT_GT(f["max_isosurface_error"].get<double>(), 0);
+    EXPECT_LE(f["isosurface_error_estimate"].get<double>(), 0.7);
+    EXPECT_GT(f["isosurface_error_estimate"].get<double>(), 0);
     EXPECT_GT(f["pages_read"], 0);
     EXPECT_GT(f["bytes_read"], 0);
     EXPECT_LE(f["bytes_read"], read("b.adm").size());

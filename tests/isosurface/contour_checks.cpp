@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
 #include <random>
+#include <set>
 
 namespace adamas::test {
 
@@ -61,8 +65,48 @@ std::vector<std::array<std::uint32_t, 2>> border_edges(const Contour& contour) {
   return border;
 }
 
+std::vector<int> topology(const Contour& contour) {
+  // Each fan is followed from triangle to triangle by the edges that begin at its point.
+  std::vector<std::map<std::uint32_t, std::uint32_t>> behind(contour.points.size());
+  std::vector<std::uint32_t> part(contour.points.size());
+  std::iota(part.begin(), part.end(), 0);
+  const std::function<std::uint32_t(std::uint32_t)> first = [&](std::uint32_t p) {
+    return part[p] == p ? p : part[p] = first(part[p]);
+  };
+  std::set<std::array<std::uint32_t, 2>> edges;
+  for (const auto& t : contour.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t p = t[c], after = t[(c + 1) % 3], before = t[(c + 2) % 3];
+      EXPECT_TRUE(behind[p].emplace(after, before).second) << "two triangles on one side of an edge";
+      edges.insert({std::min(p, after), std::max(p, after)});
+      part[first(p)] = first(after);
+    }
+  }
+  int faults = 0;
+  for (const auto& fan : behind) {
+    std::set<std::uint32_t> ends;
+    for (const auto& [after, before] : fan) ends.insert(before);
+    // It begins where no triangle comes before, or anywhere.
+    std::uint32_t at = fan.empty() ? 0 : fan.begin()->first;
+    for (const auto& [after, before] : fan) at = ends.contains(after) ? at : after;
+    std::size_t met = 0;
+    for (auto next = fan.find(at); next != fan.end() && met < fan.size(); next = fan.find(next->second))
+      ++met;
+    faults += fan.empty() || met != fan.size() || (fan.size() < 3 && ends.contains(at)) ? 1 : 0;
+  }
+  EXPECT_EQ(faults, 0) << "points with several fans of triangles, or none";
+  std::map<std::uint32_t, int> euler;
+  for (std::uint32_t p = 0; p < part.size(); ++p) ++euler[first(p)];
+  for (const auto& edge : edges) --euler[first(edge[0])];
+  for (const auto& t : contour.triangles) ++euler[first(t[0])];
+  std::vector<int> result;
+  for (const auto& [of, number] : euler) result.push_back(number);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 void expect_closed(const Contour& contour, const Box3& box) {
-  EXPECT_EQ(contour.points.size(), contour.edge_points.size() + contour.border_points.size());
+  EXPECT_EQ(contour.points.size(), contour.edge_points.size() + contour.mean_points.size());
   for (const Vec3& p : contour.points) ASSERT_TRUE(box.contains(p));
   for (const auto& [a, b] : border_edges(contour)) {
     const Vec3 &p = contour.points[a], &q = contour.points[b];

@@ -30,6 +30,10 @@ std::vector<std::array<std::uint32_t, 2>> border_edges(const Contour& contour);
 /// Expects edges with one triangle in the sides of the box alone, and points in it.
 void expect_closed(const Contour& contour, const Box3& box);
 
+/// The Euler characteristic of each of a surface's parts that hang together, in ascending order. Fails the
+/// test where a point has other than one fan of triangles, or none.
+std::vector<int> topology(const Contour& contour);
+
 /// Numbers of a surface that do not depend on how its parts are cut into triangles: its area, its area vector
 /// and the volume that it encloses with the origin.
 struct SurfaceMeasure {

@@ -46,7 +46,7 @@ TEST_P(ContourClip, IsThePartOfTheContourInTheBox) {
   for (const LatticePoint units : {LatticePoint{11, 8, 8}, {16, 5, 8}, {16, 8, 3}, {11, 7, 5}, {9, 3, 1}}) {
     const LatticePoint last = kUnit * units;
     const Contour clipped = contour(coarse, 0.5, last), exact = contour(fine, 0.5, last);
-    EXPECT_TRUE(exact.border_points.empty());
+    EXPECT_TRUE(exact.mean_points.empty());
     const Box3 box{{0, 0, 0}, domain.position(last)};
     test::expect_closed(clipped, box);
     test::expect_closed(exact, box);
@@ -58,19 +58,19 @@ TEST_P(ContourClip, IsThePartOfTheContourInTheBox) {
   EXPECT_GT(largest, 5u);
 }
 
-TEST_P(ContourClip, BorderPointsAreMeansOfVertices) {
+TEST_P(ContourClip, MeanPointsAreMeansOfVertices) {
   const LatticePoint last = kUnit * LatticePoint{11, 7, 5};
   const Contour clipped = contour(coarse, 0.5, last);
   if (GetParam() < 100) {
-    EXPECT_FALSE(clipped.border_points.empty());
+    EXPECT_FALSE(clipped.mean_points.empty());
   }
   std::vector<bool> used(clipped.points.size());
   for (const auto& triangle : clipped.triangles) {
     for (const std::uint32_t p : triangle) used[p] = true;
   }
   EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
-  for (std::size_t i = 0; i < clipped.border_points.size(); ++i) {
-    const BorderPoint& p = clipped.border_points[i];
+  for (std::size_t i = 0; i < clipped.mean_points.size(); ++i) {
+    const MeanPoint& p = clipped.mean_points[i];
     Vec3 position;
     double weight = 0, value = 0;
     for (std::size_t v = 0; v < 4; ++v) {
@@ -101,7 +101,7 @@ TEST_P(ContourClip, TheDomainItselfCutsNothing) {
   const Contour whole = extract_contour(
       coarse, [this](LatticePoint p) { return at(p); }, 0.5);
   EXPECT_EQ(contour(coarse, 0.5, domain.extent()), whole);
-  EXPECT_TRUE(whole.border_points.empty());
+  EXPECT_TRUE(whole.mean_points.empty());
 }
 
 /// Diamonds wholly outside the data are not asked for their values, and those on its border reach half a root
@@ -113,7 +113,7 @@ TEST_P(ContourClip, AsksForNoValuesFarBeyond) {
     return at(p);
   };
   const Contour half = extract_contour(coarse, guarded, 0.5, {0, last});
-  EXPECT_TRUE(half.border_points.empty()) << "the second root begins at the plane";
+  EXPECT_TRUE(half.mean_points.empty()) << "the second root begins at the plane";
   test::expect_closed(half, {{0, 0, 0}, domain.position(last)});
 }
 
@@ -161,7 +161,7 @@ TEST(ContourClipping, TrianglesOnThePlaneStay) {
   const std::vector<std::array<std::uint32_t, 3>> wanted{{0, 1, 2}, {0, 2, 3}, {4, 5, 1}};
   EXPECT_EQ(square.triangles, wanted);
   EXPECT_EQ(square.points[5], Vec3(1, 0, 0));
-  EXPECT_EQ(square.border_points.size(), 1u);
+  EXPECT_EQ(square.mean_points.size(), 1u);
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ class ContourLaws : public testing::TestWithParam<MeshCase> {
   Contour checked(const Field& values, double isovalue, double least_parameter = 0) const {
     const Contour contour = extract_contour(h, values, isovalue, {least_parameter, {}});
     test::expect_closed(contour, domain.box());
-    EXPECT_TRUE(contour.border_points.empty());
+    EXPECT_TRUE(contour.mean_points.empty());
     return contour;
   }
   /// Of the part above, closed by the sides of the domain.

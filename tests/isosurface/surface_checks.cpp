@@ -49,7 +49,7 @@ std::array<double, 4> weights_in(const std::array<Vec3, 4>& c, const Vec3& p) {
 }  // namespace
 
 TriangleSet triangle_set(const Contour& contour) {
-  EXPECT_TRUE(contour.border_points.empty());
+  EXPECT_TRUE(contour.mean_points.empty());
   TriangleSet set;
   for (const auto& triangle : contour.triangles) {
     std::array<Edge, 3> edges;

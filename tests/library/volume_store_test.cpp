@@ -54,7 +54,7 @@ TYPED_TEST(VolumeStoreOf, SurfacesAreThoseOfTheExtractor) {
   test::OpenStore<TypeParam> wanted(this->volume);
   for (const double isovalue : {90.0, 120.0}) {
     for (const double error : {0.0, 0.7}) {
-      const Isosurface found = store.isosurface({.isovalue = isovalue, .error = error});
+      const Isosurface found = store.isosurface({.isovalue = isovalue, .error = error, .plain = true});
       const ExtractedSurface surface = wanted.extract(isovalue, error);
       EXPECT_EQ(found.surface.points, surface.contour.points);
       EXPECT_EQ(found.surface.triangles, surface.contour.triangles);
@@ -66,6 +66,10 @@ TYPED_TEST(VolumeStoreOf, SurfacesAreThoseOfTheExtractor) {
       EXPECT_GT(found.surface.triangles.size(), 100u);
     }
   }
+  const Isosurface joined = store.isosurface({.isovalue = 90});
+  EXPECT_LT(2 * joined.surface.triangles.size(),
+            store.isosurface({.isovalue = 90, .plain = true}).surface.triangles.size());
+  EXPECT_EQ(joined.surface.normals.size(), joined.surface.points.size());
   const Isosurface few = store.isosurface({.isovalue = 90, .max_triangles = 500, .normals = false});
   EXPECT_LE(few.surface.triangles.size(), 500u);
   EXPECT_TRUE(few.surface.normals.empty());
@@ -142,7 +146,7 @@ TEST(VolumeStore, TwoOfThemWorkAtOnce) {
       VolumeStore store = VolumeStore::open(path, {.memory = 1 << 20});
       for (const double error : {2.0, 1.0, 0.5, 0.0})
         triangles.push_back(
-            store.isosurface({.isovalue = isovalue, .error = error}).surface.triangles.size());
+            store.isosurface({.isovalue = isovalue, .error = error, .plain = true}).surface.triangles.size());
       samples = store.restore({}, 1).samples;
     }
   };

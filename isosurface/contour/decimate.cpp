@@ -1,0 +1,402 @@
+#include "isosurface/contour/decimate.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/base/hash.h"
+
+namespace adamas {
+
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Sums of squared distances from planes, weighted, with what the squares of the coordinates are multiplied
+/// by: points are given relative to a place near them, so that little is lost to rounding.
+struct Quadric {
+  double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0, x = 0, y = 0, z = 0, one = 0, weight = 0;
+
+  /// The plane through a point with a normal of length 1.
+  static Quadric plane(const Vec3& normal, const Vec3& through, double weight) {
+    const double d = -dot(normal, through);
+    const Vec3 n = weight * normal;
+    return {n.x * normal.x, n.y * normal.y, n.z * normal.z, n.x * normal.y, n.y * normal.z, n.z * normal.x,
+            n.x * d,        n.y * d,        n.z * d,        weight * d * d, weight};
+  }
+  Quadric& operator+=(const Quadric& q) {
+    xx += q.xx, yy += q.yy, zz += q.zz, xy += q.xy, yz += q.yz, zx += q.zx;
+    x += q.x, y += q.y, z += q.z, one += q.one, weight += q.weight;
+    return *this;
+  }
+  [[nodiscard]] double operator()(const Vec3& p) const {
+    const double square = p.x * (xx * p.x + 2 * (xy * p.y + x)) + p.y * (yy * p.y + 2 * (yz * p.z + y)) +
+                          p.z * (zz * p.z + 2 * (zx * p.x + z)) + one;
+    return std::max(square, 0.0);
+  }
+};
+
+/// The triangles at each point, as lists of corners; triangles and points may go.
+class Stars {
+ public:
+  Stars(std::vector<Triangle>& triangles, std::size_t points)
+      : triangles_(triangles), first_(points, kNone), next_(3 * triangles.size(), kNone) {
+    // From the last to the first, so that lists are in order.
+    for (std::size_t n = triangles.size(); n-- > 0;) {
+      for (std::size_t c = 3; c-- > 0;) {
+        next_[3 * n + c] = first_[triangles[n][c]];
+        first_[triangles[n][c]] = static_cast<std::uint32_t>(3 * n + c);
+      }
+    }
+  }
+
+  /// Calls visit(after, before) with the other two corners of each triangle at a point.
+  template <class Visit>
+  void for_each(std::uint32_t p, Visit&& visit) {
+    std::uint32_t* link = &first_[p];
+    while (*link != kNone) {
+      const std::uint32_t corner = *link, n = corner / 3, c = corner % 3;
+      const Triangle& t = triangles_[n];
+      if (t[0] == kNone) {
+        *link = next_[corner];  // the triangle is gone
+        continue;
+      }
+      visit(t[c == 2 ? 0 : c + 1], t[c == 0 ? 2 : c - 1]);
+      link = &next_[corner];
+    }
+  }
+
+  /// Removes the triangles at a point.
+  void remove(std::uint32_t p) {
+    for (std::uint32_t corner = first_[p]; corner != kNone; corner = next_[corner])
+      triangles_[corner / 3][0] = kNone;
+    first_[p] = kNone;
+  }
+
+  /// Puts `to` in the place of `from`. Returns how many triangles are lost.
+  std::size_t collapse(std::uint32_t from, std::uint32_t to) {
+    std::size_t lost = 0;
+    std::uint32_t* link = &first_[from];
+    while (*link != kNone) {
+      const std::uint32_t corner = *link;
+      Triangle& t = triangles_[corner / 3];
+      if (t[0] == kNone || t[0] == to || t[1] == to || t[2] == to) {
+        lost += t[0] == kNone ? 0 : 1;
+        t[0] = kNone;
+        *link = next_[corner];
+      } else {
+        t[corner % 3] = to;
+        link = &next_[corner];
+      }
+    }
+    *link = first_[to];
+    first_[to] = first_[from];
+    first_[from] = kNone;
+    return lost;
+  }
+
+ private:
+  std::vector<Triangle>& triangles_;  ///< without a first corner where they are gone
+  std::vector<std::uint32_t> first_, next_;
+};
+
+class Decimator {
+ public:
+  explicit Decimator(Contour& contour)
+      : points_(contour.points),
+        triangles_(contour.triangles),
+        count_(contour.triangles.size()),
+        origin_(points_.front()),
+        stars_(triangles_, points_.size()) {}
+
+  Decimation run(std::size_t wanted) {
+    find_border();
+    find_quadrics();
+    bounds_.assign(points_.size(), kNoBucket);
+    for (std::uint32_t p = 0; p < points_.size(); ++p) line_up(p, best_step(p).error);
+    while (count_ > wanted && first_ < kBuckets) {
+      auto& bucket = queue_[first_];
+      if (bucket.empty()) {
+        ++first_;
+        continue;
+      }
+      const std::uint32_t next = bucket.back();
+      bucket.pop_back();
+      if (bounds_[next] == first_) take_out(next);
+    }
+    std::erase_if(triangles_, [](const Triangle& t) { return t[0] == kNone; });
+    return {std::sqrt(greatest_), bodies_};
+  }
+
+ private:
+  /// The collapse of an edge into one of its ends.
+  struct Step {
+    float error = std::numeric_limits<float>::infinity();
+    std::uint32_t to = kNone;
+    bool operator<(const Step& o) const { return std::tie(error, to) < std::tie(o.error, o.to); }
+  };
+  [[nodiscard]] Vec3 place(std::uint32_t p) const { return points_[p] - origin_; }
+  [[nodiscard]] bool on_border(std::uint32_t p) const { return has_border_ && border_[p][0] != kNone; }
+
+  /// Of each point of the border the points before it and behind it, where the border passes it once.
+  void find_border() {
+    std::vector<std::uint64_t> sums(points_.size());
+    for (const Triangle& t : triangles_) {
+      const std::array<std::uint64_t, 3> hash{mix64(t[0]), mix64(t[1]), mix64(t[2])};
+      sums[t[0]] += hash[1] - hash[2];
+      sums[t[1]] += hash[2] - hash[0];
+      sums[t[2]] += hash[0] - hash[1];
+    }
+    has_border_ = std::any_of(sums.begin(), sums.end(), [](std::uint64_t sum) { return sum != 0; });
+    if (!has_border_) return;
+    border_.assign(points_.size(), {kNone, kNone});
+    is_locked_.assign(points_.size(), false);
+    std::vector<std::uint32_t> after, before;
+    for (std::uint32_t p = 0; p < points_.size(); ++p) {
+      if (sums[p] == 0) continue;
+      after.clear();
+      before.clear();
+      stars_.for_each(p, [&](std::uint32_t a, std::uint32_t b) {
+        after.push_back(a);
+        before.push_back(b);
+      });
+      const auto is_in = [](const auto& all, std::uint32_t q) {
+        return std::find(all.begin(), all.end(), q) != all.end();
+      };
+      std::size_t edges = 0;
+      for (std::size_t n = 0; n < after.size(); ++n) {
+        if (!is_in(before, after[n])) border_[p][1] = after[n], ++edges;
+        if (!is_in(after, before[n])) border_[p][0] = before[n], ++edges;
+      }
+      is_locked_[p] = edges != 2;
+    }
+  }
+
+  void find_quadrics() {
+    quadrics_.resize(points_.size());
+    for (const Triangle& t : triangles_) {
+      const Vec3 a = place(t[0]), b = place(t[1]), c = place(t[2]);
+      const Vec3 normal = cross(b - a, c - a);
+      const double twice_area = norm(normal);
+      if (twice_area == 0) continue;
+      const Vec3 unit = 1 / twice_area * normal;
+      const Quadric own = Quadric::plane(unit, a, twice_area / 6);
+      for (const std::uint32_t p : t) quadrics_[p] += own;
+      if (has_border_) add_border(t, unit);
+    }
+  }
+  /// Adds the planes through a triangle's edges of the border, across the surface.
+  void add_border(const Triangle& t, const Vec3& normal) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      const std::uint32_t p = t[n], q = t[(n + 1) % 3];
+      if (border_[p][1] != q) continue;
+      const Vec3 across = cross(place(q) - place(p), normal);
+      const double length = norm(across);
+      if (length == 0) continue;
+      const Quadric side = Quadric::plane(1 / length * across, place(p), length * length);
+      quadrics_[p] += side;
+      quadrics_[q] += side;
+    }
+  }
+
+  /// Whether the border allows to move a point to its neighbour.
+  [[nodiscard]] bool border_allows(std::uint32_t from, std::uint32_t to) const {
+    if (!on_border(from)) return true;
+    const auto [behind, ahead] = border_[from];
+    if (is_locked_[from] || (to != behind && to != ahead)) return false;
+    // It runs in the same side of a box before the point and behind it.
+    const Vec3 &p = points_[behind], &q = points_[from], &r = points_[ahead];
+    return (p.x == q.x && q.x == r.x) || (p.y == q.y && q.y == r.y) || (p.z == q.z && q.z == r.z);
+  }
+
+  [[nodiscard]] Step step(std::uint32_t from, std::uint32_t to) const {
+    if (!border_allows(from, to)) return {};
+    const Quadric &a = quadrics_[from], &b = quadrics_[to];
+    const Vec3 at = place(to);
+    const double weight = a.weight + b.weight;
+    if (!(weight > 0)) return {};
+    return {static_cast<float>(a(at) + b(at)), to};
+  }
+  Step best_step(std::uint32_t p) {
+    Step best;
+    stars_.for_each(p, [&](std::uint32_t after, std::uint32_t before) {
+      best = std::min(best, step(p, after));
+      if (has_border_) best = std::min(best, step(p, before));
+    });
+    return best;
+  }
+
+  /// Errors lie in buckets, eight for each factor of two.
+  static std::uint16_t bucket(float error) {
+    constexpr int kShift = 20;
+    return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(error) >> kShift);
+  }
+  void line_up(std::uint32_t p, float error) {
+    if (!std::isfinite(error)) return;
+    const std::uint16_t place = bucket(error);
+    if (place >= bounds_[p]) return;
+    bounds_[p] = place;
+    queue_[place].push_back(p);
+    first_ = std::min<std::size_t>(first_, place);
+  }
+
+  /// Takes the point out by the best collapse that is possible, if its error is in the bucket that the point
+  /// waits in, or puts it in line again.
+  void take_out(std::uint32_t from) {
+    steps_.clear();
+    stars_.for_each(from, [&](std::uint32_t after, std::uint32_t before) {
+      steps_.push_back(step(from, after));
+      if (on_border(from)) steps_.push_back(step(from, before));
+    });
+    std::sort(steps_.begin(), steps_.end());
+    const std::uint16_t expected = std::exchange(bounds_[from], kNoBucket);
+    for (const Step& s : steps_) {
+      if (s.to == kNone) return;
+      if (!is_possible(from, s.to)) continue;
+      if (bucket(s.error) > expected) {
+        line_up(from, s.error);
+      } else {
+        collapse(from, s);
+      }
+      return;
+    }
+    take_body_out(from, expected);
+  }
+
+  /// Takes out a body of which nothing but a tetrahedron is left, where its size is no greater than other
+  /// errors, or puts it in line again.
+  void take_body_out(std::uint32_t p, std::uint16_t expected) {
+    own_.clear();
+    stars_.for_each(p, [this](std::uint32_t after, std::uint32_t) { own_.push_back(after); });
+    if (own_.size() != 3 || on_border(p)) return;
+    for (const std::uint32_t q : own_) {
+      std::size_t count = 0;
+      bool is_body = !on_border(q);
+      stars_.for_each(q, [&](std::uint32_t after, std::uint32_t) {
+        ++count;
+        is_body = is_body && (after == p || std::find(own_.begin(), own_.end(), after) != own_.end());
+      });
+      if (count != 3 || !is_body) return;
+    }
+    own_.push_back(p);
+    Vec3 middle;
+    for (const std::uint32_t q : own_) middle += 0.25 * place(q);
+    double mean = 0;
+    for (const std::uint32_t q : own_) mean += 0.25 * squared_norm(place(q) - middle);
+    double weight = 0;
+    for (const std::uint32_t q : own_) weight += quadrics_[q].weight;
+    const auto error = static_cast<float>(weight * mean);
+    if (bucket(error) > expected) {
+      line_up(p, error);
+      return;
+    }
+    for (const std::uint32_t q : own_) stars_.remove(q);
+    count_ -= 4;
+    ++bodies_;
+    greatest_ = std::max(greatest_, mean);
+  }
+
+  void collapse(std::uint32_t from, const Step& s) {
+    quadrics_[s.to] += quadrics_[from];
+    greatest_ = std::max(greatest_, s.error / quadrics_[s.to].weight);
+    neighbours_.clear();
+    stars_.for_each(from, [&](std::uint32_t after, std::uint32_t before) {
+      neighbours_.push_back(after);
+      if (on_border(from)) neighbours_.push_back(before);
+    });
+    count_ -= stars_.collapse(from, s.to);
+    if (on_border(from)) {
+      const auto [behind, ahead] = border_[from];
+      border_[behind][1] = s.to == behind ? ahead : s.to;
+      border_[ahead][0] = s.to == ahead ? behind : s.to;
+    }
+    // Points wait in the bucket of an error that is no greater than theirs now: those of collapses into `to`
+    // have grown. What is less can only be collapses that were not possible before.
+    for (const std::uint32_t p : neighbours_) {
+      if (p != s.to) line_up(p, step(p, s.to).error);
+    }
+    line_up(s.to, best_step(s.to).error);
+  }
+
+  /// Whether the surface stays one, by the link condition, and no triangle turns over.
+  bool is_possible(std::uint32_t from, std::uint32_t to) {
+    std::size_t shared = 0;
+    bool possible = true;
+    std::array<std::uint32_t, 2> opposite{kNone, kNone};
+    own_.clear();
+    stars_.for_each(from, [&](std::uint32_t after, std::uint32_t before) {
+      own_.push_back(after);
+      own_.push_back(before);
+      if (after == to || before == to) {
+        if (shared < 2) opposite[shared] = after == to ? before : after;
+        ++shared;
+      } else {
+        possible = possible && !turns_over(from, to, after, before);
+      }
+    });
+    if (!possible || shared == 0 || shared > 2 || opposite[0] == opposite[1]) return false;
+    if (shared == 1 && (!on_border(from) || !on_border(to))) return false;
+    // Two points of one triangle alone: it is all that there is of a part.
+    std::size_t triangles = own_.size() / 2;
+    // Common neighbours are the opposite points alone, and these are in no triangle with `to` both.
+    stars_.for_each(to, [&](std::uint32_t after, std::uint32_t before) {
+      ++triangles;
+      const bool after_is_opposite = after == opposite[0] || after == opposite[1];
+      const bool before_is_opposite = before == opposite[0] || before == opposite[1];
+      if (after_is_opposite && before_is_opposite) possible = false;
+      const auto is_common = [&](std::uint32_t q) {
+        return q != from && std::find(own_.begin(), own_.end(), q) != own_.end();
+      };
+      if ((!after_is_opposite && is_common(after)) || (!before_is_opposite && is_common(before)))
+        possible = false;
+    });
+    return possible && triangles > 2;
+  }
+
+  [[nodiscard]] bool turns_over(std::uint32_t from, std::uint32_t to, std::uint32_t after,
+                                std::uint32_t before) const {
+    const Vec3 &a = points_[after], &b = points_[before], &p = points_[from], &q = points_[to];
+    const Vec3 old_normal = cross(a - p, b - p), normal = cross(a - q, b - q);
+    constexpr double kLeastCosine = 0.5;
+    const double cosine = dot(old_normal, normal);
+    return !(cosine > 0) ||
+           cosine * cosine <= kLeastCosine * kLeastCosine * squared_norm(old_normal) * squared_norm(normal);
+  }
+
+  const std::vector<Vec3>& points_;
+  std::vector<Triangle>& triangles_;
+  std::size_t count_;  ///< of triangles that are there
+  Vec3 origin_;
+  Stars stars_;
+  std::vector<Quadric> quadrics_;
+  bool has_border_ = false;
+  std::vector<std::array<std::uint32_t, 2>> border_;
+  std::vector<bool> is_locked_;  ///< points of the border that stay
+  static constexpr std::size_t kBuckets = 1 << 12;
+  static constexpr std::uint16_t kNoBucket = 0xffff;
+  std::array<std::vector<std::uint32_t>, kBuckets> queue_;  ///< points, by the bucket of an error no greater
+  std::size_t first_ = 0;                                   ///< buckets before it are empty
+  std::vector<std::uint16_t> bounds_;                       ///< the bucket that each point waits in
+  std::vector<Step> steps_;
+  std::vector<std::uint32_t> neighbours_, own_;
+  double greatest_ = 0;     ///< the greatest mean square distance that a change has made
+  std::size_t bodies_ = 0;  ///< that were taken out
+};
+
+}  // namespace
+
+Decimation decimate_contour(Contour& contour, std::size_t triangles) {
+  if (contour.triangles.size() <= triangles) return {};
+  const Decimation result = Decimator(contour).run(triangles);
+  remove_unused_points(contour);
+  return result;
+}
+
+}  // namespace adamas

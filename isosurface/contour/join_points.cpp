@@ -1,0 +1,313 @@
+#include "isosurface/contour/join_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/base/assert.h"
+#include "core/base/hash.h"
+#include "core/base/large_pages.h"
+#include "core/lattice/point_numbers.h"
+
+namespace adamas {
+
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+template <class T>
+std::vector<T> filled(std::size_t size, T value) {
+  std::vector<T> result;
+  reserve_in_large_pages(result, size);
+  result.resize(size, value);
+  return result;
+}
+
+/// The end of a point's edge that is nearer.
+LatticePoint nearer_end(const EdgePoint& p) { return p.parameter < 0.5 ? p.first : p.second; }
+
+/// The mean of points that are joined, as it grows.
+class JoinedPoint {
+ public:
+  void add(const Vec3& point, const EdgePoint& edge) {
+    ++count_;
+    sum_ += point;
+    const bool first_is_near = edge.parameter < 0.5;
+    vertex_ = first_is_near ? edge.first : edge.second;
+    const double part = first_is_near ? edge.parameter : 1 - edge.parameter;
+    // The three neighbours that the points are moved to most.
+    std::size_t place = 3;
+    while (place > 0 && parts_[place - 1] < part) --place;
+    for (std::size_t n = 2; n > place; --n) {
+      parts_[n] = parts_[n - 1];
+      neighbours_[n] = neighbours_[n - 1];
+    }
+    if (place < 3) {
+      parts_[place] = part;
+      neighbours_[place] = first_is_near ? edge.second : edge.first;
+    }
+  }
+
+  /// A triangle that has one of the points or several.
+  void add_triangle(const Vec3& area, const Vec3& corner) {
+    area_ += norm(area);
+    area_vector_ += area;
+    moment_ += dot(area, corner);
+  }
+
+  /// Means of points on a curved surface lie on its hollow side. The mean is moved along the triangles' mean
+  /// normal to where the cones from it over the triangles have no volume in all.
+  [[nodiscard]] Vec3 position() const {
+    const Vec3 mean = 1.0 / count_ * sum_;
+    const double length = norm(area_vector_);
+    // Where the triangles turn to all sides there is no such normal.
+    constexpr double kLeastPart = 0.7;
+    if (!(length > kLeastPart * area_)) return mean;
+    const double way = (moment_ - dot(area_vector_, mean)) / length;
+    // No farther than a part of what the triangles measure across.
+    const double farthest = 0.1 * std::sqrt(area_);
+    return mean + std::clamp(way, -farthest, farthest) / length * area_vector_;
+  }
+  /// The vertex, and those three of its neighbours.
+  [[nodiscard]] MeanPoint as_mean() const {
+    MeanPoint result;
+    result.vertices[0] = vertex_;
+    result.weights[0] = 1;
+    for (std::size_t n = 0; n < 3; ++n) {
+      if (parts_[n] == 0) continue;
+      result.vertices[n + 1] = neighbours_[n];
+      result.weights[n + 1] = parts_[n] / count_;
+      result.weights[0] -= result.weights[n + 1];
+    }
+    return result;
+  }
+
+ private:
+  int count_ = 0;
+  Vec3 sum_, area_vector_;
+  double area_ = 0, moment_ = 0;
+  LatticePoint vertex_;
+  std::array<LatticePoint, 3> neighbours_{};
+  std::array<double, 3> parts_{};
+};
+
+class PointJoiner {
+ public:
+  explicit PointJoiner(Contour& contour)
+      : contour_(contour), count_(static_cast<std::uint32_t>(contour.points.size())) {}
+
+  void run() {
+    find_vertices();
+    keep_mean_points();
+    find_patches();
+    keep_patches_that_are_no_discs();
+    is_joined_.resize(count_);
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      if (patch_[p] != p) is_joined_[patch_[p]] = true;
+    }
+    while (separate_what_would_coincide()) {
+    }
+    replace();
+  }
+
+ private:
+  /// The vertex that each point is near, as a number.
+  void find_vertices() {
+    vertices_ = filled(count_, kNone);
+    PointNumbers numbers;
+    numbers.expect(count_ / 3);
+    std::uint32_t next = 0;
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      const auto [number, is_new] = numbers.insert(nearer_end(contour_.edge_points[p]));
+      if (is_new) *number = next++;
+      vertices_[p] = *number;
+    }
+  }
+
+  /// Takes the vertices away from the points that triangles do not go all round: there, the sum over the
+  /// triangles of what comes after the point less what comes before it is not zero. Sums are of hashes, in
+  /// which no two different sets of points have the same sum but by a chance of 2^-64.
+  void keep_mean_points() {
+    std::vector<std::uint64_t> sums = filled(count_, std::uint64_t{0});
+    for (const Triangle& t : contour_.triangles) {
+      const std::array<std::uint64_t, 3> hash{mix64(t[0]), mix64(t[1]), mix64(t[2])};
+      sums[t[0]] += hash[1] - hash[2];
+      sums[t[1]] += hash[2] - hash[0];
+      sums[t[2]] += hash[0] - hash[1];
+    }
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      if (sums[p] != 0) vertices_[p] = kNone;
+    }
+  }
+
+  [[nodiscard]] bool same_vertex(std::uint32_t p, std::uint32_t q) const {
+    return vertices_[p] == vertices_[q] && vertices_[p] != kNone;
+  }
+
+  /// Patches are the parts that hang together of the edges and triangles among points of one vertex. The
+  /// least of a patch's points stands for it.
+  void find_patches() {
+    patch_.resize(count_);
+    std::iota(patch_.begin(), patch_.end(), 0);
+    for (const Triangle& t : contour_.triangles) {
+      if (same_vertex(t[0], t[1])) unite(t[0], t[1]);
+      if (same_vertex(t[1], t[2])) unite(t[1], t[2]);
+      if (same_vertex(t[2], t[0])) unite(t[2], t[0]);
+    }
+    // A parent is less than its child.
+    for (std::uint32_t p = 0; p < count_; ++p) patch_[p] = patch_[patch_[p]];
+  }
+
+  std::uint32_t root(std::uint32_t p) {
+    while (patch_[p] != p) p = patch_[p] = patch_[patch_[p]];
+    return p;
+  }
+  void unite(std::uint32_t p, std::uint32_t q) {
+    const std::uint32_t a = root(p), b = root(q);
+    patch_[std::max(a, b)] = std::min(a, b);
+  }
+
+  /// A part of a surface whose Euler characteristic is 1 is a disc.
+  void keep_patches_that_are_no_discs() {
+    // Each edge is a side of two triangles.
+    std::vector<std::int32_t> twice_euler = filled(count_, std::int32_t{0});
+    for (std::uint32_t p = 0; p < count_; ++p) twice_euler[patch_[p]] += 2;
+    for (const Triangle& t : contour_.triangles) {
+      const std::array<std::uint32_t, 3> in{patch_[t[0]], patch_[t[1]], patch_[t[2]]};
+      const bool first = in[0] == in[1], second = in[1] == in[2], third = in[2] == in[0];
+      if (first) --twice_euler[in[0]];
+      if (second) --twice_euler[in[1]];
+      if (third) --twice_euler[in[2]];
+      if (first && second) twice_euler[in[0]] += 2;
+    }
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      if (twice_euler[patch_[p]] != 2) kept_.push_back(patch_[p]);
+    }
+    take_apart(kept_);
+  }
+
+  /// Makes single points of all that are in these patches.
+  void take_apart(std::vector<std::uint32_t>& patches) {
+    std::vector<bool> is_wanted(count_);
+    for (const std::uint32_t patch : patches) {
+      is_wanted[patch] = true;
+      if (!is_joined_.empty()) is_joined_[patch] = false;
+    }
+    patches.clear();
+    // A patch has the number of its first point, which is looked at when all others of it still have it.
+    for (std::uint32_t p = count_; p-- > 0;) {
+      if (is_wanted[patch_[p]]) patch_[p] = p;
+    }
+  }
+
+  [[nodiscard]] Triangle joined(const Triangle& t) const {
+    return {patch_[t[0]], patch_[t[1]], patch_[t[2]]};
+  }
+  static bool has_area(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+
+  /// Two edges that begin at one patch and end at one, and two triangles at the same three, are kept apart by
+  /// taking those patches apart. Returns whether there were any.
+  bool separate_what_would_coincide() {
+    // What follows each patch in its triangles, and what comes before.
+    std::vector<std::uint32_t> begin = filled(count_ + 1, std::uint32_t{0});
+    for (const Triangle& triangle : contour_.triangles) {
+      const Triangle t = joined(triangle);
+      if (!has_area(t)) continue;
+      for (const std::uint32_t p : t) ++begin[p + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<std::array<std::uint32_t, 2>> around = filled(begin.back(), std::array<std::uint32_t, 2>{});
+    for (const Triangle& triangle : contour_.triangles) {
+      const Triangle t = joined(triangle);
+      if (!has_area(t)) continue;
+      for (std::size_t c = 0; c < 3; ++c) around[begin[t[c]]++] = {t[(c + 1) % 3], t[(c + 2) % 3]};
+    }
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      const std::uint32_t first = p == 0 ? 0 : begin[p - 1];
+      check_patch(p, {around.data() + first, begin[p] - first});
+    }
+    const bool found = !kept_.empty();
+    if (found) take_apart(kept_);
+    return found;
+  }
+
+  void check_patch(std::uint32_t patch, std::span<std::array<std::uint32_t, 2>> around) {
+    // All that is left of a body may lie in two patches: its triangles are gone.
+    if (around.size() < 3 && patch_[patch] == patch && is_joined_[patch]) kept_.push_back(patch);
+    for (std::size_t n = 0; n < around.size(); ++n) {
+      for (std::size_t m = 0; m < n; ++m) {
+        if (around[m][0] == around[n][0]) kept_.insert(kept_.end(), {patch, around[n][0]});
+        if (around[m][0] == around[n][1] && around[m][1] == around[n][0])
+          kept_.insert(kept_.end(), {patch, around[n][0], around[n][1]});
+      }
+    }
+  }
+
+  /// Joins the points: first those that stay, in their order, then the means, in the order of the patches.
+  void replace() {
+    std::vector<std::uint32_t> sizes = filled(count_, std::uint32_t{0});
+    for (std::uint32_t p = 0; p < count_; ++p) ++sizes[patch_[p]];
+    Contour result;
+    std::vector<std::uint32_t> numbers = filled(count_, kNone);
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      if (sizes[patch_[p]] != 1) continue;
+      numbers[p] = static_cast<std::uint32_t>(result.points.size());
+      result.points.push_back(contour_.points[p]);
+      result.edge_points.push_back(contour_.edge_points[p]);
+    }
+    std::vector<JoinedPoint> means;
+    const auto edge_count = static_cast<std::uint32_t>(result.points.size());
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      const std::uint32_t patch = patch_[p];
+      if (sizes[patch] == 1) continue;
+      if (patch == p) {
+        numbers[p] = edge_count + static_cast<std::uint32_t>(means.size());
+        means.emplace_back();
+      }
+      means[numbers[patch] - edge_count].add(contour_.points[p], contour_.edge_points[p]);
+    }
+    for (const Triangle& triangle : contour_.triangles) {
+      const Vec3 &a = contour_.points[triangle[0]], &b = contour_.points[triangle[1]],
+                 &c = contour_.points[triangle[2]];
+      const Vec3 area = 0.5 * cross(b - a, c - a);
+      const Triangle t = joined(triangle);
+      for (std::size_t n = 0; n < 3; ++n) {
+        const bool is_first = n == 0 || (t[n] != t[0] && (n == 1 || t[n] != t[1]));
+        if (is_first && sizes[t[n]] > 1) means[numbers[t[n]] - edge_count].add_triangle(area, a);
+      }
+    }
+    for (const JoinedPoint& mean : means) {
+      result.points.push_back(mean.position());
+      result.mean_points.push_back(mean.as_mean());
+    }
+    for (const Triangle& triangle : contour_.triangles) {
+      const Triangle t = joined(triangle);
+      if (has_area(t)) result.triangles.push_back({numbers[t[0]], numbers[t[1]], numbers[t[2]]});
+    }
+    contour_ = std::move(result);
+  }
+
+  Contour& contour_;
+  std::uint32_t count_;
+  std::vector<std::uint32_t> vertices_;
+  std::vector<std::uint32_t> patch_;
+  std::vector<bool> is_joined_;  ///< whether a patch has several points, by its number
+  std::vector<std::uint32_t> kept_;
+};
+
+}  // namespace
+
+void join_points(Contour& contour) {
+  ADAMAS_ASSERT(contour.mean_points.empty());
+  if (!contour.triangles.empty()) PointJoiner(contour).run();
+}
+
+}  // namespace adamas
