@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace adamas {
+
+/// The triangles at each point of a surface, of which some may go and others get other corners.
+class TriangleStars {
+ public:
+  using Triangle = std::array<std::uint32_t, 3>;
+  static constexpr std::uint32_t kNone = 0xffffffffu;  ///< the first corner of a triangle that is gone
+
+  TriangleStars(std::vector<Triangle>& triangles, std::size_t points)
+      : triangles_(triangles), first_(points, kNone), next_(3 * triangles.size(), kNone) {
+    // From the last to the first, so that lists are in order.
+    for (std::size_t n = triangles.size(); n-- > 0;) {
+      for (std::size_t c = 3; c-- > 0;) {
+        next_[3 * n + c] = first_[triangles[n][c]];
+        first_[triangles[n][c]] = static_cast<std::uint32_t>(3 * n + c);
+      }
+    }
+  }
+
+  /// Calls visit(after, before) with the other two corners of each triangle at a point.
+  template <class Visit>
+  void for_each(std::uint32_t p, Visit&& visit) {
+    std::uint32_t* link = &first_[p];
+    while (*link != kNone) {
+      const std::uint32_t corner = *link, n = corner / 3, c = corner % 3;
+      const Triangle& t = triangles_[n];
+      if (t[0] == kNone) {
+        *link = next_[corner];  // the triangle is gone
+        continue;
+      }
+      visit(t[c == 2 ? 0 : c + 1], t[c == 0 ? 2 : c - 1]);
+      link = &next_[corner];
+    }
+  }
+
+  /// Removes the triangles at a point.
+  void remove(std::uint32_t p) {
+    for (std::uint32_t corner = first_[p]; corner != kNone; corner = next_[corner])
+      triangles_[corner / 3][0] = kNone;
+    first_[p] = kNone;
+  }
+
+  /// Puts `to` in the place of `from`. Returns how many triangles are lost.
+  std::size_t collapse(std::uint32_t from, std::uint32_t to) {
+    std::size_t lost = 0;
+    std::uint32_t* link = &first_[from];
+    while (*link != kNone) {
+      const std::uint32_t corner = *link;
+      Triangle& t = triangles_[corner / 3];
+      if (t[0] == kNone || t[0] == to || t[1] == to || t[2] == to) {
+        lost += t[0] == kNone ? 0 : 1;
+        t[0] = kNone;
+        *link = next_[corner];
+      } else {
+        t[corner % 3] = to;
+        link = &next_[corner];
+      }
+    }
+    *link = first_[to];
+    first_[to] = first_[from];
+    first_[from] = kNone;
+    return lost;
+  }
+
+ private:
+  std::vector<Triangle>& triangles_;  ///< without a first corner where they are gone
+  std::vector<std::uint32_t> first_, next_;
+};
+
+}  // namespace adamas
