@@ -8,6 +8,7 @@
 #include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
+#include "core/distance/closest_point_tree.h"
 #include "core/geometry/length_limits.h"
 #include "core/io/array_names.h"
 #include "core/io/field_assembly.h"
@@ -17,7 +18,6 @@
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/network/check.h"
-#include "interfaces/network/closest_point_tree.h"
 #include "interfaces/network/mending.h"
 #include "interfaces/source/grid_source.h"
 

@@ -13,6 +13,7 @@
 #include "core/base/naming.h"
 #include "core/data/volume_placement.h"
 #include "core/io/surface_writer.h"
+#include "isosurface/extraction/surface_certificate.h"
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_normals.h"
 #include "isosurface/volume/samples.h"
@@ -26,7 +27,7 @@ struct Options {
   std::vector<std::string> isovalues;
   std::string error, max_triangles, region, output;
   PictureOptions picture;
-  bool no_normals = false, plain = false, strict = false;
+  bool no_normals = false, plain = false, certify = false, strict = false;
 };
 
 /// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
@@ -109,7 +110,12 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   for (const double isovalue : isovalues) {
     request.isovalue = isovalue;
     request.others_follow = ends.size() + 1 < isovalues.size();
-    const ExtractedSurface found = naming(name, [&] { return extractor.extract(request, console); });
+    const ExtractedSurface found = naming(name, [&] {
+      if (!options.certify) return extractor.extract(request, console);
+      CertifiedSurface certified = extract_certified(extractor, request, console);
+      figures.add_distance(request, in_space(grid, certified.certificate));
+      return std::move(certified.surface);
+    });
     figures.add(request, found, extractor.range());
     SurfaceNormals normals;
     if (!options.no_normals && !options.output.empty()) {
@@ -176,6 +182,10 @@ void add_isosurface(const Command& app, Session& session) {
   command.add_option("--region", options->region, "Only the surface in a box").type_name("x0,x1,y0,y1,z0,z1");
   command.add_flag("--plain", options->plain,
                    "The contour of the tetrahedra as it is: three times the triangles, many of them narrow");
+  command.add_flag(
+      "--certify", options->certify,
+      "Measure the distance to the surface of all samples, between two bounds, and refine until it is "
+      "within --error");
   command.add_flag("--no-normals", options->no_normals, "Points without the normals of gradients");
   command.add_flag("--strict", options->strict, "Stop at damaged pages, instead of going on coarser there");
   command.add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")

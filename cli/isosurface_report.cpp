@@ -75,6 +75,18 @@ void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const Extract
                                damaged_pages(count), request.isovalue);
 }
 
+void IsosurfaceFigures::add_distance(const SurfaceRequest& request, const SurfaceCertificate& distance) {
+  if (!distance_) distance_.emplace();
+  distance_->certified = std::max(distance_->certified, distance.certified);
+  distance_->found = std::max(distance_->found, distance.found);
+  const double wanted = stretch_ * request.error;
+  if (wanted > 0 && distance.certified > wanted) {
+    session_.console.note(
+        "the surface at isovalue {:.6g} is certified to be within {:.4g} of that of all samples, not {:.4g}",
+        request.isovalue, distance.certified, wanted);
+  }
+}
+
 void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts& counts) {
   Console& console = session_.console;
   const double seconds = console.seconds();
@@ -83,9 +95,12 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
       {"vertices", std::to_string(surface.points.size())},
       {"tetrahedra", std::to_string(tetrahedra_)},
       {"isosurface error", fmt::format("{:.4g} (estimate)", max_error_)},
+      {"distance certified", distance_ ? fmt::format("{:.4g}", distance_->certified) : ""},
+      {"distance found", distance_ ? fmt::format("{:.4g}", distance_->found) : ""},
       {"pages read", fmt::format("{}, and {} to predict them", counts.pages, counts.predictors)},
       {"bytes read", bytes_text(static_cast<double>(counts.bytes))},
       {"seconds", fmt::format("{:.2f}", seconds)}};
+  std::erase_if(rows, [](const auto& row) { return row[1].empty(); });
   if (!space_.empty()) rows.push_back({"coordinates", space_});
   console.table(rows);
   Figures figures{{"triangles", surface.triangles.size()},
@@ -94,6 +109,12 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
                   {"diamonds", diamonds_},
                   {"isosurface_error_estimate", max_error_},
                   {"bodies_left_out", bodies_left_out_}};
+  if (distance_) {
+    const auto number = [](double value) {
+      return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+    };
+    figures["distance"] = {{"certified", number(distance_->certified)}, {"found", number(distance_->found)}};
+  }
   if (!space_.empty()) figures["space"] = space_;
   add_page_counts(counts, figures);
   figures["seconds"] = seconds;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "cli/figures.h"
 #include "cli/surface_picture.h"
 #include "core/geometry/vec3.h"
+#include "isosurface/extraction/surface_certificate.h"
 #include "isosurface/extraction/surface_request.h"
 #include "isosurface/storage/stored_pages.h"
 
@@ -30,6 +32,8 @@ class IsosurfaceFigures {
   /// `lost`: what the normals of the surface do without. Throws Error where the request is strict.
   void add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
                    const std::vector<PageId>& lost);
+  /// `distance`: from the surface of all samples, in space.
+  void add_distance(const SurfaceRequest& request, const SurfaceCertificate& distance);
   void report(const TriangleSurface& surface, const PageCounts& counts);
 
  private:
@@ -38,6 +42,7 @@ class IsosurfaceFigures {
   std::string space_;  ///< of coordinates
   std::uint64_t tetrahedra_ = 0, diamonds_ = 0, bodies_left_out_ = 0;
   double max_error_ = 0;
+  std::optional<SurfaceCertificate> distance_;  ///< the greatest of all surfaces
 };
 
 /// A picture of isosurfaces as a picture file. `isovalues[n]` is that of the triangles before `ends[n]`, from

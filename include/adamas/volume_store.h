@@ -50,6 +50,9 @@ struct IsosurfaceRequest {
   /// next to a vertex of the mesh are joined, where that changes no topology.
   bool plain = false;
   bool normals = true;  ///< of points, from gradients of the samples
+  /// Measure the distance to the surface of all samples, and refine until it is within the error; takes the
+  /// time of that surface several times.
+  bool certify = false;
   /// Damaged pages are an Error, not a coarser surface round them.
   bool strict = false;
 };
@@ -61,6 +64,12 @@ struct Isosurface {
   /// The greatest isosurface error that is left and the greatest of decimation, in units of length: an
   /// estimate.
   double max_error = 0;
+  /// Where asked for: neither this surface nor that of all samples has a point farther from the other than
+  /// `certified`, and some point is as far as `found`. Infinite where one of them is empty.
+  struct Distance {
+    double certified = 0, found = 0;
+  };
+  std::optional<Distance> distance{};
   std::uint64_t bodies_left_out = 0;  ///< small ones for which there were too few triangles
   std::uint64_t tetrahedra = 0;       ///< of the mesh that the surface is from
   std::uint64_t diamonds = 0;         ///< of it that are split

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/distance/triangle_distance.h"
 #include "interfaces/cutting/local_changes.h"
-#include "interfaces/network/triangle_distance.h"
 
 namespace adamas {
 

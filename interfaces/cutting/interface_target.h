@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/distance/closest_point_tree.h"
 #include "interfaces/cutting/labelled_mesh.h"
 #include "interfaces/mesh/extraction.h"
-#include "interfaces/network/closest_point_tree.h"
 
 namespace adamas {
 

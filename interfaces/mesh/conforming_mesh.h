@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/base/typed_id.h"
+#include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
 #include "interfaces/mesh/extraction.h"
-#include "interfaces/network/closest_point_tree.h"
 
 namespace adamas {
 

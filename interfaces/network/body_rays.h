@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/data/interface_mesh.h"
+#include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
-#include "interfaces/network/closest_point_tree.h"
 
 namespace adamas {
 

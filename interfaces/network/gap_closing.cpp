@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/mending.h"

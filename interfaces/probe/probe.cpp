@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 
 namespace adamas {
 

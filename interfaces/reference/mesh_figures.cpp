@@ -1,6 +1,6 @@
 #include "interfaces/reference/mesh_figures.h"
 
-#include "interfaces/network/hausdorff.h"
+#include "core/distance/hausdorff.h"
 
 namespace adamas {
 

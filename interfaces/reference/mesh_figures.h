@@ -9,9 +9,9 @@
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "core/base/typed_id.h"
+#include "core/distance/closest_point_tree.h"
 #include "interfaces/errors/field_error.h"
 #include "interfaces/mesh/conforming_mesh.h"
-#include "interfaces/network/closest_point_tree.h"
 #include "interfaces/source/resampling_source.h"
 
 namespace adamas {

@@ -7,7 +7,7 @@
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
-#include "interfaces/network/hausdorff.h"
+#include "core/distance/hausdorff.h"
 #include "interfaces/source/resampling_source.h"
 
 namespace adamas {

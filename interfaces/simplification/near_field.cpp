@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/base/hash.h"
-#include "interfaces/network/triangle_distance.h"
+#include "core/distance/triangle_distance.h"
 
 namespace adamas {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
-#include "interfaces/network/closest_point_tree.h"
 
 namespace adamas {
 

@@ -5,7 +5,7 @@
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 #include "interfaces/simplification/surface_guard.h"
 
 namespace adamas {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/distance/triangle_distance.h"
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/triangle_contacts.h"
-#include "interfaces/network/triangle_distance.h"
 
 namespace adamas {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
 #include "interfaces/network/box_tree.h"
-#include "interfaces/network/closest_point_tree.h"
 #include "interfaces/simplification/near_field.h"
 
 namespace adamas {

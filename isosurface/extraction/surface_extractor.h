@@ -23,6 +23,11 @@ class SurfaceExtractor {
   explicit SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages);
 
   [[nodiscard]] const Domain& domain() const { return diamonds_.domain(); }
+  /// From the first sample to the last, in the frame.
+  [[nodiscard]] Box3 data_box() const {
+    return {domain().box().min, domain().position(diamonds_.last_sample())};
+  }
+  [[nodiscard]] Vec3 spacing() const { return diamonds_.spacing(); }
   /// The least and the greatest finite sample of the store, the first greater where there is none. Throws
   /// PageLost.
   std::array<double, 2> range();

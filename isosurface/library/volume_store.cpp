@@ -8,6 +8,7 @@
 #include "core/base/naming.h"
 #include "core/base/output_file.h"
 #include "core/data/volume_placement.h"
+#include "isosurface/extraction/surface_certificate.h"
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_normals.h"
 #include "isosurface/storage/restore.h"
@@ -75,7 +76,7 @@ class VolumeStore::ContentsOf final : public Contents {
   Isosurface isosurface(const IsosurfaceRequest& request, Progress& progress) override {
     const SurfaceRequest wanted = to_surface_request(file().name(), grid(), request);
     try {
-      return extract(wanted, request.normals, progress);
+      return extract(wanted, request, progress);
     } catch (...) {
       // What was half done is not for the next call.
       opened_.reset();
@@ -95,15 +96,23 @@ class VolumeStore::ContentsOf final : public Contents {
     return *opened_;
   }
 
-  Isosurface extract(const SurfaceRequest& wanted, bool normals, Progress& progress) {
+  Isosurface extract(const SurfaceRequest& wanted, const IsosurfaceRequest& request, Progress& progress) {
     auto& [pages, extractor] = open();
-    ExtractedSurface found = extractor.extract(wanted, progress);
     Isosurface result;
+    ExtractedSurface found;
+    if (request.certify) {
+      CertifiedSurface certified = extract_certified(extractor, wanted, progress);
+      found = std::move(certified.surface);
+      const SurfaceCertificate distance = in_space(grid(), certified.certificate);
+      result.distance = {distance.certified, distance.found};
+    } else {
+      found = extractor.extract(wanted, progress);
+    }
     result.max_error = grid().greatest_stretch() * found.max_error;
     result.tetrahedra = found.tetrahedra;
     result.diamonds = found.diamonds;
     result.bodies_left_out = found.bodies_left_out;
-    if (normals) {
+    if (request.normals) {
       SurfaceNormals own = surface_normals<Sample>(pages, found.contour, progress);
       if (wanted.strict && !own.lost.empty())
         fail("{} is damaged, on which normals depend", page_name(own.lost.front()));

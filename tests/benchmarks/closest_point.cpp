@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_normals.h"
 #include "tests/benchmarks/peers/flying_edges.h"

@@ -13,7 +13,7 @@
 
 #include "adamas/volume_store.h"
 #include "core/base/parallel.h"
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 #include "tests/benchmarks/peers/volume_surfaces.h"
 #include "tests/benchmarks/support/measurement.h"
 #include "tests/support/surface_distance.h"

@@ -128,6 +128,31 @@ TEST_F(StoreCommands, SurfacesInEveryFormat) {
   }
 }
 
+TEST_F(StoreCommands, PlainAndCertifiedSurfaces) {
+  make_ball();
+  make_store();
+  const auto figures = [this](std::vector<std::string> options) {
+    std::vector<std::string> all{"isosurface", "b.adm", "--isovalue", "80.5",
+                                 "-o",         "s.ply", "--json",     "f.json"};
+    all.insert(all.end(), options.begin(), options.end());
+    run_well(all);
+    return read_json("f.json");
+  };
+  const auto joined = figures({}), plain = figures({"--plain"});
+  EXPECT_LT(2 * joined["triangles"].get<int>(), plain["triangles"].get<int>());
+  EXPECT_EQ(joined["tetrahedra"], plain["tetrahedra"]);
+  EXPECT_FALSE(joined.contains("distance"));
+  const auto certified = figures({"--certify", "--error", "0.4"});
+  EXPECT_LE(certified["distance"]["certified"].get<double>(), 0.4);
+  EXPECT_LE(certified["distance"]["found"], certified["distance"]["certified"]);
+  EXPECT_EQ(certified["bodies_left_out"], 0);
+  // With few triangles the distance is told, not reached.
+  const RunResult few = run({"isosurface", "b.adm", "--isovalue", "80.5", "-o", "s.ply", "--max-triangles",
+                             "200", "--error", "0.01", "--certify"});
+  EXPECT_EQ(few.status, 0);
+  EXPECT_NE(few.err.find("is certified to be within"), std::string::npos) << few.err;
+}
+
 TEST_F(StoreCommands, UnitsOfTheError) {
   make_ball();
   run_well(

@@ -7,11 +7,11 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/distance/hausdorff.h"
 #include "core/geometry/plane.h"
 #include "datasets/random_numbers.h"
 #include "datasets/scene.h"
 #include "datasets/scene_sampling.h"
-#include "interfaces/network/hausdorff.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "tests/support/closed_surface.h"
 

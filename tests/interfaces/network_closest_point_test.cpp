@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/parallel.h"
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/parallel.h"
-#include "interfaces/network/hausdorff.h"
+#include "core/distance/hausdorff.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/data/interface_mesh.h"
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 
 namespace adamas::test {
 

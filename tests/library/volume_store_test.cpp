@@ -75,6 +75,17 @@ TYPED_TEST(VolumeStoreOf, SurfacesAreThoseOfTheExtractor) {
   EXPECT_TRUE(few.surface.normals.empty());
 }
 
+TYPED_TEST(VolumeStoreOf, SurfacesAreCertified) {
+  VolumeStore store = VolumeStore::open(this->path());
+  EXPECT_FALSE(store.isosurface({.isovalue = 100, .error = 0.5}).distance);
+  const Isosurface found = store.isosurface({.isovalue = 100, .error = 0.5, .certify = true});
+  ASSERT_TRUE(found.distance);
+  EXPECT_LE(found.distance->certified, 0.5);
+  EXPECT_LE(found.distance->found, found.distance->certified);
+  const Isosurface few = store.isosurface({.isovalue = 100, .max_triangles = 300, .certify = true});
+  EXPECT_GT(few.distance->found, 0.1);
+}
+
 TYPED_TEST(VolumeStoreOf, SamplesComeBackBitForBit) {
   VolumeStore store = VolumeStore::open(this->path());
   const auto same = [](std::span<const TypeParam> a, const std::vector<TypeParam>& b) {

@@ -10,8 +10,8 @@
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
+#include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
-#include "interfaces/network/closest_point_tree.h"
 
 namespace adamas {
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "core/distance/huge_page_allocator.h"
+#include "core/distance/triangle_distance.h"
 #include "core/geometry/vec3.h"
-#include "interfaces/network/huge_page_allocator.h"
-#include "interfaces/network/triangle_distance.h"
 
 namespace adamas {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/base/assert.h"
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 
 namespace adamas {
 

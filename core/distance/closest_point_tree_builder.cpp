@@ -1,4 +1,4 @@
-#include "interfaces/network/closest_point_tree_builder.h"
+#include "core/distance/closest_point_tree_builder.h"
 
 #include <algorithm>
 #include <cmath>

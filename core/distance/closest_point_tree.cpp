@@ -1,4 +1,4 @@
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
-#include "interfaces/network/closest_point_tree_builder.h"
+#include "core/distance/closest_point_tree_builder.h"
 
 namespace adamas {
 

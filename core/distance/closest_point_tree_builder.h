@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interfaces/network/closest_point_tree.h"
+#include "core/distance/closest_point_tree.h"
 
 namespace adamas {
 

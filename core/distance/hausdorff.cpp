@@ -1,4 +1,4 @@
-#include "interfaces/network/hausdorff.h"
+#include "core/distance/hausdorff.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,125 @@
+#include "isosurface/extraction/surface_certificate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/isosurface/contour_checks.h"
+#include "tests/support/surface_distance.h"
+#include "tests/support/volume_store.h"
+
+namespace adamas {
+namespace {
+
+using test::MemoryVolume;
+using test::OpenStore;
+
+constexpr Box3 kEverywhere{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
+
+/// Hills with noise, which estimates of errors say too little of.
+MemoryVolume<std::uint8_t> rough_hills(unsigned seed) {
+  return {{25, 22, 20},
+          [seed](LatticePoint p) {
+            return 100 + 50 * std::sin(0.3 * p.i + 0.1 * p.k) * std::cos(0.25 * p.j) +
+                   30 * test::random_value(p, seed);
+          },
+          {1, 0.8, 1.3}};
+}
+
+/// The greatest distance of sampled points of one surface from the other, both ways.
+double sampled(const Contour& a, const Contour& b) {
+  return test::sampled_distance(a.points, a.triangles, b.points, b.triangles, kEverywhere, 3000, 1);
+}
+
+Contour full_surface(OpenStore<std::uint8_t>& store, const SurfaceRequest& like) {
+  SurfaceRequest request = like;
+  request.error = 0;
+  request.max_triangles.reset();
+  request.join = false;
+  request.least_parameter = 0;
+  return store.extract(request).contour;
+}
+
+TEST(SurfaceCertificate, HoldsForSampledPoints) {
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    OpenStore<std::uint8_t> store(rough_hills(seed));
+    for (const bool join : {false, true}) {
+      for (const double error : {0.0, 1.0}) {
+        SurfaceRequest request;
+        request.isovalue = 115;
+        request.error = error;
+        request.join = join;
+        if (seed == 1) request.max_triangles = 800;
+        if (seed == 2) request.region = Box3{{3, 4, 5}, {20, 14, 19}};
+        const Contour surface = store.extract(request).contour;
+        const double distance = sampled(surface, full_surface(store, request));
+        // The surface of all samples comes in one block, and in many.
+        for (const int block : {9, kCertificateBlock}) {
+          const SurfaceCertificate found =
+              certify_surface(store.extractor(), request, surface, SilentProgress::instance(), block);
+          EXPECT_GE(found.certified, distance);
+          EXPECT_LE(found.found, found.certified);
+          EXPECT_LE(found.certified, std::max({1.06 * found.found, 0.5 * error, 0.01}) + 1e-9);
+          // Points are sampled densely enough to come near what was found.
+          EXPECT_GE(distance, 0.7 * found.found - 0.05);
+        }
+      }
+    }
+  }
+}
+
+TEST(SurfaceCertificate, IsTheShiftOfAPlane) {
+  const MemoryVolume<float> ramp({20, 20, 20}, [](LatticePoint p) { return p.k; });
+  OpenStore<float> store(ramp);
+  SurfaceRequest request;
+  request.isovalue = 7.25;
+  Contour surface = store.extract(request).contour;
+  for (Vec3& p : surface.points) p.z += 0.625;
+  const SurfaceCertificate found = certify_surface(store.extractor(), request, surface);
+  EXPECT_NEAR(found.found, 0.625, 1e-9);
+  EXPECT_GE(found.certified, 0.625);
+  EXPECT_LE(found.certified, 1.05 * 0.625);
+}
+
+TEST(SurfaceCertificate, KnowsOfBodiesThatAreMissing) {
+  // Two balls, the second of which lies about 20 samples from the first.
+  const auto ball = [](LatticePoint p, double i, double radius) {
+    return radius - std::sqrt((p.i - i) * (p.i - i) + (p.j - 10.) * (p.j - 10.) + (p.k - 10.) * (p.k - 10.));
+  };
+  const MemoryVolume<float> volume(
+      {50, 21, 21}, [&](LatticePoint p) { return std::max(ball(p, 10, 6.3), ball(p, 40, 3.3)); });
+  OpenStore<float> store(volume);
+  SurfaceRequest request;
+  Contour surface = store.extract(request).contour;
+  std::erase_if(surface.triangles, [&](const auto& t) { return surface.points[t[0]].x > 25; });
+  const SurfaceCertificate found = certify_surface(store.extractor(), request, surface);
+  EXPECT_NEAR(found.found, 43.3 - 16.3, 0.5);
+  EXPECT_GE(found.certified, found.found);
+  surface.triangles.clear();
+  EXPECT_EQ(certify_surface(store.extractor(), request, surface).certified,
+            std::numeric_limits<double>::infinity());
+}
+
+TEST(SurfaceCertificate, IsReachedByRefinement) {
+  OpenStore<std::uint8_t> store(rough_hills(4));
+  bool was_exceeded = false;
+  for (const double error : {0.05, 1.0}) {
+    for (const bool join : {false, true}) {
+      SurfaceRequest request;
+      request.isovalue = 115;
+      request.error = error;
+      request.join = join;
+      const CertifiedSurface found = extract_certified(store.extractor(), request);
+      EXPECT_LE(found.certificate.certified, error);
+      EXPECT_LE(sampled(found.surface.contour, full_surface(store, request)), error);
+      const Contour first = store.extract(request).contour;
+      was_exceeded = was_exceeded || certify_surface(store.extractor(), request, first).found > error;
+    }
+  }
+  EXPECT_TRUE(was_exceeded) << "the estimate alone would have done";
+}
+
+}  // namespace
+}  // namespace adamas
