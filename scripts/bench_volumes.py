@@ -219,6 +219,62 @@ def surface_rows(build, quick):
                                           str(triangles), "3" if quick else "5"))
 
 
+# Measured volumes: a part of the path, the options that `adamas store` needs, and an isovalue.
+MEASURED = [("thewildnath/StanfordHead/*.tif", ["--stack"], 700), ("vtkjs/bonsai.vti", [], 40), ("vtkjs/engine.vti", [], 100),
+            ("vtkjs/aneurism.vti", [], 100), ("vtkjs/LIDC2.vti", [], 80), ("vtkjs/tooth.nrrd", [], 130),
+            ("openscivis/heptane.nii.gz", [], 60), ("pyvista_misc/ironProt.vtk", [], 100),
+            ("invesalius_cranium/matrix.dat", ["--dimensions", "256,256,108", "--type", "int16", "--spacing", "0.957,0.957,1.5"], 300),
+            ("tuwien_dat/lobster_120x120x34.dat", ["--dimensions", "120,120,34", "--type", "uint16", "--header-bytes", "6"], 400)]
+ADAMAS, PLAIN, EDGES = "adamas", "adamas, plain", "Flying Edges, stride "
+
+
+def both_ways(line, which):
+    """The mean of the distances there and back, for means; else the greater of them."""
+    there, back = line["to"][which], line["from"][which]
+    return (there + back) / 2 if which == 0 else max(there, back)
+
+
+def quality_table(name, lines, ratios):
+    """Rows of what bench_surface_quality prints of a volume. Adds to `ratios` those of mean and 99.9th percentile."""
+    exact = lines[0]
+    yield [f"surface of {name}, error 0", f"{exact['triangles']:,} triangles, {exact['seconds']:.2f} s",
+           f"plain {lines[1]['triangles']:,} triangles, {lines[1]['seconds']:.2f} s", f"{exact['triangles'] / lines[1]['triangles']:.2f}",
+           "", f"mean least angle {exact['angle']:.1f} for {lines[1]['angle']:.1f} degrees, below 10 degrees {exact['narrow']:.1%} for {lines[1]['narrow']:.1%}"]
+    for n, edges in enumerate(lines):
+        if not edges["surface"].startswith(EDGES):
+            continue
+        ours = lines[n + 1]
+        if ours["surface"] != ADAMAS:
+            sys.exit(f"bench: surface of {name}: expected one of adamas, found {ours['surface']}")
+        at = f"{ours['triangles']:,} triangles, {ours['seconds']:.2f} s, {edges['surface']}; both ways, voxels"
+        for which, what, aim in ((0, "mean distance", "<= 0.5"), (1, "99.9% within", "<= 0.5"), (2, "greatest distance", "")):
+            ratio = both_ways(ours, which) / both_ways(edges, which)
+            if aim:
+                ratios.setdefault(what, []).append(ratio)
+            yield [f"surface of {name}: {what}", f"{both_ways(ours, which):.3f}", f"Flying Edges {both_ways(edges, which):.3f}",
+                   f"{ratio:.2f}", aim, at]
+        for peer in lines[n + 2:n + 5]:
+            if peer["surface"].startswith(EDGES) or peer["surface"] == ADAMAS:
+                break
+            yield [f"surface of {name}: {peer['surface']}", "", f"mean {both_ways(peer, 0):.3f}, 99.9% {both_ways(peer, 1):.3f}, {peer['seconds']:.2f} s",
+                   f"{both_ways(ours, 0) / both_ways(peer, 0):.2f}", "", f"{peer['triangles']:,} triangles"]
+
+
+def quality_rows(build, quick):
+    root, ratios = os.path.join(os.environ.get("ADAMAS_DATA", "../shared/data"), "volume"), {}
+    for path, options, isovalue in MEASURED[:2] if quick else MEASURED:
+        with tempfile.TemporaryDirectory() as folder:
+            data, file = os.path.join(root, path), os.path.join(folder, "volume.adm")
+            if "*" not in data and not os.path.exists(data):
+                note(f"bench: {data} is not there: no rows for it")
+                continue
+            store(build, data, file, *options)
+            lines = lines_of(build, "bench_surface_quality", file, str(isovalue), "2", "4", "--decimate")
+            yield from quality_table(os.path.basename(path), lines, ratios)
+    for what, of in ratios.items():
+        yield [f"surfaces: {what}, geometric mean", "", "", f"{geometric_mean(of):.2f}, at most {max(of):.2f}", "<= 0.5", f"{len(of)} surfaces"]
+
+
 def volume_rows(build, quick):
-    for part in (store_rows, codec_rows, contour_rows, surface_rows):
+    for part in (quality_rows, codec_rows, store_rows, contour_rows, surface_rows):
         yield from part(build, quick)

@@ -1,4 +1,5 @@
 #include <exodusII.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
@@ -115,7 +116,7 @@ std::vector<std::string> variable_names(const SolverMesh& mesh) {
     for (int k = 0; k < field.components; ++k) {
       const std::string suffix = field.components == 1   ? ""
                                  : field.components <= 3 ? std::string("_") + "xyz"[k]
-                                                         : "_" + std::to_string(k + 1);
+                                                         : fmt::format("_{}", k + 1);
       names.push_back(short_name(field.name + suffix));
     }
   }

@@ -37,9 +37,9 @@ std::string type_name(int type, int bytes) {
     case VTK_UNSIGNED_INT:
     case VTK_UNSIGNED_LONG:
     case VTK_UNSIGNED_LONG_LONG:
-      return "uint" + std::to_string(8 * bytes);
+      return fmt::format("uint{}", 8 * bytes);
     default:
-      return "int" + std::to_string(8 * bytes);
+      return fmt::format("int{}", 8 * bytes);
   }
 }
 
@@ -198,7 +198,7 @@ GridFile read_legacy(const std::string& name, const VtkMessages& messages) {
 /// Whether a list like ".png .jpg" has the extension.
 bool lists_extension(const char* list, const std::string& extension) {
   return list != nullptr && !extension.empty() &&
-         (" " + std::string(list) + " ").find(" " + extension + " ") != std::string::npos;
+         fmt::format(" {} ", list).find(fmt::format(" {} ", extension)) != std::string::npos;
 }
 
 /// A format of plain images, whose one array has no name of its own.

@@ -103,24 +103,12 @@ void run(const std::string& path, double isovalue, const std::vector<int>& strid
   IsosurfaceRequest request;
   request.isovalue = isovalue;
   compare(comparison, "adamas, error 0", [&] { return ours(path, request); });
-  if (const char* other = std::getenv("OTHER")) {
-    for (bool plain : {false, true}) {
-      request.plain = plain;
-      compare(comparison, plain ? "other, plain" : "other", [&] {
-        PeerSurface s = ours(other, request);
-        VolumeStore a = VolumeStore::open(path), b = VolumeStore::open(other);
-        for (Vec3& p : s.points) p = b.grid().spacing.x / a.grid().spacing.x * p;
-        return s;
-      });
-    }
-  }
   request.plain = true;
   compare(comparison, "adamas, error 0, plain", [&] { return ours(path, request); });
   for (const int stride : strides) {
     const double before = thread_seconds();
     const PeerSurface coarse = flying_edges_of(volume.grid, volume.samples, isovalue, stride);
-    comparison.print("Flying Edges, every " + std::to_string(stride) + "th sample", coarse,
-                     thread_seconds() - before);
+    comparison.print("Flying Edges, stride " + std::to_string(stride), coarse, thread_seconds() - before);
     request.max_triangles = coarse.triangles.size();
     for (const bool plain : {false, true}) {
       request.plain = plain;

@@ -10,7 +10,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
 from bench_large import QUICK, ball_centres, check_samples, distance_from_spheres, write_sparse  # noqa: E402
 from bench_table import closest_point_table, hierarchy_table, some  # noqa: E402
-from bench_volumes import codec_table, contour_table, surface_table  # noqa: E402
+from bench_volumes import codec_table, contour_table, quality_table, surface_table  # noqa: E402
 
 CLOSEST = """5041 triangles: build 0.001 s, CGAL 0.002 s; 90 bytes per triangle
   queries per second         adamas       CGAL    ratio
@@ -54,6 +54,21 @@ class BenchTableTest(unittest.TestCase):
         self.assertEqual([r[3:5] for r in contour_table([line])], [["1.50", ">= 1.5"]])
         with self.assertRaisesRegex(SystemExit, "expected 5 triangles, found 4"):
             list(contour_table([line | {"peer_triangles": 5}]))
+
+    def test_surfaces_of_measured_volumes(self):
+        def line(surface, distance):
+            return {"surface": surface, "triangles": 100, "seconds": 1, "to": [distance] * 3, "from": [3 * distance] * 3,
+                    "angle": 30, "narrow": 0.1}
+        lines = [line("adamas, error 0", 0), line("adamas, error 0, plain", 0), line("Flying Edges, stride 2", 2),
+                 line("adamas", 1), line("adamas, plain", 4), line("vtkDecimatePro", 2)]
+        ratios = {}
+        rows = list(quality_table("head", lines, ratios))
+        self.assertEqual([r[3] for r in rows], ["1.00", "0.50", "0.50", "0.50", "0.25", "0.50"])
+        self.assertEqual(rows[1][1:3], ["2.000", "Flying Edges 4.000"])
+        self.assertEqual(rows[2][1], "3.000")
+        self.assertEqual(ratios, {"mean distance": [0.5], "99.9% within": [0.5]})
+        with self.assertRaisesRegex(SystemExit, "expected one of adamas, found vtkDecimatePro"):
+            list(quality_table("head", lines[:3] + lines[5:], ratios))
 
     def test_surfaces_from_disk(self):
         ours = {"seconds": 1, "processor_seconds": 2, "peak_bytes": 2**20, "triangles": 10}
