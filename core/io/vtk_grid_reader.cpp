@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSetReader.h>
