@@ -124,19 +124,29 @@ SurfaceCut SurfaceExtractor<Sample>::cut_of(std::uint64_t triangles, int least_c
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::decimated(int least_class, Progress& progress) {
-  // A mesh that is finer than wanted, of whose triangles joining points leaves about a third.
-  constexpr double kFiner = 12;
-  constexpr double kJoined = 2.7;
+  // The mesh is finer than wanted: by so much, or to an error of a part of a voxel, below which samples tell
+  // little. Joining points leaves about a third of its triangles.
+  constexpr double kFiner = 12, kJoined = 2.7, kEnough = 1.25, kFineError = 0.25;
+  const Vec3 spacing = diamonds_.spacing();
+  const double fine_error = kFineError * std::min({spacing.x, spacing.y, spacing.z});
+  const int fine_class = std::max(least_class, diamonds_.class_within(fine_error) + 1);
   const std::uint64_t most = *request_.max_triangles;
-  for (auto budget = static_cast<std::uint64_t>(kJoined * kFiner * static_cast<double>(most));; budget /= 2) {
-    ExtractedSurface surface = contour_of(cut_of(budget, least_class, progress), progress);
+  const auto times_most = [most](double factor) {
+    return static_cast<std::uint64_t>(kJoined * factor * static_cast<double>(most));
+  };
+  ExtractedSurface surface = contour_of(cut_of(times_most(kFiner), fine_class, progress), progress);
+  if (surface.contour.triangles.size() < most && fine_class > least_class)
+    surface = contour_of(cut_of(times_most(kEnough), least_class, progress), progress);
+  for (std::uint64_t budget = times_most(0.5);; budget /= 2) {
     if (surface.contour.triangles.size() > most) {
       progress.step("decimating", -1);
       const Decimation done = decimate_contour(surface.contour, most);
       surface.max_error += done.error;
       surface.bodies_left_out = done.bodies;
     }
+    // Parts of a border, and handles, may need more triangles than are wanted.
     if (surface.contour.triangles.size() <= most || budget == 0) return surface;
+    surface = contour_of(cut_of(budget, least_class, progress), progress);
   }
 }
 

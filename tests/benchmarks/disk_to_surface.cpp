@@ -137,6 +137,7 @@ void run(const Inputs& inputs, std::uint64_t triangles) {
     wanted.request.isovalue = inputs.raw.isovalue;
     // A store that cannot be read would give a coarse surface, and that fast.
     wanted.request.strict = true;
+    wanted.request.join = true;
   }
   for (const Wanted& wanted : both)
     for (const bool normals : {true, false})
