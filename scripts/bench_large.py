@@ -83,7 +83,7 @@ def row(what, figures, at, good):
 def surface_row(adamas, path, what, centres, *options):
     error = 0.2
     mesh = path + ".obj"
-    figures = measured((adamas, "isosurface"), path, "--isovalue", str(ISOVALUE), "--error", f"{error}voxels", *options,
+    figures = measured((adamas, "isosurface"), path, "--isovalue", str(ISOVALUE), "--error", f"{error}voxels", "--plain", *options,
                        "-o", mesh)
     distance = distance_from_spheres(mesh, centres)
     # Samples are rounded, by up to 0.05 voxel of the distance, and linear between, which is as much again.
