@@ -56,6 +56,17 @@ class Decimator {
   Decimation run(std::size_t wanted) {
     find_border();
     find_quadrics();
+    // Where nothing is left to take out, triangles may turn farther.
+    for (const double least_cosine : {0.5, 0.0}) {
+      least_cosine_ = least_cosine;
+      take_out_points(wanted);
+    }
+    std::erase_if(triangles_, [](const Triangle& t) { return t[0] == kNone; });
+    return {std::sqrt(greatest_), bodies_};
+  }
+
+ private:
+  void take_out_points(std::size_t wanted) {
     bounds_.assign(points_.size(), kNoBucket);
     for (std::uint32_t p = 0; p < points_.size(); ++p) line_up(p, best_step(p).error);
     while (count_ > wanted && first_ < kBuckets) {
@@ -68,11 +79,8 @@ class Decimator {
       bucket.pop_back();
       if (bounds_[next] == first_) take_out(next);
     }
-    std::erase_if(triangles_, [](const Triangle& t) { return t[0] == kNone; });
-    return {std::sqrt(greatest_), bodies_};
   }
 
- private:
   /// The collapse of an edge into one of its ends.
   struct Step {
     float error = std::numeric_limits<float>::infinity();
@@ -176,7 +184,6 @@ class Decimator {
     return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(error) >> kShift);
   }
   void line_up(std::uint32_t p, float error) {
-    if (!std::isfinite(error)) return;
     const std::uint16_t place = bucket(error);
     if (place >= bounds_[p]) return;
     bounds_[p] = place;
@@ -195,7 +202,7 @@ class Decimator {
     std::sort(steps_.begin(), steps_.end());
     const std::uint16_t expected = std::exchange(bounds_[from], kNoBucket);
     for (const Step& s : steps_) {
-      if (s.to == kNone) return;
+      if (s.to == kNone) break;
       if (!is_possible(from, s.to)) continue;
       if (bucket(s.error) > expected) {
         line_up(from, s.error);
@@ -207,35 +214,36 @@ class Decimator {
     take_body_out(from, expected);
   }
 
-  /// Takes out a body of which nothing but a tetrahedron is left, where its size is no greater than other
-  /// errors, or puts it in line again.
+  /// Takes out the part that a point belongs to, where it is small and its size comes up, or puts the point
+  /// in line again.
   void take_body_out(std::uint32_t p, std::uint16_t expected) {
-    own_.clear();
-    stars_.for_each(p, [this](std::uint32_t after, std::uint32_t) { own_.push_back(after); });
-    if (own_.size() != 3 || on_border(p)) return;
-    for (const std::uint32_t q : own_) {
-      std::size_t count = 0;
-      bool is_body = !on_border(q);
-      stars_.for_each(q, [&](std::uint32_t after, std::uint32_t) {
-        ++count;
-        is_body = is_body && (after == p || std::find(own_.begin(), own_.end(), after) != own_.end());
+    constexpr std::size_t kMostPoints = 12;
+    own_.assign(1, p);
+    for (std::size_t n = 0; n < own_.size(); ++n) {
+      if (own_.size() > kMostPoints) return;
+      stars_.for_each(own_[n], [this](std::uint32_t after, std::uint32_t before) {
+        for (const std::uint32_t q : {after, before}) {
+          if (std::find(own_.begin(), own_.end(), q) == own_.end()) own_.push_back(q);
+        }
       });
-      if (count != 3 || !is_body) return;
     }
-    own_.push_back(p);
+    const double share = 1 / static_cast<double>(own_.size());
     Vec3 middle;
-    for (const std::uint32_t q : own_) middle += 0.25 * place(q);
-    double mean = 0;
-    for (const std::uint32_t q : own_) mean += 0.25 * squared_norm(place(q) - middle);
-    double weight = 0;
-    for (const std::uint32_t q : own_) weight += quadrics_[q].weight;
+    for (const std::uint32_t q : own_) middle += share * place(q);
+    double mean = 0, weight = 0;
+    for (const std::uint32_t q : own_) {
+      mean += share * squared_norm(place(q) - middle);
+      weight += quadrics_[q].weight;
+    }
     const auto error = static_cast<float>(weight * mean);
     if (bucket(error) > expected) {
       line_up(p, error);
       return;
     }
-    for (const std::uint32_t q : own_) stars_.remove(q);
-    count_ -= 4;
+    std::size_t lost = 0;
+    for (const std::uint32_t q : own_) lost += stars_.remove(q);
+    if (lost == 0) return;  // it has been taken out before
+    count_ -= lost;
     ++bodies_;
     greatest_ = std::max(greatest_, mean);
   }
@@ -301,10 +309,9 @@ class Decimator {
                                 std::uint32_t before) const {
     const Vec3 &a = points_[after], &b = points_[before], &p = points_[from], &q = points_[to];
     const Vec3 old_normal = cross(a - p, b - p), normal = cross(a - q, b - q);
-    constexpr double kLeastCosine = 0.5;
     const double cosine = dot(old_normal, normal);
-    return !(cosine > 0) ||
-           cosine * cosine <= kLeastCosine * kLeastCosine * squared_norm(old_normal) * squared_norm(normal);
+    const double least = least_cosine_ * least_cosine_ * squared_norm(old_normal) * squared_norm(normal);
+    return !(cosine > 0) || cosine * cosine <= least;
   }
 
   const std::vector<Vec3>& points_;
@@ -323,8 +330,9 @@ class Decimator {
   std::vector<std::uint16_t> bounds_;                       ///< the bucket that each point waits in
   std::vector<Step> steps_;
   std::vector<std::uint32_t> neighbours_, own_;
-  double greatest_ = 0;     ///< the greatest mean square distance that a change has made
-  std::size_t bodies_ = 0;  ///< that were taken out
+  double least_cosine_ = 0;  ///< of the angle by which a triangle may turn
+  double greatest_ = 0;      ///< the greatest mean square distance that a change has made
+  std::size_t bodies_ = 0;   ///< that were taken out
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ struct Decimation {
   /// that was taken out the same of its points from their middle. An estimate of how far the surface has
   /// moved.
   double error = 0;
-  std::size_t bodies = 0;  ///< that were taken out
+  std::size_t bodies = 0;  ///< parts that were taken out
 };
 
 /// Takes points out of a contour until it has at most so many triangles, or no more can be taken: edges are
@@ -20,10 +20,10 @@ struct Decimation {
 /// (M. Garland, P. S. Heckbert, SIGGRAPH 1997), with planes weighted by area, up to a factor of 2^(1/8) in
 /// their squares. Points that stay are where they were.
 ///
-/// No collapse changes the topology or turns a triangle by 60 degrees. A closed body of which a tetrahedron
-/// is left is taken out once greater errors than its size are made elsewhere. Points of the border stay in
-/// it, and are taken out only where it goes on in a plane across an axis. The same contour gives the same
-/// result.
+/// No collapse changes the topology or turns a triangle by 60 degrees, or by 90 where there is no other any
+/// more. A part of the surface that has shrunk to twelve points, one of which cannot be taken out, is taken
+/// out as a whole once greater errors than its size are made elsewhere. Points of the border stay in it, and
+/// are taken out only where it goes on in a plane across an axis. The same contour gives the same result.
 Decimation decimate_contour(Contour& contour, std::size_t triangles);
 
 }  // namespace adamas

@@ -40,11 +40,16 @@ class TriangleStars {
     }
   }
 
-  /// Removes the triangles at a point.
-  void remove(std::uint32_t p) {
-    for (std::uint32_t corner = first_[p]; corner != kNone; corner = next_[corner])
-      triangles_[corner / 3][0] = kNone;
+  /// Removes the triangles at a point. Returns how many there were.
+  std::size_t remove(std::uint32_t p) {
+    std::size_t lost = 0;
+    for (std::uint32_t corner = first_[p]; corner != kNone; corner = next_[corner]) {
+      std::uint32_t& first = triangles_[corner / 3][0];
+      lost += first == kNone ? 0 : 1;
+      first = kNone;
+    }
     first_[p] = kNone;
+    return lost;
   }
 
   /// Puts `to` in the place of `from`. Returns how many triangles are lost.

@@ -137,7 +137,7 @@ ExtractedSurface SurfaceExtractor<Sample>::decimated(int least_class, Progress& 
   ExtractedSurface surface = contour_of(cut_of(times_most(kFiner), fine_class, progress), progress);
   if (surface.contour.triangles.size() < most && fine_class > least_class)
     surface = contour_of(cut_of(times_most(kEnough), least_class, progress), progress);
-  for (std::uint64_t budget = times_most(0.5);; budget /= 2) {
+  for (std::uint64_t budget = times_most(kFiner / 2);; budget /= 2) {
     if (surface.contour.triangles.size() > most) {
       progress.step("decimating", -1);
       const Decimation done = decimate_contour(surface.contour, most);
