@@ -257,7 +257,7 @@ def quality_table(name, lines, ratios):
             if peer["surface"].startswith(EDGES) or peer["surface"] == ADAMAS:
                 break
             yield [f"surface of {name}: {peer['surface']}", "", f"mean {both_ways(peer, 0):.3f}, 99.9% {both_ways(peer, 1):.3f}, {peer['seconds']:.2f} s",
-                   f"{both_ways(ours, 0) / both_ways(peer, 0):.2f}", "", f"{peer['triangles']:,} triangles"]
+                   f"{both_ways(ours, 0) / both_ways(peer, 0):.2f}" if both_ways(peer, 0) > 0 else "", "", f"{peer['triangles']:,} triangles"]
 
 
 def quality_rows(build, quick):
