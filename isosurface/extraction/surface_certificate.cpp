@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "core/distance/closest_point_tree.h"
@@ -15,7 +14,6 @@ namespace adamas {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A box cut into blocks, and the triangles of a surface that meet each.
 class Blocks {
