@@ -99,9 +99,9 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
       {"distance found", distance_ ? fmt::format("{:.4g}", distance_->found) : ""},
       {"pages read", fmt::format("{}, and {} to predict them", counts.pages, counts.predictors)},
       {"bytes read", bytes_text(static_cast<double>(counts.bytes))},
-      {"seconds", fmt::format("{:.2f}", seconds)}};
+      {"seconds", fmt::format("{:.2f}", seconds)},
+      {"coordinates", space_}};
   std::erase_if(rows, [](const auto& row) { return row[1].empty(); });
-  if (!space_.empty()) rows.push_back({"coordinates", space_});
   console.table(rows);
   Figures figures{{"triangles", surface.triangles.size()},
                   {"vertices", surface.points.size()},
@@ -109,12 +109,8 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
                   {"diamonds", diamonds_},
                   {"isosurface_error_estimate", max_error_},
                   {"bodies_left_out", bodies_left_out_}};
-  if (distance_) {
-    const auto number = [](double value) {
-      return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-    };
-    figures["distance"] = {{"certified", number(distance_->certified)}, {"found", number(distance_->found)}};
-  }
+  // What is not finite becomes null.
+  if (distance_) figures["distance"] = {{"certified", distance_->certified}, {"found", distance_->found}};
   if (!space_.empty()) figures["space"] = space_;
   add_page_counts(counts, figures);
   figures["seconds"] = seconds;

@@ -62,8 +62,7 @@ endmacro()
 option(ADAMAS_PRECOMPILE_HEADERS "Read the standard headers once for each target" OFF)
 function(adamas_precompile target)
   if(ADAMAS_PRECOMPILE_HEADERS)
-    target_precompile_headers(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${PROJECT_SOURCE_DIR}/cmake/precompiled.h>
-                                                $<$<COMPILE_LANGUAGE:CXX>:${ARGN}>)
+    target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h ${ARGN})
   endif()
 endfunction()
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/base/disjoint_sets.h"
 #include "interfaces/cutting/cutting_steps.h"
-#include "interfaces/network/disjoint_sets.h"
 
 namespace adamas {
 

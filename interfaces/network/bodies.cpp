@@ -4,9 +4,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
 #include "interfaces/network/body_rays.h"
-#include "interfaces/network/disjoint_sets.h"
 #include "interfaces/network/edge_fans.h"
 
 namespace adamas {

@@ -3,8 +3,8 @@
 #include <numeric>
 #include <vector>
 
+#include "core/base/disjoint_sets.h"
 #include "interfaces/network/bodies.h"
-#include "interfaces/network/disjoint_sets.h"
 #include "interfaces/network/edge_fans.h"
 
 namespace adamas {

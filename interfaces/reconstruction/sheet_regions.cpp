@@ -3,7 +3,7 @@
 #include <numeric>
 #include <utility>
 
-#include "interfaces/network/disjoint_sets.h"
+#include "core/base/disjoint_sets.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"

@@ -5,8 +5,8 @@
 #include <map>
 #include <mutex>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/error.h"
-#include "interfaces/network/disjoint_sets.h"
 
 namespace adamas {
 

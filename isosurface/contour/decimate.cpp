@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/hash.h"
 #include "isosurface/contour/triangle_stars.h"
 
 namespace adamas {
@@ -58,6 +57,7 @@ class Decimator {
     find_quadrics();
     // Where nothing is left to take out, triangles may turn farther.
     for (const double least_cosine : {0.5, 0.0}) {
+      if (count_ <= wanted) break;
       least_cosine_ = least_cosine;
       take_out_points(wanted);
     }
@@ -92,20 +92,14 @@ class Decimator {
 
   /// Of each point of the border the points before it and behind it, where the border passes it once.
   void find_border() {
-    std::vector<std::uint64_t> sums(points_.size());
-    for (const Triangle& t : triangles_) {
-      const std::array<std::uint64_t, 3> hash{mix64(t[0]), mix64(t[1]), mix64(t[2])};
-      sums[t[0]] += hash[1] - hash[2];
-      sums[t[1]] += hash[2] - hash[0];
-      sums[t[2]] += hash[0] - hash[1];
-    }
-    has_border_ = std::any_of(sums.begin(), sums.end(), [](std::uint64_t sum) { return sum != 0; });
+    const std::vector<bool> at_border = border_points(triangles_, points_.size());
+    has_border_ = std::find(at_border.begin(), at_border.end(), true) != at_border.end();
     if (!has_border_) return;
     border_.assign(points_.size(), {kNone, kNone});
     is_locked_.assign(points_.size(), false);
     std::vector<std::uint32_t> after, before;
     for (std::uint32_t p = 0; p < points_.size(); ++p) {
-      if (sums[p] == 0) continue;
+      if (!at_border[p]) continue;
       after.clear();
       before.clear();
       stars_.for_each(p, [&](std::uint32_t a, std::uint32_t b) {
@@ -178,7 +172,7 @@ class Decimator {
     return best;
   }
 
-  /// Errors lie in buckets, eight for each factor of two.
+  /// Errors lie in buckets, eight for each factor of two, whose greatest is at most 9/8 of the least.
   static std::uint16_t bucket(float error) {
     constexpr int kShift = 20;
     return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(error) >> kShift);

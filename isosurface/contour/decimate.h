@@ -17,7 +17,7 @@ struct Decimation {
 
 /// Takes points out of a contour until it has at most so many triangles, or no more can be taken: edges are
 /// collapsed into one of their ends, those first that change the surface least by the quadric error metric
-/// (M. Garland, P. S. Heckbert, SIGGRAPH 1997), with planes weighted by area, up to a factor of 2^(1/8) in
+/// (M. Garland, P. S. Heckbert, SIGGRAPH 1997), with planes weighted by area, up to a factor of 9/8 in
 /// their squares. Points that stay are where they were.
 ///
 /// No collapse changes the topology or turns a triangle by 60 degrees, or by 90 where there is no other any

@@ -5,23 +5,23 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "core/base/assert.h"
-#include "core/base/hash.h"
+#include "core/base/disjoint_sets.h"
 #include "core/base/large_pages.h"
 #include "core/lattice/point_numbers.h"
+#include "isosurface/contour/triangle_stars.h"
 
 namespace adamas {
 
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+using Triangle = TriangleStars::Triangle;
+constexpr std::uint32_t kNone = TriangleStars::kNone;
 
 template <class T>
 std::vector<T> filled(std::size_t size, T value) {
@@ -41,7 +41,7 @@ class JoinedPoint {
     ++count_;
     sum_ += point;
     const bool first_is_near = edge.parameter < 0.5;
-    vertex_ = first_is_near ? edge.first : edge.second;
+    vertex_ = nearer_end(edge);
     const double part = first_is_near ? edge.parameter : 1 - edge.parameter;
     // The three neighbours that the points are moved to most.
     std::size_t place = 3;
@@ -106,13 +106,9 @@ class PointJoiner {
 
   void run() {
     find_vertices();
-    keep_mean_points();
+    keep_border_points();
     find_patches();
     keep_patches_that_are_no_discs();
-    is_joined_.resize(count_);
-    for (std::uint32_t p = 0; p < count_; ++p) {
-      if (patch_[p] != p) is_joined_[patch_[p]] = true;
-    }
     while (separate_what_would_coincide()) {
     }
     replace();
@@ -132,19 +128,11 @@ class PointJoiner {
     }
   }
 
-  /// Takes the vertices away from the points that triangles do not go all round: there, the sum over the
-  /// triangles of what comes after the point less what comes before it is not zero. Sums are of hashes, in
-  /// which no two different sets of points have the same sum but by a chance of 2^-64.
-  void keep_mean_points() {
-    std::vector<std::uint64_t> sums = filled(count_, std::uint64_t{0});
-    for (const Triangle& t : contour_.triangles) {
-      const std::array<std::uint64_t, 3> hash{mix64(t[0]), mix64(t[1]), mix64(t[2])};
-      sums[t[0]] += hash[1] - hash[2];
-      sums[t[1]] += hash[2] - hash[0];
-      sums[t[2]] += hash[0] - hash[1];
-    }
+  /// Takes the vertices away from the points at the border, which are not joined.
+  void keep_border_points() {
+    const std::vector<bool> at_border = border_points(contour_.triangles, count_);
     for (std::uint32_t p = 0; p < count_; ++p) {
-      if (sums[p] != 0) vertices_[p] = kNone;
+      if (at_border[p]) vertices_[p] = kNone;
     }
   }
 
@@ -155,24 +143,19 @@ class PointJoiner {
   /// Patches are the parts that hang together of the edges and triangles among points of one vertex. The
   /// least of a patch's points stands for it.
   void find_patches() {
-    patch_.resize(count_);
-    std::iota(patch_.begin(), patch_.end(), 0);
+    DisjointSets sets(count_);
     for (const Triangle& t : contour_.triangles) {
-      if (same_vertex(t[0], t[1])) unite(t[0], t[1]);
-      if (same_vertex(t[1], t[2])) unite(t[1], t[2]);
-      if (same_vertex(t[2], t[0])) unite(t[2], t[0]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t p = t[c], q = t[(c + 1) % 3];
+        if (same_vertex(p, q)) sets.join(p, q);
+      }
     }
-    // A parent is less than its child.
-    for (std::uint32_t p = 0; p < count_; ++p) patch_[p] = patch_[patch_[p]];
-  }
-
-  std::uint32_t root(std::uint32_t p) {
-    while (patch_[p] != p) p = patch_[p] = patch_[patch_[p]];
-    return p;
-  }
-  void unite(std::uint32_t p, std::uint32_t q) {
-    const std::uint32_t a = root(p), b = root(q);
-    patch_[std::max(a, b)] = std::min(a, b);
+    patch_.resize(count_);
+    is_joined_.resize(count_);
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      patch_[p] = sets.find(p);
+      if (patch_[p] != p) is_joined_[patch_[p]] = true;
+    }
   }
 
   /// A part of a surface whose Euler characteristic is 1 is a disc.
@@ -189,19 +172,19 @@ class PointJoiner {
       if (first && second) twice_euler[in[0]] += 2;
     }
     for (std::uint32_t p = 0; p < count_; ++p) {
-      if (twice_euler[patch_[p]] != 2) kept_.push_back(patch_[p]);
+      if (twice_euler[patch_[p]] != 2) apart_.push_back(patch_[p]);
     }
-    take_apart(kept_);
+    take_apart();
   }
 
-  /// Makes single points of all that are in these patches.
-  void take_apart(std::vector<std::uint32_t>& patches) {
+  /// Makes single points of all that are in the patches of `apart_`.
+  void take_apart() {
     std::vector<bool> is_wanted(count_);
-    for (const std::uint32_t patch : patches) {
+    for (const std::uint32_t patch : apart_) {
       is_wanted[patch] = true;
-      if (!is_joined_.empty()) is_joined_[patch] = false;
+      is_joined_[patch] = false;
     }
-    patches.clear();
+    apart_.clear();
     // A patch has the number of its first point, which is looked at when all others of it still have it.
     for (std::uint32_t p = count_; p-- > 0;) {
       if (is_wanted[patch_[p]]) patch_[p] = p;
@@ -234,19 +217,19 @@ class PointJoiner {
       const std::uint32_t first = p == 0 ? 0 : begin[p - 1];
       check_patch(p, {around.data() + first, begin[p] - first});
     }
-    const bool found = !kept_.empty();
-    if (found) take_apart(kept_);
+    const bool found = !apart_.empty();
+    if (found) take_apart();
     return found;
   }
 
   void check_patch(std::uint32_t patch, std::span<std::array<std::uint32_t, 2>> around) {
     // All that is left of a body may lie in two patches: its triangles are gone.
-    if (around.size() < 3 && patch_[patch] == patch && is_joined_[patch]) kept_.push_back(patch);
+    if (around.size() < 3 && is_joined_[patch]) apart_.push_back(patch);
     for (std::size_t n = 0; n < around.size(); ++n) {
       for (std::size_t m = 0; m < n; ++m) {
-        if (around[m][0] == around[n][0]) kept_.insert(kept_.end(), {patch, around[n][0]});
+        if (around[m][0] == around[n][0]) apart_.insert(apart_.end(), {patch, around[n][0]});
         if (around[m][0] == around[n][1] && around[m][1] == around[n][0])
-          kept_.insert(kept_.end(), {patch, around[n][0], around[n][1]});
+          apart_.insert(apart_.end(), {patch, around[n][0], around[n][1]});
       }
     }
   }
@@ -299,8 +282,8 @@ class PointJoiner {
   std::uint32_t count_;
   std::vector<std::uint32_t> vertices_;
   std::vector<std::uint32_t> patch_;
-  std::vector<bool> is_joined_;  ///< whether a patch has several points, by its number
-  std::vector<std::uint32_t> kept_;
+  std::vector<bool> is_joined_;       ///< whether a patch has several points, by its number
+  std::vector<std::uint32_t> apart_;  ///< patches that are to be taken apart
 };
 
 }  // namespace

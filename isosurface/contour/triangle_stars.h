@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace adamas {
@@ -78,5 +79,8 @@ class TriangleStars {
   std::vector<Triangle>& triangles_;  ///< without a first corner where they are gone
   std::vector<std::uint32_t> first_, next_;
 };
+
+/// Which of a surface's points triangles do not go all round: those at its border.
+std::vector<bool> border_points(std::span<const TriangleStars::Triangle> triangles, std::size_t points);
 
 }  // namespace adamas

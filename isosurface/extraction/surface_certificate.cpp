@@ -92,13 +92,6 @@ Box3 common(Box3 a, const Box3& b) {
   return a;
 }
 
-bool is_all_of(const Box3& part, const Box3& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (part.min[axis] > box.min[axis] || part.max[axis] < box.max[axis]) return false;
-  }
-  return true;
-}
-
 template <class Sample>
 class Certifier {
  public:
@@ -134,15 +127,19 @@ class Certifier {
   /// the full surface in the block and round it: to all of it points are no farther than to that part.
   void add_block(const Box3& box, const Box3& all, const std::vector<Triangle>& triangles,
                  const ClosestPointTree& tree) {
+    bool is_first = true;
     for (double margin = 4 * least_spacing_;; margin *= 4) {
       const Box3 near = common(grown(box, margin), all);
       full_.region = near;
       const Contour full = extractor_.extract(full_).contour;
-      if (margin == 4 * least_spacing_) add(measure(full.points, full.triangles, tree, box));
+      if (is_first) add(measure(full.points, full.triangles, tree, box));
+      is_first = false;
+      if (triangles.empty()) return;
       DistanceBound bound = measure(surface_.points, triangles, {full.points, full.triangles}, box);
-      if (bound.upper > margin && !is_all_of(near, all)) continue;
+      const bool is_whole = near.contains(all.min) && near.contains(all.max);
+      if (bound.upper > margin && !is_whole) continue;
       // What lies beyond the margin may be nearer than what was found.
-      if (!is_all_of(near, all)) bound.lower = std::min(bound.lower, margin);
+      if (!is_whole) bound.lower = std::min(bound.lower, margin);
       add(bound);
       return;
     }

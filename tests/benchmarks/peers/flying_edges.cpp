@@ -1,8 +1,6 @@
 #include "tests/benchmarks/peers/flying_edges.h"
 
-#include <vtkCellArray.h>
 #include <vtkFlyingEdges3D.h>
-#include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -12,6 +10,7 @@
 #include <stdexcept>
 
 #include "tests/benchmarks/peers/one_thread.h"
+#include "tests/benchmarks/peers/vtk_surface.h"
 
 namespace adamas::bench {
 namespace {
@@ -74,19 +73,7 @@ std::uint64_t FlyingEdges::count() const {
 PeerSurface FlyingEdges::surface() const {
   vtkNew<vtkFlyingEdges3D> edges;
   contour(*this, *edges);
-  vtkPolyData& found = *edges->GetOutput();
-  PeerSurface result;
-  for (vtkIdType p = 0; p < found.GetNumberOfPoints(); ++p) {
-    const double* x = found.GetPoint(p);
-    result.points.push_back({x[0], x[1], x[2]});
-  }
-  vtkNew<vtkIdList> corners;
-  vtkCellArray& polygons = *found.GetPolys();
-  for (polygons.InitTraversal(); polygons.GetNextCell(corners) != 0;) {
-    const auto corner = [&](vtkIdType n) { return static_cast<std::uint32_t>(corners->GetId(n)); };
-    result.triangles.push_back({corner(0), corner(1), corner(2)});
-  }
-  return result;
+  return taken(*edges->GetOutput());
 }
 
 }  // namespace adamas::bench

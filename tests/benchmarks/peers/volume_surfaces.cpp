@@ -3,7 +3,6 @@
 #include <vtkCellArray.h>
 #include <vtkDecimatePro.h>
 #include <vtkFlyingEdges3D.h>
-#include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
@@ -14,6 +13,7 @@
 #include <cstring>
 
 #include "tests/benchmarks/peers/one_thread.h"
+#include "tests/benchmarks/peers/vtk_surface.h"
 
 namespace adamas::bench {
 namespace {
@@ -32,21 +32,6 @@ int vtk_type(SampleType type) {
   return VTK_FLOAT;
 }
 
-PeerSurface taken(vtkPolyData& found) {
-  PeerSurface result;
-  for (vtkIdType p = 0; p < found.GetNumberOfPoints(); ++p) {
-    const double* x = found.GetPoint(p);
-    result.points.push_back({x[0], x[1], x[2]});
-  }
-  vtkNew<vtkIdList> corners;
-  vtkCellArray& polygons = *found.GetPolys();
-  for (polygons.InitTraversal(); polygons.GetNextCell(corners) != 0;) {
-    const auto corner = [&](vtkIdType n) { return static_cast<std::uint32_t>(corners->GetId(n)); };
-    result.triangles.push_back({corner(0), corner(1), corner(2)});
-  }
-  return result;
-}
-
 void give(const PeerSurface& surface, vtkPolyData& to) {
   vtkNew<vtkPoints> points;
   for (const Vec3& p : surface.points) points->InsertNextPoint(p.x, p.y, p.z);
@@ -56,9 +41,15 @@ void give(const PeerSurface& surface, vtkPolyData& to) {
   to.SetPolys(polygons);
 }
 
-double reduction(const PeerSurface& surface, std::size_t triangles) {
+template <class Filter>
+PeerSurface decimated(const PeerSurface& surface, std::size_t triangles, Filter& filter) {
+  vtkNew<vtkPolyData> input;
+  give(surface, *input);
+  filter.SetInputData(input);
   const double part = static_cast<double>(triangles) / static_cast<double>(surface.triangles.size());
-  return std::clamp(1 - part, 0.0, 0.9999);
+  filter.SetTargetReduction(std::clamp(1 - part, 0.0, 0.9999));
+  filter.Update();
+  return taken(*filter.GetOutput());
 }
 
 }  // namespace
@@ -95,24 +86,14 @@ PeerSurface flying_edges_of(const VolumeGrid& grid, std::span<const std::byte> s
 }
 
 PeerSurface quadric_decimation(const PeerSurface& surface, std::size_t triangles) {
-  vtkNew<vtkPolyData> input;
-  give(surface, *input);
   vtkNew<vtkQuadricDecimation> filter;
-  filter->SetInputData(input);
-  filter->SetTargetReduction(reduction(surface, triangles));
-  filter->Update();
-  return taken(*filter->GetOutput());
+  return decimated(surface, triangles, *filter);
 }
 
 PeerSurface decimate_pro(const PeerSurface& surface, std::size_t triangles) {
-  vtkNew<vtkPolyData> input;
-  give(surface, *input);
   vtkNew<vtkDecimatePro> filter;
-  filter->SetInputData(input);
-  filter->SetTargetReduction(reduction(surface, triangles));
   filter->PreserveTopologyOff();
-  filter->Update();
-  return taken(*filter->GetOutput());
+  return decimated(surface, triangles, *filter);
 }
 
 }  // namespace adamas::bench
