@@ -50,9 +50,10 @@ void print_range(StoreFile& file, Console& console, Figures& figures) {
     if (!found) return console.note_damage("{}: what tells the range of values is damaged", file.name());
     const auto [low, high] = *found;
     if (low > high) return;
-    console.print("  values from {:.6g} to {:.6g}\n", low, high);
-    figures["min"] = low;
-    figures["max"] = high;
+    const VolumeGrid& grid = file.header().grid;
+    console.print("  values from {:.6g} to {:.6g}\n", grid.value(low), grid.value(high));
+    figures["min"] = grid.value(low);
+    figures["max"] = grid.value(high);
   });
 }
 
@@ -182,16 +183,19 @@ Figures print_store(const std::string& path, Session& session) {
                                                                  : "interpolation";
   console.print("{}: stored volume\n", path);
   console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
+  if (grid.is_scaled())
+    console.print("  values are {:.9g} times the samples plus {:.9g}\n", grid.slope, grid.intercept);
   print_places(grid, console);
   Figures figures{{"file", path},
                   {"kind", "store"},
                   {"dimensions", grid.dimensions},
                   {"type", sample_name(grid.type)},
+                  {"slope", grid.slope},
+                  {"intercept", grid.intercept},
                   {"steps", header.steps},
                   {"levels", levels},
                   {"pages", file->grid().page_count()},
                   {"coding", coding},
-                  {"subtree_depth", header.subtree_depth},
                   {"gradients", header.gradients},
                   {"bytes_input", before},
                   {"bytes_data", header.bytes.samples},
@@ -200,9 +204,8 @@ Figures print_store(const std::string& path, Session& session) {
                   {"bytes_file", file->size()}};
   add_places(grid, figures);
   print_range(*file, console, figures);
-  console.print("  levels 0 to {}, {} pages, coding {}, subtrees {}, {} gradients\n\n", levels - 1,
-                file->grid().page_count(), coding, header.subtree_depth,
-                header.gradients ? "with" : "without");
+  console.print("  levels 0 to {}, {} pages, coding {}, {} gradients\n\n", levels - 1,
+                file->grid().page_count(), coding, header.gradients ? "with" : "without");
   print_store_bytes(before, header.bytes, file->size(), console);
   return figures;
 }

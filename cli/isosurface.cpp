@@ -108,7 +108,7 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   const std::vector<double> isovalues = parse_isovalues(options.isovalues);
   std::vector<std::size_t> ends;
   for (const double isovalue : isovalues) {
-    request.isovalue = isovalue;
+    request.isovalue = grid.sample(isovalue);
     request.others_follow = ends.size() + 1 < isovalues.size();
     const ExtractedSurface found = naming(name, [&] {
       if (!options.certify) return extractor.extract(request, console);

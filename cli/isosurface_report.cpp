@@ -16,10 +16,11 @@ namespace {
 
 /// Says why there is no triangle. `range`: least and greatest sample; none are known where the first is
 /// greater.
-std::string reason_for_none(const SurfaceRequest& request, const std::array<double, 2>& range) {
+std::string reason_for_none(const SurfaceRequest& request, const VolumeGrid& grid,
+                            const std::array<double, 2>& range) {
   if (range[0] > range[1]) return "no sample is a finite number";
   if (request.isovalue <= range[0] || request.isovalue > range[1])
-    return fmt::format("samples are from {:.6g} to {:.6g}", range[0], range[1]);
+    return fmt::format("samples are from {:.6g} to {:.6g}", grid.value(range[0]), grid.value(range[1]));
   if (request.max_triangles) return "so few triangles do not show it";
   const std::string where = request.region ? "nothing of it is in the region" : "";
   if (request.error == 0) return where;
@@ -42,8 +43,9 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
   diamonds_ += surface.diamonds;
   max_error_ = std::max(max_error_, stretch_ * surface.max_error);
   if (surface.contour.triangles.empty()) {
-    const std::string reason = reason_for_none(request, range);
-    console.note("no surface at isovalue {:.6g}{}{}", request.isovalue, reason.empty() ? "" : ": ", reason);
+    const std::string reason = reason_for_none(request, grid_, range);
+    console.note("no surface at isovalue {:.6g}{}{}", grid_.value(request.isovalue),
+                 reason.empty() ? "" : ": ", reason);
   } else if (surface.max_error > request.error && surface.lost.empty() &&
              (!request.max_triangles || request.error > 0)) {
     console.note("the error wanted was not reached{}: {:.4g} instead of {:.4g}",
@@ -53,12 +55,12 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
   bodies_left_out_ += surface.bodies_left_out;
   if (surface.bodies_left_out > 0) {
     console.note("with so few triangles {} small bod{} of the surface at isovalue {:.6g} {} left out",
-                 surface.bodies_left_out, surface.bodies_left_out == 1 ? "y" : "ies", request.isovalue,
-                 surface.bodies_left_out == 1 ? "is" : "are");
+                 surface.bodies_left_out, surface.bodies_left_out == 1 ? "y" : "ies",
+                 grid_.value(request.isovalue), surface.bodies_left_out == 1 ? "is" : "are");
   }
   if (!surface.lost.empty()) {
     console.note_damage("{}: the surface at isovalue {:.6g} is coarser there",
-                        damaged_pages(surface.lost.size()), request.isovalue);
+                        damaged_pages(surface.lost.size()), grid_.value(request.isovalue));
   }
 }
 
@@ -72,7 +74,7 @@ void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const Extract
   }
   if (count == 0) return;
   session_.console.note_damage("{}: normals of the surface at isovalue {:.6g} are less exact there",
-                               damaged_pages(count), request.isovalue);
+                               damaged_pages(count), grid_.value(request.isovalue));
 }
 
 void IsosurfaceFigures::add_distance(const SurfaceRequest& request, const SurfaceCertificate& distance) {
@@ -83,7 +85,7 @@ void IsosurfaceFigures::add_distance(const SurfaceRequest& request, const Surfac
   if (wanted > 0 && distance.certified > wanted) {
     session_.console.note(
         "the surface at isovalue {:.6g} is certified to be within {:.4g} of that of all samples, not {:.4g}",
-        request.isovalue, distance.certified, wanted);
+        grid_.value(request.isovalue), distance.certified, wanted);
   }
 }
 
@@ -100,7 +102,7 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
       {"pages read", fmt::format("{}, and {} to predict them", counts.pages, counts.predictors)},
       {"bytes read", bytes_text(static_cast<double>(counts.bytes))},
       {"seconds", fmt::format("{:.2f}", seconds)},
-      {"coordinates", space_}};
+      {"coordinates", grid_.space}};
   std::erase_if(rows, [](const auto& row) { return row[1].empty(); });
   console.table(rows);
   Figures figures{{"triangles", surface.triangles.size()},
@@ -111,7 +113,7 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
                   {"bodies_left_out", bodies_left_out_}};
   // What is not finite becomes null.
   if (distance_) figures["distance"] = {{"certified", distance_->certified}, {"found", distance_->found}};
-  if (!space_.empty()) figures["space"] = space_;
+  if (!grid_.space.empty()) figures["space"] = grid_.space;
   add_page_counts(counts, figures);
   figures["seconds"] = seconds;
   figures["peak_memory_bytes"] = peak_memory_bytes();

@@ -24,7 +24,7 @@ class IsosurfaceFigures {
  public:
   /// Of a store with this grid.
   IsosurfaceFigures(Session& session, const VolumeGrid& grid)
-      : session_(session), stretch_(grid.greatest_stretch()), space_(grid.space) {}
+      : session_(session), grid_(grid), stretch_(grid.greatest_stretch()) {}
 
   /// `range`: least and greatest sample of the store.
   void add(const SurfaceRequest& request, const ExtractedSurface& surface,
@@ -38,8 +38,8 @@ class IsosurfaceFigures {
 
  private:
   Session& session_;
-  double stretch_;     ///< from errors in the grid's frame to those in space
-  std::string space_;  ///< of coordinates
+  VolumeGrid grid_;
+  double stretch_;  ///< from errors in the grid's frame to those in space
   std::uint64_t tetrahedra_ = 0, diamonds_ = 0, bodies_left_out_ = 0;
   double max_error_ = 0;
   std::optional<SurfaceCertificate> distance_;  ///< the greatest of all surfaces

@@ -84,11 +84,11 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
   field.values.reserve(part.grid.samples());
   with_sample_type(volume.type, [&](auto sample) {
     using Sample = decltype(sample);
-    read(part, [&field](std::span<const std::byte> plane_bytes) {
+    read(part, [&field, &volume](std::span<const std::byte> plane_bytes) {
       for (std::size_t at = 0; at < plane_bytes.size(); at += sizeof(Sample)) {
         Sample value;
         std::memcpy(&value, plane_bytes.data() + at, sizeof(Sample));
-        field.values.push_back(static_cast<float>(value));
+        field.values.push_back(static_cast<float>(volume.value(static_cast<double>(value))));
       }
     });
   });

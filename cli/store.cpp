@@ -16,7 +16,7 @@ namespace {
 
 struct Options {
   VolumeInput input;
-  std::string coding = "interpolation", subtrees = "0", output;
+  std::string coding = "interpolation", output;
   bool gradients = false;
 };
 
@@ -52,7 +52,7 @@ void report(const VolumeReader& reader, const StoreFigures& store, Session& sess
   Console& console = session.console;
   const VolumeGrid& grid = reader.grid();
   const auto [nx, ny, nz] = grid.dimensions;
-  const std::uint64_t input = grid.bytes();
+  const std::uint64_t input = reader.source().sample_file_bytes();
   const double seconds = console.seconds();
   console.print("{} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
   print_store_bytes(input, store.bytes, store.file_bytes, console);
@@ -77,12 +77,11 @@ void report(const VolumeReader& reader, const StoreFigures& store, Session& sess
 
 void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".adm"});
-  VolumeReader reader = open_volume_input(options.input, session);
+  VolumeReader reader = open_volume_input(options.input, session, true);
   check_volume_dimensions(options.input.path, reader.grid());
   PlaneReader planes(reader);
   StoreOptions store;
   store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
-  store.subtree_depth = options.subtrees[0] - '0';
   store.gradients = options.gradients;
   if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
   StoreFigures figures;
@@ -114,12 +113,6 @@ void add_store(const Command& app, Session& session) {
                   "How samples are predicted: from all neighbours that are known, or only from the two ends "
                   "of the edge whose middle they are")
       .one_of({"interpolation", "split-edge"})
-      .show_default();
-  command
-      .add_option("--subtrees", options->subtrees,
-                  "Errors and ranges for every 2^N-th sample along each axis only: a smaller file, from "
-                  "which surfaces are refined in greater steps")
-      .one_of({"0", "1", "2"})
       .show_default();
   command.add_flag("--gradients", options->gradients,
                    "Keep the directions of the samples' gradients too, for the normals of surfaces");

@@ -66,7 +66,7 @@ std::string VolumeInput::option() const {
   return {};
 }
 
-VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
+VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale) {
   const Vec3 spacing = input.spacing.empty() ? Vec3{1, 1, 1} : parse_spacing(input.spacing);
   const Vec3 origin = input.origin.empty() ? Vec3{} : parse_vector("--first-sample", input.origin);
   const bool raw = !input.dimensions.empty();
@@ -99,7 +99,7 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session) {
     return open_volume_stack(files, spacing, origin, {{}, input.scratch, {}}, session.console);
   }
   check_array(input);
-  VolumeOptions options{input.array, input.scratch, {}};
+  VolumeOptions options{input.array, input.scratch, {}, keep_scale};
   if (!input.time.empty()) options.time = parse_count("--time", input.time, 0);
   return open_volume(input.path, options, session.console);
 }
@@ -219,6 +219,12 @@ std::size_t write_volume_output(const std::string& output, const VolumeGrid& gri
     writer.finish();
   };
   if (const std::string lost = lost_places(output, grid); !lost.empty()) session.console.note("{}", lost);
+  if (grid.is_scaled() && !keeps_scale(output)) {
+    session.console.note(
+        "{}: values, {:.9g} times the samples plus {:.9g}, are written as float32: only .nii and .nii.gz "
+        "have a scale",
+        output, grid.slope, grid.intercept);
+  }
   const std::string data = volume_data_file(output).string();
   if (data.empty()) {
     outputs.write(output, write);

@@ -33,7 +33,7 @@ void add_volume_input(const Command& command, VolumeInput& input);
 void add_volume_options(const Command& command, VolumeInput& input, const char* origin);
 
 /// Opens it. Throws UsageError where options do not go together.
-VolumeReader open_volume_input(const VolumeInput& input, Session& session);
+VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale = false);
 
 /// The volume that a file is, if it is to be read as one: where the options say so, and where no other reader
 /// knows it or all that it may say of places.

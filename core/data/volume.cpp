@@ -94,6 +94,10 @@ void VolumeGrid::check(const std::string& name) const {
       fail("{}: expected a finite origin along {}, found {}", name, "xyz"[axis], origin[axis]);
     }
   }
+  if (!(slope > 0) || !std::isfinite(slope) || !std::isfinite(intercept)) {
+    fail("{}: expected values of a positive multiple of the samples and a finite number, found {} and {}",
+         name, slope, intercept);
+  }
   constexpr double kRoundOff = 1e-6, kFlat = 1e-4;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Vec3& d = directions[axis];

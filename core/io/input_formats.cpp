@@ -129,6 +129,7 @@ VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions&
   VolumeSource source = format.read_header != nullptr
                             ? volume_of(format.read_header(path), options.array, options.time)
                             : format.find_volume(path, options, progress);
+  if (options.keep_scale) source.keep_scale();
   if (source.packed()) source = unpack_volume(std::move(source), options.scratch_folder, progress);
   return VolumeReader(std::move(source));
 }

@@ -146,7 +146,8 @@ std::string header_bytes(const VolumeGrid& grid) {
   put(V::kDatatype, static_cast<std::int16_t>(datatype->code));
   put(V::kBits, static_cast<std::int16_t>(8 * sample_bytes(grid.type)));
   put(V::kOffset, static_cast<typename V::Offset>(bytes.size()));
-  put(V::kSlope, Real{1});
+  put(V::kSlope, static_cast<Real>(grid.slope));
+  put(V::kIntercept, static_cast<Real>(grid.intercept));
   // Of the scanner, in millimetres, or aligned with something unknown, in unknown units.
   const bool known = grid.space == "RAS";
   put(V::kUnits, static_cast<typename V::Units>(known ? 2 : 0));
@@ -222,6 +223,8 @@ std::string nifti_file_header(const VolumeGrid& grid) {
               (length != 0 && std::abs(single) < std::numeric_limits<float>::min());
     }
   }
+  for (const double factor : {grid.slope, grid.intercept})
+    large = large || static_cast<double>(static_cast<float>(factor)) != factor;
   return large ? header_bytes<Version2>(grid) : header_bytes<Version1>(grid);
 }
 

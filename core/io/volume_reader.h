@@ -75,6 +75,8 @@ struct VolumeOptions {
   std::string array;                     ///< of a file with several: the name of one
   std::filesystem::path scratch_folder;  ///< for unpacked samples; empty: the system's for temporary files
   std::optional<std::uint64_t> time{};   ///< of a file with several (NIfTI): the number of one, from 0 on
+  /// Whole numbers with a scale (NIfTI) stay as they are, with VolumeGrid::slope; else they become floats.
+  bool keep_scale = false;
 };
 
 /// Opens a volume of one value per sample, of the format that the name ends in or, where that says nothing,

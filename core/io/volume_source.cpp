@@ -1,6 +1,7 @@
 #include "core/io/volume_source.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -9,6 +10,14 @@ namespace adamas {
 void VolumeSource::set_stored(StoredType type) {
   stored = type;
   grid.type = sample_type_for(type);
+}
+
+void VolumeSource::keep_scale() {
+  const SampleType type = sample_type_for(stored);
+  if (!scaled() || !(slope > 0) || stored_bytes(stored) > 2 || type == SampleType::kFloat32) return;
+  grid.type = type;
+  grid.slope = std::exchange(slope, 1);
+  grid.intercept = std::exchange(intercept, 0);
 }
 
 void VolumeSource::set_axes(const GridAxes& axes) {

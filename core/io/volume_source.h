@@ -44,7 +44,7 @@ struct VolumeSource {
   bool before_tag = false;  ///< they end where the next XML tag begins
   /// Where the samples are the bytes of this file instead, unpacked.
   std::shared_ptr<const FileHandle> scratch;
-  double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept
+  double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept (see keep_scale)
   std::string remark;               ///< what the header says and nobody follows; mostly empty
   VolumeGrid grid;                  ///< with the type that the samples become
 
@@ -53,6 +53,9 @@ struct VolumeSource {
   [[nodiscard]] bool packed() const { return coding != SamplePacking::kRaw || base64 || !more_files.empty(); }
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   void set_stored(StoredType type);
+  /// Makes the numbers themselves the samples and leaves the scale to the grid, where numbers are whole and
+  /// their type is one of samples, and the slope is positive.
+  void keep_scale();
   /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error where a step has
   /// no length or the axes lie in one plane.
   void set_axes(const GridAxes& axes);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <string_view>
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
+#include "core/io/stored_type.h"
 #include "core/io/volume_headers.h"
 
 namespace adamas {
@@ -59,11 +61,18 @@ std::string lost_places(const std::filesystem::path& path, const VolumeGrid& gri
   return fmt::format("{}: coordinates are {}, which the file does not say", path.string(), grid.space);
 }
 
-VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& grid,
+bool keeps_scale(const std::filesystem::path& path) {
+  const std::string extension = file_extension(path);
+  return extension == ".nii" || extension == ".nii.gz";
+}
+
+VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& of_planes,
                            const VolumeWriterOptions& options)
-    : grid_(grid) {
+    : grid_(of_planes), writes_values_(of_planes.is_scaled() && !keeps_scale(path)) {
   const std::string name = path.string(), extension = file_extension(path);
-  grid.check(name);
+  grid_.check(name);
+  VolumeGrid grid = grid_;
+  if (writes_values_) grid.type = SampleType::kFloat32, grid.slope = 1, grid.intercept = 0;
   const bool apart = !volume_data_file(path).empty();
   const auto data_file = options.data_file.empty() ? volume_data_file(path) : options.data_file;
   const auto data_name = options.data_name.empty() ? data_file.filename().string() : options.data_name;
@@ -95,12 +104,27 @@ VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& 
 
 void VolumeWriter::write_plane(std::span<const std::byte> samples) {
   ADAMAS_ASSERT(samples.size() == grid_.plane_bytes() && planes_ < grid_.dimensions[2]);
+  if (writes_values_) {
+    find_values(samples);
+    samples = std::as_bytes(std::span(values_));
+  }
   if (gzip_) {
     gzip_->write(samples.data(), samples.size());
   } else {
     (data_ ? data_ : header_)->write(samples.data(), samples.size());
   }
   ++planes_;
+}
+
+void VolumeWriter::find_values(std::span<const std::byte> samples) {
+  visit_stored_type(stored_type(grid_.type), [&]<class Sample>(Sample) {
+    values_.resize(samples.size() / sizeof(Sample));
+    for (std::size_t n = 0; n < values_.size(); ++n) {
+      Sample sample;
+      std::memcpy(&sample, samples.data() + n * sizeof(Sample), sizeof(Sample));
+      values_[n] = static_cast<float>(grid_.value(static_cast<double>(sample)));
+    }
+  });
 }
 
 void VolumeWriter::finish() {

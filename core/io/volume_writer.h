@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "adamas/volume.h"
 #include "core/geometry/vec3.h"
@@ -26,15 +27,19 @@ struct VolumeWriterOptions {
 /// What of a grid's places a file does not keep or say, in a line; empty where it does.
 std::string lost_places(const std::filesystem::path& path, const VolumeGrid& grid);
 
+/// Whether such a file can say that samples have a scale (VolumeGrid::slope).
+bool keeps_scale(const std::filesystem::path& path);
+
 /// Writes a volume plane by plane, uncompressed: .vti (appended raw), .nrrd, .nhdr, .mha, .mhd, .nii, or
 /// .raw, which is samples alone; or compressed: .nii.gz. Equal samples give equal bytes, least byte first.
-/// NIfTI and MetaImage have coordinates in RAS and LPS: those of another known space are turned to it. Files
-/// get their names at finish().
+/// NIfTI and MetaImage have coordinates in RAS and LPS: those of another known space are turned to it. Where
+/// samples have a scale and the file cannot say so, their values are written, as float32. Files get their
+/// names at finish().
 class VolumeWriter {
  public:
   /// Throws Error where the grid is none (VolumeGrid::check), the extension is another, a header cannot hold
   /// the data file's name, or the disk has not the room.
-  VolumeWriter(const std::filesystem::path& path, const VolumeGrid& grid,
+  VolumeWriter(const std::filesystem::path& path, const VolumeGrid& of_planes,
                const VolumeWriterOptions& options = {});
 
   /// Takes the next plane, grid.plane_bytes() in the machine's byte order. Throws Error where it cannot be
@@ -44,7 +49,11 @@ class VolumeWriter {
   void finish();
 
  private:
-  VolumeGrid grid_;
+  void find_values(std::span<const std::byte> samples);
+
+  VolumeGrid grid_;  ///< of the planes that come
+  bool writes_values_ = false;
+  std::vector<float> values_;  ///< of a plane
   std::uint64_t planes_ = 0;
   std::unique_ptr<OutputStream> header_;  ///< with the samples, where there is no other file
   std::unique_ptr<OutputStream> data_;

@@ -43,12 +43,23 @@ struct VolumeGrid {
   /// What the coordinates of places are: "RAS", "LAS", "LPS" (what x, y and z ascend to: right or left,
   /// anterior or posterior, superior), or another name of NRRD; empty where nothing says.
   std::string space{};
+  /// Samples stand for values, slope * sample + intercept: isovalues and ranges are values. The slope is
+  /// positive.
+  double slope = 1, intercept = 0;
 
   [[nodiscard]] std::uint64_t plane_samples() const { return dimensions[0] * dimensions[1]; }
   [[nodiscard]] std::uint64_t samples() const { return plane_samples() * dimensions[2]; }
   /// Of one plane of equal k.
   [[nodiscard]] std::uint64_t plane_bytes() const { return plane_samples() * sample_bytes(type); }
   [[nodiscard]] std::uint64_t bytes() const { return plane_bytes() * dimensions[2]; }
+
+  /// Whether samples are other numbers than their values.
+  [[nodiscard]] bool is_scaled() const { return slope != 1 || intercept != 0; }
+  [[nodiscard]] double value(double sample) const { return slope * sample + intercept; }
+  /// The inverse, which need not be a whole number.
+  [[nodiscard]] double sample(double value) const {
+    return is_scaled() ? (value - intercept) / slope : value;
+  }
 
   /// Whether i, j and k ascend along x, y and z.
   [[nodiscard]] bool is_straight() const { return directions == kStraight; }
@@ -70,8 +81,8 @@ struct VolumeGrid {
   [[nodiscard]] Box3 box() const;
 
   /// Throws Error with `name` where there is no sample, the samples take more bytes than can be counted (at
-  /// eight bytes each), a spacing is not positive, a place is not finite, or directions are no unit vectors
-  /// or lie in one plane.
+  /// eight bytes each), a spacing or the slope is not positive, a place or the intercept is not finite, or
+  /// directions are no unit vectors or lie in one plane.
   void check(const std::string& name) const;
 };
 

@@ -21,9 +21,6 @@ struct BuildOptions {
   /// Samples are predicted from all neighbours that are known, or only from the two ends of the edge whose
   /// middle they are: larger files.
   bool by_split_edges = false;
-  /// From 0 to 2: errors and ranges for every 2^N-th sample along each axis only. Files are smaller, and
-  /// surfaces are refined in greater steps.
-  int subtree_depth = 0;
   bool gradients = false;  ///< keep the directions of gradients too, for the normals of surfaces
   /// A folder for up to four times the bytes of the samples; empty: the system's for temporary files.
   std::filesystem::path scratch{};
@@ -37,7 +34,7 @@ struct OpenOptions {
 
 /// Which surface of a store is wanted.
 struct IsosurfaceRequest {
-  double isovalue = 0;
+  double isovalue = 0;  ///< a value (VolumeGrid::slope)
   /// The greatest isosurface error, an estimate of the distance to the surface of all samples, in units of
   /// length; 0: all that the samples say.
   double error = 0;
@@ -108,8 +105,8 @@ class VolumeStore {
   [[nodiscard]] const VolumeGrid& grid() const;
   /// Levels that restore() knows: 0 is every sample, level N every 2^N-th along each axis.
   [[nodiscard]] int levels() const;
-  /// The least and the greatest finite sample; none where there is no finite one. Throws Error where the part
-  /// of the file that tells of them is damaged.
+  /// The least and the greatest finite sample, as values (VolumeGrid::slope); none where there is no finite
+  /// one. Throws Error where the part of the file that tells of them is damaged.
   [[nodiscard]] std::optional<std::array<double, 2>> range();
   /// Bytes of the file.
   [[nodiscard]] std::uint64_t file_bytes() const;

@@ -21,6 +21,8 @@ constexpr int kRangeModeAt = 2;
 /// with wide registers are no faster here, as each stage is short and waits for the one before, and would
 /// take seven bytes more of a page, which has 240 on average.
 constexpr std::size_t kStates = 4;
+/// Of the number of bits of a RangeRounding.
+constexpr int kRoundingBits = 5;
 
 /// The tables of symbols in these contexts, from `base` on.
 void find_tables(const ContextTables& all, std::size_t base, std::span<const std::uint8_t> contexts,
@@ -87,7 +89,7 @@ class BoundsReader {
       });
       summary_.any_other |= all != 0;
       bool any_open = false;
-      good_ = good_ && put_near<bytes()>(symbols, fields_.known[side], fields_.limits[side], words, any_open);
+      good_ = good_ && put_near<bytes()>(symbols, side, words, any_open);
       stage.box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
         std::copy_n(words.data() + cell, static_cast<int>(count), ranges + cell);
       });
@@ -140,27 +142,35 @@ class BoundsReader {
   /// The words for symbols that leave nothing open, at all cells, and whether there are others. False where
   /// such a symbol cannot stand there.
   template <std::size_t Bytes>
-  [[gnu::always_inline]] static inline bool put_near(const ParityCells<std::uint8_t>& symbols,
-                                                     const ParityCells<Word>& known,
-                                                     const ParityCells<Word>& limits,
-                                                     ParityCells<Word>& words, bool& any_open) {
+  [[gnu::always_inline]] inline bool put_near(const ParityCells<std::uint8_t>& symbols, std::size_t side,
+                                              ParityCells<Word>& words, bool& any_open) const {
     using Lanes = Simd<Word, Bytes>;
     using Numbers = typename Lanes::Numbers;
     using Symbols [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
+    const Word *const known = fields_.known[side].data(), *const limits = fields_.limits[side].data();
+    const RangeRounding<Word> rounding = fields_.rounding;
+    const Numbers least = Numbers{} + rounding.least[side], least_level = Numbers{} + rounding.level(side);
     Numbers bad{}, greatest{};
     for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
       Symbols row;
       std::memcpy(&row, symbols.data() + n, sizeof row);
       const Numbers symbol = __builtin_convertvector(row, Numbers);
-      const Numbers predicted = Lanes::load(known.data() + n), limit = Lanes::load(limits.data() + n);
-      const Numbers distance = symbol < Token::kFirst ? Numbers{} : symbol - (Token::kFirst - 1);
-      const Numbers before = predicted - distance;
-      Lanes::store(symbol == Token::kLimit ? limit : before, words.data() + n);
+      const Numbers predicted = Lanes::load(known + n), limit = Lanes::load(limits + n);
+      const Numbers from = predicted >> rounding.bits, level = from - (symbol - (Token::kFirst - 1));
+      const Numbers before = Lanes::greater(level << rounding.bits, least);
+      Lanes::store(symbol == Token::kPredicted ? predicted
+                   : symbol == Token::kLimit   ? limit
+                                               : before,
+                   words.data() + n);
       // Else another token would stand for the word.
+      Numbers unlike = (level > from ? ~Numbers{} : Numbers{}) |
+                       (level < least_level ? ~Numbers{} : Numbers{}) |
+                       (before == limit ? ~Numbers{} : Numbers{});
+      if constexpr (RangeRounding<Word>::kKeepsUnknown)
+        unlike |= predicted == RangeRounding<Word>::kUnknown ? ~Numbers{} : Numbers{};
       const Numbers wrong = symbol == Token::kLimit  ? (limit == predicted ? ~Numbers{} : Numbers{})
                             : symbol < Token::kFirst ? Numbers{}
-                                                     : (before > predicted ? ~Numbers{} : Numbers{}) |
-                                                           (before == limit ? ~Numbers{} : Numbers{});
+                                                     : unlike;
       bad |= symbol < Token::kFirstOpen ? wrong : Numbers{};
       greatest = Lanes::greater(greatest, symbol);
     }
@@ -190,6 +200,7 @@ class BoundsReader {
     });
     const Word* const known = fields_.known[side].data();
     const Word* const limits = fields_.limits[side].data();
+    const RangeRounding<Word>& rounding = fields_.rounding;
     BitCursor extras = decoder_.bits();
     bool good = true;
     for (std::size_t n = 0; n < count; ++n) {
@@ -199,9 +210,14 @@ class BoundsReader {
       const auto extra = static_cast<std::uint32_t>(extras.take(far.extra_bits));
       const Word predicted = known[cell];
       const bool behind = symbol == Token::kBehind;
-      const auto value = static_cast<Word>(behind ? extra : predicted - (far.lead | extra));
+      const auto from = static_cast<Word>(predicted >> rounding.bits);
+      const auto level = static_cast<Word>(from - (far.lead | extra));
+      const Word value = behind ? static_cast<Word>(extra) : rounding.from_level(side, level);
+      const bool is_one = behind ? value > predicted || Token::is_unknown(predicted)
+                                 : (far.lead | extra) <= from && level >= rounding.level(side) &&
+                                       !Token::is_unknown(predicted);
       // Else another token would stand for it.
-      good &= symbol <= Token::kBehind && value != limits[cell] && (value > predicted) == behind;
+      good &= symbol <= Token::kBehind && value != predicted && value != limits[cell] && is_one;
       ranges[cell] = value;
     }
     decoder_.bits() = extras;
@@ -210,13 +226,13 @@ class BoundsReader {
 
   /// What a symbol that leaves bits open stands for.
   struct Far {
-    Word lead = 0;
+    std::uint32_t lead = 0;
     std::uint8_t extra_bits = 0;
   };
   static constexpr auto kFar = [] {
     std::array<Far, Token::kSymbols> far{};
     for (std::uint8_t symbol = Token::kFirstOpen; symbol < far.size(); ++symbol)
-      far[symbol] = {static_cast<Word>(Token::lead(symbol)),
+      far[symbol] = {symbol == Token::kBehind ? 0 : Token::lead(symbol),
                      static_cast<std::uint8_t>(Token::extra_bits(symbol))};
     return far;
   }();
@@ -235,13 +251,15 @@ class BoundsReader {
 }  // namespace
 
 template <class Word>
-BoundsSurvey<Word>::BoundsSurvey(const Vec3& spacing)
-    : geometry_(spacing), counts_(BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols) {}
+BoundsSurvey<Word>::BoundsSurvey(const Vec3& spacing, const RangeRounding<Word>& rounding)
+    : geometry_(spacing),
+      rounding_(rounding),
+      counts_(BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols) {}
 
 template <class Word>
 void BoundsSurvey<Word>::add(const PageShape& shape, const Surroundings<Word>& around,
                              const Page<Word>& page) {
-  const BoundsSymbols<Word> symbols(geometry_, shape, around, page);
+  const BoundsSymbols<Word> symbols(geometry_, rounding_, shape, around, page);
   for (const auto& stage : symbols.stages()) {
     for (std::size_t n = 0; n < stage.symbols.size(); ++n)
       counts_.add(stage.base + stage.contexts[n], stage.symbols[n]);
@@ -252,6 +270,10 @@ template <class Word>
 std::vector<std::byte> BoundsCodec<Word>::tables() const {
   std::vector<std::byte> bytes;
   BitWriter out(bytes);
+  out.put(static_cast<std::uint64_t>(rounding_.bits), kRoundingBits);
+  if (rounding_.bits > 0) {
+    for (const Word least : rounding_.least) out.put(least, 8 * sizeof(Word));
+  }
   contexts_.write(out);
   out.finish();
   return bytes;
@@ -261,16 +283,28 @@ template <class Word>
 BoundsCodec<Word> BoundsCodec<Word>::parse(std::span<const std::byte> tables, const Vec3& spacing,
                                            std::string_view name) {
   BitReader in(tables);
+  RangeRounding<Word> rounding;
+  in.refill();
+  rounding.bits = static_cast<int>(in.take(kRoundingBits));
+  if (rounding.bits > RangeRounding<Word>::kMostBits)
+    fail("{}: expected ranges rounded to at most {} bits, found {}", name, RangeRounding<Word>::kMostBits,
+         rounding.bits);
+  if (rounding.bits > 0) {
+    for (Word& least : rounding.least) {
+      in.refill();
+      least = static_cast<Word>(in.take(8 * sizeof(Word)));
+    }
+  }
   ContextTables contexts =
       ContextTables::read(in, BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols, name);
   if (!in.at_end()) fail("{}: expected the end after the tables of bounds, found more data", name);
-  return BoundsCodec(OwnErrorGeometry(spacing), std::move(contexts));
+  return BoundsCodec(OwnErrorGeometry(spacing), rounding, std::move(contexts));
 }
 
 template <class Word>
 void BoundsCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& around,
                                const Page<Word>& page, std::vector<std::byte>& out) const {
-  const BoundsSymbols<Word> symbols(geometry_, shape, around, page);
+  const BoundsSymbols<Word> symbols(geometry_, rounding_, shape, around, page);
   const ErrorMode errors = symbols.summary().error_mode();
   const RangeMode ranges = symbols.summary().range_mode();
   out.push_back(head(errors, ranges));
@@ -307,6 +341,7 @@ bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape
   const bool coded = is_coded(errors) || is_coded(ranges);
   if (!coded && !bytes.empty()) return false;
   BoundsFields<Word> fields;
+  fields.rounding = rounding_;
   fields.load(shape, around, samples);
   if (!is_coded(errors)) fields.fill_errors(shape, error);
   BoundsReader<Word> reader(contexts_, tables_, bytes, shape, errors, ranges, fields);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
+#include "isosurface/compression/range_rounding.h"
 #include "isosurface/compression/rans_coder.h"
 #include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/volume/page.h"
@@ -18,8 +19,8 @@ namespace adamas {
 template <class Word>
 class BoundsSurvey {
  public:
-  /// `spacing`: of the volume's samples.
-  explicit BoundsSurvey(const Vec3& spacing);
+  /// `spacing`: of the volume's samples. `rounding`: of the ranges of all pages.
+  explicit BoundsSurvey(const Vec3& spacing, const RangeRounding<Word>& rounding = {});
 
   /// `around` is not read where the page is complete; of `page` only places that have points are read.
   void add(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
@@ -27,21 +28,23 @@ class BoundsSurvey {
   void merge(const BoundsSurvey& other) { counts_.merge(other.counts_); }
 
   [[nodiscard]] const OwnErrorGeometry& geometry() const { return geometry_; }
+  [[nodiscard]] const RangeRounding<Word>& rounding() const { return rounding_; }
   [[nodiscard]] const ContextCounts& counts() const { return counts_; }
 
  private:
   OwnErrorGeometry geometry_;
+  RangeRounding<Word> rounding_;
   ContextCounts counts_;
 };
 
-/// Makes the error codes (below 64) and the ranges (any words) of a page's own points into bytes and back,
-/// lossless. What is known of coarser LODs and of the page's samples is made use of. May be used by several
-/// threads at once. Word: see Page.
+/// Makes the error codes (below 64) and the ranges (any words, rounded) of a page's own points into bytes and
+/// back, lossless. What is known of coarser LODs and of the page's samples is made use of. May be used by
+/// several threads at once. Word: see Page.
 template <class Word>
 class BoundsCodec {
  public:
   explicit BoundsCodec(const BoundsSurvey<Word>& survey)
-      : BoundsCodec(survey.geometry(), ContextTables(survey.counts())) {}
+      : BoundsCodec(survey.geometry(), survey.rounding(), ContextTables(survey.counts())) {}
 
   /// From which `parse` makes the codec again; the same bytes for equal surveys.
   [[nodiscard]] std::vector<std::byte> tables() const;
@@ -62,10 +65,11 @@ class BoundsCodec {
                             PageBounds<Word>& bounds) const;
 
  private:
-  BoundsCodec(const OwnErrorGeometry& geometry, ContextTables contexts)
-      : geometry_(geometry), contexts_(std::move(contexts)), tables_(contexts_) {}
+  BoundsCodec(const OwnErrorGeometry& geometry, const RangeRounding<Word>& rounding, ContextTables contexts)
+      : geometry_(geometry), rounding_(rounding), contexts_(std::move(contexts)), tables_(contexts_) {}
 
   OwnErrorGeometry geometry_;
+  RangeRounding<Word> rounding_;
   ContextTables contexts_;
   RansTables tables_;
 };

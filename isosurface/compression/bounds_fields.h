@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "isosurface/compression/parity_cells.h"
+#include "isosurface/compression/range_rounding.h"
 #include "isosurface/preprocessing/own_errors.h"
 #include "isosurface/volume/page.h"
 
@@ -14,7 +15,9 @@ namespace adamas {
 /// that the greatest is the least there. The greatest word stands where nothing is known.
 template <class Word>
 struct BoundsFields {
-  static constexpr Word kUnknown = static_cast<Word>(~Word{0});
+  static constexpr Word kUnknown = RangeRounding<Word>::kUnknown;
+
+  RangeRounding<Word> rounding;  ///< of all ranges that the page and those before it have
 
   /// What is known before any value; of a complete page its samples alone.
   void load(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);

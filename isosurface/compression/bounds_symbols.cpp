@@ -40,9 +40,11 @@ void BoundsSummary::add_ranges(const PageShape& shape, const BoundsFields<Word>&
 }
 
 template <class Word>
-BoundsSymbols<Word>::BoundsSymbols(const OwnErrorGeometry& geometry, const PageShape& shape,
-                                   const Surroundings<Word>& around, const Page<Word>& page)
+BoundsSymbols<Word>::BoundsSymbols(const OwnErrorGeometry& geometry, const RangeRounding<Word>& rounding,
+                                   const PageShape& shape, const Surroundings<Word>& around,
+                                   const Page<Word>& page)
     : shape_(shape), fields_(std::make_unique_for_overwrite<BoundsFields<Word>>()) {
+  fields_->rounding = rounding;
   fields_->load(shape, around, page);
   fields_->load_bounds(shape, page);
   collect(geometry, {true, true});
@@ -106,7 +108,8 @@ void BoundsSymbols<Word>::range(std::size_t side, const BoundsStage& stage) {
   const auto& found = fields_->ranges[side][static_cast<std::size_t>(stage.parity)];
   const auto& expected = fields_->known[side];
   const bool other = add(stage, found, expected, [&](std::size_t cell) {
-    const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->limits[side][cell]);
+    const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->limits[side][cell],
+                                            fields_->rounding.bits);
     summary_.any_other = summary_.any_other || token.symbol != RangeToken<Word>::kPredicted;
     const int count = RangeToken<Word>::extra_bits(token.symbol);
     if (count > 0) stages_.back().extras.push_back({token.extra, count});

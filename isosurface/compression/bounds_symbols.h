@@ -57,8 +57,9 @@ struct BoundsSummary {
 template <class Word>
 class BoundsSymbols {
  public:
-  BoundsSymbols(const OwnErrorGeometry& geometry, const PageShape& shape, const Surroundings<Word>& around,
-                const Page<Word>& page);
+  /// The ranges of the page and round it are rounded.
+  BoundsSymbols(const OwnErrorGeometry& geometry, const RangeRounding<Word>& rounding, const PageShape& shape,
+                const Surroundings<Word>& around, const Page<Word>& page);
 
   struct Extra {
     std::uint32_t bits;

@@ -53,7 +53,7 @@ void walk_bounds(BoundsFields<Word>& fields, const OwnErrorGeometry& geometry, c
 }
 
 /// The same of a complete page, of which nothing but the samples is known: errors are predicted as 0, and
-/// ranges as the samples.
+/// ranges as the samples, rounded.
 template <class Word, class Port>
 void walk_complete_bounds(BoundsFields<Word>& fields, const PageShape& shape, Port& port) {
   for (auto& cells : fields.predicted) cells.fill(0);
@@ -67,7 +67,9 @@ void walk_complete_bounds(BoundsFields<Word>& fields, const PageShape& shape, Po
     if (port.needs_errors()) port.errors(stage);
     for (std::size_t side = 0; port.needs_ranges() && side < 2; ++side) {
       ++stage.base;
-      fields.known[side] = fields.samples[side][static_cast<std::size_t>(parity)];
+      const auto& samples = fields.samples[side][static_cast<std::size_t>(parity)];
+      std::transform(samples.begin(), samples.end(), fields.known[side].begin(),
+                     [&](Word sample) { return fields.rounding.round(side, sample); });
       port.range(side, stage);
     }
   }

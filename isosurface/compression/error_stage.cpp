@@ -51,6 +51,63 @@ template <int Parity, std::size_t Bytes>
   }
 }
 
+/// A quarter of the sum of the errors at four steps from the points.
+template <int Parity, std::size_t Bytes>
+[[gnu::always_inline]] inline typename Simd<std::uint8_t, Bytes>::Numbers mean_of_four(
+    const AllCells<std::uint8_t>& errors, std::size_t cell, int axis_a, int axis_b) {
+  using Lanes = Simd<std::uint8_t, Bytes>;
+  typename Lanes::Numbers sum{};
+  for (int n = 0; n < 4; ++n) {
+    LatticePoint step{};
+    step[axis_a] = (n & 1) == 0 ? -1 : 1;
+    step[axis_b] = (n & 2) == 0 ? -1 : 1;
+    const CellNeighbour near = cell_neighbour(Parity, step);
+    sum += Lanes::load(errors[near.parity].data() + cell + near.offset);
+  }
+  return sum >> 2;
+}
+
+/// The mean of the errors round edges of a coarse LOD that are known before them: of edges along the axes
+/// before theirs that have a cell in common with them; of those along the first axis, of their ends on the
+/// coarser LOD.
+template <int Parity, std::size_t Bytes>
+[[gnu::always_inline]] inline typename Simd<std::uint8_t, Bytes>::Numbers mean_round_edges(
+    const AllCells<std::uint8_t>& errors, std::size_t cell) {
+  using Lanes = Simd<std::uint8_t, Bytes>;
+  if constexpr (Parity == 1) {
+    constexpr CellNeighbour kBefore = cell_neighbour(1, {-1, 0, 0}), kAfter = cell_neighbour(1, {1, 0, 0});
+    return (Lanes::load(errors[0].data() + cell + kBefore.offset) +
+            Lanes::load(errors[0].data() + cell + kAfter.offset)) >>
+           1;
+  } else if constexpr (Parity == 2) {
+    return mean_of_four<Parity, Bytes>(errors, cell, 0, 1);
+  } else {
+    return (mean_of_four<Parity, Bytes>(errors, cell, 0, 2) +
+            mean_of_four<Parity, Bytes>(errors, cell, 1, 2)) >>
+           1;
+  }
+}
+
+/// Of edges of a coarse LOD, whose errors are predicted as 0: their contexts, from 1 on; 0 where they can
+/// have no error.
+template <int Parity, std::size_t Bytes>
+[[gnu::always_inline]] inline void find_coarse_edge_contexts(const AllCells<std::uint8_t>& errors,
+                                                             const Codes& cube_room, Codes& predicted,
+                                                             Codes& contexts) {
+  using Lanes = Simd<std::uint8_t, Bytes>;
+  using Numbers = typename Lanes::Numbers;
+  constexpr int kLimitClasses = ErrorStages<std::uint8_t>::kLimitClasses;
+  constexpr int kMeanClasses = ErrorStages<std::uint8_t>::kMeanClasses;
+  for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+    const Numbers most = kMostCode - greatest_of_cubes<Parity, Lanes>(cube_room.data() + n);
+    constexpr std::uint8_t kFirst = 16 - kLimitClasses;
+    const Numbers limit = Lanes::greater(most >> 2, Numbers{} + kFirst) - kFirst;
+    const Numbers mean = mean_round_edges<Parity, Bytes>(errors, n) >> 3;
+    Lanes::store(Numbers{}, predicted.data() + n);
+    Lanes::store(most == 0 ? Numbers{} : limit * kMeanClasses + mean + 1, contexts.data() + n);
+  }
+}
+
 }  // namespace
 
 template <class Word>
@@ -59,6 +116,18 @@ void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
   stage.begin(parity, ParityBox::of(shape.count, parity));
   with_wide_lanes([&](auto bytes) {
     Codes parts;
+    if (phase_of(parity) == 2 && shape.lod > 0) {
+      with_parity(parity, [&](auto of) {
+        if constexpr (phase_of(of()) == 2)
+          find_coarse_edge_contexts<of(), bytes()>(fields.errors, fields.cube_error_room,
+                                                   fields.predicted[of()], parts);
+      });
+      stage.add_rows<bytes() == 32>({}, [&](std::size_t cell, RowBytes) {
+        const RowBytes context = load_row(parts.data() + cell), open = bytes_not_zero(context);
+        return std::pair((context + kEachByte * (kCoarseEdges - 1)) & open, omitted ? open : ~RowBytes{0});
+      });
+      return;
+    }
     with_parity(parity, [&](auto of) {
       predict<of(), bytes()>(fields.errors, fields.cube_error_room, fields.predicted[of()], parts);
     });

@@ -69,9 +69,10 @@ class RangeLanes {
   /// Whether bits are those of numbers as they are until to_bit_widths.
   static constexpr bool kBitsFollow = sizeof(Word) == 1 && Bytes == 32;
 
-  /// The least of what is known of each point.
+  /// The least of what is known of each point, rounded.
   [[gnu::always_inline]] static inline void find_known(const AllCells<Word>& samples,
                                                        const AllCells<Word>& ranges,
+                                                       const RangeRounding<Word>& rounding, std::size_t side,
                                                        ParityCells<Word>& known) {
     for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
       const auto at = [n](const AllCells<Word>& cells, CellNeighbour near) {
@@ -86,33 +87,44 @@ class RangeLanes {
         ((least = Lanes::lesser(least, at(ranges, kNear.children[N]))), ...);
       }
       (std::make_index_sequence<kNear.child_count>());
-      Lanes::store(least, known.data() + n);
+      Lanes::store(round(least, rounding, side), known.data() + n);
     }
   }
 
-  /// Makes the limits of a side, and how many bits the room to them has.
+  /// Makes the limits of a side, and how many bits the room to them has, in levels.
   [[gnu::always_inline]] static inline void find_limits(const ParityCells<Word>& cube_limits,
-                                                        const ParityCells<Word>& known,
+                                                        const ParityCells<Word>& known, int level_bits,
                                                         ParityCells<Word>& limits, Bits& bits) {
     for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
       const Numbers most = Lanes::load(known.data() + n);
       const Numbers limit = Lanes::lesser(greatest_of_cubes<Parity, Lanes>(cube_limits.data() + n), most);
       Lanes::store(limit, limits.data() + n);
-      put_bits(most - limit, bits.data() + n);
+      put_bits((most - limit) >> level_bits, bits.data() + n);
     }
   }
 
-  /// How many bits the difference between the least and the greatest known sample has.
+  /// How many bits the difference between the least and the greatest known sample has, in levels.
   [[gnu::always_inline]] static inline void find_spread(const ParityCells<Word>& low,
-                                                        const ParityCells<Word>& inverted_high, Bits& bits) {
+                                                        const ParityCells<Word>& inverted_high,
+                                                        int level_bits, Bits& bits) {
     for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
       const Numbers least = Lanes::load(low.data() + n);
-      put_bits(Lanes::greater(~Lanes::load(inverted_high.data() + n), least) - least, bits.data() + n);
+      const Numbers greatest = Lanes::greater(~Lanes::load(inverted_high.data() + n), least);
+      put_bits((greatest - least) >> level_bits, bits.data() + n);
     }
   }
 
  private:
   static constexpr Neighbours kNear = neighbours(Parity);
+
+  /// RangeRounding::round of each number.
+  [[gnu::always_inline]] static inline Numbers round(Numbers ends, const RangeRounding<Word>& rounding,
+                                                     std::size_t side) {
+    const Numbers rounded =
+        Lanes::greater(ends >> rounding.bits << rounding.bits, Numbers{} + rounding.least[side]);
+    if constexpr (!RangeRounding<Word>::kKeepsUnknown) return rounded;
+    return ends == RangeRounding<Word>::kUnknown ? ends : rounded;
+  }
 
   /// std::bit_width of each number.
   [[gnu::always_inline]] static inline void put_bits(Numbers numbers, std::uint8_t* to) {
@@ -171,10 +183,12 @@ void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
     with_parity(parity, [&](auto of) {
       using Lanes = RangeLanes<Word, of(), bytes()>;
       for (std::size_t side = 0; side < 2; ++side) {
-        Lanes::find_known(fields.samples[side], fields.ranges[side], fields.known[side]);
-        Lanes::find_limits(fields.cube_limits[side], fields.known[side], fields.limits[side], room[side]);
+        Lanes::find_known(fields.samples[side], fields.ranges[side], fields.rounding, side,
+                          fields.known[side]);
+        Lanes::find_limits(fields.cube_limits[side], fields.known[side], fields.rounding.bits,
+                           fields.limits[side], room[side]);
       }
-      Lanes::find_spread(fields.known[0], fields.known[1], spread);
+      Lanes::find_spread(fields.known[0], fields.known[1], fields.rounding.bits, spread);
       if constexpr (Lanes::kBitsFollow) {
         for (Bits* bits : {&room[0], &room[1], &spread}) to_bit_widths(bits->data());
       }

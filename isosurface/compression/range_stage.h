@@ -7,12 +7,13 @@
 
 #include "isosurface/compression/bounds_fields.h"
 #include "isosurface/compression/bounds_stage.h"
+#include "isosurface/compression/range_rounding.h"
 
 namespace adamas {
 
-/// Codes the end of a range as a distance below the word `predicted`. The limit is the least end that is
-/// expected, and not above `predicted`. A symbol stands for the distance; where symbols stand for several
-/// distances, bits tell which one it is.
+/// Codes the end of a range as a distance below the word `predicted`, in levels of a RangeRounding. The limit
+/// is the least end that is expected, and not above `predicted`. All of them are rounded. A symbol stands for
+/// the distance; where symbols stand for several distances, bits tell which one it is.
 template <class Word>
 struct RangeToken {
   static constexpr int kBits = 8 * sizeof(Word);
@@ -23,23 +24,24 @@ struct RangeToken {
   static constexpr int kDirectBits = 5;
   static constexpr std::uint8_t kFirstOpen =
       kFirst + (1 << kDirectBits) - 1;  ///< from this symbol on, bits follow
-  static constexpr std::uint8_t kBehind = static_cast<std::uint8_t>(
-      kFirstOpen + 2 * (kBits - kDirectBits));  ///< the end is above the predicted word; all its bits follow
+  /// The end is above the predicted word, or that is not known; all its bits follow.
+  static constexpr std::uint8_t kBehind = static_cast<std::uint8_t>(kFirstOpen + 2 * (kBits - kDirectBits));
   static constexpr std::size_t kSymbols = kBehind + 1;
 
   std::uint8_t symbol = 0;
   std::uint32_t extra = 0;
 
-  static constexpr RangeToken of(Word value, Word predicted, Word limit) {
+  /// `bits`: those of the rounding.
+  static constexpr RangeToken of(Word value, Word predicted, Word limit, int bits) {
     if (value == predicted) return {kPredicted, 0};
     if (value == limit) return {kLimit, 0};
-    if (value > predicted) return {kBehind, value};
-    const auto distance = static_cast<std::uint32_t>(predicted - value);
+    if (value > predicted || is_unknown(predicted)) return {kBehind, value};
+    const auto distance = static_cast<std::uint32_t>((predicted >> bits) - (value >> bits));
     if (distance < 1u << kDirectBits) return {static_cast<std::uint8_t>(kFirst + distance - 1), 0};
-    const auto bits = static_cast<int>(std::bit_width(distance));
-    const std::uint32_t half = distance >> (bits - 2) & 1;
-    return {static_cast<std::uint8_t>(kFirstOpen + 2 * (bits - kDirectBits - 1) + static_cast<int>(half)),
-            distance & ((1u << (bits - 2)) - 1)};
+    const auto width = static_cast<int>(std::bit_width(distance));
+    const std::uint32_t half = distance >> (width - 2) & 1;
+    return {static_cast<std::uint8_t>(kFirstOpen + 2 * (width - kDirectBits - 1) + static_cast<int>(half)),
+            distance & ((1u << (width - 2)) - 1)};
   }
 
   /// Of a symbol from kFirst on.
@@ -54,19 +56,16 @@ struct RangeToken {
     return (2u | static_cast<std::uint32_t>(number & 1)) << (number / 2 + kDirectBits - 1);
   }
 
-  /// The word from a symbol from kFirst on. Another token may stand for it too, or none if the symbol is not
-  /// one that `of` gives.
-  [[nodiscard]] constexpr Word value(Word predicted) const {
-    if (symbol == kBehind) return static_cast<Word>(extra);
-    if (symbol < kFirstOpen) return static_cast<Word>(predicted - (symbol - kFirst) - 1);
-    return static_cast<Word>(predicted - (lead(symbol) | extra));
+  static constexpr bool is_unknown(Word predicted) {
+    return RangeRounding<Word>::kKeepsUnknown && predicted == RangeRounding<Word>::kUnknown;
   }
 };
 
 /// Predicts the ranges of a parity's points, each side alike (see BoundsFields). A range ends at `known`, the
-/// least word that is known in and on the diamond, or below it; it does not end below its limit, which the
-/// ranges of the parents on the coarser LOD give. The diamond of a centre is covered by those of its faces,
-/// and that of a face by those of its edges: where all these are known, the range follows from them.
+/// least word that is known in and on the diamond, rounded, or below it; it does not end below its limit,
+/// which the ranges of the parents on the coarser LOD give. The diamond of a centre is covered by those of
+/// its faces, and that of a face by those of its edges: where all these are known, the range follows from
+/// them.
 template <class Word>
 class RangeStages {
  public:

@@ -155,7 +155,7 @@ class DiamondsInSpace {
 };
 
 /// The contour of the piecewise linear function on a mesh that is kept as a table, with the given values at
-/// its vertices: of stores with subtrees, and what tests compare the contours of other stores with.
+/// its vertices: what tests compare the contours of stores with.
 /// `values(p)` gives the value at the lattice point p as a double; it is asked once for each vertex of a
 /// diamond, so several times for a vertex of the mesh, and not for diamonds beyond the last sample. A value
 /// equal to the isovalue counts as above it. Tetrahedra with a value that is not finite have no surface. The

@@ -20,10 +20,6 @@ constexpr std::int32_t nested_reach(int phase) { return 5 - phase; }
 /// come from such a diamond are among them too, so that the others can be split in a conforming mesh.
 class LostRegions {
  public:
-  /// `subtree_depth`: that of the store. With subtrees a tetrahedron stands for finer ones, whose samples it
-  /// needs.
-  explicit LostRegions(int subtree_depth = 0) : finer_lods_(subtree_depth > 0 ? subtree_depth + 1 : 0) {}
-
   [[nodiscard]] bool empty() const { return pages_.empty(); }
   void add(const PageId& page) { pages_.push_back(page); }
 
@@ -35,8 +31,8 @@ class LostRegions {
 
  private:
   [[nodiscard]] bool blocks(const PageId& page, LatticePoint p, int lod, int phase) const {
-    if (lod > page.lod + finer_lods_) return false;
-    const std::int32_t reach = (nested_reach(0) << (page.lod + finer_lods_)) - (nested_reach(phase) << lod);
+    if (lod > page.lod) return false;
+    const std::int32_t reach = (nested_reach(0) << page.lod) - (nested_reach(phase) << lod);
     for (int axis = 0; axis < 3; ++axis) {
       const std::int32_t begin = page.block[axis] * PageGrid::kSide << page.lod;
       const std::int32_t end = begin + ((PageGrid::kSide - 1) << page.lod);
@@ -45,7 +41,6 @@ class LostRegions {
     return true;
   }
 
-  int finer_lods_;  ///< how many LODs finer than a diamond's own its tetrahedra need samples of
   std::vector<PageId> pages_;
 };
 

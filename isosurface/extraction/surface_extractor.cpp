@@ -8,7 +8,6 @@
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/contour/decimate.h"
 #include "isosurface/extraction/page_contour.h"
-#include "isosurface/extraction/subtree_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
 #include "isosurface/volume/samples.h"
 
@@ -16,10 +15,7 @@ namespace adamas {
 
 template <class Sample>
 SurfaceExtractor<Sample>::SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages)
-    : pages_(pages),
-      diamonds_(pages),
-      subtree_bisections_(3 * pages.file().header().subtree_depth),
-      split_pages_(diamonds_, limits_) {
+    : pages_(pages), diamonds_(pages), split_pages_(diamonds_, limits_) {
   const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
   root_ = {middle, middle, middle};
 }
@@ -41,14 +37,9 @@ template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Progress& progress) {
   split_pages_.find(
       cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / split_pages_.lods()); });
-  ExtractedSurface surface;
-  if (subtree_bisections_ > 0) {
-    surface = contour_of_subtrees(diamonds_, split_pages_, request_, subtree_bisections_, progress);
-  } else {
-    // Which diamonds are split is known now, so that bounds are no longer needed.
-    if (!request_.others_follow) pages_.drop_bounds();
-    surface = split_pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
-  }
+  // Which diamonds are split is known now, so that bounds are no longer needed.
+  if (!request_.others_follow) pages_.drop_bounds();
+  ExtractedSurface surface = split_pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   const Vec3 spacing = contour_options().spacing;
   if (request_.region) clip_contour(surface.contour, *request_.region, spacing);
   clip_contour(surface.contour, request_.sides, spacing);
@@ -95,30 +86,12 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   const int least_class = diamonds_.class_within(request_.error) + 1;
   if (!request_.max_triangles) return contour_of({.error_class = least_class}, progress);
   if (request_.join) return decimated(least_class, progress);
-  // With subtrees a split adds triangles to its neighbours too, which the choice does not know: it is then
-  // repeated with other numbers, until it uses nearly all.
-  constexpr double kEnough = 0.97;
-  constexpr int kMostTurns = 12;
-  const std::uint64_t most = *request_.max_triangles;
-  std::uint64_t kept = 0, refused = most + 1;
-  std::optional<ExtractedSurface> best;
-  for (int turn = 0; turn < kMostTurns && refused - kept > 1; ++turn) {
-    const std::uint64_t budget = turn == 0 ? most : (kept + refused) / 2;
-    ExtractedSurface surface = contour_of(cut_of(budget, least_class, progress), progress);
-    const std::uint64_t found = surface.contour.triangles.size();
-    (found <= most ? kept : refused) = budget;
-    if (found > most) continue;
-    const bool is_enough = turn == 0 || static_cast<double>(found) >= kEnough * static_cast<double>(most);
-    if (!best || found > best->contour.triangles.size()) best = std::move(surface);
-    if (is_enough) break;
-  }
-  return best ? std::move(*best)
-              : contour_of({.error_class = StoredDiamonds<Sample>::kErrorClasses}, progress);
+  return contour_of(cut_of(*request_.max_triangles, least_class, progress), progress);
 }
 
 template <class Sample>
 SurfaceCut SurfaceExtractor<Sample>::cut_of(std::uint64_t triangles, int least_class, Progress& progress) {
-  TriangleBudget<Sample> chosen(diamonds_, split_pages_, request_, subtree_bisections_);
+  TriangleBudget<Sample> chosen(diamonds_, split_pages_, request_);
   return chosen.find(triangles, least_class, Diamond(root_), progress);
 }
 
@@ -154,7 +127,7 @@ template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request, Progress& progress) {
   request_ = request;
   // What was lost to another surface is met with and told again.
-  limits_ = {{}, LostRegions(subtree_bisections_ / 3)};
+  limits_ = {{}, LostRegions()};
   diamonds_.set_contour(request_.isovalue);
   if (request.region) {
     const Vec3 spacing = diamonds_.spacing();

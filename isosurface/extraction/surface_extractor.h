@@ -49,7 +49,6 @@ class SurfaceExtractor {
 
   StoredPages<OrderedWord<Sample>>& pages_;
   StoredDiamonds<Sample> diamonds_;
-  int subtree_bisections_;
   LatticePoint root_;
   SurfaceRequest request_;
   SplitLimits limits_;

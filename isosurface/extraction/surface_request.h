@@ -56,7 +56,7 @@ void check_surface_request(const std::string& name, const VolumeGrid& grid, cons
 struct ExtractedSurface {
   Contour contour;
   std::uint64_t diamonds = 0;    ///< that are split
-  std::uint64_t tetrahedra = 0;  ///< of the mesh; with subtrees of the fine one
+  std::uint64_t tetrahedra = 0;  ///< of the mesh
   /// The greatest isosurface error among the diamonds that the surface crosses, and what decimation adds: an
   /// estimate.
   double max_error = 0;

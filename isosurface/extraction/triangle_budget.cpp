@@ -97,18 +97,7 @@ std::int64_t TriangleCounter<Sample>::count_clipped(const Diamond& diamond, int 
 
 template <class Sample>
 std::int64_t TriangleCounter<Sample>::count(const Diamond& diamond, int slot,
-                                            const std::array<double, 4>& values, int bisections) {
-  if (bisections > 0) {
-    std::int64_t total = 0;
-    const double middle = samples_.sample(diamond.point());
-    for (const int end : {0, 1}) {
-      const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
-      std::array<double, 4> part;
-      for (std::size_t v = 0; v < 4; ++v) part[v] = half.vertices[v] < 4 ? values[half.vertices[v]] : middle;
-      total += count(Diamond(diamond.child(half.child)), half.slot, part, bisections - 1);
-    }
-    return total;
-  }
+                                            const std::array<double, 4>& values) {
   unsigned above = 0;
   for (std::size_t v = 0; v < 4; ++v) {
     if (!std::isfinite(values[v])) return 0;
@@ -124,7 +113,7 @@ std::int64_t TriangleCounter<Sample>::triangles(const Diamond& diamond) {
   const DiamondVertices v(diamond, samples_, false);
   std::int64_t total = 0;
   for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
-    if ((v.slots >> slot & 1) != 0) total += count(diamond, slot, v.tetrahedron(slot), bisections_);
+    if ((v.slots >> slot & 1) != 0) total += count(diamond, slot, v.tetrahedron(slot));
   }
   return total;
 }
@@ -135,10 +124,10 @@ std::int64_t TriangleCounter<Sample>::added_by_split(const Diamond& diamond) {
   std::int64_t added = 0;
   for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
     if ((v.slots >> slot & 1) == 0) continue;
-    added -= count(diamond, slot, v.tetrahedron(slot), bisections_);
+    added -= count(diamond, slot, v.tetrahedron(slot));
     for (const int end : {0, 1}) {
       const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
-      added += count(Diamond(diamond.child(half.child)), half.slot, v.half(slot, half.vertices), bisections_);
+      added += count(Diamond(diamond.child(half.child)), half.slot, v.half(slot, half.vertices));
     }
   }
   return added;
@@ -146,12 +135,8 @@ std::int64_t TriangleCounter<Sample>::added_by_split(const Diamond& diamond) {
 
 template <class Sample>
 TriangleBudget<Sample>::TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages,
-                                       const SurfaceRequest& request, int bisections)
-    : split_pages_(pages),
-      request_(request),
-      bisections_(bisections),
-      counter_(diamonds, request, bisections),
-      page_(diamonds) {}
+                                       const SurfaceRequest& request)
+    : split_pages_(pages), request_(request), counter_(diamonds, request), page_(diamonds) {}
 
 template <class Sample>
 PageMask TriangleBudget<Sample>::of_classes(int lod, const PageOfLod& page, int low, int high) {
@@ -175,7 +160,7 @@ void TriangleBudget<Sample>::visit_page(int lod, const PageOfLod& page, int low,
   if (!wanted.any()) return;
   page_.load(lod, page.block, wanted);
   const auto& codes = split_pages_.codes(lod, page.block);
-  const bool simple = bisections_ == 0 && page_.all_finite();
+  const bool simple = page_.all_finite();
   wanted.for_each([&](LatticePoint q) {
     const DiamondStencil& stencil = DiamondStencil::at(q);
     // Tables tell how many triangles a split adds where nothing is clipped.

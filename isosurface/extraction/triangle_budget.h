@@ -12,15 +12,13 @@
 
 namespace adamas {
 
-/// Counts the triangles of a surface before there is one. What a split adds does not depend on other splits,
-/// except with subtrees: there a split adds some to its neighbours too, which this leaves out.
+/// Counts the triangles of a surface before there is one. What a split adds does not depend on other splits.
 template <class Sample>
 class TriangleCounter {
  public:
-  /// `bisections`: how often tetrahedra of the mesh are bisected before they are contoured. Both objects must
-  /// outlive this.
-  TriangleCounter(LatticeSamples<Sample>& samples, const SurfaceRequest& request, int bisections)
-      : samples_(samples), request_(request), bisections_(bisections) {}
+  /// Both objects must outlive this.
+  TriangleCounter(LatticeSamples<Sample>& samples, const SurfaceRequest& request)
+      : samples_(samples), request_(request) {}
 
   /// How many triangles there are in the tetrahedra of a diamond. Throws PageLost.
   std::int64_t triangles(const Diamond& diamond);
@@ -30,12 +28,11 @@ class TriangleCounter {
   [[nodiscard]] bool is_inside(const Diamond& diamond) const;
 
  private:
-  std::int64_t count(const Diamond& diamond, int slot, const std::array<double, 4>& values, int bisections);
+  std::int64_t count(const Diamond& diamond, int slot, const std::array<double, 4>& values);
   std::int64_t count_clipped(const Diamond& diamond, int slot);
 
   LatticeSamples<Sample>& samples_;
   const SurfaceRequest& request_;
-  int bisections_;
 };
 
 /// Finds the cut that gives a surface as many triangles as are allowed: diamonds are split in the order of
@@ -43,9 +40,8 @@ class TriangleCounter {
 template <class Sample>
 class TriangleBudget {
  public:
-  /// `bisections`: see TriangleCounter. All of these must outlive this.
-  TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages, const SurfaceRequest& request,
-                 int bisections);
+  /// All of these must outlive this.
+  TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages, const SurfaceRequest& request);
 
   /// The cut with at most this many triangles that splits no diamond of a class below `least_class`. `root`:
   /// the diamond of the mesh in which nothing is split. Throws PageLost.
@@ -76,7 +72,6 @@ class TriangleBudget {
 
   SplitPages<Sample>& split_pages_;
   const SurfaceRequest& request_;
-  int bisections_;
   TriangleCounter<Sample> counter_;
   PageDiamonds<Sample> page_;
   Counts added_;  ///< triangles, by class and generation

@@ -31,7 +31,7 @@ SurfaceRequest to_surface_request(const std::string& name, const VolumeGrid& gri
                                   const IsosurfaceRequest& request) {
   check_numbers(request);
   SurfaceRequest result;
-  result.isovalue = request.isovalue;
+  result.isovalue = grid.sample(request.isovalue);
   result.error = request.error / grid.greatest_stretch();
   result.max_triangles = request.max_triangles;
   result.strict = request.strict;
@@ -70,7 +70,9 @@ class VolumeStore::ContentsOf final : public Contents {
   std::optional<std::array<double, 2>> range() override {
     const auto found = sample_range<Sample>(open().pages);
     if (!found) fail("expected to find the range of the samples, found the directory damaged");
-    return (*found)[0] <= (*found)[1] ? found : std::nullopt;
+    const auto [low, high] = *found;
+    if (low > high) return std::nullopt;
+    return std::array{grid().value(low), grid().value(high)};
   }
 
   Isosurface isosurface(const IsosurfaceRequest& request, Progress& progress) override {
@@ -151,11 +153,8 @@ void VolumeStore::build(const std::filesystem::path& path, const VolumeGrid& gri
   for (const std::uint64_t n : grid.dimensions) {
     if (n > kMost) fail("{}: expected at most {} samples along each axis, found {}", path.string(), kMost, n);
   }
-  if (options.subtree_depth < 0 || options.subtree_depth > 2)
-    fail("{}: expected a depth of subtrees from 0 to 2, found {}", path.string(), options.subtree_depth);
   StoreOptions how;
   how.coding = options.by_split_edges ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
-  how.subtree_depth = options.subtree_depth;
   how.gradients = options.gradients;
   if (!options.scratch.empty()) how.scratch = options.scratch;
   OutputFile file(path);

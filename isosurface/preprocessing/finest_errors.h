@@ -49,7 +49,7 @@ class FinestErrors {
         std::array<std::uint8_t, 16> row;
         Lanes::store_by_turns(Lanes::load(work.codes.even(j, k)), Lanes::load(work.codes.odd(j, k)),
                               row.data());
-        std::copy_n(row.begin(), count.i, lod.codes(0, base.j + j, base.k + k) + base.i);
+        std::copy_n(row.begin(), count.i, lod.codes(base.j + j, base.k + k) + base.i);
       }
     }
   }

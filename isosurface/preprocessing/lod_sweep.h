@@ -199,12 +199,9 @@ class LodSweep {
   /// Takes from the points `shift` along another row.
   static void take(Values& values, std::int32_t j, std::int32_t z, std::int32_t first, std::int32_t from_j,
                    std::int32_t from_z, std::int32_t shift, std::int32_t end) {
-    const int generations = values.generations();
-    for (int g = 0; g <= generations; ++g) {
-      std::uint8_t* to = values.codes(g, j, z);
-      const std::uint8_t* from = values.codes(g == 0 ? 0 : g - 1, from_j, from_z);
-      for (std::int32_t i = first; i < end; i += 2) to[i] = std::max(to[i], from[i + shift]);
-    }
+    std::uint8_t* to = values.codes(j, z);
+    const std::uint8_t* from = values.codes(from_j, from_z);
+    for (std::int32_t i = first; i < end; i += 2) to[i] = std::max(to[i], from[i + shift]);
     Word *low = values.low(j, z), *high = values.high(j, z);
     const Word *from_low = values.low(from_j, from_z), *from_high = values.high(from_j, from_z);
     for (std::int32_t i = first; i < end; i += 2) {
@@ -227,12 +224,10 @@ class LodSweep {
   static void pull_row(Values& fine, Values& coarse, std::int32_t j, std::int32_t z, std::int32_t fine_j,
                        std::int32_t fine_z, std::int32_t first, std::int32_t shift) {
     const std::int32_t end = std::min(coarse.size().i, (fine.size().i - 1 - shift) / 2 + 1);
-    for (int g = 0; g <= coarse.generations(); ++g) {
-      std::uint8_t* to = coarse.codes(g, j, z);
-      const std::uint8_t* from = fine.codes(g == 0 ? 0 : g - 1, fine_j, fine_z);
-      for (std::int32_t i = first; i < end; i += 2)
-        to[i] = std::max(to[i], coarser_code(from[2 * i + shift], 1));
-    }
+    std::uint8_t* to = coarse.codes(j, z);
+    const std::uint8_t* from = fine.codes(fine_j, fine_z);
+    for (std::int32_t i = first; i < end; i += 2)
+      to[i] = std::max(to[i], coarser_code(from[2 * i + shift], 1));
     Word *low = coarse.low(j, z), *high = coarse.high(j, z);
     const Word *from_low = fine.low(fine_j, fine_z), *from_high = fine.high(fine_j, fine_z);
     for (std::int32_t i = first; i < end; i += 2) {

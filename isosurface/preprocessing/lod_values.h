@@ -20,27 +20,24 @@ class LodValues {
   static constexpr Word kGreatest = std::numeric_limits<Word>::max();
 
   /// `size` points per axis, of which `planes` are held at a time: plane z in the place of z - planes.
-  /// `generations` codes are kept per point beside its own.
-  LodValues(LatticePoint size, int planes, int generations, bool with_samples)
+  LodValues(LatticePoint size, int planes, bool with_samples)
       : size_(size),
         planes_(std::min(size.k, planes)),
         stride_(static_cast<std::size_t>(size.i) + 1),
-        plane_(stride_ * static_cast<std::size_t>(size.j)),
-        codes_(static_cast<std::size_t>(generations) + 1) {
+        plane_(stride_ * static_cast<std::size_t>(size.j)) {
     const std::size_t total = plane_ * static_cast<std::size_t>(planes_) + 1;
-    for (auto& codes : codes_) codes.assign(total, 0);
+    codes_.assign(total, 0);
     low_.assign(total, kGreatest);
     high_.assign(total, 0);
     if (with_samples) samples_.assign(total, 0);
   }
 
   [[nodiscard]] LatticePoint size() const { return size_; }
-  [[nodiscard]] int generations() const { return static_cast<int>(codes_.size()) - 1; }
 
   /// Forgets what was known in plane z, whose place another one had.
   void open(std::int32_t z) {
     const auto begin = static_cast<std::ptrdiff_t>(offset(0, z)), count = static_cast<std::ptrdiff_t>(plane_);
-    for (auto& codes : codes_) std::fill_n(codes.begin() + begin, count, std::uint8_t{0});
+    std::fill_n(codes_.begin() + begin, count, std::uint8_t{0});
     std::fill_n(low_.begin() + begin, count, kGreatest);
     std::fill_n(high_.begin() + begin, count, Word{0});
   }
@@ -52,18 +49,16 @@ class LodValues {
   }
   [[nodiscard]] Word* low(std::int32_t j, std::int32_t z) { return low_.data() + offset(j, z); }
   [[nodiscard]] Word* high(std::int32_t j, std::int32_t z) { return high_.data() + offset(j, z); }
-  /// Error codes: the greatest of all diamonds that are this many generations of bisection further.
-  [[nodiscard]] std::uint8_t* codes(int generation, std::int32_t j, std::int32_t z) {
-    return codes_[static_cast<std::size_t>(generation)].data() + offset(j, z);
-  }
+  /// Error codes.
+  [[nodiscard]] std::uint8_t* codes(std::int32_t j, std::int32_t z) { return codes_.data() + offset(j, z); }
 
   /// The diamond's own code; from any thread.
   [[nodiscard]] std::uint8_t own(LatticePoint p) {
-    return std::atomic_ref<std::uint8_t>(codes(0, p.j, p.k)[p.i]).load(std::memory_order_relaxed);
+    return std::atomic_ref<std::uint8_t>(codes(p.j, p.k)[p.i]).load(std::memory_order_relaxed);
   }
   /// Raises it; from any thread.
   void raise(LatticePoint p, std::uint8_t code) {
-    const std::atomic_ref<std::uint8_t> own(codes(0, p.j, p.k)[p.i]);
+    const std::atomic_ref<std::uint8_t> own(codes(p.j, p.k)[p.i]);
     std::uint8_t old = own.load(std::memory_order_relaxed);
     while (old < code && !own.compare_exchange_weak(old, code, std::memory_order_relaxed)) {
     }
@@ -78,7 +73,7 @@ class LodValues {
   LatticePoint size_;
   int planes_;
   std::size_t stride_, plane_;
-  std::vector<std::vector<std::uint8_t>> codes_;
+  std::vector<std::uint8_t> codes_;
   std::vector<Word> samples_, low_, high_;
 };
 

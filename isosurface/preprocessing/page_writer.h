@@ -18,10 +18,9 @@ class PageWriter {
   using Word = OrderedWord<Sample>;
   using Lods = std::vector<LodValues<Word>>;
 
-  PageWriter(const PageGrid& grid, int subtree_depth, Lods& lods, const CoarseSamples<Word>& coarse,
+  PageWriter(const PageGrid& grid, Lods& lods, const CoarseSamples<Word>& coarse,
              const PageSink<Sample>& sink)
       : grid_(grid),
-        subtree_depth_(subtree_depth),
         lods_(lods),
         coarse_(coarse),
         sink_(sink),
@@ -86,21 +85,17 @@ class PageWriter {
   void fill_bounds(const PageId& id, std::int32_t j, std::int32_t k, std::int32_t count) {
     const LatticePoint p = PageGrid::kSide * id.block + LatticePoint{0, j, k};
     const std::size_t at = place({0, j, k});
-    if (id.lod < subtree_depth_) {
-      for (std::int32_t i = 0; i < count; ++i) fill_empty(at + static_cast<std::size_t>(i));
-      return;
-    }
     LodValues<Word>& values = lods_[static_cast<std::size_t>(id.lod)];
     std::copy_n(values.low(p.j, p.k) + p.i, count, page_->low.data() + at);
     std::copy_n(values.high(p.j, p.k) + p.i, count, page_->high.data() + at);
-    std::copy_n(values.codes(3 * subtree_depth_, p.j, p.k) + p.i, count, page_->errors.data() + at);
+    std::copy_n(values.codes(p.j, p.k) + p.i, count, page_->errors.data() + at);
   }
 
   /// Of the coarsest page, whose points belong to several LODs.
   void fill_point(LatticePoint q, int page_lod) {
     const std::size_t at = place(q);
     const int lod = page_lod + trailing_zeros(q);
-    if (lod >= grid_.depth() || lod < subtree_depth_) {
+    if (lod >= grid_.depth()) {
       fill_empty(at);
       return;
     }
@@ -115,7 +110,7 @@ class PageWriter {
     }
     page_->low[at] = values.low(p.j, p.k)[p.i];
     page_->high[at] = values.high(p.j, p.k)[p.i];
-    page_->errors[at] = values.codes(3 * subtree_depth_, p.j, p.k)[p.i];
+    page_->errors[at] = values.codes(p.j, p.k)[p.i];
   }
 
   void fill_empty(std::size_t at) {
@@ -125,7 +120,6 @@ class PageWriter {
   }
 
   const PageGrid& grid_;
-  int subtree_depth_;
   Lods& lods_;
   const CoarseSamples<Word>& coarse_;
   const PageSink<Sample>& sink_;

@@ -27,7 +27,7 @@ class Preprocessing {
   using Word = OrderedWord<Sample>;
 
   Preprocessing(const VolumeGrid& volume, const PlaneSource& planes, const PageSink<Sample>& sink,
-                const PreprocessOptions& options, Progress& progress)
+                Progress& progress)
       : grid_(volume.dimensions),
         last_(grid_.last()),
         planes_(planes),
@@ -35,10 +35,10 @@ class Preprocessing {
         samples_(volume.plane_samples()),
         words_(volume.plane_samples()),
         coarse_(last_),
-        lods_(make_lods(grid_, 3 * options.subtree_depth)),
+        lods_(make_lods(grid_)),
         errors_(grid_, volume.spacing, coarse_),
         sweep_(lods_, last_),
-        writer_(grid_, options.subtree_depth, lods_, coarse_, sink) {}
+        writer_(grid_, lods_, coarse_, sink) {}
 
   void run() {
     read_coarse();
@@ -56,7 +56,7 @@ class Preprocessing {
  private:
   using Lods = std::vector<LodValues<Word>>;
 
-  static Lods make_lods(const PageGrid& grid, int generations) {
+  static Lods make_lods(const PageGrid& grid) {
     Lods lods;
     for (int lod = 0; lod < std::max(1, grid.depth()); ++lod) {
       LatticePoint size = grid.reach(lod) + LatticePoint{1, 1, 1};
@@ -65,7 +65,7 @@ class Preprocessing {
       const bool is_whole = lod >= kWholeLod;
       // A slab; a row of pages that it does not finish; and that its last two planes are not final.
       const int planes = is_whole ? size.k : 18 + (kSlab >> lod);
-      lods.emplace_back(size, planes, generations, !is_whole);
+      lods.emplace_back(size, planes, !is_whole);
     }
     return lods;
   }
@@ -139,21 +139,18 @@ class Preprocessing {
 
 template <class Sample>
 void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSink<Sample>& sink,
-                const PreprocessOptions& options, Progress& progress) {
+                Progress& progress) {
   grid.check("volume");
-  if (options.subtree_depth < 0 || options.subtree_depth > 2)
-    fail("expected subtrees of depth 0, 1 or 2, found {}", options.subtree_depth);
   ADAMAS_ASSERT(sample_bytes(grid.type) == sizeof(Sample));
-  Preprocessing<Sample>(grid, planes, sink, options, progress).run();
+  Preprocessing<Sample>(grid, planes, sink, progress).run();
 }
 
 template void preprocess<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint8_t>&,
-                                       const PreprocessOptions&, Progress&);
+                                       Progress&);
 template void preprocess<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint16_t>&,
-                                        const PreprocessOptions&, Progress&);
+                                        Progress&);
 template void preprocess<std::int16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::int16_t>&,
-                                       const PreprocessOptions&, Progress&);
-template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&,
-                                const PreprocessOptions&, Progress&);
+                                       Progress&);
+template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&, Progress&);
 
 }  // namespace adamas

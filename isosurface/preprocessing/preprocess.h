@@ -11,12 +11,6 @@
 
 namespace adamas {
 
-struct PreprocessOptions {
-  /// 0, 1 or 2: a tetrahedron stands for those that this many LODs more of bisection make of it. Errors and
-  /// ranges exist for that many LODs less.
-  int subtree_depth = 0;
-};
-
 /// Takes one page. Called for one at a time, in an order that depends on the volume's dimensions alone.
 template <class Sample>
 using PageSink = std::function<void(const PageId&, const Page<OrderedWord<Sample>>&)>;
@@ -29,15 +23,14 @@ using PageSink = std::function<void(const PageId&, const Page<OrderedWord<Sample
 /// or the tetrahedron's diameter if that is less; 0 where there is no difference; the greatest of the LOD
 /// where a sample in or on it is not finite, for no interpolation stands for that. Its range covers the
 /// finite samples in and on its tetrahedra. Both cover those of its child diamonds. Corners beyond the data
-/// have the nearest sample's value. With subtrees the error is that of the diamonds that many LODs further,
-/// and finer LODs have error 0 and low > high, as have the corners of the lattice. Errors are codes of
-/// lod_error_scale.
+/// have the nearest sample's value. The corners of the lattice, which are in
+/// the middle of no diamond, have error 0 and low > high. Errors are codes of lod_error_scale.
 ///
 /// Planes are read in ascending order, every 16th one twice. Memory does not grow with the number of planes,
 /// but for 1/4096 of the samples. Sample: uint8, uint16, int16 or float, as grid.type says. Throws Error for
 /// a grid that cannot be, Cancelled when `progress` says so, and what `planes` and `sink` throw.
 template <class Sample>
 void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSink<Sample>& sink,
-                const PreprocessOptions& options = {}, Progress& progress = SilentProgress::instance());
+                Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

@@ -92,7 +92,7 @@ class SlabErrors {
     const std::int32_t side = 16 >> lod;
     for (std::int32_t k = 0; k <= std::min(side, size.k - 1 - first.k); ++k) {
       for (std::int32_t j = 0; j <= std::min(side, size.j - 1 - first.j); ++j) {
-        std::uint8_t* row = values.codes(0, first.j + j, first.k + k) + first.i;
+        std::uint8_t* row = values.codes(first.j + j, first.k + k) + first.i;
         const std::uint8_t* from = codes + kCube * ((j << lod) + kCube * (k << lod));
         const std::int32_t end = std::min(side, size.i - 1 - first.i);
         for (std::int32_t i = 0; i <= end; ++i) row[i] = std::max(row[i], from[i << lod]);

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/compression/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/range_rounding.h"
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
@@ -30,6 +31,8 @@ constexpr std::size_t kGrain = 16;
 constexpr std::size_t kMemory = std::size_t{256} << 20;
 /// In a volume of more pages than these one of eight finest pages is surveyed for the tables.
 constexpr std::uint64_t kSurveyed = 4096;
+/// How many of the coarsest pages tell how ranges are rounded.
+constexpr std::size_t kPagesForRounding = 256;
 
 /// Numbers of all pages, in the order of the file.
 std::vector<std::uint64_t> page_numbers(const PageGrid& grid) {
@@ -70,8 +73,8 @@ struct Surveys {
 
   /// `ranks`: see sample_survey.
   Surveys(SampleCoding coding, std::shared_ptr<const SampleRanks> ranks, bool with_gradients,
-          const Vec3& spacing)
-      : samples(sample_survey<Word>(coding, std::move(ranks))), bounds(spacing) {
+          const Vec3& spacing, const RangeRounding<Word>& rounding)
+      : samples(sample_survey<Word>(coding, std::move(ranks))), bounds(spacing, rounding) {
     if (with_gradients) gradients.emplace(coding_of_bytes(coding));
   }
 
@@ -131,8 +134,6 @@ class StoreBuilder {
   }
 
   StoreFigures build(const std::filesystem::path& path, const std::string& shown, const PlaneSource& planes) {
-    PreprocessOptions preprocessing;
-    preprocessing.subtree_depth = options_.subtree_depth;
     preprocess<Sample>(
         volume_, planes,
         [this](const PageId& id, const Page<Word>& page) {
@@ -140,7 +141,7 @@ class StoreBuilder {
             census_.add(page_shape(grid_, id), page.samples);
           scratch_.put(id, page);
         },
-        preprocessing, progress_);
+        progress_);
     if (gradients_ != nullptr) {
       gradient_pages<Sample>(
           volume_, planes,
@@ -149,6 +150,7 @@ class StoreBuilder {
     }
     ranks_ = census_.ranks();
     const std::vector<std::uint64_t> numbers = page_numbers(grid_);
+    rounding_ = rounding_of(std::span(numbers).first(std::min(numbers.size(), kPagesForRounding)));
     return write(numbers, survey(numbers), path, shown);
   }
 
@@ -156,7 +158,22 @@ class StoreBuilder {
   [[nodiscard]] SampleCoding coding() const {
     return ranks_ != nullptr ? SampleCoding::kRanks : options_.coding;
   }
-  /// Calls fn(jobs) for the pages in batches.
+  /// By the ranges of the diamonds of these pages.
+  RangeRounding<Word> rounding_of(std::span<const std::uint64_t> numbers) {
+    std::vector<Word> low, high;
+    Page<Word> page;
+    for (const std::uint64_t number : numbers) {
+      const PageId id = grid_.page(number);
+      scratch_.copy(id, page);
+      for_each_own_place(page_shape(grid_, id), [&](std::size_t place) {
+        if (page.low[place] > page.high[place]) return;
+        low.push_back(page.low[place]);
+        high.push_back(page.high[place]);
+      });
+    }
+    return find_rounding(std::move(low), std::move(high));
+  }
+  /// Calls fn(jobs) for the pages in batches, with their ranges rounded.
   template <class Fn>
   void for_each_batch(const std::vector<std::uint64_t>& numbers, const char* stage, Fn&& fn) {
     for (std::size_t begin = 0; begin < numbers.size(); begin += kBatch) {
@@ -170,6 +187,8 @@ class StoreBuilder {
         job.shape = page_shape(grid_, id);
         scratch_.surroundings(id, job.around);
         scratch_.copy(id, job.page);
+        rounding_.round(job.around.low, job.around.high);
+        rounding_.round(job.page.low, job.page.high);
         if (gradients_ != nullptr) get_gradients(id, job);
       }
       fn(std::span<const Job<Word>>(jobs_).first(count));
@@ -188,7 +207,8 @@ class StoreBuilder {
       return numbers.size() <= kSurveyed || grid_.page(number).lod > 0 || fibonacci_slot(number, 3) == 0;
     });
     const auto empty = [this] {
-      return std::make_unique<Surveys<Word>>(coding(), ranks_, options_.gradients, volume_.spacing);
+      return std::make_unique<Surveys<Word>>(coding(), ranks_, options_.gradients, volume_.spacing,
+                                             rounding_);
     };
     const auto surveys = empty();
     for_each_batch(some, "surveying", [&](std::span<const Job<Word>> jobs) {
@@ -209,7 +229,6 @@ class StoreBuilder {
     StoreHeader header;
     header.grid = volume_;
     header.coding = coding();
-    header.subtree_depth = static_cast<std::uint8_t>(options_.subtree_depth);
     header.gradients = options_.gradients;
     StoreFileWriter writer(path, shown, header);
     std::vector<CodedPage> coded(kBatch);
@@ -244,6 +263,7 @@ class StoreBuilder {
   std::vector<Job<Word>> jobs_;
   SampleCensus<Word> census_;
   std::shared_ptr<const SampleRanks> ranks_;  ///< null where samples are coded as they are
+  RangeRounding<Word> rounding_;
 };
 
 }  // namespace

@@ -17,7 +17,6 @@ namespace adamas {
 
 struct StoreOptions {
   SampleCoding coding = SampleCoding::kInterpolation;
-  int subtree_depth = 0;  ///< 0, 1 or 2
   /// Where scratch data of up to four times the input may lie, and two bytes more for each sample's gradient.
   std::filesystem::path scratch = std::filesystem::temp_directory_path();
   bool gradients = false;  ///< whether the directions of samples' gradients are kept

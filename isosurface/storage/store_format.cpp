@@ -28,6 +28,8 @@ void write_grid(ByteWriter& out, const VolumeGrid& grid) {
     for (int axis = 0; axis < 3; ++axis) out.number(direction[axis]);
   }
   out.sized_bytes(std::as_bytes(std::span(grid.space)));
+  out.number(grid.slope);
+  out.number(grid.intercept);
 }
 
 VolumeGrid read_grid(ByteReader& in, std::string_view name) {
@@ -46,13 +48,14 @@ VolumeGrid read_grid(ByteReader& in, std::string_view name) {
   grid.space.assign(reinterpret_cast<const char*>(space.data()), space.size());
   if (!grid.space.empty() && !is_space(grid.space))
     fail("{}: expected the name of a space of coordinates, found another", name);
+  grid.slope = in.number<double>();
+  grid.intercept = in.number<double>();
   return grid;
 }
 
 void write_header(ByteWriter& out, const StoreHeader& header) {
   write_grid(out, header.grid);
   out.number(static_cast<std::uint8_t>(header.coding));
-  out.number(header.subtree_depth);
   out.number(static_cast<std::uint8_t>(header.gradients));
   out.number(header.steps);
   for (const std::uint64_t n : {header.bytes.samples, header.bytes.bounds, header.bytes.gradients})
@@ -70,7 +73,6 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
     return value;
   };
   header.coding = static_cast<SampleCoding>(choice("a coding of samples", 2));
-  header.subtree_depth = choice("a depth of subtrees", 2);
   header.gradients = choice("a coding of gradients", 1) != 0;
   header.steps = in.number<std::uint32_t>();
   for (std::uint64_t* n : {&header.bytes.samples, &header.bytes.bounds, &header.bytes.gradients})

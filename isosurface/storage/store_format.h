@@ -29,7 +29,6 @@ struct StoreBytes {
 struct StoreHeader {
   VolumeGrid grid;
   SampleCoding coding = SampleCoding::kInterpolation;
-  std::uint8_t subtree_depth = 0;  ///< pages of LODs from this on hold errors and ranges; 0 to 2
   bool gradients = false;          ///< whether pages hold directions of gradients
   std::uint32_t steps = 1;
   StoreBytes bytes;
@@ -47,7 +46,7 @@ struct PageSummary {
   /// isovalue, lie in parts of 2^part_bits() words; no diamond that a contour for a part's isovalues crosses
   /// has a greater code than the part's, which is 0 where there is none, and else at most kSpan below
   /// `error`.
-  static constexpr std::size_t kParts = 32;
+  static constexpr std::size_t kParts = 16;
   static constexpr int kSpan = 14;
   std::array<std::uint8_t, kParts> part_errors{};
 
@@ -109,7 +108,7 @@ inline constexpr int kCopiedLod = 2;
 /// What a file begins with; everything else is found from here.
 struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
-  static constexpr std::uint32_t kVersion = 2;
+  static constexpr std::uint32_t kVersion = 3;
 
   std::uint64_t root_offset = 0, root_size = 0;
 

@@ -31,7 +31,6 @@ TEST_F(StoreFailures, WrongUsageOfStore) {
   refused({"--dimensions", "10", "--type", "uint8", "--header-bytes=-1"}, {"--header-bytes", "'-1'"});
   refused({"--dimensions", "10", "--type", "uint8", "--stack"}, {"--stack and --dimensions"});
   refused({"--dimensions", "10", "--type", "uint8", "--array", "a"}, {"--array", "not --dimensions"});
-  refused({"--subtrees", "3"}, {"--subtrees", "0, 1 or 2", "'3'"});
   refused({"--coding", "zip"}, {"--coding", "interpolation or split-edge", "'zip'"});
   expect_wrong_usage({"store", "ball.nhdr", "--array", "a", "-o", "b.adm"}, {"--array", "ball.nhdr"});
   std::filesystem::copy(folder() / "ball.raw", folder() / "raw.adm");

@@ -29,8 +29,9 @@ template <class Word>
 using Cases = std::vector<Case<Word>>;
 
 template <class Word>
-BoundsCodec<Word> codec_of(const Cases<Word>& cases, const Vec3& spacing = kEven) {
-  BoundsSurvey<Word> survey(spacing);
+BoundsCodec<Word> codec_of(const Cases<Word>& cases, const Vec3& spacing = kEven,
+                           const RangeRounding<Word>& rounding = {}) {
+  BoundsSurvey<Word> survey(spacing, rounding);
   for (const auto& c : cases) survey.add(c.shape, c.around, c.page);
   return BoundsCodec<Word>(survey);
 }
@@ -73,8 +74,9 @@ void expect_there_and_back(const BoundsCodec<Word>& codec, const Case<Word>& c) 
 
 /// With the codec of all, and with that which is made from its tables. Returns the bytes of all pages.
 template <class Word>
-std::size_t expect_all_there_and_back(const Cases<Word>& cases, const Vec3& spacing = kEven) {
-  const BoundsCodec<Word> codec = codec_of(cases, spacing);
+std::size_t expect_all_there_and_back(const Cases<Word>& cases, const Vec3& spacing = kEven,
+                                      const RangeRounding<Word>& rounding = {}) {
+  const BoundsCodec<Word> codec = codec_of(cases, spacing, rounding);
   const BoundsCodec<Word> parsed = BoundsCodec<Word>::parse(codec.tables(), spacing, "here");
   EXPECT_EQ(parsed.tables(), codec.tables());
   std::size_t size = 0;
@@ -144,9 +146,8 @@ using Words = testing::Types<std::uint8_t, std::uint16_t, std::uint32_t>;
 TYPED_TEST_SUITE(BoundsCodecOf, Words);
 
 template <class Sample>
-void expect_less_than(double bits, double scale, Vec3 spacing = {1, 1, 1}, int depth = 0) {
-  const test::PreparedVolume<Sample> reference(kDimensions, waves<Sample>(kDimensions, scale), spacing,
-                                               depth);
+void expect_less_than(double bits, double scale, Vec3 spacing = {1, 1, 1}) {
+  const test::PreparedVolume<Sample> reference(kDimensions, waves<Sample>(kDimensions, scale), spacing);
   const auto cases = cases_of(reference);
   const std::size_t size = expect_all_there_and_back(cases, spacing);
   const auto points = static_cast<double>(kDimensions[0] * kDimensions[1] * kDimensions[2]);
@@ -159,19 +160,6 @@ TEST(BoundsCodec, CodesWhatVolumesHold) {
   expect_less_than<std::int16_t>(6, 15000);
   expect_less_than<float>(12, 1);
   expect_less_than<std::uint8_t>(4, 120, {1, 1, 2.5});
-}
-
-TEST(BoundsCodec, CodesLodsWithoutValuesInAByteOrTwo) {
-  const test::PreparedVolume<std::uint8_t> reference(kDimensions, waves<std::uint8_t>(kDimensions, 90),
-                                                     {1, 1, 1}, 1);
-  const auto cases = cases_of(reference);
-  const auto codec = codec_of(cases);
-  expect_all_there_and_back(cases);
-  for (const auto& c : cases) {
-    if (c.shape.lod < 1) {
-      EXPECT_EQ(encoded(codec, c).size(), 1u);
-    }
-  }
 }
 
 TYPED_TEST(BoundsCodecOf, KnowsNothingOfValuesBeforeAndFarBehindThePage) {
@@ -245,6 +233,60 @@ TYPED_TEST(BoundsCodecOf, CodesAnything) {
   // And with a codec that has seen nothing.
   const auto codec = codec_of<TypeParam>({});
   for (const auto& c : cases) expect_there_and_back(codec, c);
+}
+
+/// The ranges of pages, and round them, as a store has them: rounded to this many bits. Those that are not of
+/// any sample are all the same.
+template <class Word>
+RangeRounding<Word> round_all(Cases<Word>& cases, int bits) {
+  constexpr Word kMost = std::numeric_limits<Word>::max();
+  RangeRounding<Word> rounding{bits, {kMost, kMost}};
+  for (auto& c : cases) {
+    for (std::size_t n = 0; n < c.page.low.size(); ++n) {
+      if (c.page.low[n] > c.page.high[n]) c.page.low[n] = kMost, c.page.high[n] = 0;
+      const std::size_t around = n % Surroundings<Word>::kPoints;
+      if (c.around.low[around] > c.around.high[around])
+        std::swap(c.around.low[around], c.around.high[around]);
+      rounding.least[0] = std::min({rounding.least[0], c.page.low[n], c.around.low[around]});
+      rounding.least[1] = std::min(
+          {rounding.least[1], static_cast<Word>(~c.page.high[n]), static_cast<Word>(~c.around.high[around])});
+    }
+  }
+  for (auto& c : cases) {
+    rounding.round(c.page.low, c.page.high);
+    rounding.round(c.around.low, c.around.high);
+  }
+  return rounding;
+}
+
+TYPED_TEST(BoundsCodecOf, CodesRoundedRanges) {
+  std::mt19937_64 random(12);
+  for (int bits = 1; bits <= RangeRounding<TypeParam>::kMostBits; bits += sizeof(TypeParam) == 1 ? 1 : 5) {
+    Cases<TypeParam> cases;
+    for (const int lod : {0, 1, 5}) cases.push_back(any_case<TypeParam>(random, {{16, 16, 16}, false, lod}));
+    cases.push_back(any_case<TypeParam>(random, {{5, 16, 8}, false, 0}));
+    cases.push_back(any_case<TypeParam>(random, {{9, 9, 9}, true, 4}));
+    const RangeRounding<TypeParam> rounding = round_all(cases, bits);
+    expect_all_there_and_back(cases, kEven, rounding);
+  }
+}
+
+/// With rounded ranges a volume takes fewer bytes.
+template <class Sample>
+void expect_fewer_bytes(const std::vector<Sample>& samples, int bits) {
+  auto cases = cases_of(test::PreparedVolume<Sample>(kDimensions, samples));
+  const std::size_t exact = expect_all_there_and_back(cases);
+  const auto rounding = round_all(cases, bits);
+  EXPECT_LT(expect_all_there_and_back(cases, kEven, rounding), exact);
+}
+
+TEST(BoundsCodec, RoundedRangesTakeFewerBytes) {
+  expect_fewer_bytes(waves<std::uint8_t>(kDimensions, 120), 4);
+  expect_fewer_bytes(waves<std::uint16_t>(kDimensions, 30000), 11);
+  expect_fewer_bytes(waves<std::int16_t>(kDimensions, 15000), 11);
+  std::vector<float> samples = waves<float>(kDimensions, 1);
+  for (std::size_t n = 0; n < samples.size(); n += 997) samples[n] = std::nanf("");
+  expect_fewer_bytes(samples, 20);
 }
 
 TYPED_TEST(BoundsCodecOf, CodesPagesOfAllSizes) {

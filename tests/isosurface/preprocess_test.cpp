@@ -87,7 +87,7 @@ template <class Sample>
 using Pages = std::vector<std::pair<PageId, Page<OrderedWord<Sample>>>>;
 
 template <class Sample>
-Pages<Sample> pages_of(const TestVolume<Sample>& volume, int subtree_depth = 0) {
+Pages<Sample> pages_of(const TestVolume<Sample>& volume) {
   Pages<Sample> pages;
   const std::uint64_t plane = volume.grid.plane_samples();
   preprocess<Sample>(
@@ -96,8 +96,7 @@ Pages<Sample> pages_of(const TestVolume<Sample>& volume, int subtree_depth = 0) 
         ASSERT_EQ(samples.size(), plane * sizeof(Sample));
         std::memcpy(samples.data(), volume.samples.data() + k * plane, samples.size());
       },
-      [&](const PageId& id, const Page<OrderedWord<Sample>>& page) { pages.emplace_back(id, page); },
-      {subtree_depth});
+      [&](const PageId& id, const Page<OrderedWord<Sample>>& page) { pages.emplace_back(id, page); });
   return pages;
 }
 
@@ -138,12 +137,11 @@ bool is_outside(LatticePoint p, const PageGrid& grid) {
 
 /// Compares everything with the definition, and a diamond with its children.
 template <class Sample>
-void check(const TestVolume<Sample>& volume, int subtree_depth = 0) {
+void check(const TestVolume<Sample>& volume) {
   SCOPED_TRACE(testing::Message() << volume.grid.dimensions[0] << " x " << volume.grid.dimensions[1] << " x "
-                                  << volume.grid.dimensions[2] << " " << sample_name(volume.grid.type)
-                                  << ", subtrees of depth " << subtree_depth);
+                                  << volume.grid.dimensions[2] << " " << sample_name(volume.grid.type));
   const PreprocessReference reference(volume);
-  const auto points = points_of(volume, pages_of(volume, subtree_depth));
+  const auto points = points_of(volume, pages_of(volume));
   const LatticePoint last = volume.last();
   std::size_t seen = 0;
   for (const auto& [p, stored] : points) {
@@ -151,18 +149,16 @@ void check(const TestVolume<Sample>& volume, int subtree_depth = 0) {
     const LatticePoint nearest{std::min(p.i, last.i), std::min(p.j, last.j), std::min(p.k, last.k)};
     ASSERT_EQ(stored.sample, volume.words[volume.index(nearest)]);
     const auto found = reference.diamonds().find(p);
-    if (found == reference.diamonds().end() || trailing_zeros(p) < subtree_depth) {
-      ASSERT_TRUE(trailing_zeros(p) >= reference.depth() || trailing_zeros(p) < subtree_depth ||
-                  is_outside(p, PageGrid(volume.grid.dimensions)));
+    if (found == reference.diamonds().end()) {
+      ASSERT_TRUE(trailing_zeros(p) >= reference.depth() || is_outside(p, PageGrid(volume.grid.dimensions)));
       ASSERT_EQ(stored.code, 0);
       ASSERT_GT(stored.low, stored.high);
       continue;
     }
     ++seen;
     const ReferenceValues& wanted = found->second;
-    const auto codes = reference.codes(p, 3 * subtree_depth);
-    ASSERT_GE(stored.code, codes[0]);
-    ASSERT_LE(stored.code, codes[1]);
+    ASSERT_GE(stored.code, wanted.least_code);
+    ASSERT_LE(stored.code, wanted.greatest_code);
     if (wanted.low <= wanted.high) {
       ASSERT_EQ(stored.low, wanted.low);
       ASSERT_EQ(stored.high, wanted.high);
@@ -170,10 +166,6 @@ void check(const TestVolume<Sample>& volume, int subtree_depth = 0) {
       ASSERT_GT(stored.low, stored.high);
     }
     const ErrorScale& scale = reference.scale(trailing_zeros(p));
-    if (subtree_depth > 0) {
-      ASSERT_GE(scale.decode(stored.code) * (1 + 1e-12),
-                reference.error_of_descendants(p, 3 * subtree_depth));
-    }
     for (const LatticePoint child : reference.children(p)) {
       const auto of_child = points.find(child);
       if (of_child == points.end()) continue;
@@ -184,7 +176,7 @@ void check(const TestVolume<Sample>& volume, int subtree_depth = 0) {
       ASSERT_GE(stored.high, of_child->second.high);
     }
   }
-  EXPECT_TRUE(seen > 0 || reference.depth() <= subtree_depth);
+  EXPECT_TRUE(seen > 0 || reference.depth() == 0);
 }
 
 TEST(Preprocess, AgreesWithTheDefinitionOnCubesOfEverySize) {
@@ -222,18 +214,6 @@ TEST(Preprocess, AgreesWithTheDefinitionWhereLodsAreCutIntoPages) {
   // Of scales where 16 bits are not exact in a float.
   check(TestVolume<std::uint16_t>({2, 3, 1025}, Kind::kRandom));
   check(TestVolume<std::uint16_t>({300, 4, 2}, Kind::kSmooth));
-}
-
-TEST(Preprocess, SubtreesHaveTheErrorsOfTheirTetrahedra) {
-  for (const int depth : {1, 2}) {
-    for (const Dimensions& box :
-         std::vector<Dimensions>{{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {5, 4, 5}, {9, 9, 9}, {12, 7, 10}}) {
-      check(TestVolume<std::uint8_t>(box, Kind::kRandom), depth);
-      check(TestVolume<float>(box, Kind::kHoles, {1, 2, 1}), depth);
-      if (HasFatalFailure()) return;
-    }
-  }
-  check(TestVolume<std::uint8_t>({34, 20, 21}, Kind::kSmooth), 1);
 }
 
 TEST(Preprocess, PagesDoNotDependOnTheNumberOfThreads) {
@@ -291,14 +271,10 @@ TEST(Preprocess, EveryPlaneIsReadInOrderAndCanBeTheLast) {
     [[nodiscard]] bool cancelled() const override { return reports >= 6; }
     int reports = 0;
   } stopping;
-  EXPECT_THROW(preprocess<std::uint8_t>(
-                   volume.grid, [](std::uint64_t, std::span<std::byte>) {}, [](const auto&, const auto&) {},
-                   {}, stopping),
-               Cancelled);
   EXPECT_THROW(
       preprocess<std::uint8_t>(
-          volume.grid, [](std::uint64_t, std::span<std::byte>) {}, [](const auto&, const auto&) {}, {3}),
-      Error);
+          volume.grid, [](std::uint64_t, std::span<std::byte>) {}, [](const auto&, const auto&) {}, stopping),
+      Cancelled);
 }
 
 TEST(Preprocess, ScaleOfALodIsTheGreatestDiameter) {

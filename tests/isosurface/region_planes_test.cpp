@@ -53,7 +53,7 @@ const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 0, 0}},
                                  {{0.1, 0.3, 0.7}, {0.05, -3, 100}},
                                  {{1e-3, 2e-3, 1e-3}, {0.7, 0.7, -0.3}}};
 
-class RegionPlanes : public testing::TestWithParam<int> {
+class RegionPlanes : public testing::Test {
  protected:
   /// Hills whose samples are whole numbers, so that many are the isovalue.
   [[nodiscard]] static MemoryVolume<std::uint8_t> hills(const Place& place) {
@@ -66,11 +66,11 @@ class RegionPlanes : public testing::TestWithParam<int> {
   }
 };
 
-TEST_P(RegionPlanes, AreThoseOfSamples) {
+TEST_F(RegionPlanes, AreThoseOfSamples) {
   std::mt19937 random(7);
   for (const Place& place : kPlaces) {
     const auto volume = hills(place);
-    OpenStore<std::uint8_t> store(volume, GetParam());
+    OpenStore<std::uint8_t> store(volume);
     for (const double isovalue : {100.0, 120.5}) {
       for (int n = 0; n < 12; ++n) {
         SurfaceRequest request;
@@ -97,11 +97,11 @@ TEST_P(RegionPlanes, AreThoseOfSamples) {
   }
 }
 
-TEST_P(RegionPlanes, MayBeAnywhere) {
+TEST_F(RegionPlanes, MayBeAnywhere) {
   std::mt19937 random(8);
   for (const Place& place : kPlaces) {
     const auto volume = hills(place);
-    OpenStore<std::uint8_t> store(volume, GetParam());
+    OpenStore<std::uint8_t> store(volume);
     for (int n = 0; n < 12; ++n) {
       SurfaceRequest request;
       request.isovalue = n % 2 == 0 ? 100 : 90.25;
@@ -123,10 +123,10 @@ TEST_P(RegionPlanes, MayBeAnywhere) {
 }
 
 /// The part of the surface is that of the whole one, whether its planes are those of samples or beside them.
-TEST_P(RegionPlanes, LeaveTheSurfaceWhereItIs) {
+TEST_F(RegionPlanes, LeaveTheSurfaceWhereItIs) {
   const Place place{{0.1, 0.3, 0.7}, {0.05, -3, 100}};
   const auto volume = hills(place);
-  OpenStore<std::uint8_t> store(volume, GetParam());
+  OpenStore<std::uint8_t> store(volume);
   SurfaceRequest request;
   request.isovalue = 100;
   const auto of_region = [&](double shift) {
@@ -142,8 +142,6 @@ TEST_P(RegionPlanes, LeaveTheSurfaceWhereItIs) {
   test::expect_near(of_region(1e-5), exact, 1e-3 * exact.area);
   test::expect_near(of_region(-1e-5), exact, 1e-3 * exact.area);
 }
-
-INSTANTIATE_TEST_SUITE_P(Subtrees, RegionPlanes, testing::Values(0, 1));
 
 /// Two samples along each axis: the domain's corners are all there is.
 TEST(SurfaceOfEightSamples, HasARange) {

@@ -66,7 +66,6 @@ class StoreOfRandomPages : public testing::Test {
     header_.grid.directions = {{{0, 1, 0}, {-0.6, 0, 0.8}, {0.8, 0, 0.6}}};
     header_.grid.space = "LAS";
     header_.coding = SampleCoding::kSplitEdge;
-    header_.subtree_depth = 1;
     header_.steps = 2;
     header_.sample_tables = random_bytes(random_, 100);
     header_.bounds_tables = random_bytes(random_, 3);
@@ -123,7 +122,6 @@ TEST_F(StoreOfRandomPages, GivesThemBack) {
     EXPECT_EQ(file.header().grid.directions, header_.grid.directions);
     EXPECT_EQ(file.header().grid.space, "LAS");
     EXPECT_EQ(file.header().coding, header_.coding);
-    EXPECT_EQ(file.header().subtree_depth, 1);
     EXPECT_EQ(file.header().steps, 2u);
     EXPECT_EQ(file.header().sample_tables, header_.sample_tables);
     EXPECT_EQ(file.header().bounds_tables, header_.bounds_tables);

@@ -39,18 +39,16 @@ MemoryVolume<Sample> volume_of(const Dimensions& dimensions, Kind kind) {
 
 /// Everything that is told of a store at once: whole, whole by its own account, and the same as the volume.
 template <class Sample>
-void expect_back(const MemoryVolume<Sample>& volume, SampleCoding coding, int subtree_depth) {
+void expect_back(const MemoryVolume<Sample>& volume, SampleCoding coding) {
   SCOPED_TRACE(testing::Message() << volume.grid.dimensions[0] << " x " << volume.grid.dimensions[1] << " x "
                                   << volume.grid.dimensions[2] << " " << sample_name(volume.grid.type)
-                                  << ", coding " << static_cast<int>(coding) << ", subtrees "
-                                  << subtree_depth);
+                                  << ", coding " << static_cast<int>(coding));
   const test::Scratch folder;
-  const StoreFigures figures = test::build(folder / "a.adm", volume, {coding, subtree_depth});
+  const StoreFigures figures = test::build(folder / "a.adm", volume, {coding});
   StoreFile file(folder / "a.adm");
   ASSERT_EQ(figures.file_bytes, file.size());
   ASSERT_EQ(figures.pages, file.grid().page_count());
   ASSERT_EQ(file.header().grid.dimensions, volume.grid.dimensions);
-  ASSERT_EQ(file.header().subtree_depth, subtree_depth);
   ASSERT_EQ(test::restored<Sample>(file), test::bits_of(volume.samples));
   const VerifiedStore verified = verify_store(file, 0, SilentProgress::instance());
   ASSERT_EQ(verified.pages, figures.pages);
@@ -59,9 +57,8 @@ void expect_back(const MemoryVolume<Sample>& volume, SampleCoding coding, int su
 
 template <class Sample>
 void expect_back_all_ways(const MemoryVolume<Sample>& volume) {
-  for (const SampleCoding coding : {SampleCoding::kSplitEdge, SampleCoding::kInterpolation}) {
-    for (int depth = 0; depth <= 2; ++depth) expect_back(volume, coding, depth);
-  }
+  for (const SampleCoding coding : {SampleCoding::kSplitEdge, SampleCoding::kInterpolation})
+    expect_back(volume, coding);
 }
 
 TEST(LongStore, GivesBackVolumesOfEverySize) {
@@ -70,8 +67,8 @@ TEST(LongStore, GivesBackVolumesOfEverySize) {
     for (std::uint64_t y = 1; y <= 9; ++y) {
       for (std::uint64_t z = 1; z <= 9; ++z, ++turn) {
         const auto coding = turn % 2 == 0 ? SampleCoding::kInterpolation : SampleCoding::kSplitEdge;
-        expect_back(volume_of<std::uint8_t>({x, y, z}, turn % 4 == 1 ? Kind::kSmooth : Kind::kRandom), coding,
-                    turn / 2 % 3);
+        expect_back(volume_of<std::uint8_t>({x, y, z}, turn % 4 == 1 ? Kind::kSmooth : Kind::kRandom),
+                    coding);
         ASSERT_FALSE(HasFatalFailure());
       }
     }
@@ -99,9 +96,9 @@ TYPED_TEST(StoreOf, SmallVolumesComeBack) {
 
 TYPED_TEST(StoreOf, SeveralPagesAndLodsComeBack) {
   expect_back_all_ways(volume_of<TypeParam>({70, 33, 40}, Kind::kSmooth));
-  expect_back(volume_of<TypeParam>({40, 35, 34}, Kind::kRandom), SampleCoding::kInterpolation, 1);
-  expect_back(volume_of<TypeParam>({40, 35, 34}, Kind::kExtremes), SampleCoding::kSplitEdge, 2);
-  expect_back(volume_of<TypeParam>({200, 3, 18}, Kind::kEqual), SampleCoding::kInterpolation, 0);
+  expect_back(volume_of<TypeParam>({40, 35, 34}, Kind::kRandom), SampleCoding::kInterpolation);
+  expect_back(volume_of<TypeParam>({40, 35, 34}, Kind::kExtremes), SampleCoding::kSplitEdge);
+  expect_back(volume_of<TypeParam>({200, 3, 18}, Kind::kEqual), SampleCoding::kInterpolation);
 }
 
 TEST(Store, NumbersThatAreNoneComeBack) {
@@ -119,7 +116,7 @@ TEST(Store, NumbersThatAreNoneComeBack) {
     expect_back_all_ways(MemoryVolume<float>(box, pick));
   for (const float special : specials)
     expect_back(MemoryVolume<float>({9, 9, 9}, [&](LatticePoint) { return special; }),
-                SampleCoding::kInterpolation, 0);
+                SampleCoding::kInterpolation);
   const auto few = [&](LatticePoint p) {
     return random() % 50 == 0 ? pick(p) : 0.25f * static_cast<float>(p.i);
   };
@@ -134,7 +131,7 @@ TYPED_TEST(StoreOf, FewDifferentSamplesAreCodedByTheirRanks) {
   });
   expect_back_all_ways(volume);
   const test::Scratch folder;
-  test::build(folder / "a.adm", volume, {SampleCoding::kInterpolation, 0});
+  test::build(folder / "a.adm", volume, {SampleCoding::kInterpolation});
   StoreFile file(folder / "a.adm");
   EXPECT_EQ(file.header().coding, sizeof(Sample) > 1 ? SampleCoding::kRanks : SampleCoding::kInterpolation);
 }

@@ -169,20 +169,18 @@ TEST(SurfaceBorder, HolesWhereSamplesAreNotFinite) {
                  static_cast<float>(random() % 100) / 100;
       }
     });
-    for (int subtrees = 0; subtrees <= 2; ++subtrees) {
-      OpenStore<float> store(volume, subtrees);
-      const test::DiamondTable table(store);
-      const int depth = store.pages().grid().depth();
-      for (const double isovalue : {80.0, 120.0}) {
-        const Contour contour = store.extract(isovalue).contour;
-        const auto field = test::field_of(volume, depth);
-        for (const EdgePoint& p : contour.edge_points)
-          ASSERT_TRUE(std::isfinite(field(p.first)) && std::isfinite(field(p.second)));
-        const Contour wanted = extract_contour(table.mesh_of_subtrees(isovalue, 0, subtrees), field, isovalue,
-                                               test::options_of(volume, depth, 1.0 / 1024));
-        EXPECT_FALSE(wanted.triangles.empty());
-        test::expect_near(test::measure(contour), test::measure(wanted), 1e-7 * test::measure(wanted).area);
-      }
+    OpenStore<float> store(volume);
+    const test::DiamondTable table(store);
+    const int depth = store.pages().grid().depth();
+    for (const double isovalue : {80.0, 120.0}) {
+      const Contour contour = store.extract(isovalue).contour;
+      const auto field = test::field_of(volume, depth);
+      for (const EdgePoint& p : contour.edge_points)
+        ASSERT_TRUE(std::isfinite(field(p.first)) && std::isfinite(field(p.second)));
+      const Contour wanted = extract_contour(table.mesh(isovalue, 0), field, isovalue,
+                                             test::options_of(volume, depth, 1.0 / 1024));
+      EXPECT_FALSE(wanted.triangles.empty());
+      test::expect_near(test::measure(contour), test::measure(wanted), 1e-7 * test::measure(wanted).area);
     }
   }
 }

@@ -32,21 +32,17 @@ SurfaceRequest request_of(double isovalue, std::uint64_t most, double error = 0)
   return request;
 }
 
-class SurfaceBudget : public testing::TestWithParam<int> {};
-
-/// Never more than asked, but for the coarsest mesh. Without subtrees the error falls as the number grows.
-TEST_P(SurfaceBudget, IsKeptForEveryNumber) {
+/// Never more than asked, but for the coarsest mesh. The error falls as the number grows.
+TEST(SurfaceBudget, IsKeptForEveryNumber) {
   for (const Dimensions& box : std::vector<Dimensions>{{17, 17, 17}, {24, 17, 20}}) {
     const MemoryVolume<std::uint16_t> volume = hills(box);
-    OpenStore<std::uint16_t> store(volume, GetParam());
+    OpenStore<std::uint16_t> store(volume);
     const std::size_t floor = store.extract(20100, 1e9).contour.triangles.size();
     double last_error = std::numeric_limits<double>::infinity();
     for (std::uint64_t most = 0; most <= 300; most += most < 60 ? 1 : 7) {
       const ExtractedSurface surface = store.extract(request_of(20100, most));
       ASSERT_LE(surface.contour.triangles.size(), std::max<std::uint64_t>(most, floor)) << most;
-      if (GetParam() == 0) {
-        ASSERT_LE(surface.max_error, last_error) << most;
-      }
+      ASSERT_LE(surface.max_error, last_error) << most;
       last_error = surface.max_error;
       test::expect_sound(surface.contour, volume.grid.box());
       ASSERT_FALSE(HasFailure()) << most;
@@ -54,16 +50,14 @@ TEST_P(SurfaceBudget, IsKeptForEveryNumber) {
   }
 }
 
-TEST_P(SurfaceBudget, LargeOnesAreUsedUp) {
+TEST(SurfaceBudget, LargeOnesAreUsedUp) {
   const MemoryVolume<std::uint16_t> volume = hills({40, 35, 65});
-  OpenStore<std::uint16_t> store(volume, GetParam());
+  OpenStore<std::uint16_t> store(volume);
   const std::size_t all = store.extract(20100).contour.triangles.size();
   std::mt19937 random(2);
   double last_error = std::numeric_limits<double>::infinity();
   std::vector<std::uint64_t> numbers;
-  // A split adds up to sixteen tetrahedra of the mesh: with subtrees a thousand fine ones.
-  const std::uint64_t least = std::uint64_t{2000} << (2 * GetParam());
-  for (int n = 0; n < 5; ++n) numbers.push_back(least + random() % (all - least));
+  for (int n = 0; n < 5; ++n) numbers.push_back(2000 + random() % (all - 2000));
   std::sort(numbers.begin(), numbers.end());
   for (const std::uint64_t most : numbers) {
     const ExtractedSurface surface = store.extract(request_of(20100, most));
@@ -74,8 +68,8 @@ TEST_P(SurfaceBudget, LargeOnesAreUsedUp) {
   }
 }
 
-TEST_P(SurfaceBudget, AsManyAsThereAreGiveAll) {
-  OpenStore<std::uint16_t> store(hills({33, 33, 33}), GetParam());
+TEST(SurfaceBudget, AsManyAsThereAreGiveAll) {
+  OpenStore<std::uint16_t> store(hills({33, 33, 33}));
   const ExtractedSurface all = store.extract(20100);
   const std::size_t count = all.contour.triangles.size();
   const ExtractedSurface same = store.extract(request_of(20100, count));
@@ -86,8 +80,8 @@ TEST_P(SurfaceBudget, AsManyAsThereAreGiveAll) {
   EXPECT_GT(fewer.max_error, 0);
 }
 
-TEST_P(SurfaceBudget, TheErrorIsKeptToo) {
-  OpenStore<std::uint16_t> store(hills({33, 30, 20}), GetParam());
+TEST(SurfaceBudget, TheErrorIsKeptToo) {
+  OpenStore<std::uint16_t> store(hills({33, 30, 20}));
   for (const double error : {0.3, 1.0, 5.0}) {
     const ExtractedSurface by_error = store.extract(20100, error);
     const std::size_t enough = by_error.contour.triangles.size();
@@ -99,9 +93,6 @@ TEST_P(SurfaceBudget, TheErrorIsKeptToo) {
     EXPECT_LE(by_error.max_error, error);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Plain, SurfaceBudget, testing::Values(0));
-INSTANTIATE_TEST_SUITE_P(LongSubtrees, SurfaceBudget, testing::Values(1, 2));
 
 /// A region's surface is the part of the whole one in it.
 TEST(SurfaceRegion, IsThePartInTheBox) {

@@ -77,28 +77,6 @@ std::pair<LatticePoint, std::uint8_t> slot_of(const Corners& corners) {
   return {diamond.point(), std::uint8_t{0}};
 }
 
-void for_each_part(const Corners& corners, int bisections, const std::function<void(const Corners&)>& fn) {
-  if (bisections == 0) return fn(corners);
-  for (const Corners& half : halves(corners)) for_each_part(half, bisections - 1, fn);
-}
-
-IndexedHierarchy finer_mesh(const IndexedHierarchy& mesh, int bisections,
-                            const std::function<bool(LatticePoint)>& wanted) {
-  IndexedHierarchy result = mesh;
-  std::vector<LatticePoint> done;
-  const std::function<void(const Corners&, int)> split_parts = [&](const Corners& corners, int more) {
-    const auto [a, b] = longest_edge(corners);
-    const LatticePoint middle = middle_of(corners[a], corners[b]);
-    if (more == 0 || !result.can_split(middle)) return;
-    result.split(middle, done);
-    for (const Corners& half : halves(corners)) split_parts(half, more - 1);
-  };
-  mesh.for_each_tetrahedron([&](const Diamond& diamond, int slot) {
-    if (wanted(diamond.point())) split_parts(diamond.tetrahedron(slot), bisections);
-  });
-  return result;
-}
-
 void expect_sound(const Contour& contour, const Box3& box) {
   expect_closed(contour, box);
   std::size_t flat = 0;
@@ -116,8 +94,8 @@ void expect_sound(const Contour& contour, const Box3& box) {
   EXPECT_EQ(std::count(used.begin(), used.end(), false), 0) << "points of no triangle";
 }
 
-MeshFunction::MeshFunction(const IndexedHierarchy& mesh, Field values, int bisections)
-    : mesh_(mesh), values_(std::move(values)), bisections_(bisections) {}
+MeshFunction::MeshFunction(const IndexedHierarchy& mesh, Field values)
+    : mesh_(mesh), values_(std::move(values)) {}
 
 MeshFunction::Place MeshFunction::at(const Vec3& point) const {
   const Domain& domain = mesh_.domain();
@@ -136,16 +114,12 @@ MeshFunction::Place MeshFunction::at(const Vec3& point) const {
   for (int slot = 1; slot < root.tetrahedron_count(); ++slot) {
     if (inside(root.tetrahedron(slot)) > inside(corners)) corners = root.tetrahedron(slot);
   }
-  const auto descend = [&] {
-    const auto both = halves(corners);
-    corners = inside(both[0]) >= inside(both[1]) ? both[0] : both[1];
-  };
   LatticePoint diamond = slot_of(corners).first;
   while (mesh_.is_split(diamond)) {
-    descend();
+    const auto both = halves(corners);
+    corners = inside(both[0]) >= inside(both[1]) ? both[0] : both[1];
     diamond = slot_of(corners).first;
   }
-  for (int n = 0; n < bisections_; ++n) descend();
   const auto weights = place(corners);
   Place result{diamond, 0};
   for (std::size_t v = 0; v < 4; ++v) result.value += weights[v] * values_(corners[v]);

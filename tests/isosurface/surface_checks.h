@@ -30,12 +30,6 @@ using Field = std::function<double(LatticePoint)>;
 using Corners = std::array<LatticePoint, 4>;
 /// The tetrahedron of the hierarchy with these corners, as a part of its diamond.
 std::pair<LatticePoint, std::uint8_t> slot_of(const Corners& corners);
-/// Calls fn(corners) for the tetrahedra that so many bisections of the longest edge make of one.
-void for_each_part(const Corners& corners, int bisections, const std::function<void(const Corners&)>& fn);
-/// The mesh after so many bisections of the longest edge in each tetrahedron of the diamonds that are wanted,
-/// and what others need to be split with them.
-IndexedHierarchy finer_mesh(const IndexedHierarchy& mesh, int bisections,
-                            const std::function<bool(LatticePoint)>& wanted);
 
 /// Lattice units of one step between samples.
 inline std::int32_t lattice_step(int depth) { return std::int32_t{1} << (kRootBits - depth); }
@@ -90,16 +84,6 @@ class DiamondTable {
   /// The mesh in which the diamonds are split that the surface crosses with a greater error.
   [[nodiscard]] IndexedHierarchy mesh(double isovalue, double error) const {
     return mesh([&](const Values& values) { return values.error > error && values.is_crossed(isovalue); });
-  }
-  /// The mesh of an error, each tetrahedron of which stands for finer ones where the surface may cross it.
-  [[nodiscard]] IndexedHierarchy mesh_of_subtrees(double isovalue, double error, int subtree_depth) const {
-    return finer_mesh(mesh(isovalue, error), 3 * subtree_depth, [&](LatticePoint p) {
-      const LatticePoint at{p.i / lattice_step(depth_), p.j / lattice_step(depth_),
-                            p.k / lattice_step(depth_)};
-      if (p != lattice_step(depth_) * at || trailing_zeros(at) < subtree_depth) return true;
-      const auto found = diamonds_.find(at);
-      return found != diamonds_.end() && found->second.error > 0 && found->second.is_crossed(isovalue);
-    });
   }
   /// The mesh in which every diamond is split that reaches into the data.
   [[nodiscard]] IndexedHierarchy full_mesh() const {
@@ -181,7 +165,7 @@ void expect_sound(const Contour& contour, const Box3& box);
 /// from the root by bisection, so the mesh may be anything that comes from it.
 class MeshFunction {
  public:
-  MeshFunction(const IndexedHierarchy& mesh, Field values, int bisections = 0);
+  MeshFunction(const IndexedHierarchy& mesh, Field values);
   struct Place {
     LatticePoint diamond;  ///< of the tetrahedron of the mesh
     double value;
@@ -191,7 +175,6 @@ class MeshFunction {
  private:
   const IndexedHierarchy& mesh_;
   Field values_;
-  int bisections_;
 };
 
 /// Points all over a surface: corners, middles of sides, points inside.

@@ -28,7 +28,7 @@ std::string name_of(const PageId& id) {
 }
 
 /// A store of hills whose surface crosses every page, to be damaged.
-class DamagedSurface : public testing::TestWithParam<int> {
+class DamagedSurface : public testing::Test {
  protected:
   DamagedSurface()
       : volume_({50, 37, 44},
@@ -36,7 +36,7 @@ class DamagedSurface : public testing::TestWithParam<int> {
                   return 100 + 50 * std::sin(0.5 * p.i + 0.2 * p.k) * std::cos(0.4 * p.j) +
                          static_cast<double>(random() % 9);
                 }),
-        store_(volume_, GetParam()),
+        store_(volume_),
         bytes_(test::bytes_of(store_.path())),
         whole_(store_.extract(kIsovalue)) {
     const PageGrid& grid = store_.pages().grid();
@@ -86,7 +86,7 @@ class DamagedSurface : public testing::TestWithParam<int> {
 };
 
 /// Of the finest LOD some.
-TEST_P(DamagedSurface, EveryPageInTurn) {
+TEST_F(DamagedSurface, EveryPageInTurn) {
   std::size_t named = 0, tried = 0;
   for (std::size_t n = 0; n < pages_.size(); ++n) {
     if (pages_[n].lod == 0 && n % 7 != 0) continue;
@@ -107,7 +107,7 @@ TEST_P(DamagedSurface, EveryPageInTurn) {
   EXPECT_GT(named, tried / 2);
 }
 
-TEST_P(DamagedSurface, SeveralPages) {
+TEST_F(DamagedSurface, SeveralPages) {
   std::mt19937 random(3);
   for (int turn = 0; turn < 12; ++turn) {
     std::vector<std::size_t> which;
@@ -121,7 +121,7 @@ TEST_P(DamagedSurface, SeveralPages) {
 }
 
 /// What an extractor has met with it tells again, and a budget or a region change nothing about it.
-TEST_P(DamagedSurface, IsToldEveryTime) {
+TEST_F(DamagedSurface, IsToldEveryTime) {
   std::size_t last = pages_.size();
   while (pages_[--last].block != LatticePoint{1, 1, 1}) {
   }
@@ -136,11 +136,11 @@ TEST_P(DamagedSurface, IsToldEveryTime) {
   few.max_triangles = 1000;
   const ExtractedSurface fewer = store_.extract(few);
   EXPECT_LE(fewer.contour.triangles.size(), 1000u);
-  if (GetParam() == 0) test::expect_sound(fewer.contour, volume_.grid.box());
+  test::expect_sound(fewer.contour, volume_.grid.box());
 }
 
 /// A damaged part of the directory loses the pages that it tells of.
-TEST_P(DamagedSurface, PartsOfTheDirectory) {
+TEST_F(DamagedSurface, PartsOfTheDirectory) {
   const auto all = std::as_bytes(std::span(bytes_));
   const StorePrologue prologue = StorePrologue::parse(all.first(StorePrologue::kBytes), "store");
   const StoreRoot root = StoreRoot::parse(all.subspan(prologue.root_offset), prologue.root_offset, "store");
@@ -157,9 +157,6 @@ TEST_P(DamagedSurface, PartsOfTheDirectory) {
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Plain, DamagedSurface, testing::Values(0));
-INSTANTIATE_TEST_SUITE_P(LongSubtrees, DamagedSurface, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace adamas

@@ -39,24 +39,20 @@ class SurfaceOf : public testing::Test {
  protected:
   /// The surface is the contour over the mesh in which the stored diamonds are split that it crosses with too
   /// great an error.
-  static void expect_the_mesh(const MemoryVolume<Sample>& volume, int subtree_depth,
-                              const std::vector<double>& isovalues, const std::vector<double>& errors) {
-    OpenStore<Sample> store(volume, subtree_depth);
+  static void expect_the_mesh(const MemoryVolume<Sample>& volume, const std::vector<double>& isovalues,
+                              const std::vector<double>& errors) {
+    OpenStore<Sample> store(volume);
     const test::DiamondTable<Sample> table(store);
     const int depth = store.pages().grid().depth();
     std::size_t coarse = 0, fine = 0;
     for (const double isovalue : isovalues) {
       for (const double error : errors) {
-        SCOPED_TRACE(testing::Message()
-                     << "isovalue " << isovalue << ", error " << error << ", subtrees " << subtree_depth);
+        SCOPED_TRACE(testing::Message() << "isovalue " << isovalue << ", error " << error);
         const ExtractedSurface surface = store.extract(isovalue, error);
         const IndexedHierarchy mesh = table.mesh(isovalue, error);
         const auto options = test::options_of(volume, depth, 1.0 / 1024);
         const auto field = test::field_of(volume, depth);
-        const Contour wanted = subtree_depth == 0
-                                   ? extract_contour(mesh, field, isovalue, options)
-                                   : extract_contour(table.mesh_of_subtrees(isovalue, error, subtree_depth),
-                                                     field, isovalue, options);
+        const Contour wanted = extract_contour(mesh, field, isovalue, options);
         expect_equal(surface.contour, wanted);
         test::expect_sound(surface.contour, volume.grid.box());
         EXPECT_LE(surface.max_error, error);
@@ -100,34 +96,26 @@ using Samples = testing::Types<std::uint8_t, std::uint16_t, std::int16_t, float>
 TYPED_TEST_SUITE(SurfaceOf, Samples);
 
 TYPED_TEST(SurfaceOf, IsThatOfTheMeshWithTheSameSplits) {
-  this->expect_the_mesh(hills<TypeParam>({17, 17, 33}), 0, {70, 128}, {0, 0.2, 6, 100});
-  this->expect_the_mesh(hills<TypeParam>({35, 19, 22}, 3, {1, 2, 0.5}), 0, {100}, {0.3, 2});
-  this->expect_the_mesh(noise<TypeParam>({18, 17, 9}), 0, {1, 128, 250}, {0, 0.5, 3});
+  this->expect_the_mesh(hills<TypeParam>({17, 17, 33}), {70, 128}, {0, 0.2, 6, 100});
+  this->expect_the_mesh(hills<TypeParam>({35, 19, 22}, 3, {1, 2, 0.5}), {100}, {0.3, 2});
+  this->expect_the_mesh(noise<TypeParam>({18, 17, 9}), {1, 128, 250}, {0, 0.5, 3});
 }
 
-TYPED_TEST(SurfaceOf, SubtreesStandForTheirTetrahedra) {
-  this->expect_the_mesh(hills<TypeParam>({17, 17, 17}), 1, {100}, {0, 0.5, 4});
-  this->expect_the_mesh(hills<TypeParam>({17, 17, 17}), 2, {100}, {0, 0.5, 4});
-  this->expect_the_mesh(hills<TypeParam>({21, 12, 18}, 1, {1, 1, 3}), 1, {100}, {0, 1});
-}
-
-/// Where no tetrahedron is exactly linear, error 0 is the finest mesh, whatever the depth of subtrees.
+/// Where no tetrahedron is exactly linear, error 0 is the finest mesh.
 TEST(SurfaceExtractor, WithoutErrorIsTheContourOfTheFullMesh) {
   for (const Dimensions& box : std::vector<Dimensions>{{9, 9, 9}, {17, 17, 17}}) {
     const MemoryVolume<float> volume(box, [random = std::mt19937(9)](LatticePoint) mutable {
       return static_cast<double>(random()) * 0x1p-32;
     });
     for (const double isovalue : {0.1, 0.5, 0.9}) {
-      for (int depth = 0; depth <= 2; ++depth) {
-        OpenStore<float> store(volume, depth);
-        const int lods = store.pages().grid().depth();
-        const Contour found = store.extract(isovalue).contour;
-        const Contour wanted =
-            extract_contour(test::DiamondTable(store).full_mesh(), test::field_of(volume, lods), isovalue,
-                            test::options_of(volume, lods, 1.0 / 1024));
-        ASSERT_EQ(test::triangle_set(found), test::triangle_set(wanted));
-        test::expect_sound(found, volume.grid.box());
-      }
+      OpenStore<float> store(volume);
+      const int lods = store.pages().grid().depth();
+      const Contour found = store.extract(isovalue).contour;
+      const Contour wanted =
+          extract_contour(test::DiamondTable(store).full_mesh(), test::field_of(volume, lods), isovalue,
+                          test::options_of(volume, lods, 1.0 / 1024));
+      ASSERT_EQ(test::triangle_set(found), test::triangle_set(wanted));
+      test::expect_sound(found, volume.grid.box());
     }
   }
 }
@@ -140,27 +128,23 @@ TEST(SurfaceExtractor, WithoutErrorHasThePointsOfTheFullMesh) {
         {19, 13, 16},
         [](LatticePoint p) { return p.i + p.j < 20 ? 3 * p.i + 2 * p.k : 60 + (p.i * p.j + p.k) % 17; },
         spacing);
-    for (int depth = 0; depth <= 2; ++depth) {
-      OpenStore<std::uint8_t> store(volume, depth);
-      const int lods = store.pages().grid().depth();
-      const IndexedHierarchy full = test::DiamondTable(store).full_mesh();
-      const auto field = test::field_of(volume, lods);
-      for (const double isovalue : {30.5, 66.25}) {
-        SurfaceRequest request;
-        request.isovalue = isovalue;
-        request.least_parameter = 0;
-        const ExtractedSurface surface = store.extract(request);
-        const Contour wanted = extract_contour(full, field, isovalue, test::options_of(volume, lods, 0));
-        test::expect_near(test::measure(surface.contour), test::measure(wanted),
-                          1e-8 * (1 + test::measure(wanted).area));
-        if (depth == 0) {
-          EXPECT_LT(surface.contour.triangles.size(), wanted.triangles.size());
-        }
-        const test::MeshFunction function(full, field);
-        for (const Vec3& p : test::points_on(surface.contour))
-          ASSERT_NEAR(function.at(p).value, isovalue, 1e-9);
-        EXPECT_EQ(surface.max_error, 0);
-      }
+    OpenStore<std::uint8_t> store(volume);
+    const int lods = store.pages().grid().depth();
+    const IndexedHierarchy full = test::DiamondTable(store).full_mesh();
+    const auto field = test::field_of(volume, lods);
+    for (const double isovalue : {30.5, 66.25}) {
+      SurfaceRequest request;
+      request.isovalue = isovalue;
+      request.least_parameter = 0;
+      const ExtractedSurface surface = store.extract(request);
+      const Contour wanted = extract_contour(full, field, isovalue, test::options_of(volume, lods, 0));
+      test::expect_near(test::measure(surface.contour), test::measure(wanted),
+                        1e-8 * (1 + test::measure(wanted).area));
+      EXPECT_LT(surface.contour.triangles.size(), wanted.triangles.size());
+      const test::MeshFunction function(full, field);
+      for (const Vec3& p : test::points_on(surface.contour))
+        ASSERT_NEAR(function.at(p).value, isovalue, 1e-9);
+      EXPECT_EQ(surface.max_error, 0);
     }
   }
 }
@@ -176,25 +160,23 @@ TEST(SurfaceExtractor, WithoutErrorHasTheHolesOfTheFullMesh) {
       const MemoryVolume<float> volume(box, [&](LatticePoint p) {
         return missing.contains(p) ? hole : static_cast<float>(4 * p.i + 2 * p.j - p.k);
       });
-      for (int depth = 0; depth <= 2; ++depth) {
-        OpenStore<float> store(volume, depth);
-        const int lods = store.pages().grid().depth();
-        const IndexedHierarchy full = test::DiamondTable(store).full_mesh();
-        for (const double isovalue : {15.5, 31.0, 40.25, 47.25}) {
-          SCOPED_TRACE(testing::Message() << box[0] << " x " << box[1] << " x " << box[2] << ", isovalue "
-                                          << isovalue << ", subtrees " << depth);
-          SurfaceRequest request;
-          request.isovalue = isovalue;
-          request.least_parameter = 0;
-          const Contour found = store.extract(request).contour;
-          const Contour wanted = extract_contour(full, test::field_of(volume, lods), isovalue,
-                                                 test::options_of(volume, lods, 0));
-          ASSERT_GT(wanted.triangles.size(), 0u);
-          test::expect_near(test::measure(found), test::measure(wanted),
-                            1e-8 * (1 + test::measure(wanted).area));
-          if (box[0] > 9 && depth == 0) {
-            EXPECT_LT(found.triangles.size(), wanted.triangles.size());
-          }
+      OpenStore<float> store(volume);
+      const int lods = store.pages().grid().depth();
+      const IndexedHierarchy full = test::DiamondTable(store).full_mesh();
+      for (const double isovalue : {15.5, 31.0, 40.25, 47.25}) {
+        SCOPED_TRACE(testing::Message()
+                     << box[0] << " x " << box[1] << " x " << box[2] << ", isovalue " << isovalue);
+        SurfaceRequest request;
+        request.isovalue = isovalue;
+        request.least_parameter = 0;
+        const Contour found = store.extract(request).contour;
+        const Contour wanted =
+            extract_contour(full, test::field_of(volume, lods), isovalue, test::options_of(volume, lods, 0));
+        ASSERT_GT(wanted.triangles.size(), 0u);
+        test::expect_near(test::measure(found), test::measure(wanted),
+                          1e-8 * (1 + test::measure(wanted).area));
+        if (box[0] > 9) {
+          EXPECT_LT(found.triangles.size(), wanted.triangles.size());
         }
       }
     }

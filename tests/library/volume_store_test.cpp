@@ -189,8 +189,6 @@ TEST(VolumeStore, WhatIsWrongIsToldInALine) {
   VolumeGrid none = volume.grid;
   none.spacing.y = 0;
   has(test::error_of([&] { VolumeStore::build(path, none, bytes(volume)); }), "spacing");
-  has(test::error_of([&] { VolumeStore::build(path, volume.grid, bytes(volume), {.subtree_depth = 3}); }),
-      "found 3");
   EXPECT_EQ(scratch.entries(), 0);
 
   VolumeStore::build(path, volume.grid, bytes(volume));

@@ -26,19 +26,18 @@ struct GoldenStore {
 
 inline std::vector<GoldenStore> golden_stores() {
   constexpr auto kEdge = SampleCoding::kSplitEdge, kOurs = SampleCoding::kInterpolation;
-  const auto options = [](SampleCoding coding, int subtree_depth, bool gradients) {
+  const auto options = [](SampleCoding coding, bool gradients) {
     StoreOptions result;
     result.coding = coding;
-    result.subtree_depth = subtree_depth;
     result.gradients = gradients;
     return result;
   };
-  return {{"uint8", SampleType::kUint8, {37, 18, 17}, {1, 1, 1}, options(kOurs, 0, false)},
-          {"uint8_split_edge", SampleType::kUint8, {20, 33, 12}, {1, 1, 2.5}, options(kEdge, 0, true)},
-          {"uint16", SampleType::kUint16, {19, 21, 34}, {0.957, 0.957, 1.5}, options(kOurs, 0, true)},
-          {"int16_subtrees", SampleType::kInt16, {33, 18, 19}, {0.1, 0.3, 0.2}, options(kOurs, 1, false)},
-          {"float32", SampleType::kFloat32, {18, 20, 33}, {1, 2, 1}, options(kOurs, 0, false)},
-          {"float32_subtrees", SampleType::kFloat32, {34, 17, 9}, {1e-3, 2, 1e3}, options(kEdge, 2, true)}};
+  return {{"uint8", SampleType::kUint8, {37, 18, 17}, {1, 1, 1}, options(kOurs, false)},
+          {"uint8_split_edge", SampleType::kUint8, {20, 33, 12}, {1, 1, 2.5}, options(kEdge, true)},
+          {"uint16", SampleType::kUint16, {19, 21, 34}, {0.957, 0.957, 1.5}, options(kOurs, true)},
+          {"int16", SampleType::kInt16, {33, 18, 19}, {0.1, 0.3, 0.2}, options(kOurs, false)},
+          {"float32", SampleType::kFloat32, {18, 20, 33}, {1, 2, 1}, options(kOurs, false)},
+          {"float32_split_edge", SampleType::kFloat32, {34, 17, 9}, {1e-3, 2, 1e3}, options(kEdge, true)}};
 }
 
 /// The volume of a golden store: waves and some noise, in whole numbers, so that it is the same everywhere;

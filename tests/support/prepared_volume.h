@@ -18,9 +18,9 @@ class PreparedVolume {
  public:
   using Word = OrderedWord<Sample>;
 
-  /// `samples`: i running fastest. LODs below `depth` have no bounds, as with subtrees.
+  /// `samples`: i running fastest.
   PreparedVolume(const std::array<std::uint64_t, 3>& dimensions, const std::vector<Sample>& samples,
-                 Vec3 spacing = {1, 1, 1}, int depth = 0)
+                 Vec3 spacing = {1, 1, 1})
       : pages_(dimensions) {
     VolumeGrid grid;
     grid.dimensions = dimensions;
@@ -31,8 +31,7 @@ class PreparedVolume {
         [&](std::uint64_t k, std::span<std::byte> plane) {
           std::memcpy(plane.data(), samples.data() + k * grid.plane_samples(), plane.size());
         },
-        [this](const PageId& id, const Page<Word>& page) { pages_.own[pages_.grid().number(id)] = page; },
-        {depth});
+        [this](const PageId& id, const Page<Word>& page) { pages_.own[pages_.grid().number(id)] = page; });
   }
 
   [[nodiscard]] const PageGrid& grid() const { return pages_.grid(); }

@@ -200,40 +200,4 @@ void PreprocessReference::add(LatticePoint p) {
   diamonds_[p] = values;
 }
 
-std::array<std::uint8_t, 2> PreprocessReference::codes(LatticePoint p, int generations) const {
-  const auto found = diamonds_.find(p);
-  if (found == diamonds_.end()) return {0, 0};
-  if (generations == 0) return {found->second.least_code, found->second.greatest_code};
-  std::array<double, 2> errors{};
-  for (const LatticePoint child : children(p)) {
-    const auto of_child = codes(child, generations - 1);
-    const ErrorScale& child_scale = scale(trailing_zeros(child));
-    for (std::size_t n = 0; n < 2; ++n) errors[n] = std::max(errors[n], child_scale.decode(of_child[n]));
-  }
-  const ErrorScale& own_scale = scale(trailing_zeros(p));
-  return {own_scale.encode(errors[0]), own_scale.encode(errors[1])};
-}
-
-double PreprocessReference::error_of_descendants(LatticePoint p, int generations) const {
-  double error = 0;
-  for (const Corners& corners : tetrahedra(p)) error = std::max(error, descend(corners, generations));
-  return error;
-}
-
-double PreprocessReference::descend(const Corners& corners, int generations) const {
-  const auto [a, b] = longest_edge(corners);
-  const LatticePoint middle = midpoint(corners[a], corners[b]);
-  if (generations == 0) {
-    ReferenceValues ignored;
-    return exists(middle) ? measure(corners, ignored) : 0;
-  }
-  double error = 0;
-  for (const std::size_t end : {a, b}) {
-    Corners half = corners;
-    half[end] = middle;
-    error = std::max(error, descend(half, generations - 1));
-  }
-  return error;
-}
-
 }  // namespace adamas::test

@@ -51,11 +51,6 @@ class PreprocessReference {
   [[nodiscard]] int depth() const { return depth_; }
   /// Diamonds that touch the data with more than a side.
   [[nodiscard]] const std::map<LatticePoint, ReferenceValues>& diamonds() const { return diamonds_; }
-  /// The codes when the errors of this many generations further count, least and greatest.
-  [[nodiscard]] std::array<std::uint8_t, 2> codes(LatticePoint p, int generations) const;
-  /// The greatest error of the tetrahedra that so many rounds of bisection make of those of a diamond,
-  /// without those whose diamonds lie wholly outside.
-  [[nodiscard]] double error_of_descendants(LatticePoint p, int generations) const;
   /// Child diamonds in the lattice.
   [[nodiscard]] std::vector<LatticePoint> children(LatticePoint p) const;
   /// The volume's scale of errors of an LOD.
@@ -69,7 +64,6 @@ class PreprocessReference {
   [[nodiscard]] std::vector<Corners> tetrahedra(LatticePoint p) const;
   /// The tetrahedron's own error; takes its samples into the range.
   double measure(const Corners& corners, ReferenceValues& values) const;
-  [[nodiscard]] double descend(const Corners& corners, int generations) const;
   void add(LatticePoint p);
 
   const ReferenceVolume& volume_;

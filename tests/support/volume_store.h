@@ -105,10 +105,8 @@ class OpenStore {
  public:
   static constexpr std::size_t kMemory = std::size_t{1} << 26;
 
-  explicit OpenStore(const MemoryVolume<Sample>& volume, int subtree_depth = 0) : OpenStore() {
-    StoreOptions options;
-    options.subtree_depth = subtree_depth;
-    build(path(), volume, options);
+  explicit OpenStore(const MemoryVolume<Sample>& volume) : OpenStore() {
+    build(path(), volume);
     open();
   }
   /// Without a store: it is to be put at path().

@@ -201,7 +201,7 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
     }
   }
   Bytes last = root.serialise(), start = prologue.serialise();
-  last.resize(last.size() - 4);
+  last.erase(last.end() - 4, last.end());
   bytes.assign(start.begin() + 8, start.end() - 4);
   put_tables(bytes, last, directory);
   write(folder / "store_format", name, bytes);
