@@ -254,8 +254,8 @@ TEST(SurfaceExtractor, ReportsTheRangeAndTheDomain) {
                                           {1, 2, 3}, {-1, -2, -3});
   OpenStore<std::int16_t> store(volume);
   EXPECT_EQ(store.extractor().range(), (std::array{-200.0, 361.0}));
-  EXPECT_EQ(store.extractor().domain().box().min, Vec3(-1, -2, -3));
-  EXPECT_EQ(store.extractor().domain().box().max, Vec3(31, 62, 93));
+  EXPECT_EQ(store.extractor().domain().box().min, (Vec3{-1, -2, -3}));
+  EXPECT_EQ(store.extractor().domain().box().max, (Vec3{31, 62, 93}));
 }
 
 }  // namespace
