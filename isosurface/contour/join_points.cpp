@@ -109,6 +109,7 @@ class PointJoiner {
     keep_border_points();
     find_patches();
     keep_patches_that_are_no_discs();
+    is_suspect_.assign(count_, true);
     while (separate_what_would_coincide()) {
     }
     replace();
@@ -185,9 +186,12 @@ class PointJoiner {
       is_joined_[patch] = false;
     }
     apart_.clear();
+    is_suspect_.assign(count_, false);
     // A patch has the number of its first point, which is looked at when all others of it still have it.
     for (std::uint32_t p = count_; p-- > 0;) {
-      if (is_wanted[patch_[p]]) patch_[p] = p;
+      if (!is_wanted[patch_[p]]) continue;
+      is_suspect_[p] = true;
+      patch_[p] = p;
     }
   }
 
@@ -196,24 +200,33 @@ class PointJoiner {
   }
   static bool has_area(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
 
+  /// f(triangle, corner) for those corners of joined triangles whose patches are suspect.
+  template <class F>
+  void for_each_suspect_corner(F f) const {
+    for (const Triangle& triangle : contour_.triangles) {
+      const Triangle t = joined(triangle);
+      const std::array<bool, 3> is{is_suspect_[t[0]], is_suspect_[t[1]], is_suspect_[t[2]]};
+      if (!(is[0] || is[1] || is[2]) || !has_area(t)) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (is[c]) f(t, c);
+      }
+    }
+  }
+
   /// Two edges that begin at one patch and end at one, and two triangles at the same three, are kept apart by
-  /// taking those patches apart. Returns whether there were any.
+  /// taking those patches apart. What was taken apart may coincide with something else then, and nothing else
+  /// may, so that these points alone are suspect the next time. Returns whether there were any.
   bool separate_what_would_coincide() {
     // What follows each patch in its triangles, and what comes before.
     std::vector<std::uint32_t> begin = filled(count_ + 1, std::uint32_t{0});
-    for (const Triangle& triangle : contour_.triangles) {
-      const Triangle t = joined(triangle);
-      if (!has_area(t)) continue;
-      for (const std::uint32_t p : t) ++begin[p + 1];
-    }
+    for_each_suspect_corner([&](const Triangle& t, std::size_t c) { ++begin[t[c] + 1]; });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     std::vector<std::array<std::uint32_t, 2>> around = filled(begin.back(), std::array<std::uint32_t, 2>{});
-    for (const Triangle& triangle : contour_.triangles) {
-      const Triangle t = joined(triangle);
-      if (!has_area(t)) continue;
-      for (std::size_t c = 0; c < 3; ++c) around[begin[t[c]]++] = {t[(c + 1) % 3], t[(c + 2) % 3]};
-    }
+    for_each_suspect_corner([&](const Triangle& t, std::size_t c) {
+      around[begin[t[c]]++] = {t[(c + 1) % 3], t[(c + 2) % 3]};
+    });
     for (std::uint32_t p = 0; p < count_; ++p) {
+      if (!is_suspect_[p]) continue;
       const std::uint32_t first = p == 0 ? 0 : begin[p - 1];
       check_patch(p, {around.data() + first, begin[p] - first});
     }
@@ -284,6 +297,7 @@ class PointJoiner {
   std::vector<std::uint32_t> patch_;
   std::vector<bool> is_joined_;       ///< whether a patch has several points, by its number
   std::vector<std::uint32_t> apart_;  ///< patches that are to be taken apart
+  std::vector<bool> is_suspect_;      ///< patches with which something may coincide
 };
 
 }  // namespace

@@ -33,7 +33,8 @@ double sampled(const Contour& a, const Contour& b) {
   return test::sampled_distance(a.points, a.triangles, b.points, b.triangles, kEverywhere, 3000, 1);
 }
 
-Contour full_surface(OpenStore<std::uint8_t>& store, const SurfaceRequest& like) {
+template <class Sample>
+Contour full_surface(OpenStore<Sample>& store, const SurfaceRequest& like) {
   SurfaceRequest request = like;
   request.error = 0;
   request.max_triangles.reset();
@@ -67,6 +68,62 @@ TEST(SurfaceCertificate, HoldsForSampledPoints) {
         }
       }
     }
+  }
+}
+
+/// Volumes of all kinds: smooth, rough, noise alone, steps, thin things; of some type, size and spacing.
+template <class Sample>
+MemoryVolume<Sample> any_volume(unsigned n) {
+  const Vec3 spacing{1, n % 3 == 0 ? 0.7 : 1, n % 4 == 1 ? 2.2 : 1};
+  const test::Dimensions size{18 + n % 5, 24 - n % 7, 17 + n % 3};
+  return {size,
+          [n](LatticePoint p) {
+            const double wave =
+                std::sin(0.3 * p.i + 0.1 * n) * std::cos(0.25 * p.j) + std::sin(0.2 * p.k + n);
+            const double noise = test::random_value(p, n);
+            switch (n % 5) {
+              case 0:
+                return 100 + 40 * wave;
+              case 1:
+                return 100 + 40 * wave + 30 * noise;
+              case 2:
+                return 90 + 60 * noise;
+              case 3:
+                return wave + 0.1 * noise > 0.3 ? 140.0 : 60.0;
+              default:
+                return noise > 0.9 || (p.i + 2 * p.j) % 9 == 0 ? 160.0 : 40.0;
+            }
+          },
+          spacing};
+}
+
+template <class Sample>
+void expect_true_bounds(unsigned n) {
+  SCOPED_TRACE(testing::Message() << "volume " << n);
+  OpenStore<Sample> store(any_volume<Sample>(n));
+  SurfaceRequest request;
+  request.isovalue = 105.5;
+  request.error = 0.7;
+  request.join = n % 2 == 0;
+  if (n % 3 == 1) request.max_triangles = 900;
+  const ExtractedSurface surface = store.extract(request);
+  ASSERT_FALSE(surface.contour.triangles.empty());
+  const Contour full = full_surface(store, request);
+  EXPECT_GE(certify_surface(store.extractor(), request, surface.contour).certified,
+            sampled(surface.contour, full));
+  request.max_triangles.reset();
+  const CertifiedSurface certified = extract_certified(store.extractor(), request);
+  EXPECT_GE(certified.certificate.certified, sampled(certified.surface.contour, full));
+  EXPECT_LE(certified.certificate.certified, request.error);
+}
+
+/// What is certified is never below what is measured.
+TEST(LongSurfaceCertificate, HoldsForTwentyVolumes) {
+  for (unsigned n = 0; n < 20; n += 4) {
+    expect_true_bounds<std::uint8_t>(n);
+    expect_true_bounds<std::uint16_t>(n + 1);
+    expect_true_bounds<std::int16_t>(n + 2);
+    expect_true_bounds<float>(n + 3);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "adamas/volume.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas::bench {
@@ -15,10 +16,11 @@ struct PeerSurface {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// vtkFlyingEdges3D on one thread, from a file of uint8 samples alone, all of which is read.
+/// vtkFlyingEdges3D on one thread, from a file of samples alone, all of which is read.
 struct FlyingEdges {
   std::filesystem::path raw;
   std::array<int, 3> dimensions{};
+  SampleType type = SampleType::kUint8;
   double isovalue = 0;
   bool normals = false;
   int stride = 1;  ///< only every so many-th sample along each axis is contoured
