@@ -1,6 +1,7 @@
 """Rows of scripts/bench on volumes: storing, coding, contouring, from disk to a surface, and very large ones."""
 
 import json
+import lzma
 import math
 import os
 import re
@@ -260,6 +261,31 @@ def quality_table(name, lines, ratios):
                    f"{both_ways(ours, 0) / both_ways(peer, 0):.2f}" if both_ways(peer, 0) > 0 else "", "", f"{peer['triangles']:,} triangles"]
 
 
+def compressed_by_others(raw):
+    """Bytes of the samples by zstd -19 and by xz -6."""
+    with open(raw, "rb") as file:
+        xz = len(lzma.compress(file.read(), preset=6))
+    zstd = len(subprocess.run(["zstd", "-19", "-q", "-c", raw], check=True, stdout=subprocess.PIPE).stdout)
+    return {"zstd -19": zstd, "xz -6": xz}
+
+
+def file_rows(name, raw, found):
+    """The whole file beside the samples compressed by others."""
+    others = compressed_by_others(raw)
+    least = min(others, key=others.get)
+    yield [f"file of {name}", f"{found['bytes_file']:,} bytes", ", ".join(f"{n} {b:,}" for n, b in others.items()),
+           f"{found['bytes_file'] / others[least]:.3f}", "< 1",
+           f"{found['bytes_data']:,} of samples, {found['bytes_errors']:,} of errors and ranges; {found['bytes_input']:,} given"]
+
+
+def speed_rows(build, name, file, raw, isovalue):
+    """From the store to the surface of all samples, and to one of 0.7 voxel, beside Flying Edges."""
+    for line in lines_of(build, "bench_disk_to_surface", file, raw, str(isovalue), "0", "3"):
+        for n, row in enumerate(time_row(line)):
+            aim = {"error 0": "<= 1.5", "error 0.7 voxel": "<= 0.25"}.get(line["wanted"], "") if n == 0 else "< 1"
+            yield [f"{name}: {row[0]}", *row[1:4], aim, row[5]]
+
+
 def quality_rows(build, quick):
     root, ratios = os.path.join(os.environ.get("ADAMAS_DATA", "../shared/data"), "volume"), {}
     for path, options, isovalue in MEASURED[:2] if quick else MEASURED:
@@ -268,9 +294,12 @@ def quality_rows(build, quick):
             if "*" not in data and not os.path.exists(data):
                 note(f"bench: {data} is not there: no rows for it")
                 continue
-            store(build, data, file, *options)
+            found, raw, name = store(build, data, file, *options), os.path.join(folder, "volume.raw"), os.path.basename(path)
+            run_measured(os.path.join(build, "cli/adamas"), "restore", file, "-o", raw, "--quiet")
             lines = lines_of(build, "bench_surface_quality", file, str(isovalue), "2", "4", "--decimate")
-            yield from quality_table(os.path.basename(path), lines, ratios)
+            yield from quality_table(name, lines, ratios)
+            yield from file_rows(name, raw, found)
+            yield from speed_rows(build, name, file, raw, isovalue)
     for what, of in ratios.items():
         yield [f"surfaces: {what}, geometric mean", "", "", f"{geometric_mean(of):.2f}, at most {max(of):.2f}", "<= 0.5", f"{len(of)} surfaces"]
 

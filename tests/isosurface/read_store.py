@@ -23,15 +23,16 @@ class Store:
     def __init__(self, data):
         self.data = data
         prologue = Bytes(data)
-        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 2
+        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 3
         root_offset, root_size = prologue.number("Q"), prologue.number("Q")
         root = Bytes(data[root_offset:root_offset + root_size])
         self.bytes = (1, 2, 2, 4)[root.number("B")]
         self.size = [root.number("Q") for _ in range(3)]
         root.take(8 * 15)
         root.sized()
+        root.take(2 * 8)
         self.coding = root.number("B")
-        root.take(2 + 4 + 24)
+        root.take(1 + 4 + 24)
         tables = [root.sized() for _ in range(3)]
         self.codec = codec_of(self.coding, tables[0], 8 * self.bytes)
         self.last = [n - 1 for n in self.size]
@@ -69,7 +70,7 @@ class Store:
             error = chunk.take(1)[0]
             if error > 0 and high > low:
                 s = 0
-                while (high - low - 1 >> s) + 1 > 32:
+                while (high - low - 1 >> s) + 1 > 16:
                     s += 1
                 chunk.take(((high - low - 1 >> s) + 2) // 2)
             self.pages[level, block] = self.data[at:at + size]
