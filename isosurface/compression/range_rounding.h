@@ -55,8 +55,8 @@ struct RangeRounding {
   bool operator==(const RangeRounding&) const = default;
 };
 
-/// The rounding that leaves some tens of levels for ends of ranges like these, in any order, the least ends
-/// and the greatest ones. Levels that one end in a thousand has do not count.
+/// The coarsest rounding that leaves 11 levels or more for ends of ranges like these, in any order, the least
+/// ends or the greatest ones. Levels of fewer than one end in a thousand do not count.
 template <class Word>
 RangeRounding<Word> find_rounding(std::vector<Word> low, std::vector<Word> high);
 

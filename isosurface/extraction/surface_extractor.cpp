@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/base/error.h"
 #include "isosurface/contour/contour_clip.h"
@@ -127,7 +126,7 @@ template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request, Progress& progress) {
   request_ = request;
   // What was lost to another surface is met with and told again.
-  limits_ = {{}, LostRegions()};
+  limits_ = {};
   diamonds_.set_contour(request_.isovalue);
   if (request.region) {
     const Vec3 spacing = diamonds_.spacing();

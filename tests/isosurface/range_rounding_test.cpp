@@ -48,7 +48,7 @@ TYPED_TEST(RangeRoundingOf, IsOutwardsAndKeepsTheOrder) {
   }
 }
 
-TYPED_TEST(RangeRoundingOf, LeavesTensOfLevels) {
+TYPED_TEST(RangeRoundingOf, LeavesSomeLevels) {
   using Word = TypeParam;
   std::mt19937_64 random(5);
   for (const unsigned most : {250u, 200u, 100u}) {
