@@ -29,7 +29,7 @@ struct StoreBytes {
 struct StoreHeader {
   VolumeGrid grid;
   SampleCoding coding = SampleCoding::kInterpolation;
-  bool gradients = false;          ///< whether pages hold directions of gradients
+  bool gradients = false;  ///< whether pages hold directions of gradients
   std::uint32_t steps = 1;
   StoreBytes bytes;
   std::vector<std::byte> sample_tables, bounds_tables, gradient_tables;
