@@ -41,7 +41,7 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
   Console& console = session_.console;
   tetrahedra_ += surface.tetrahedra;
   diamonds_ += surface.diamonds;
-  max_error_ = std::max(max_error_, stretch_ * surface.max_error);
+  max_error_ = std::max(max_error_, grid_.greatest_stretch() * surface.max_error);
   if (surface.contour.triangles.empty()) {
     const std::string reason = reason_for_none(request, grid_, range);
     console.note("no surface at isovalue {:.6g}{}{}", grid_.value(request.isovalue),
@@ -49,8 +49,8 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
   } else if (surface.max_error > request.error && surface.lost.empty() &&
              (!request.max_triangles || request.error > 0)) {
     console.note("the error wanted was not reached{}: {:.4g} instead of {:.4g}",
-                 request.max_triangles ? " with so few triangles" : "", stretch_ * surface.max_error,
-                 stretch_ * request.error);
+                 request.max_triangles ? " with so few triangles" : "",
+                 grid_.greatest_stretch() * surface.max_error, grid_.greatest_stretch() * request.error);
   }
   bodies_left_out_ += surface.bodies_left_out;
   if (surface.bodies_left_out > 0) {
@@ -81,7 +81,7 @@ void IsosurfaceFigures::add_distance(const SurfaceRequest& request, const Surfac
   if (!distance_) distance_.emplace();
   distance_->certified = std::max(distance_->certified, distance.certified);
   distance_->found = std::max(distance_->found, distance.found);
-  const double wanted = stretch_ * request.error;
+  const double wanted = grid_.greatest_stretch() * request.error;
   if (wanted > 0 && distance.certified > wanted) {
     session_.console.note(
         "the surface at isovalue {:.6g} is certified to be within {:.4g} of that of all samples, not {:.4g}",

@@ -23,8 +23,7 @@ namespace adamas {
 class IsosurfaceFigures {
  public:
   /// Of a store with this grid.
-  IsosurfaceFigures(Session& session, const VolumeGrid& grid)
-      : session_(session), grid_(grid), stretch_(grid.greatest_stretch()) {}
+  IsosurfaceFigures(Session& session, const VolumeGrid& grid) : session_(session), grid_(grid) {}
 
   /// `range`: least and greatest sample of the store.
   void add(const SurfaceRequest& request, const ExtractedSurface& surface,
@@ -38,8 +37,7 @@ class IsosurfaceFigures {
 
  private:
   Session& session_;
-  VolumeGrid grid_;
-  double stretch_;  ///< from errors in the grid's frame to those in space
+  VolumeGrid grid_;  ///< its greatest stretch leads from errors in its frame to those in space
   std::uint64_t tetrahedra_ = 0, diamonds_ = 0, bodies_left_out_ = 0;
   double max_error_ = 0;
   std::optional<SurfaceCertificate> distance_;  ///< the greatest of all surfaces

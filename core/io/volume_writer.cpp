@@ -17,6 +17,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "planes are written as they are");
 
+bool is_nifti(std::string_view extension) { return extension == ".nii" || extension == ".nii.gz"; }
+
 /// A pattern, a list, the header's own file, or nothing at all would be read from other names.
 void check_data_name(const std::string& path, const std::string& data_name) {
   const bool odd =
@@ -51,7 +53,7 @@ std::string lost_places(const std::filesystem::path& path, const VolumeGrid& gri
     if (grid.is_straight() && grid.space.empty()) return {};
     return path.string() + ": axes, origin and space of the volume are not kept";
   }
-  if (extension == ".nii" || extension == ".nii.gz") {
+  if (is_nifti(extension)) {
     if (anatomical || (grid.is_straight() && grid.space.empty())) return {};
     return fmt::format("{}: the space of coordinates is {}: NIfTI takes them for RAS", path.string(),
                        grid.space.empty() ? "not known" : grid.space);
@@ -61,10 +63,7 @@ std::string lost_places(const std::filesystem::path& path, const VolumeGrid& gri
   return fmt::format("{}: coordinates are {}, which the file does not say", path.string(), grid.space);
 }
 
-bool keeps_scale(const std::filesystem::path& path) {
-  const std::string extension = file_extension(path);
-  return extension == ".nii" || extension == ".nii.gz";
-}
+bool keeps_scale(const std::filesystem::path& path) { return is_nifti(file_extension(path)); }
 
 VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& of_planes,
                            const VolumeWriterOptions& options)
@@ -85,7 +84,7 @@ VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& 
     text = nrrd_header_text(grid, apart ? data_name : "");
   } else if (extension == ".mha" || extension == ".mhd") {
     text = meta_image_header_text(grid, apart ? data_name : "");
-  } else if (extension == ".nii" || extension == ".nii.gz") {
+  } else if (is_nifti(extension)) {
     text = nifti_header_bytes(grid);
   } else if (extension != ".raw") {
     fail("{}: expected .vti, .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz or .raw for a volume, found '{}'", name,

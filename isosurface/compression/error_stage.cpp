@@ -92,8 +92,7 @@ template <int Parity, std::size_t Bytes>
 /// have no error.
 template <int Parity, std::size_t Bytes>
 [[gnu::always_inline]] inline void find_coarse_edge_contexts(const AllCells<std::uint8_t>& errors,
-                                                             const Codes& cube_room, Codes& predicted,
-                                                             Codes& contexts) {
+                                                             const Codes& cube_room, Codes& contexts) {
   using Lanes = Simd<std::uint8_t, Bytes>;
   using Numbers = typename Lanes::Numbers;
   constexpr int kLimitClasses = ErrorStages<std::uint8_t>::kLimitClasses;
@@ -103,7 +102,6 @@ template <int Parity, std::size_t Bytes>
     constexpr std::uint8_t kFirst = 16 - kLimitClasses;
     const Numbers limit = Lanes::greater(most >> 2, Numbers{} + kFirst) - kFirst;
     const Numbers mean = mean_round_edges<Parity, Bytes>(errors, n) >> 3;
-    Lanes::store(Numbers{}, predicted.data() + n);
     Lanes::store(most == 0 ? Numbers{} : limit * kMeanClasses + mean + 1, contexts.data() + n);
   }
 }
@@ -119,8 +117,7 @@ void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
     if (phase_of(parity) == 2 && shape.lod > 0) {
       with_parity(parity, [&](auto of) {
         if constexpr (phase_of(of()) == 2)
-          find_coarse_edge_contexts<of(), bytes()>(fields.errors, fields.cube_error_room,
-                                                   fields.predicted[of()], parts);
+          find_coarse_edge_contexts<of(), bytes()>(fields.errors, fields.cube_error_room, parts);
       });
       stage.add_rows<bytes() == 32>({}, [&](std::size_t cell, RowBytes) {
         const RowBytes context = load_row(parts.data() + cell), open = bytes_not_zero(context);

@@ -177,8 +177,7 @@ int main(int argc, char** argv) {
   if (argc > 6) inputs.memory = static_cast<std::size_t>(std::atoi(argv[6])) << 20;
   const adamas::VolumeGrid grid = adamas::StoreFile(inputs.store).header().grid;
   inputs.raw.type = grid.type;
-  std::transform(grid.dimensions.begin(), grid.dimensions.end(), inputs.raw.dimensions.begin(),
-                 [](std::uint64_t n) { return static_cast<int>(n); });
+  inputs.raw.dimensions = grid.dimensions;
   const std::uint64_t triangles = std::stoull(argv[4]);
   if (triangles == 0) {
     adamas::bench::run_measured(inputs, std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));

@@ -12,6 +12,9 @@ namespace adamas::test {
 
 namespace {
 
+/// The vertices of a tetrahedron in any order.
+using Corners = std::array<LatticePoint, 4>;
+
 LatticePoint middle_of(LatticePoint a, LatticePoint b) {
   const LatticePoint sum = a + b;
   return {sum.i / 2, sum.j / 2, sum.k / 2};
@@ -39,6 +42,21 @@ std::array<Corners, 2> halves(const Corners& corners) {
   return result;
 }
 
+/// The diamond that the tetrahedron with these corners, which is to be one of the hierarchy, is a part of.
+LatticePoint diamond_of(const Corners& corners) {
+  const auto [a, b] = longest_edge(corners);
+  const Diamond diamond(middle_of(corners[a], corners[b]));
+  Corners wanted = corners;
+  std::sort(wanted.begin(), wanted.end());
+  for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
+    Corners found = diamond.tetrahedron(slot);
+    std::sort(found.begin(), found.end());
+    if (found == wanted) return diamond.point();
+  }
+  ADD_FAILURE() << "no tetrahedron of the hierarchy";
+  return diamond.point();
+}
+
 /// Barycentric coordinates.
 std::array<double, 4> weights_in(const std::array<Vec3, 4>& c, const Vec3& p) {
   const double whole = signed_volume(c[0], c[1], c[2], c[3]);
@@ -61,20 +79,6 @@ TriangleSet triangle_set(const Contour& contour) {
     set.insert(edges);
   }
   return set;
-}
-
-std::pair<LatticePoint, std::uint8_t> slot_of(const Corners& corners) {
-  const auto [a, b] = longest_edge(corners);
-  const Diamond diamond(middle_of(corners[a], corners[b]));
-  Corners wanted = corners;
-  std::sort(wanted.begin(), wanted.end());
-  for (int slot = 0; slot < diamond.tetrahedron_count(); ++slot) {
-    Corners found = diamond.tetrahedron(slot);
-    std::sort(found.begin(), found.end());
-    if (found == wanted) return {diamond.point(), static_cast<std::uint8_t>(slot)};
-  }
-  ADD_FAILURE() << "no tetrahedron of the hierarchy";
-  return {diamond.point(), std::uint8_t{0}};
 }
 
 void expect_sound(const Contour& contour, const Box3& box) {
@@ -114,11 +118,11 @@ MeshFunction::Place MeshFunction::at(const Vec3& point) const {
   for (int slot = 1; slot < root.tetrahedron_count(); ++slot) {
     if (inside(root.tetrahedron(slot)) > inside(corners)) corners = root.tetrahedron(slot);
   }
-  LatticePoint diamond = slot_of(corners).first;
+  LatticePoint diamond = diamond_of(corners);
   while (mesh_.is_split(diamond)) {
     const auto both = halves(corners);
     corners = inside(both[0]) >= inside(both[1]) ? both[0] : both[1];
-    diamond = slot_of(corners).first;
+    diamond = diamond_of(corners);
   }
   const auto weights = place(corners);
   Place result{diamond, 0};

@@ -26,11 +26,6 @@ TriangleSet triangle_set(const Contour& contour);
 /// Values at points of the lattice.
 using Field = std::function<double(LatticePoint)>;
 
-/// What a mesh of tetrahedra of any origin is contoured from: for each the vertices in any order.
-using Corners = std::array<LatticePoint, 4>;
-/// The tetrahedron of the hierarchy with these corners, as a part of its diamond.
-std::pair<LatticePoint, std::uint8_t> slot_of(const Corners& corners);
-
 /// Lattice units of one step between samples.
 inline std::int32_t lattice_step(int depth) { return std::int32_t{1} << (kRootBits - depth); }
 

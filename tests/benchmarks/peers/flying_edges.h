@@ -19,7 +19,7 @@ struct PeerSurface {
 /// vtkFlyingEdges3D on one thread, from a file of samples alone, all of which is read.
 struct FlyingEdges {
   std::filesystem::path raw;
-  std::array<int, 3> dimensions{};
+  std::array<std::uint64_t, 3> dimensions{};
   SampleType type = SampleType::kUint8;
   double isovalue = 0;
   bool normals = false;
