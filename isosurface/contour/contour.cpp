@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -15,17 +14,6 @@
 #include "isosurface/contour/join_points.h"
 
 namespace adamas {
-
-namespace {
-
-/// The parameter of the isovalue between two finite values, one of them below it and one not.
-double crossing(double first, double second, double isovalue) {
-  // Differences of halves cannot overflow; those of small values lose no bits.
-  const double scale = std::max(std::abs(first), std::abs(second)) > 1 ? 0.5 : 1;
-  return (scale * isovalue - scale * first) / (scale * second - scale * first);
-}
-
-}  // namespace
 
 bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -44,14 +32,17 @@ void remove_unused_points(Contour& contour) {
   }
   Contour kept;
   const std::size_t edge_count = contour.edge_points.size();
+  const std::size_t mean_begin = edge_count + contour.vertex_points.size();
   for (std::size_t p = 0; p < numbers.size(); ++p) {
     if (numbers[p] == ContourBuilder::kNone) continue;
     numbers[p] = static_cast<std::uint32_t>(kept.points.size());
     kept.points.push_back(contour.points[p]);
     if (p < edge_count) {
       kept.edge_points.push_back(contour.edge_points[p]);
+    } else if (p < mean_begin) {
+      kept.vertex_points.push_back(contour.vertex_points[p - edge_count]);
     } else {
-      kept.mean_points.push_back(contour.mean_points[p - edge_count]);
+      kept.mean_points.push_back(contour.mean_points[p - mean_begin]);
     }
   }
   for (auto& triangle : contour.triangles) {
@@ -79,7 +70,7 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
     if (contour_.points.size() >= std::numeric_limits<std::uint32_t>::max())
       fail("a contour has more than 2^32 - 1 points: choose another isovalue or a coarser mesh");
     *number = static_cast<std::uint32_t>(contour_.points.size());
-    const double t = std::clamp(crossing(value_a, value_b, isovalue_), options_.least_parameter,
+    const double t = std::clamp(edge_parameter(value_a, value_b, isovalue_), options_.least_parameter,
                                 1 - options_.least_parameter);
     contour_.edge_points.push_back({a, b, t});
     contour_.points.push_back(point_between(domain_.position(a), domain_.position(b), t));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -22,14 +23,32 @@ struct EdgePoint {
   LatticePoint first, second;  ///< the ends, in ascending order
   double parameter;            ///< 0 at the first end, 1 at the second
 
+  [[nodiscard]] LatticePoint nearer_end() const { return parameter < 0.5 ? first : second; }
+  /// The greatest power of two that divides the edge: the spacing of the finest samples at the ends of edges
+  /// like this.
+  [[nodiscard]] std::int32_t step() const {
+    const LatticePoint way = second - first;
+    const std::int32_t bits = way.i | way.j | way.k;
+    return bits & -bits;
+  }
   bool operator==(const EdgePoint&) const = default;
 };
 
-/// A point that is on no edge of the mesh, as a mean of vertices: where the border of the data cuts a contour
-/// inside a tetrahedron, or what points on edges were joined to. A vertex of weight 0 may be any point.
+/// What points on edges of one vertex were joined to. The vertices at the other ends of these edges are at
+/// least `step` lattice units away from it along some axis.
+struct VertexPoint {
+  LatticePoint vertex;
+  std::int32_t step;
+
+  bool operator==(const VertexPoint&) const = default;
+};
+
+/// A point where the border of the data cuts a contour inside a tetrahedron, as a mean of vertices, of which
+/// edges reach `step` lattice units along some axis. A vertex of weight 0 may be any point.
 struct MeanPoint {
   std::array<LatticePoint, 4> vertices{};
   std::array<double, 4> weights{};  ///< 1 in all
+  std::int32_t step = 0;
 
   bool operator==(const MeanPoint&) const = default;
 };
@@ -37,13 +56,21 @@ struct MeanPoint {
 /// A triangle surface with shared points: every edge inside the data has two triangles, which run along it in
 /// opposite directions.
 struct Contour {
-  std::vector<Vec3> points;                             ///< in space: first edge points, then means
+  std::vector<Vec3> points;                             ///< in space, of all three kinds
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< normals point to values below the isovalue
   std::vector<EdgePoint> edge_points;                   ///< of the first points, in the same order
-  std::vector<MeanPoint> mean_points;                   ///< of the points after these
+  std::vector<VertexPoint> vertex_points;               ///< of the points after these
+  std::vector<MeanPoint> mean_points;                   ///< of the last points
 
   bool operator==(const Contour&) const = default;
 };
+
+/// The parameter of the isovalue between two finite values, one of them below it and one not.
+inline double edge_parameter(double first, double second, double isovalue) {
+  // Differences of halves cannot overflow; those of small values lose no bits.
+  const double scale = std::max(std::abs(first), std::abs(second)) > 1 ? 0.5 : 1;
+  return (scale * isovalue - scale * first) / (scale * second - scale * first);
+}
 
 /// Keeps the points of triangles, in their order.
 void remove_unused_points(Contour& contour);

@@ -20,9 +20,14 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 MeanPoint as_mean(const Contour& contour, std::uint32_t point) {
   const std::size_t edge_count = contour.edge_points.size();
-  if (point >= edge_count) return contour.mean_points[point - edge_count];
+  const std::size_t mean_begin = edge_count + contour.vertex_points.size();
+  if (point >= mean_begin) return contour.mean_points[point - mean_begin];
+  if (point >= edge_count) {
+    const auto [vertex, step] = contour.vertex_points[point - edge_count];
+    return {{vertex}, {1}, step};
+  }
   const EdgePoint& p = contour.edge_points[point];
-  return {{p.first, p.second, p.first, p.first}, {1 - p.parameter, p.parameter, 0, 0}};
+  return {{p.first, p.second}, {1 - p.parameter, p.parameter}, p.step()};
 }
 
 /// The mean of two points of one tetrahedron. Where a neighbour has become one of them, there may be other
@@ -49,6 +54,7 @@ MeanPoint between(const MeanPoint& a, const MeanPoint& b, double t) {
     total = parts[0].first + parts[1].first + parts[2].first + parts[3].first;
   }
   MeanPoint result;
+  result.step = std::min(a.step, b.step);
   for (std::size_t v = 0; v < count; ++v) {
     result.vertices[v] = parts[v].second;
     result.weights[v] = parts[v].first / total;

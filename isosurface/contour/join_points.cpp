@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -14,6 +11,8 @@
 #include "core/base/disjoint_sets.h"
 #include "core/base/large_pages.h"
 #include "core/lattice/point_numbers.h"
+#include "isosurface/contour/coinciding_patches.h"
+#include "isosurface/contour/joined_point.h"
 #include "isosurface/contour/triangle_stars.h"
 
 namespace adamas {
@@ -30,74 +29,6 @@ std::vector<T> filled(std::size_t size, T value) {
   result.resize(size, value);
   return result;
 }
-
-/// The end of a point's edge that is nearer.
-LatticePoint nearer_end(const EdgePoint& p) { return p.parameter < 0.5 ? p.first : p.second; }
-
-/// The mean of points that are joined, as it grows.
-class JoinedPoint {
- public:
-  void add(const Vec3& point, const EdgePoint& edge) {
-    ++count_;
-    sum_ += point;
-    const bool first_is_near = edge.parameter < 0.5;
-    vertex_ = nearer_end(edge);
-    const double part = first_is_near ? edge.parameter : 1 - edge.parameter;
-    // The three neighbours that the points are moved to most.
-    std::size_t place = 3;
-    while (place > 0 && parts_[place - 1] < part) --place;
-    for (std::size_t n = 2; n > place; --n) {
-      parts_[n] = parts_[n - 1];
-      neighbours_[n] = neighbours_[n - 1];
-    }
-    if (place < 3) {
-      parts_[place] = part;
-      neighbours_[place] = first_is_near ? edge.second : edge.first;
-    }
-  }
-
-  /// A triangle that has one of the points or several.
-  void add_triangle(const Vec3& area, const Vec3& corner) {
-    area_ += norm(area);
-    area_vector_ += area;
-    moment_ += dot(area, corner);
-  }
-
-  /// Means of points on a curved surface lie on its hollow side. The mean is moved along the triangles' mean
-  /// normal to where the cones from it over the triangles have no volume in all.
-  [[nodiscard]] Vec3 position() const {
-    const Vec3 mean = 1.0 / count_ * sum_;
-    const double length = norm(area_vector_);
-    // Where the triangles turn to all sides there is no such normal.
-    constexpr double kLeastPart = 0.7;
-    if (!(length > kLeastPart * area_)) return mean;
-    const double way = (moment_ - dot(area_vector_, mean)) / length;
-    // No farther than a part of what the triangles measure across.
-    const double farthest = 0.1 * std::sqrt(area_);
-    return mean + std::clamp(way, -farthest, farthest) / length * area_vector_;
-  }
-  /// The vertex, and those three of its neighbours.
-  [[nodiscard]] MeanPoint as_mean() const {
-    MeanPoint result;
-    result.vertices[0] = vertex_;
-    result.weights[0] = 1;
-    for (std::size_t n = 0; n < 3; ++n) {
-      if (parts_[n] == 0) continue;
-      result.vertices[n + 1] = neighbours_[n];
-      result.weights[n + 1] = parts_[n] / count_;
-      result.weights[0] -= result.weights[n + 1];
-    }
-    return result;
-  }
-
- private:
-  int count_ = 0;
-  Vec3 sum_, area_vector_;
-  double area_ = 0, moment_ = 0;
-  LatticePoint vertex_;
-  std::array<LatticePoint, 3> neighbours_{};
-  std::array<double, 3> parts_{};
-};
 
 class PointJoiner {
  public:
@@ -123,7 +54,7 @@ class PointJoiner {
     numbers.expect(count_ / 3);
     std::uint32_t next = 0;
     for (std::uint32_t p = 0; p < count_; ++p) {
-      const auto [number, is_new] = numbers.insert(nearer_end(contour_.edge_points[p]));
+      const auto [number, is_new] = numbers.insert(contour_.edge_points[p].nearer_end());
       if (is_new) *number = next++;
       vertices_[p] = *number;
     }
@@ -202,7 +133,7 @@ class PointJoiner {
 
   /// f(triangle, corner) for those corners of joined triangles whose patches are suspect.
   template <class F>
-  void for_each_suspect_corner(F f) const {
+  void for_each_suspect_corner(const F& f) const {
     for (const Triangle& triangle : contour_.triangles) {
       const Triangle t = joined(triangle);
       const std::array<bool, 3> is{is_suspect_[t[0]], is_suspect_[t[1]], is_suspect_[t[2]]};
@@ -217,34 +148,11 @@ class PointJoiner {
   /// taking those patches apart. What was taken apart may coincide with something else then, and nothing else
   /// may, so that these points alone are suspect the next time. Returns whether there were any.
   bool separate_what_would_coincide() {
-    // What follows each patch in its triangles, and what comes before.
-    std::vector<std::uint32_t> begin = filled(count_ + 1, std::uint32_t{0});
-    for_each_suspect_corner([&](const Triangle& t, std::size_t c) { ++begin[t[c] + 1]; });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<std::array<std::uint32_t, 2>> around = filled(begin.back(), std::array<std::uint32_t, 2>{});
-    for_each_suspect_corner([&](const Triangle& t, std::size_t c) {
-      around[begin[t[c]]++] = {t[(c + 1) % 3], t[(c + 2) % 3]};
-    });
-    for (std::uint32_t p = 0; p < count_; ++p) {
-      if (!is_suspect_[p]) continue;
-      const std::uint32_t first = p == 0 ? 0 : begin[p - 1];
-      check_patch(p, {around.data() + first, begin[p] - first});
-    }
+    apart_ = CoincidingPatches::find(count_, is_suspect_, is_joined_,
+                                     [this](const auto& visit) { for_each_suspect_corner(visit); });
     const bool found = !apart_.empty();
     if (found) take_apart();
     return found;
-  }
-
-  void check_patch(std::uint32_t patch, std::span<std::array<std::uint32_t, 2>> around) {
-    // All that is left of a body may lie in two patches: its triangles are gone.
-    if (around.size() < 3 && is_joined_[patch]) apart_.push_back(patch);
-    for (std::size_t n = 0; n < around.size(); ++n) {
-      for (std::size_t m = 0; m < n; ++m) {
-        if (around[m][0] == around[n][0]) apart_.insert(apart_.end(), {patch, around[n][0]});
-        if (around[m][0] == around[n][1] && around[m][1] == around[n][0])
-          apart_.insert(apart_.end(), {patch, around[n][0], around[n][1]});
-      }
-    }
   }
 
   /// Joins the points: first those that stay, in their order, then the means, in the order of the patches.
@@ -273,16 +181,17 @@ class PointJoiner {
     for (const Triangle& triangle : contour_.triangles) {
       const Vec3 &a = contour_.points[triangle[0]], &b = contour_.points[triangle[1]],
                  &c = contour_.points[triangle[2]];
-      const Vec3 area = 0.5 * cross(b - a, c - a);
+      const Vec3 area_vector = 0.5 * cross(b - a, c - a);
+      const double area = norm(area_vector), moment = dot(area_vector, a);
       const Triangle t = joined(triangle);
       for (std::size_t n = 0; n < 3; ++n) {
         const bool is_first = n == 0 || (t[n] != t[0] && (n == 1 || t[n] != t[1]));
-        if (is_first && sizes[t[n]] > 1) means[numbers[t[n]] - edge_count].add_triangle(area, a);
+        if (is_first && sizes[t[n]] > 1) means[numbers[t[n]] - edge_count].add_triangle(area_vector, area, moment);
       }
     }
     for (const JoinedPoint& mean : means) {
       result.points.push_back(mean.position());
-      result.mean_points.push_back(mean.as_mean());
+      result.vertex_points.push_back(mean.vertex_point());
     }
     for (const Triangle& triangle : contour_.triangles) {
       const Triangle t = joined(triangle);
@@ -303,7 +212,7 @@ class PointJoiner {
 }  // namespace
 
 void join_points(Contour& contour) {
-  ADAMAS_ASSERT(contour.mean_points.empty());
+  ADAMAS_ASSERT(contour.points.size() == contour.edge_points.size());
   if (!contour.triangles.empty()) PointJoiner(contour).run();
 }
 

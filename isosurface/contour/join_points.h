@@ -11,7 +11,7 @@ namespace adamas {
 /// Points are joined where the edges and triangles among them form a disc, so that the surface keeps its
 /// topology; and where that would lay two edges between the same points, or two triangles on each other,
 /// they are not. Points at the border of the contour stay as they are. The contour is not to be clipped yet:
-/// all its points are on edges; joined ones are then means of vertices, after those on edges.
+/// all its points are on edges; joined ones are then vertex points.
 void join_points(Contour& contour);
 
 }  // namespace adamas

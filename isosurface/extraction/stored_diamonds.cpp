@@ -91,6 +91,15 @@ void StoredDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
 }
 
 template <class Sample>
+typename StoredDiamonds<Sample>::Side StoredDiamonds<Sample>::side(const PageId& id) {
+  // Points of coarser LODs alone are in no page's range.
+  if (id.lod == this->grid().top() || !this->grid().contains(id)) return Side::kBoth;
+  const PageEntry& known = entry(id);
+  if (known.low > known.high || crosses(known.low, known.high)) return Side::kBoth;
+  return known.low >= least_above_ ? Side::kAbove : Side::kBelow;
+}
+
+template <class Sample>
 int StoredDiamonds<Sample>::greatest_class(const PageId& id) {
   const PageEntry& known = entry(id);
   if (known.part_count() == 0 || !crosses(known.low, known.high)) return 0;

@@ -42,6 +42,12 @@ class StoredDiamonds : public LatticeSamples<Sample> {
   /// The error class of a stored diamond where the contour may cross it, and 0 where it does not. Throws
   /// PageLost.
   int class_if_crossed(LatticePoint p);
+  /// On which sides of the contour the page's samples lie, and those of the cells of its LOD in its cube; both
+  /// where the directory does not tell. Throws PageLost.
+  enum class Side : std::uint8_t { kBelow, kAbove, kBoth };
+  Side side(const PageId& id);
+  /// The least word of a sample not below the isovalue; greater than all words where there is none.
+  [[nodiscard]] std::uint64_t least_above() const { return least_above_; }
   /// A class that no diamond of the page exceeds which the contour crosses; 0 where it crosses none. Not for
   /// the coarsest page, which has diamonds of several LODs. Throws PageLost.
   int greatest_class(const PageId& id);

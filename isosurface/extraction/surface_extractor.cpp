@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/contour/decimate.h"
+#include "isosurface/extraction/full_contour.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
 #include "isosurface/volume/samples.h"
@@ -39,9 +40,27 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Pro
   // Which diamonds are split is known now, so that bounds are no longer needed.
   if (!request_.others_follow) pages_.drop_bounds();
   ExtractedSurface surface = split_pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
+  clip(surface.contour);
+  return surface;
+}
+
+template <class Sample>
+void SurfaceExtractor<Sample>::clip(Contour& contour) const {
   const Vec3 spacing = contour_options().spacing;
-  if (request_.region) clip_contour(surface.contour, *request_.region, spacing);
-  clip_contour(surface.contour, request_.sides, spacing);
+  if (request_.region) clip_contour(contour, *request_.region, spacing);
+  clip_contour(contour, request_.sides, spacing);
+}
+
+template <class Sample>
+std::optional<ExtractedSurface> SurfaceExtractor<Sample>::full_contour(Progress& progress) {
+  FullContour<Sample> full(diamonds_, request_.isovalue, request_.least_parameter, limits_);
+  if (!full.is_worthwhile()) return {};
+  std::optional<Contour> contour = full.run(progress);
+  if (!contour) return {};
+  ExtractedSurface surface;
+  surface.contour = std::move(*contour);
+  surface.tetrahedra = 6 * full.crossed_cells();
+  clip(surface.contour);
   return surface;
 }
 
@@ -83,6 +102,9 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
   const int least_class = diamonds_.class_within(request_.error) + 1;
+  if (!request_.max_triangles && request_.join && least_class == 1 && limits_.lost.empty()) {
+    if (std::optional<ExtractedSurface> surface = full_contour(progress)) return std::move(*surface);
+  }
   if (!request_.max_triangles) return contour_of({.error_class = least_class}, progress);
   if (request_.join) return decimated(least_class, progress);
   return contour_of(cut_of(*request_.max_triangles, least_class, progress), progress);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
@@ -43,6 +44,10 @@ class SurfaceExtractor {
   ExtractedSurface decimated(int least_class, Progress& progress);
   ExtractedSurface contour_of(const SurfaceCut& cut, Progress& progress);
   ExtractedSurface contour_of_mesh(Progress& progress);
+  /// The surface of the mesh in which everything is split; nothing where that is not the way to it.
+  std::optional<ExtractedSurface> full_contour(Progress& progress);
+  /// Cuts off what is outside the region and beyond the sides.
+  void clip(Contour& contour) const;
   /// The surface of the mesh in which nothing is split.
   ExtractedSurface contour_of_root();
   [[nodiscard]] ContourOptions contour_options() const;

@@ -46,12 +46,6 @@ class VertexGradients {
   /// Damaged pages that some gradient was worked out without.
   [[nodiscard]] const std::vector<PageId>& lost() const { return lost_; }
 
-  /// How far away neighbours are in a mesh that has the edge.
-  [[nodiscard]] static std::int32_t step(const EdgePoint& edge) {
-    const LatticePoint way = edge.second - edge.first;
-    return std::int32_t{1} << trailing_zeros(way);
-  }
-
  private:
   Vec3 stored(LatticePoint p, std::int32_t step) {
     const std::optional<Vec3> direction = stored_->direction(samples_.in_samples(p));
@@ -137,20 +131,16 @@ SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Co
     if (normals.size() % 65536 == 0)
       progress.step("normals",
                     static_cast<double>(normals.size()) / static_cast<double>(contour.points.size()));
-    const std::int32_t step = gradients.step(edge);
+    const std::int32_t step = edge.step();
     const Vec3 a = gradients.at(edge.first, step), b = gradients.at(edge.second, step);
     normals.push_back(downwards((1 - edge.parameter) * a + edge.parameter * b));
   }
+  for (const VertexPoint& point : contour.vertex_points)
+    normals.push_back(downwards(gradients.at(point.vertex, point.step)));
   for (const MeanPoint& point : contour.mean_points) {
-    std::int32_t step = std::int32_t{1} << kRootBits;
-    for (std::size_t v = 1; v < 4; ++v) {
-      const LatticePoint way = point.vertices[v] - point.vertices[0];
-      if (point.weights[v] != 0 && way != LatticePoint{})
-        step = std::min(step, std::int32_t{1} << trailing_zeros(way));
-    }
     Vec3 gradient;
     for (std::size_t v = 0; v < 4; ++v) {
-      if (point.weights[v] != 0) gradient += point.weights[v] * gradients.at(point.vertices[v], step);
+      if (point.weights[v] != 0) gradient += point.weights[v] * gradients.at(point.vertices[v], point.step);
     }
     normals.push_back(downwards(gradient));
   }

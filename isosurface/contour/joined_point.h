@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/geometry/vec3.h"
+#include "core/lattice/lattice_point.h"
+#include "isosurface/contour/contour.h"
+
+namespace adamas {
+
+/// The mean of points that are joined, as it grows.
+class JoinedPoint {
+ public:
+  void add(const Vec3& point, const EdgePoint& edge) {
+    step_ = count_ == 0 ? edge.step() : std::min(step_, edge.step());
+    ++count_;
+    sum_ += point;
+    vertex_ = edge.nearer_end();
+  }
+
+  /// A triangle that has one of the points or several: half the cross product of two of its sides, its
+  /// length, and its product with a corner.
+  void add_triangle(const Vec3& area_vector, double area, double moment) {
+    area_ += area;
+    area_vector_ += area_vector;
+    moment_ += moment;
+  }
+  /// The triangles that were added to the same point elsewhere.
+  void add_triangles_of(const JoinedPoint& other) {
+    add_triangle(other.area_vector_, other.area_, other.moment_);
+  }
+
+  /// Means of points on a curved surface lie on its hollow side. The mean is moved along the triangles' mean
+  /// normal to where the cones from it over the triangles have no volume in all.
+  [[nodiscard]] Vec3 position() const {
+    const Vec3 mean = 1.0 / count_ * sum_;
+    const double length = norm(area_vector_);
+    // Where the triangles turn to all sides there is no such normal.
+    constexpr double kLeastPart = 0.7;
+    if (!(length > kLeastPart * area_)) return mean;
+    const double way = (moment_ - dot(area_vector_, mean)) / length;
+    // No farther than a part of what the triangles measure across.
+    const double farthest = 0.1 * std::sqrt(area_);
+    return mean + std::clamp(way, -farthest, farthest) / length * area_vector_;
+  }
+  [[nodiscard]] VertexPoint vertex_point() const { return {vertex_, step_}; }
+
+ private:
+  std::int32_t count_ = 0, step_ = 0;
+  Vec3 sum_, area_vector_;
+  double area_ = 0, moment_ = 0;
+  LatticePoint vertex_{};
+};
+
+}  // namespace adamas

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/lattice/lattice_point.h"
+#include "isosurface/extraction/stored_diamonds.h"
+
+namespace adamas {
+
+/// The samples of a page of the finest LOD and of the points round it, one before the page to two behind it, so
+/// that all corners of its cells have all their neighbours: coordinates from -1 to 17.
+template <class Sample>
+class PageBox {
+ public:
+  using Word = OrderedWord<Sample>;
+  static constexpr std::int32_t kFirst = -1, kLast = 17;
+
+  /// The diamonds must outlive this.
+  explicit PageBox(StoredDiamonds<Sample>& diamonds) : diamonds_(diamonds) {}
+
+  /// Gets the samples of a page, and on which side of the contour each lies. Throws PageLost.
+  void load(LatticePoint block);
+
+  /// The sample at a corner of a cell of the page that the contour crosses, or at the end of an edge from such
+  /// a corner that it crosses.
+  [[nodiscard]] double value(LatticePoint q) const { return from_ordered<Sample>(words_[place(q)]); }
+  /// Which samples of a row along i are not below the isovalue: bit q.i + 1.
+  [[nodiscard]] std::uint32_t above(std::int32_t j, std::int32_t k) const { return above_[row(j, k)]; }
+  /// The page's cells in a row that the contour crosses: bit i of the first corner.
+  [[nodiscard]] std::uint32_t crossed_cells(std::int32_t j, std::int32_t k) const;
+  /// Whether the samples of the page and round it are all finite.
+  [[nodiscard]] bool is_finite() const { return is_finite_; }
+  /// How many cells the page has along each axis.
+  [[nodiscard]] LatticePoint cells() const { return cells_; }
+
+ private:
+  static constexpr std::int32_t kSide = kLast - kFirst + 1;
+
+  static std::size_t row(std::int32_t j, std::int32_t k) {
+    return static_cast<std::size_t>(j - kFirst + kSide * (k - kFirst));
+  }
+  static std::size_t place(LatticePoint q) {
+    return static_cast<std::size_t>(q.i - kFirst) + static_cast<std::size_t>(kSide) * row(q.j, q.k);
+  }
+  /// The part of the box that lies on a page: of coordinates, the first and how many.
+  struct Run {
+    std::int32_t first, count;
+    explicit Run(std::int32_t step) : first(step < 0 ? -1 : 16 * step), count(step < 0 ? 1 : step > 0 ? 2 : 16) {}
+  };
+
+  void copy(LatticePoint step);
+  void fill(LatticePoint step, Word word);
+  void find_above();
+  void find_finite();
+  [[nodiscard]] bool has_crossed_cells_at(LatticePoint step) const;
+
+  StoredDiamonds<Sample>& diamonds_;
+  LatticePoint block_{}, cells_{};
+  std::array<Word, static_cast<std::size_t>(kSide) * kSide * kSide> words_{};
+  std::array<std::uint32_t, static_cast<std::size_t>(kSide) * kSide> above_{};
+  bool is_finite_ = true;
+};
+
+extern template class PageBox<std::uint8_t>;
+extern template class PageBox<std::uint16_t>;
+extern template class PageBox<std::int16_t>;
+extern template class PageBox<float>;
+
+}  // namespace adamas
