@@ -131,25 +131,21 @@ class PointJoiner {
   }
   static bool has_area(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
 
-  /// f(triangle, corner) for those corners of joined triangles whose patches are suspect.
-  template <class F>
-  void for_each_suspect_corner(const F& f) const {
-    for (const Triangle& triangle : contour_.triangles) {
-      const Triangle t = joined(triangle);
-      const std::array<bool, 3> is{is_suspect_[t[0]], is_suspect_[t[1]], is_suspect_[t[2]]};
-      if (!(is[0] || is[1] || is[2]) || !has_area(t)) continue;
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (is[c]) f(t, c);
-      }
-    }
-  }
-
   /// Two edges that begin at one patch and end at one, and two triangles at the same three, are kept apart by
   /// taking those patches apart. What was taken apart may coincide with something else then, and nothing else
   /// may, so that these points alone are suspect the next time. Returns whether there were any.
   bool separate_what_would_coincide() {
-    apart_ = CoincidingPatches::find(count_, is_suspect_, is_joined_,
-                                     [this](const auto& visit) { for_each_suspect_corner(visit); });
+    std::vector<CoincidingPatches::Suspect> suspects;
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      if (is_suspect_[p] && patch_[p] == p) suspects.push_back({p, is_joined_[p]});
+    }
+    const SuspectPlaces places(suspects, count_);
+    apart_ = CoincidingPatches::find(suspects, [&](const auto& visit) {
+      for (const Triangle& triangle : contour_.triangles) {
+        const Triangle t = joined(triangle);
+        if (has_area(t)) places.visit_corners(t, visit);
+      }
+    });
     const bool found = !apart_.empty();
     if (found) take_apart();
     return found;

@@ -64,68 +64,87 @@ bool FullContour<Sample>::is_worthwhile() {
 
 template <class Sample>
 std::optional<Contour> FullContour<Sample>::run(Progress& progress) {
-  // Slabs of pages are parts of their own, so that sums of numbers do not depend on threads.
-  std::vector<std::size_t> slabs{0};
-  for (std::size_t n = 1; n <= blocks_.size(); ++n) {
-    if (n == blocks_.size() || blocks_[n].k != blocks_[n - 1].k) slabs.push_back(n);
-  }
-  const std::int32_t sample = diamonds_.lattice_step(0);
   const Domain& domain = diamonds_.domain();
+  const std::int32_t sample = diamonds_.lattice_step(0);
   JoinedSurface surface(sample, {domain.box().min, domain.position(diamonds_.last_sample())});
   PageCells<Sample> cells(diamonds_, isovalue_, least_parameter_);
+  Apart apart;
   SurfaceSlab slab;
-  for (std::size_t s = 0; s + 1 < slabs.size(); ++s) {
-    const std::int32_t first = kSide * blocks_[slabs[s]].k;
-    slab.clear(first, first + kSide);
-    for (std::size_t n = slabs[s]; n < slabs[s + 1]; ++n) {
-      if (!cells.add(blocks_[n], slab)) return {};
-    }
-    slab.find_coinciding(sample);
-    const double part = static_cast<double>(slabs[s + 1]) / static_cast<double>(blocks_.size());
+  for (std::size_t n = 0; n < blocks_.size();) {
+    std::vector<LatticePoint> blocks;
+    for (const std::int32_t k = blocks_[n].k; n < blocks_.size() && blocks_[n].k == k; ++n)
+      blocks.push_back(blocks_[n]);
+    if (!add_slab(blocks, cells, slab, apart)) return {};
+    const double part = static_cast<double>(n) / static_cast<double>(blocks_.size());
     progress.step("extracting", part);
     surface.append(slab, part);
   }
   crossed_cells_ = surface.crossed_cells();
-  take_apart(surface, cells, progress);
+  take_apart(surface, cells, apart, progress);
   Contour result = surface.finish();
   if (limits_.region) remove_unused_points(result);
   return result;
 }
 
 template <class Sample>
-void FullContour<Sample>::take_apart(JoinedSurface& surface, PageCells<Sample>& cells, Progress& progress) {
-  typename PageCells<Sample>::Apart apart;
-  for (;;) {
+bool FullContour<Sample>::add_slab(const std::vector<LatticePoint>& blocks, PageCells<Sample>& cells,
+                                   SurfaceSlab& slab, Apart& apart) {
+  const std::int32_t first = kSide * blocks.front().k, sample = diamonds_.lattice_step(0);
+  slab.clear(first, first + kSide);
+  for (const LatticePoint block : blocks) {
+    if (!cells.add(block, slab)) return false;
+  }
+  const std::vector<PointsOfVertex> patches = slab.take_apart(sample);
+  for (const PointsOfVertex& patch : patches) *apart.insert(patch.vertex).first |= patch.points;
+  const std::vector<CellOfPage> again = cells_round(patches);
+  slab.share(corners_of(again), sample);
+  add_again(again, cells, apart, slab);
+  return true;
+}
+
+template <class Sample>
+void FullContour<Sample>::take_apart(JoinedSurface& surface, PageCells<Sample>& cells, Apart& apart,
+                                     Progress& progress) {
+  while (surface.has_suspects()) {
     progress.step("extracting", 1);
-    const std::vector<JoinedSurface::Patch> patches = surface.take_apart();
-    if (patches.empty()) return;
-    for (const JoinedSurface::Patch& patch : patches) *apart.insert(patch.vertex).first |= patch.points;
+    const std::vector<PointsOfVertex> patches = surface.take_apart();
+    for (const PointsOfVertex& patch : patches) *apart.insert(patch.vertex).first |= patch.points;
     const std::vector<CellOfPage> again = cells_round(patches);
-    LatticeMap<bool> corners;
-    for (const CellOfPage& c : again) {
-      for (int n = 0; n < 8; ++n)
-        corners.insert(kSide * c.block + c.cell + LatticePoint{n & 1, n >> 1 & 1, n >> 2});
-    }
-    SurfaceSlab more;
-    more.shared = surface.numbers_near(corners);
-    const auto first_new = static_cast<std::uint32_t>(surface.edge_points().size());
-    std::vector<LatticePoint> of_page;
-    for (std::size_t n = 0; n < again.size();) {
-      const LatticePoint block = again[n].block;
-      of_page.clear();
-      for (; n < again.size() && again[n].block == block; ++n) of_page.push_back(again[n].cell);
-      cells.add_again(block, of_page, apart, first_new, more);
-    }
-    surface.add(more);
+    SurfaceSlab addition = surface.addition(corners_of(again));
+    add_again(again, cells, apart, addition);
+    surface.add(addition);
   }
 }
 
 template <class Sample>
+void FullContour<Sample>::add_again(const std::vector<CellOfPage>& cells, PageCells<Sample>& of_pages,
+                                    const Apart& apart, SurfaceSlab& slab) {
+  const auto first_new = static_cast<std::uint32_t>(slab.first_edge + slab.edge_points.size());
+  std::vector<LatticePoint> of_page;
+  for (std::size_t n = 0; n < cells.size();) {
+    const LatticePoint block = cells[n].block;
+    of_page.clear();
+    for (; n < cells.size() && cells[n].block == block; ++n) of_page.push_back(cells[n].cell);
+    of_pages.add_again(block, of_page, apart, first_new, slab);
+  }
+}
+
+template <class Sample>
+LatticeMap<bool> FullContour<Sample>::corners_of(const std::vector<CellOfPage>& cells) {
+  LatticeMap<bool> corners;
+  for (const CellOfPage& c : cells) {
+    for (int n = 0; n < 8; ++n)
+      corners.insert(kSide * c.block + c.cell + LatticePoint{n & 1, n >> 1 & 1, n >> 2});
+  }
+  return corners;
+}
+
+template <class Sample>
 std::vector<typename FullContour<Sample>::CellOfPage> FullContour<Sample>::cells_round(
-    const std::vector<JoinedSurface::Patch>& patches) const {
+    const std::vector<PointsOfVertex>& patches) const {
   const LatticePoint last = diamonds_.grid().last();
   std::vector<CellOfPage> found;
-  for (const JoinedSurface::Patch& patch : patches) {
+  for (const PointsOfVertex& patch : patches) {
     for (int corner = 0; corner < 8; ++corner) {
       const LatticePoint c = patch.vertex - LatticePoint{corner & 1, corner >> 1 & 1, corner >> 2};
       if (std::min({c.i, c.j, c.k}) < 0 || c.i >= last.i || c.j >= last.j || c.k >= last.k) continue;

@@ -39,14 +39,21 @@ class FullContour {
  private:
   void find_blocks(int lod, LatticePoint block);
   [[nodiscard]] bool is_wanted(int lod, LatticePoint block) const;
-  /// Takes patches apart until nothing coincides.
-  void take_apart(JoinedSurface& surface, PageCells<Sample>& cells, Progress& progress);
   /// A cell, by its page and its first corner, from the page's first point on.
   struct CellOfPage {
     LatticePoint block, cell;
   };
-  /// The cells that have a corner at the vertex of one of these, by page.
-  [[nodiscard]] std::vector<CellOfPage> cells_round(const std::vector<JoinedSurface::Patch>& patches) const;
+  using Apart = typename PageCells<Sample>::Apart;
+
+  /// The cells that have a corner at the vertex of one of these, by page; and their corners.
+  [[nodiscard]] std::vector<CellOfPage> cells_round(const std::vector<PointsOfVertex>& patches) const;
+  static LatticeMap<bool> corners_of(const std::vector<CellOfPage>& cells);
+  /// Returns false where a sample is not finite.
+  bool add_slab(const std::vector<LatticePoint>& blocks, PageCells<Sample>& cells, SurfaceSlab& slab, Apart& apart);
+  /// Takes patches apart until nothing coincides.
+  void take_apart(JoinedSurface& surface, PageCells<Sample>& cells, Apart& apart, Progress& progress);
+  /// Adds to a slab the triangles in these cells that have new points.
+  void add_again(const std::vector<CellOfPage>& cells, PageCells<Sample>& of_pages, const Apart& apart, SurfaceSlab& slab);
 
   StoredDiamonds<Sample>& diamonds_;
   double isovalue_, least_parameter_;

@@ -31,6 +31,32 @@ void make_room(std::vector<T>& all, std::size_t more, double part) {
     reserve_in_large_pages(all, std::max(size, static_cast<std::size_t>(kSpare * static_cast<double>(size) / part)));
 }
 
+/// Adds the numbers of points next to some vertices to a map, by key.
+template <class Patches>
+void add_numbers_near(const LatticeMap<bool>& vertices, std::int32_t sample,
+                      const std::vector<EdgePoint>& edge_points, const Patches& patches,
+                      LatticeMap<std::uint32_t>& numbers) {
+  const auto in_samples = [sample](LatticePoint p) {
+    return LatticePoint{p.i / sample, p.j / sample, p.k / sample};
+  };
+  // Most points are next to other vertices than these, which a small table tells of nearly all.
+  constexpr int kBits = 16;
+  const auto place = [](LatticePoint p) { return static_cast<std::size_t>(hash_value(p) >> (64 - kBits)); };
+  std::vector<bool> may_have(std::size_t{1} << kBits);
+  vertices.for_each([&](LatticePoint p, bool) { may_have[place(p)] = true; });
+  const auto is_near = [&](LatticePoint p) { return may_have[place(p)] && vertices.find(p) != nullptr; };
+  for (std::uint32_t n = 0; n < edge_points.size(); ++n) {
+    const EdgePoint& p = edge_points[n];
+    if (is_near(in_samples(p.nearer_end())))
+      *numbers.insert(in_samples(p.first) + in_samples(p.second)).first = n;
+  }
+  for (std::uint32_t n = 0; n < patches.size(); ++n) {
+    const PointsOfVertex& of = patches[n].of;
+    if (of.points != 0 && is_near(of.vertex))
+      *numbers.insert(point_key(of.vertex, std::countr_zero(of.points))).first = kFirstPatch + n;
+  }
+}
+
 }  // namespace
 
 void SurfaceSlab::clear(std::int32_t first_plane, std::int32_t last_plane) {
@@ -45,29 +71,41 @@ void SurfaceSlab::clear(std::int32_t first_plane, std::int32_t last_plane) {
   coinciding.clear();
 }
 
-void SurfaceSlab::find_coinciding(std::int32_t sample) {
+std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample) {
   const auto edges = static_cast<std::uint32_t>(edge_points.size());
-  const auto count = edges + static_cast<std::uint32_t>(patches.size());
-  std::vector<bool> is_suspect(count), is_joined(count);
+  first_separated = edges;
+  // Patches have places behind those of edge points.
+  std::vector<CoincidingPatches::Suspect> suspects;
   for (std::uint32_t p = 0; p < edges; ++p) {
-    const std::int32_t k = edge_points[p].nearer_end().k / sample;
-    is_suspect[p] = k != first && k != last;
+    if (!on_plane(edge_points[p].nearer_end().k / sample)) suspects.push_back({p, false});
   }
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
-    is_joined[edges + p] = true;
-    is_suspect[edges + p] = patches[p].vertex.k != first && patches[p].vertex.k != last;
+    if (!on_plane(patches[p].of.vertex.k)) suspects.push_back({edges + p, true});
   }
+  const SuspectPlaces places(suspects, edges + patches.size());
   const auto place = [edges](std::uint32_t n) { return n < kFirstPatch ? n : n - kFirstPatch + edges; };
-  coinciding = CoincidingPatches::find(count, is_suspect, is_joined, [&](const auto& visit) {
-    for (const auto& [a, b, c] : triangles) {
-      const std::array<std::uint32_t, 3> t{place(a), place(b), place(c)};
-      for (std::size_t n = 0; n < 3; ++n) {
-        if (is_suspect[t[n]]) visit(t, n);
-      }
-    }
+  std::vector<std::uint32_t> found = CoincidingPatches::find(suspects, [&](const auto& visit) {
+    for (const auto& [a, b, c] : triangles) places.visit_corners({place(a), place(b), place(c)}, visit);
   });
-  std::erase_if(coinciding, [edges](std::uint32_t p) { return p < edges; });
-  for (std::uint32_t& p : coinciding) p -= edges;
+  sort_unique(found);
+  std::vector<PointsOfVertex> result;
+  for (const std::uint32_t p : found) {
+    if (p < edges) continue;
+    PointsOfVertex& of = patches[p - edges].of;
+    if (on_plane(of.vertex.k)) {
+      coinciding.push_back(p - edges);
+    } else {
+      result.push_back(of);
+      // Its first point will have this key.
+      shared.erase(point_key(of.vertex, std::countr_zero(of.points)));
+      of.points = 0;
+    }
+  }
+  return result;
+}
+
+void SurfaceSlab::share(const LatticeMap<bool>& vertices, std::int32_t sample) {
+  add_numbers_near(vertices, sample, edge_points, patches, shared);
 }
 
 Vec3 JoinedSurface::position(const JoinedPoint& joined) const {
@@ -102,18 +140,27 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
     edge_numbers[n] = static_cast<std::uint32_t>(edge_points_.size());
     edge_points_.push_back(slab.edge_points[n]);
     edge_positions_.push_back(slab.edge_positions[n]);
-    const std::int32_t k = vertex_plane(slab.edge_points[n]);
-    if (k == slab.first || k == slab.last) suspects_.push_back(edge_numbers[n]);
+    const std::int32_t k = slab.edge_points[n].nearer_end().k / sample_;
+    if (n >= slab.first_separated) {
+      separated_.push_back(edge_numbers[n]);
+    } else if (k == slab.first || k == slab.last) {
+      suspects_.push_back(edge_numbers[n]);
+    }
   }
   for (std::size_t n = 0; n < patch_numbers.size(); ++n) {
     if (patch_numbers[n] != kNone) continue;
     const SurfaceSlab::Patch& patch = slab.patches[n];
+    if (patch.of.points == 0) continue;
     patch_numbers[n] = kFirstPatch + static_cast<std::uint32_t>(patches_.size());
-    patches_.push_back({position(patch.joined), patch.vertex, patch.points});
-    if (patch.vertex.k == slab.last) on_plane_.emplace(patch_numbers[n], patch.joined);
-    if (patch.vertex.k == slab.first || patch.vertex.k == slab.last) suspects_.push_back(patch_numbers[n]);
+    patches_.push_back({position(patch.joined), patch.of});
+    const std::int32_t k = patch.of.vertex.k;
+    if (k == slab.last) on_plane_.emplace(patch_numbers[n], patch.joined);
+    if (k == slab.first || k == slab.last) suspects_.push_back(patch_numbers[n]);
   }
-  for (const Triangle& t : slab.triangles) triangles_.push_back({number(t[0]), number(t[1]), number(t[2])});
+  for (const Triangle& triangle : slab.triangles) {
+    const Triangle t{number(triangle[0]), number(triangle[1]), number(triangle[2])};
+    if (t[0] != kNone && t[1] != kNone && t[2] != kNone) triangles_.push_back(t);
+  }
   for (const std::uint32_t p : slab.coinciding) coinciding_.push_back(patch_numbers[p] - kFirstPatch);
   shared_ = {};
   for_each_on_plane(slab, slab.last,
@@ -121,62 +168,51 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
   crossed_cells_ += slab.crossed_cells;
 }
 
-std::vector<JoinedSurface::Patch> JoinedSurface::take_apart() {
-  const auto edges = static_cast<std::uint32_t>(edge_points_.size());
-  std::vector<bool> is_suspect(count()), is_joined(count());
-  for (const std::uint32_t n : std::exchange(suspects_, {})) is_suspect[place(n)] = true;
-  for (std::uint32_t p = 0; p < patches_.size(); ++p) is_joined[edges + p] = patches_[p].points != 0;
-  for (const std::uint32_t p :
-       CoincidingPatches::find(count(), is_suspect, is_joined, [&](const auto& visit) {
-         for (const auto& [a, b, c] : triangles_) {
-           const Triangle t{place(a), place(b), place(c)};
-           for (std::size_t n = 0; n < 3; ++n) {
-             if (is_suspect[t[n]]) visit(t, n);
-           }
-         }
-       })) {
-    if (is_joined[p]) coinciding_.push_back(p - edges);
-  }
+std::vector<PointsOfVertex> JoinedSurface::take_apart() {
+  // What was added last has all triangles of the points that were; points from slabs have others.
+  constexpr int kRoundsOfSlabs = 2;
+  const std::vector<std::uint32_t> suspects = std::exchange(suspects_, std::exchange(separated_, {}));
+  find_coinciding(suspects, rounds_++ < kRoundsOfSlabs ? 0 : first_added_);
+  first_added_ = triangles_.size();
   sort_unique(coinciding_);
-  std::vector<Patch> result;
-  for (const std::uint32_t p : coinciding_) {
-    result.push_back(patches_[p]);
-    patches_[p].points = 0;
-  }
-  if (!result.empty()) {
-    std::erase_if(triangles_, [&](const Triangle& t) {
-      return std::ranges::any_of(
-          t, [&](std::uint32_t n) { return n >= kFirstPatch && patches_[n - kFirstPatch].points == 0; });
-    });
-  }
-  coinciding_.clear();
+  std::vector<PointsOfVertex> result;
+  for (const std::uint32_t p : std::exchange(coinciding_, {}))
+    result.push_back({patches_[p].of.vertex, std::exchange(patches_[p].of.points, 0)});
   return result;
 }
 
-LatticeMap<std::uint32_t> JoinedSurface::numbers_near(const LatticeMap<bool>& vertices) const {
-  LatticeMap<std::uint32_t> numbers;
-  const auto in_samples = [this](LatticePoint p) {
-    return LatticePoint{p.i / sample_, p.j / sample_, p.k / sample_};
+void JoinedSurface::find_coinciding(const std::vector<std::uint32_t>& numbers, std::size_t first_triangle) {
+  const auto place = [edges = edge_count()](std::uint32_t n) {
+    return n < kFirstPatch ? n : n - kFirstPatch + edges;
   };
-  for (std::uint32_t n = 0; n < edge_points_.size(); ++n) {
-    const EdgePoint& p = edge_points_[n];
-    if (vertices.find(in_samples(p.nearer_end())) != nullptr)
-      *numbers.insert(in_samples(p.first) + in_samples(p.second)).first = n;
+  std::vector<CoincidingPatches::Suspect> suspects;
+  for (const std::uint32_t n : numbers) suspects.push_back({place(n), n >= kFirstPatch});
+  const SuspectPlaces places(suspects, edge_count() + patches_.size());
+  const std::vector<std::uint32_t> found = CoincidingPatches::find(suspects, [&](const auto& visit) {
+    for (std::size_t n = first_triangle; n < triangles_.size(); ++n) {
+      const auto& [a, b, c] = triangles_[n];
+      const Triangle t{place(a), place(b), place(c)};
+      if (places.has_any(t) && !is_apart(a) && !is_apart(b) && !is_apart(c)) places.visit_corners(t, visit);
+    }
+  });
+  for (const std::uint32_t p : found) {
+    if (p >= edge_count() && patches_[p - edge_count()].of.points != 0) coinciding_.push_back(p - edge_count());
   }
-  for (std::uint32_t n = 0; n < patches_.size(); ++n) {
-    const Patch& p = patches_[n];
-    if (p.points != 0 && vertices.find(p.vertex) != nullptr)
-      *numbers.insert(point_key(p.vertex, std::countr_zero(p.points))).first = kFirstPatch + n;
-  }
-  return numbers;
 }
 
-void JoinedSurface::add(const SurfaceSlab& more) {
-  for (std::size_t n = 0; n < more.edge_points.size(); ++n)
+SurfaceSlab JoinedSurface::addition(const LatticeMap<bool>& vertices) const {
+  SurfaceSlab result;
+  result.first_edge = edge_count();
+  add_numbers_near(vertices, sample_, edge_points_, patches_, result.shared);
+  return result;
+}
+
+void JoinedSurface::add(const SurfaceSlab& addition) {
+  for (std::size_t n = 0; n < addition.edge_points.size(); ++n)
     suspects_.push_back(static_cast<std::uint32_t>(edge_points_.size() + n));
-  edge_points_.insert(edge_points_.end(), more.edge_points.begin(), more.edge_points.end());
-  edge_positions_.insert(edge_positions_.end(), more.edge_positions.begin(), more.edge_positions.end());
-  triangles_.insert(triangles_.end(), more.triangles.begin(), more.triangles.end());
+  edge_points_.insert(edge_points_.end(), addition.edge_points.begin(), addition.edge_points.end());
+  edge_positions_.insert(edge_positions_.end(), addition.edge_positions.begin(), addition.edge_positions.end());
+  triangles_.insert(triangles_.end(), addition.triangles.begin(), addition.triangles.end());
 }
 
 Contour JoinedSurface::finish() {
@@ -185,7 +221,11 @@ Contour JoinedSurface::finish() {
   std::vector<std::uint32_t> numbers;
   numbers.reserve(patches_.size());
   std::uint32_t next = edges;
-  for (const Patch& patch : patches_) numbers.push_back(patch.points == 0 ? kNone : next++);
+  for (const Patch& patch : patches_) numbers.push_back(patch.of.points == 0 ? kNone : next++);
+  if (next < edges + patches_.size()) {
+    std::erase_if(triangles_,
+                  [this](const Triangle& t) { return is_apart(t[0]) || is_apart(t[1]) || is_apart(t[2]); });
+  }
   for (Triangle& t : triangles_) {
     for (std::uint32_t& n : t) n = n < kFirstPatch ? n : numbers[n - kFirstPatch];
   }
@@ -195,9 +235,9 @@ Contour JoinedSurface::finish() {
   reserve_in_large_pages(result.points, next);
   reserve_in_large_pages(result.vertex_points, next - edges);
   for (const Patch& patch : patches_) {
-    if (patch.points == 0) continue;
+    if (patch.of.points == 0) continue;
     result.points.push_back(patch.position);
-    result.vertex_points.push_back({sample_ * patch.vertex, sample_});
+    result.vertex_points.push_back({sample_ * patch.of.vertex, sample_});
   }
   patches_ = {};
   return result;

@@ -23,15 +23,22 @@ inline LatticePoint point_key(LatticePoint vertex, int neighbour) {
   return 2 * vertex + VertexLink::step(neighbour);
 }
 
+/// Points on edges next to one vertex, as the neighbours at the other ends of the edges.
+struct PointsOfVertex {
+  LatticePoint vertex;  ///< in samples
+  VertexLink::Set points;
+};
+
 /// Cells between two planes of samples that follow along k, and the joined contour in them.
 struct SurfaceSlab {
+  /// Without points where they are taken apart: points of the surface themselves again.
   struct Patch {
-    LatticePoint vertex;     ///< in samples
-    VertexLink::Set points;  ///< the neighbours of the vertex at the other ends of the points' edges
+    PointsOfVertex of;
     JoinedPoint joined;
   };
 
   std::int32_t first = 0, last = 0;  ///< planes
+  std::uint32_t first_edge = 0;      ///< the number of the first edge point
   std::vector<EdgePoint> edge_points;
   std::vector<Vec3> edge_positions;
   std::vector<Patch> patches;
@@ -39,24 +46,26 @@ struct SurfaceSlab {
   /// The numbers of points that other pages may have too, by key.
   LatticeMap<std::uint32_t> shared;
   std::uint64_t crossed_cells = 0;
-  /// The patches, less kFirstPatch, that have to be taken apart, as far as this slab tells: what is next to its
-  /// planes has triangles in others.
+  /// Edge points from here on are those of patches that were taken apart.
+  std::size_t first_separated = 0;
+  /// Patches next to the planes, less kFirstPatch, that have to be taken apart: what is there has triangles in
+  /// other slabs.
   std::vector<std::uint32_t> coinciding;
 
   void clear(std::int32_t first_plane, std::int32_t last_plane);
-  /// `sample`: the spacing of samples in lattice units.
-  void find_coinciding(std::int32_t sample);
+  /// Takes apart what coincides inside, without its triangles and points. `sample`: the spacing of samples in
+  /// lattice units.
+  std::vector<PointsOfVertex> take_apart(std::int32_t sample);
+  /// Shares the points next to these vertices as well.
+  void share(const LatticeMap<bool>& vertices, std::int32_t sample);
+
+ private:
+  [[nodiscard]] bool on_plane(std::int32_t k) const { return k == first || k == last; }
 };
 
 /// The joined contour of the lattice of all samples, slab after slab.
 class JoinedSurface {
  public:
-  struct Patch {
-    Vec3 position;
-    LatticePoint vertex;     ///< in samples
-    VertexLink::Set points;  ///< see SurfaceSlab; none where they are points of the surface themselves again
-  };
-
   /// `sample`: the spacing of samples in lattice units; `box`: the data's, which no point leaves.
   JoinedSurface(std::int32_t sample, const Box3& box) : sample_(sample), box_(box) {}
 
@@ -65,46 +74,49 @@ class JoinedSurface {
   void append(const SurfaceSlab& slab, double part);
 
   [[nodiscard]] std::uint64_t crossed_cells() const { return crossed_cells_; }
-  [[nodiscard]] const std::vector<EdgePoint>& edge_points() const { return edge_points_; }
 
-  /// Takes apart the patches that coincide with something else, as far as that is possible without samples:
-  /// removes their triangles. The first time it looks at all points, and then at those that came since.
-  std::vector<Patch> take_apart();
-  /// The numbers of points next to some vertices, by key.
-  [[nodiscard]] LatticeMap<std::uint32_t> numbers_near(const LatticeMap<bool>& vertices) const;
-  /// Adds what a slab has more than these: edge points, whose numbers begin behind those that there are, and
-  /// triangles.
-  void add(const SurfaceSlab& more);
+  /// Whether something may coincide that was not looked at.
+  [[nodiscard]] bool has_suspects() const { return !suspects_.empty() || !separated_.empty(); }
+  /// Takes apart patches that coincide with something else, without their triangles and points: the first time
+  /// what is next to planes between slabs, then what may coincide since something was taken apart.
+  std::vector<PointsOfVertex> take_apart();
+  /// An empty slab that shares the points next to these vertices, for triangles and points of what was taken
+  /// apart.
+  [[nodiscard]] SurfaceSlab addition(const LatticeMap<bool>& vertices) const;
+  void add(const SurfaceSlab& addition);
 
   /// The contour; this is not to be used any more.
   [[nodiscard]] Contour finish();
 
  private:
   using Triangle = std::array<std::uint32_t, 3>;
+  struct Patch {
+    Vec3 position;
+    PointsOfVertex of;  ///< see SurfaceSlab::Patch
+  };
 
-  [[nodiscard]] std::uint32_t count() const {
-    return static_cast<std::uint32_t>(edge_points_.size() + patches_.size());
+  [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edge_points_.size()); }
+  [[nodiscard]] bool is_apart(std::uint32_t number) const {
+    return number >= kFirstPatch && patches_[number - kFirstPatch].of.points == 0;
   }
-  /// Places of edge points, and of patches behind them.
-  [[nodiscard]] std::uint32_t place(std::uint32_t number) const {
-    return number < kFirstPatch ? number
-                                : number - kFirstPatch + static_cast<std::uint32_t>(edge_points_.size());
-  }
-  [[nodiscard]] std::int32_t vertex_plane(const EdgePoint& p) const { return p.nearer_end().k / sample_; }
-
   [[nodiscard]] Vec3 position(const JoinedPoint& joined) const;
+  /// Looks at triangles from one on.
+  void find_coinciding(const std::vector<std::uint32_t>& suspects, std::size_t first_triangle);
 
   std::int32_t sample_;
   Box3 box_;
   std::vector<EdgePoint> edge_points_;
   std::vector<Vec3> edge_positions_;
   std::vector<Patch> patches_;
-  std::vector<Triangle> triangles_;
+  std::vector<Triangle> triangles_;  ///< also of patches that are taken apart
   std::uint64_t crossed_cells_ = 0;
   LatticeMap<std::uint32_t> shared_;                         ///< with the next slab
   std::unordered_map<std::uint32_t, JoinedPoint> on_plane_;  ///< the patches among these, by number
   std::vector<std::uint32_t> coinciding_;                    ///< patches, less kFirstPatch
-  std::vector<std::uint32_t> suspects_;                      ///< points that were not looked at yet
+  std::vector<std::uint32_t> suspects_;   ///< points that are to be looked at, and
+  std::vector<std::uint32_t> separated_;  ///< after those, the ones of patches that slabs took apart
+  int rounds_ = 0;
+  std::size_t first_added_ = 0;  ///< the first triangle that was added after the last round
 };
 
 }  // namespace adamas

@@ -62,7 +62,6 @@ bool PageCells<Sample>::load(LatticePoint block) {
 template <class Sample>
 bool PageCells<Sample>::add(LatticePoint block, SurfaceSlab& slab) {
   apart_ = nullptr;
-  first_edge_ = 0;
   if (!load(block)) return false;
   const LatticePoint end = box_.cells();
   for (LatticePoint cell{0, 0, 0}; cell.k < end.k; ++cell.k) {
@@ -82,7 +81,6 @@ template <class Sample>
 void PageCells<Sample>::add_again(LatticePoint block, std::span<const LatticePoint> cells, const Apart& apart,
                                   std::uint32_t first_new, SurfaceSlab& slab) {
   apart_ = &apart;
-  first_edge_ = first_new;
   load(block);
   for (const LatticePoint cell : cells) {
     if ((box_.crossed_cells(cell.j, cell.k) >> cell.i & 1) == 0) continue;
@@ -213,18 +211,18 @@ std::uint32_t PageCells<Sample>::number_of(LatticePoint v, Set points, SurfaceSl
   }
   std::uint32_t number;
   if ((points & (points - 1)) == 0) {
-    number = first_edge_ + static_cast<std::uint32_t>(slab.edge_points.size());
+    number = slab.first_edge + static_cast<std::uint32_t>(slab.edge_points.size());
     slab.edge_points.push_back(near_[static_cast<std::size_t>(first)]);
     slab.edge_positions.push_back(positions_[static_cast<std::size_t>(first)]);
   } else {
     number = kFirstPatch + static_cast<std::uint32_t>(slab.patches.size());
-    auto& patch = slab.patches.emplace_back(SurfaceSlab::Patch{in_samples(v), points, {}});
+    auto& patch = slab.patches.emplace_back(SurfaceSlab::Patch{{in_samples(v), points}, {}});
     for (Set left = points; left != 0; left &= left - 1) {
       const auto n = static_cast<std::size_t>(std::countr_zero(left));
       patch.joined.add(positions_[n], near_[n]);
     }
   }
-  if (first_edge_ + std::max(slab.edge_points.size(), slab.patches.size()) >= kFirstPatch)
+  if (slab.first_edge + std::max(slab.edge_points.size(), slab.patches.size()) >= kFirstPatch)
     fail("a contour has more than 2^31 points: choose another isovalue or a coarser mesh");
   if (known != nullptr) *known = number;
   return number;

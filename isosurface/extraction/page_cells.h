@@ -24,8 +24,8 @@ class PageCells {
   /// Adds the triangles of a page's cells to a slab. Returns false where a sample there is not finite. Throws
   /// PageLost.
   bool add(LatticePoint block, SurfaceSlab& slab);
-  /// Adds those triangles of some of the cells that have points which the slab's `shared` does not have yet: all
-  /// of them single ones, with numbers from `first_new` on. `cells`: first corners, from that of the page on.
+  /// Adds those triangles of some of the cells that have edge points with numbers from `first_new` on. All
+  /// others next to the cells' corners are shared by the slab. `cells`: first corners, from that of the page on.
   void add_again(LatticePoint block, std::span<const LatticePoint> cells, const Apart& apart,
                  std::uint32_t first_new, SurfaceSlab& slab);
 
@@ -79,7 +79,6 @@ class PageCells {
   PageBox<Sample> box_;
   LatticePoint first_{};                            ///< the page's first point, in samples
   const Apart* apart_ = nullptr;                    ///< null where all that can be is joined
-  std::uint32_t first_edge_ = 0;                    ///< the number of the slab's first edge point
   std::vector<CrossedEdge> crossed_;
   std::vector<std::uint16_t> places_;               ///< by edge_place: the place in crossed_, or kNone
   std::vector<std::int32_t> used_;                  ///< the edge_place of each in crossed_

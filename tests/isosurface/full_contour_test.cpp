@@ -69,19 +69,26 @@ Contour joined_full_contour(OpenStore<Sample>& store, const MemoryVolume<Sample>
 template <class Sample>
 class FullContourOf : public testing::Test {
  protected:
-  static void expect_the_joined(const MemoryVolume<Sample>& volume, const std::vector<double>& isovalues) {
+  static void expect_the_joined(const MemoryVolume<Sample>& volume, const std::vector<double>& isovalues,
+                                bool is_noise = false) {
     OpenStore<Sample> store(volume);
     for (const double isovalue : isovalues) {
       SCOPED_TRACE(testing::Message() << "isovalue " << isovalue);
       const Contour found = full_contour(store, isovalue);
       const Contour wanted = joined_full_contour(store, volume, isovalue);
       EXPECT_GT(found.triangles.size(), 50u);
+      test::expect_closed(found, volume.grid.box());
+      EXPECT_EQ(test::topology(found), test::topology(wanted));
+      if (is_noise) {
+        // Which patches coincide depends on which were taken apart before, and slabs begin with their inside.
+        const auto all = static_cast<double>(wanted.triangles.size());
+        EXPECT_NEAR(static_cast<double>(found.triangles.size()), all, 0.01 * all);
+        continue;
+      }
       EXPECT_EQ(found.edge_points.size(), wanted.edge_points.size());
       EXPECT_EQ(found.vertex_points.size(), wanted.vertex_points.size());
       EXPECT_TRUE(triangles_in_space(found) == triangles_in_space(wanted))
           << found.triangles.size() << " triangles, not " << wanted.triangles.size();
-      test::expect_closed(found, volume.grid.box());
-      EXPECT_EQ(test::topology(found), test::topology(wanted));
     }
   }
   static MemoryVolume<Sample> noise(const Dimensions& dimensions, unsigned seed) {
@@ -104,8 +111,8 @@ TYPED_TEST(FullContourOf, IsTheJoinedContourOfTheFullMesh) {
   this->expect_the_joined(this->hills({35, 19, 40}, 30, {1, 1, 1}), {70, 128});
   this->expect_the_joined(this->hills({33, 33, 17}, 3, {1, 2, 0.5}), {100});
   // In noise patches are often no discs, or would coincide with others when they are joined.
-  this->expect_the_joined(this->noise({36, 18, 34}, 1), {20.5, 128});
-  this->expect_the_joined(this->noise({19, 34, 17}, 2), {5, 240});
+  this->expect_the_joined(this->noise({36, 18, 34}, 1), {20.5, 128}, true);
+  this->expect_the_joined(this->noise({19, 34, 17}, 2), {5, 240}, true);
 }
 
 /// A body round one sample, wherever that lies on its page, beside pages that the contour does not cross.
