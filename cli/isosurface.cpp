@@ -13,9 +13,7 @@
 #include "core/base/naming.h"
 #include "core/data/volume_placement.h"
 #include "core/io/surface_writer.h"
-#include "isosurface/extraction/surface_certificate.h"
-#include "isosurface/extraction/surface_extractor.h"
-#include "isosurface/extraction/surface_normals.h"
+#include "isosurface/extraction/complete_surface.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -79,16 +77,21 @@ SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
 }
 
 /// Adds the surface of one isovalue to the surfaces of the isovalues before.
-void append(const ExtractedSurface& from, std::vector<Vec3> normals, double isovalue,
-            TriangleSurface& surface) {
+void append(Contour contour, std::vector<Vec3> normals, double isovalue, TriangleSurface& surface) {
   const auto first = surface.points.size();
-  if (first + from.contour.points.size() > ~std::uint32_t{0})
+  if (first + contour.points.size() > ~std::uint32_t{0})
     fail("the surfaces have more than 2^32 - 1 points: choose fewer isovalues or a greater error");
-  surface.points.insert(surface.points.end(), from.contour.points.begin(), from.contour.points.end());
-  surface.normals.insert(surface.normals.end(), normals.begin(), normals.end());
-  for (auto triangle : from.contour.triangles) {
-    for (std::uint32_t& p : triangle) p += static_cast<std::uint32_t>(first);
-    surface.triangles.push_back(triangle);
+  if (first == 0) {
+    surface.points = std::move(contour.points);
+    surface.normals = std::move(normals);
+    surface.triangles = std::move(contour.triangles);
+  } else {
+    surface.points.insert(surface.points.end(), contour.points.begin(), contour.points.end());
+    surface.normals.insert(surface.normals.end(), normals.begin(), normals.end());
+    for (auto triangle : contour.triangles) {
+      for (std::uint32_t& p : triangle) p += static_cast<std::uint32_t>(first);
+      surface.triangles.push_back(triangle);
+    }
   }
   surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
@@ -110,19 +113,12 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   for (const double isovalue : isovalues) {
     request.isovalue = grid.sample(isovalue);
     request.others_follow = ends.size() + 1 < isovalues.size();
-    const ExtractedSurface found = naming(name, [&] {
-      if (!options.certify) return extractor.extract(request, console);
-      CertifiedSurface certified = extract_certified(extractor, request, console);
-      figures.add_distance(request, in_space(grid, certified.certificate));
-      return std::move(certified.surface);
+    CompleteSurface found = naming(name, [&] {
+      return extract_complete(extractor, request, options.certify,
+                              !options.no_normals && !options.output.empty(), console);
     });
     figures.add(request, found, extractor.range());
-    SurfaceNormals normals;
-    if (!options.no_normals && !options.output.empty()) {
-      normals = surface_normals<Sample>(pages, found.contour, console);
-      naming(name, [&] { figures.add_normals(request, found, normals.lost); });
-    }
-    append(found, std::move(normals.normals), isovalue, surface);
+    append(std::move(found.surface.contour), std::move(found.normals.normals), isovalue, surface);
     ends.push_back(surface.triangles.size());
   }
   place_in_space(grid, surface);

@@ -36,8 +36,10 @@ constexpr Colour kBone{0.93, 0.85, 0.71};
 
 }  // namespace
 
-void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurface& surface,
+void IsosurfaceFigures::add(const SurfaceRequest& request, const CompleteSurface& complete,
                             const std::array<double, 2>& range) {
+  const ExtractedSurface& surface = complete.surface;
+  if (complete.distance) add_distance(request, *complete.distance);
   Console& console = session_.console;
   tetrahedra_ += surface.tetrahedra;
   diamonds_ += surface.diamonds;
@@ -62,13 +64,13 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const ExtractedSurfac
     console.note_damage("{}: the surface at isovalue {:.6g} is coarser there",
                         damaged_pages(surface.lost.size()), grid_.value(request.isovalue));
   }
+  add_normals(request, surface, complete.normals.lost);
 }
 
 void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
                                     const std::vector<PageId>& lost) {
   std::size_t count = 0;
   for (const PageId& page : lost) {
-    if (request.strict) fail("{} is damaged, on which normals depend", page_name(page));
     // Pages without which the surface itself is coarser were told of before.
     if (std::find(surface.lost.begin(), surface.lost.end(), page) == surface.lost.end()) ++count;
   }

@@ -13,8 +13,7 @@
 #include "cli/figures.h"
 #include "cli/surface_picture.h"
 #include "core/geometry/vec3.h"
-#include "isosurface/extraction/surface_certificate.h"
-#include "isosurface/extraction/surface_request.h"
+#include "isosurface/extraction/complete_surface.h"
 #include "isosurface/storage/stored_pages.h"
 
 namespace adamas {
@@ -26,16 +25,16 @@ class IsosurfaceFigures {
   IsosurfaceFigures(Session& session, const VolumeGrid& grid) : session_(session), grid_(grid) {}
 
   /// `range`: least and greatest sample of the store.
-  void add(const SurfaceRequest& request, const ExtractedSurface& surface,
+  void add(const SurfaceRequest& request, const CompleteSurface& complete,
            const std::array<double, 2>& range);
-  /// `lost`: what the normals of the surface do without. Throws Error where the request is strict.
-  void add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
-                   const std::vector<PageId>& lost);
-  /// `distance`: from the surface of all samples, in space.
-  void add_distance(const SurfaceRequest& request, const SurfaceCertificate& distance);
   void report(const TriangleSurface& surface, const PageCounts& counts);
 
  private:
+  /// `lost`: what the normals of the surface do without.
+  void add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
+                   const std::vector<PageId>& lost);
+  void add_distance(const SurfaceRequest& request, const SurfaceCertificate& distance);
+
   Session& session_;
   VolumeGrid grid_;  ///< its greatest stretch leads from errors in its frame to those in space
   std::uint64_t tetrahedra_ = 0, diamonds_ = 0, bodies_left_out_ = 0;

@@ -23,6 +23,9 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
   });
 }
 
+/// How many threads later parallel loops take at most.
+unsigned thread_limit();
+
 /// Has later threads of parallel loops leave signals to the thread that calls this. For the program's own
 /// use, once, before the first loop.
 void block_signals_in_workers(const sigset_t& signals);

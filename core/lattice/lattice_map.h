@@ -36,6 +36,12 @@ class LatticeMap {
     if (capacity > entries_.size()) grow(capacity);
   }
 
+  /// Removes all entries. Their memory stays.
+  void clear() {
+    if (size_ > 0) entries_.assign(entries_.size(), kEmpty);
+    size_ = 0;
+  }
+
   /// The value at p, or null.
   [[nodiscard]] Value* find(Key p) { return const_cast<Value*>(std::as_const(*this).find(p)); }
   [[nodiscard]] const Value* find(Key p) const {

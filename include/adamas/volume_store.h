@@ -68,8 +68,10 @@ struct Isosurface {
   };
   std::optional<Distance> distance{};
   std::uint64_t bodies_left_out = 0;  ///< small ones for which there were too few triangles
-  std::uint64_t tetrahedra = 0;       ///< of the mesh that the surface is from
-  std::uint64_t diamonds = 0;         ///< of it that are split
+  /// Of the mesh that the surface is from; where everything in it is split, those in the cells of samples
+  /// that the surface crosses.
+  std::uint64_t tetrahedra = 0;
+  std::uint64_t diamonds = 0;  ///< of it that are split; 0 where all are
   /// Pages of the file that could not be had: the surface is coarser round them, or normals less exact.
   std::size_t damaged_pages = 0;
 };

@@ -41,7 +41,8 @@ std::uint8_t place_of(CellContour& contour, std::uint8_t a, std::uint8_t b) {
     const auto& edge = contour.edges[n];
     if ((edge.a == a && edge.b == b) || (edge.a == b && edge.b == a)) return n;
   }
-  contour.edges[contour.edge_count] = {a, b};
+  const LatticePoint sum = offset_of(a) + offset_of(b);
+  contour.edges[contour.edge_count] = {a, b, static_cast<std::uint8_t>(sum.i + 3 * sum.j + 9 * sum.k)};
   return contour.edge_count++;
 }
 

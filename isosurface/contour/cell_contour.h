@@ -15,6 +15,7 @@ namespace adamas {
 struct CellContour {
   struct Edge {
     std::uint8_t a, b;  ///< corners
+    std::uint8_t sum;   ///< of their coordinates: i + 3 j + 9 k
   };
 
   std::uint8_t edge_count = 0, triangle_count = 0;

@@ -139,11 +139,10 @@ class PointJoiner {
     for (std::uint32_t p = 0; p < count_; ++p) {
       if (is_suspect_[p] && patch_[p] == p) suspects.push_back({p, is_joined_[p]});
     }
-    const SuspectPlaces places(suspects, count_);
-    apart_ = CoincidingPatches::find(suspects, [&](const auto& visit) {
+    apart_ = coinciding_.find(count_, suspects, [&](const auto& visit) {
       for (const Triangle& triangle : contour_.triangles) {
         const Triangle t = joined(triangle);
-        if (has_area(t)) places.visit_corners(t, visit);
+        if (has_area(t)) visit(t);
       }
     });
     const bool found = !apart_.empty();
@@ -202,6 +201,7 @@ class PointJoiner {
   std::vector<std::uint32_t> patch_;
   std::vector<bool> is_joined_;       ///< whether a patch has several points, by its number
   std::vector<std::uint32_t> apart_;  ///< patches that are to be taken apart
+  CoincidingPatches coinciding_;
   std::vector<bool> is_suspect_;      ///< patches with which something may coincide
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <span>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -24,6 +26,7 @@ FullContour<Sample>::FullContour(StoredDiamonds<Sample>& diamonds, double isoval
     : diamonds_(diamonds), isovalue_(isovalue), least_parameter_(least_parameter), limits_(limits) {
   find_blocks(diamonds_.grid().top(), {0, 0, 0});
   std::sort(blocks_.begin(), blocks_.end(), in_file_order);
+  find_slabs();
 }
 
 template <class Sample>
@@ -63,69 +66,118 @@ bool FullContour<Sample>::is_worthwhile() {
 }
 
 template <class Sample>
+void FullContour<Sample>::find_slabs() {
+  for (std::size_t n = 0; n < blocks_.size(); ++n) {
+    if (n == 0 || blocks_[n].k != blocks_[n - 1].k) slabs_.push_back(n);
+  }
+  slabs_.push_back(blocks_.size());
+}
+
+template <class Sample>
+void FullContour<Sample>::make_workers() {
+  // Each thread reads a slab on both sides of its own, too, and the first one puts them together.
+  constexpr std::size_t kLeastSlabs = 3;
+  constexpr double kPartOfFirst = 0.9;
+  const std::size_t slabs = slabs_.size() - 1;
+  const std::size_t threads = std::clamp<std::size_t>(slabs / kLeastSlabs, 1, thread_limit());
+  const double pages = static_cast<double>(blocks_.size()) / (static_cast<double>(threads) - 1 + kPartOfFirst);
+  std::size_t first = 0;
+  for (StoredPages<OrderedWord<Sample>>* of_thread : diamonds_.pages().for_threads(threads)) {
+    workers_.push_back(std::make_unique<Worker>(*of_thread, isovalue_, least_parameter_));
+    Worker& worker = *workers_.back();
+    worker.first = first;
+    const double part = static_cast<double>(workers_.size()) - 1 + kPartOfFirst;
+    const auto next = std::lower_bound(slabs_.begin(), slabs_.end() - 1, static_cast<std::size_t>(pages * part));
+    worker.last = workers_.size() == threads ? slabs : static_cast<std::size_t>(next - slabs_.begin());
+    first = worker.last;
+  }
+}
+
+template <class Sample>
 std::optional<Contour> FullContour<Sample>::run(Progress& progress) {
   const Domain& domain = diamonds_.domain();
-  const std::int32_t sample = diamonds_.lattice_step(0);
-  JoinedSurface surface(sample, {domain.box().min, domain.position(diamonds_.last_sample())});
-  PageCells<Sample> cells(diamonds_, isovalue_, least_parameter_);
-  Apart apart;
-  SurfaceSlab slab;
-  for (std::size_t n = 0; n < blocks_.size();) {
-    std::vector<LatticePoint> blocks;
-    for (const std::int32_t k = blocks_[n].k; n < blocks_.size() && blocks_[n].k == k; ++n)
-      blocks.push_back(blocks_[n]);
-    if (!add_slab(blocks, cells, slab, apart)) return {};
-    const double part = static_cast<double>(n) / static_cast<double>(blocks_.size());
-    progress.step("extracting", part);
-    surface.append(slab, part);
-  }
+  JoinedSurface surface(diamonds_.lattice_step(0), {domain.box().min, domain.position(diamonds_.last_sample())});
+  make_workers();
+  const auto part = [this](std::size_t n) {
+    return static_cast<double>(slabs_[n + 1]) / static_cast<double>(blocks_.size());
+  };
+  // The first thread appends its slabs as it has them. The others' wait for those before.
+  std::vector<SurfaceSlab> waiting(slabs_.size() - 1);
+  std::atomic<bool> is_finite = true;
+  parallel_for(workers_.size(), 1, [&](std::size_t t) {
+    Worker& worker = *workers_[t];
+    SurfaceSlab reused;
+    for (std::size_t n = worker.first; n < worker.last && is_finite; ++n) {
+      SurfaceSlab& slab = t == 0 ? reused : waiting[n];
+      if (!add_slab(n, worker, slab)) is_finite = false;
+      if (t != 0) continue;
+      surface.append(slab, part(n));
+      progress.step("extracting", static_cast<double>(n + 1) / static_cast<double>(worker.last));
+    }
+  });
+  if (!is_finite) return {};
+  for (std::size_t n = workers_[0]->last; n < waiting.size(); ++n)
+    surface.append(std::exchange(waiting[n], {}), part(n));
   crossed_cells_ = surface.crossed_cells();
-  take_apart(surface, cells, apart, progress);
+  while (surface.has_suspects()) take_apart(surface, progress);
   Contour result = surface.finish();
   if (limits_.region) remove_unused_points(result);
   return result;
 }
 
 template <class Sample>
-bool FullContour<Sample>::add_slab(const std::vector<LatticePoint>& blocks, PageCells<Sample>& cells,
-                                   SurfaceSlab& slab, Apart& apart) {
-  const std::int32_t first = kSide * blocks.front().k, sample = diamonds_.lattice_step(0);
+bool FullContour<Sample>::add_slab(std::size_t n, Worker& worker, SurfaceSlab& slab) const {
+  const std::int32_t first = kSide * blocks_[slabs_[n]].k, sample = diamonds_.lattice_step(0);
   slab.clear(first, first + kSide);
-  for (const LatticePoint block : blocks) {
-    if (!cells.add(block, slab)) return false;
+  for (std::size_t block = slabs_[n]; block < slabs_[n + 1]; ++block) {
+    if (!worker.cells.add(blocks_[block], slab)) return false;
   }
-  const std::vector<PointsOfVertex> patches = slab.take_apart(sample);
-  for (const PointsOfVertex& patch : patches) *apart.insert(patch.vertex).first |= patch.points;
-  const std::vector<CellOfPage> again = cells_round(patches);
-  slab.share(corners_of(again), sample);
-  add_again(again, cells, apart, slab);
+  const std::vector<PointsOfVertex> patches = slab.take_apart(sample, worker.coincidences);
+  for (const PointsOfVertex& patch : patches) *worker.apart.insert(patch.vertex).first |= patch.points;
+  const std::vector<CellOfPage> cells = cells_round(patches);
+  slab.share(corners_of(cells), sample);
+  const auto first_new = static_cast<std::uint32_t>(slab.edge_points.size());
+  for_each_page(cells, [&](LatticePoint block, std::span<const LatticePoint> of_page) {
+    worker.cells.add_again(block, of_page, worker.apart, first_new, slab);
+  });
   return true;
 }
 
 template <class Sample>
-void FullContour<Sample>::take_apart(JoinedSurface& surface, PageCells<Sample>& cells, Apart& apart,
-                                     Progress& progress) {
-  while (surface.has_suspects()) {
-    progress.step("extracting", 1);
-    const std::vector<PointsOfVertex> patches = surface.take_apart();
-    for (const PointsOfVertex& patch : patches) *apart.insert(patch.vertex).first |= patch.points;
-    const std::vector<CellOfPage> again = cells_round(patches);
-    SurfaceSlab addition = surface.addition(corners_of(again));
-    add_again(again, cells, apart, addition);
-    surface.add(addition);
+void FullContour<Sample>::take_apart(JoinedSurface& surface, Progress& progress) {
+  progress.step("extracting", 1);
+  const auto worker_of = [this](std::int32_t k) -> Worker& {
+    const auto has_slab = [&](const std::unique_ptr<Worker>& w) {
+      return k <= blocks_[slabs_[w->last] - 1].k;
+    };
+    return **std::find_if(workers_.begin(), workers_.end() - 1, has_slab);
+  };
+  const std::vector<PointsOfVertex> patches = surface.take_apart(workers_[0]->coincidences);
+  const std::vector<CellOfPage> cells = cells_round(patches);
+  const LatticeMap<bool> corners = corners_of(cells);
+  for (const PointsOfVertex& patch : patches) {
+    // Threads meet with what is next to a plane between them.
+    for (const std::int32_t k : {patch.vertex.k - 1, patch.vertex.k})
+      *worker_of(k / kSide).apart.insert(patch.vertex).first |= patch.points;
   }
+  SurfaceSlab addition = surface.addition(corners);
+  const std::uint32_t first_new = addition.first_edge;
+  for_each_page(cells, [&](LatticePoint block, std::span<const LatticePoint> of_page) {
+    Worker& worker = worker_of(block.k);
+    worker.cells.add_again(block, of_page, worker.apart, first_new, addition);
+  });
+  surface.add(addition);
 }
 
 template <class Sample>
-void FullContour<Sample>::add_again(const std::vector<CellOfPage>& cells, PageCells<Sample>& of_pages,
-                                    const Apart& apart, SurfaceSlab& slab) {
-  const auto first_new = static_cast<std::uint32_t>(slab.first_edge + slab.edge_points.size());
+template <class Visit>
+void FullContour<Sample>::for_each_page(const std::vector<CellOfPage>& cells, const Visit& visit) {
   std::vector<LatticePoint> of_page;
   for (std::size_t n = 0; n < cells.size();) {
     const LatticePoint block = cells[n].block;
     of_page.clear();
     for (; n < cells.size() && cells[n].block == block; ++n) of_page.push_back(cells[n].cell);
-    of_pages.add_again(block, of_page, apart, first_new, slab);
+    visit(block, std::span<const LatticePoint>(of_page));
   }
 }
 

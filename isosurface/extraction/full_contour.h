@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -43,22 +44,40 @@ class FullContour {
   struct CellOfPage {
     LatticePoint block, cell;
   };
-  using Apart = typename PageCells<Sample>::Apart;
+  /// What a thread needs for slabs that follow each other.
+  struct Worker {
+    StoredDiamonds<Sample> diamonds;
+    PageCells<Sample> cells;
+    typename PageCells<Sample>::Apart apart{};  ///< patches next to its slabs' vertices
+    CoincidingPatches coincidences{};
+    std::size_t first = 0, last = 0;            ///< the first slab, and the first of the next worker
 
+    Worker(StoredPages<OrderedWord<Sample>>& pages, double isovalue, double least_parameter)
+        : diamonds(pages), cells(diamonds, isovalue, least_parameter) {
+      diamonds.set_contour(isovalue);
+    }
+  };
+
+  /// Slabs are rows of pages along i and j; `slabs_`: where in blocks_ they begin, and the end.
+  void find_slabs();
+  void make_workers();
+  /// Returns false where a sample is not finite.
+  bool add_slab(std::size_t n, Worker& worker, SurfaceSlab& slab) const;
+  /// Takes apart what coincides, once.
+  void take_apart(JoinedSurface& surface, Progress& progress);
   /// The cells that have a corner at the vertex of one of these, by page; and their corners.
   [[nodiscard]] std::vector<CellOfPage> cells_round(const std::vector<PointsOfVertex>& patches) const;
   static LatticeMap<bool> corners_of(const std::vector<CellOfPage>& cells);
-  /// Returns false where a sample is not finite.
-  bool add_slab(const std::vector<LatticePoint>& blocks, PageCells<Sample>& cells, SurfaceSlab& slab, Apart& apart);
-  /// Takes patches apart until nothing coincides.
-  void take_apart(JoinedSurface& surface, PageCells<Sample>& cells, Apart& apart, Progress& progress);
-  /// Adds to a slab the triangles in these cells that have new points.
-  void add_again(const std::vector<CellOfPage>& cells, PageCells<Sample>& of_pages, const Apart& apart, SurfaceSlab& slab);
+  /// Calls visit(block, cells) for each page.
+  template <class Visit>
+  static void for_each_page(const std::vector<CellOfPage>& cells, const Visit& visit);
 
   StoredDiamonds<Sample>& diamonds_;
   double isovalue_, least_parameter_;
   const SplitLimits& limits_;
   std::vector<LatticePoint> blocks_;  ///< pages of the finest LOD that the contour crosses, i running fastest
+  std::vector<std::size_t> slabs_;
+  std::vector<std::unique_ptr<Worker>> workers_;  ///< by thread
   std::uint64_t crossed_cells_ = 0;
 };
 

@@ -6,7 +6,6 @@
 
 #include "core/base/large_pages.h"
 #include "core/base/sort_unique.h"
-#include "isosurface/contour/coinciding_patches.h"
 
 namespace adamas {
 
@@ -66,12 +65,12 @@ void SurfaceSlab::clear(std::int32_t first_plane, std::int32_t last_plane) {
   edge_positions.clear();
   patches.clear();
   triangles.clear();
-  shared = {};
+  shared.clear();
   crossed_cells = 0;
   coinciding.clear();
 }
 
-std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample) {
+std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample, CoincidingPatches& coincidences) {
   const auto edges = static_cast<std::uint32_t>(edge_points.size());
   first_separated = edges;
   // Patches have places behind those of edge points.
@@ -82,11 +81,11 @@ std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample) {
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
     if (!on_plane(patches[p].of.vertex.k)) suspects.push_back({edges + p, true});
   }
-  const SuspectPlaces places(suspects, edges + patches.size());
   const auto place = [edges](std::uint32_t n) { return n < kFirstPatch ? n : n - kFirstPatch + edges; };
-  std::vector<std::uint32_t> found = CoincidingPatches::find(suspects, [&](const auto& visit) {
-    for (const auto& [a, b, c] : triangles) places.visit_corners({place(a), place(b), place(c)}, visit);
-  });
+  std::vector<std::uint32_t> found =
+      coincidences.find(edges + patches.size(), suspects, [&](const auto& visit) {
+        for (const auto& [a, b, c] : triangles) visit({place(a), place(b), place(c)});
+      });
   sort_unique(found);
   std::vector<PointsOfVertex> result;
   for (const std::uint32_t p : found) {
@@ -162,17 +161,17 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
     if (t[0] != kNone && t[1] != kNone && t[2] != kNone) triangles_.push_back(t);
   }
   for (const std::uint32_t p : slab.coinciding) coinciding_.push_back(patch_numbers[p] - kFirstPatch);
-  shared_ = {};
+  shared_.clear();
   for_each_on_plane(slab, slab.last,
                     [&](LatticePoint key, std::uint32_t n) { *shared_.insert(key).first = number(n); });
   crossed_cells_ += slab.crossed_cells;
 }
 
-std::vector<PointsOfVertex> JoinedSurface::take_apart() {
+std::vector<PointsOfVertex> JoinedSurface::take_apart(CoincidingPatches& coincidences) {
   // What was added last has all triangles of the points that were; points from slabs have others.
   constexpr int kRoundsOfSlabs = 2;
   const std::vector<std::uint32_t> suspects = std::exchange(suspects_, std::exchange(separated_, {}));
-  find_coinciding(suspects, rounds_++ < kRoundsOfSlabs ? 0 : first_added_);
+  find_coinciding(coincidences, suspects, rounds_++ < kRoundsOfSlabs ? 0 : first_added_);
   first_added_ = triangles_.size();
   sort_unique(coinciding_);
   std::vector<PointsOfVertex> result;
@@ -181,20 +180,27 @@ std::vector<PointsOfVertex> JoinedSurface::take_apart() {
   return result;
 }
 
-void JoinedSurface::find_coinciding(const std::vector<std::uint32_t>& numbers, std::size_t first_triangle) {
+void JoinedSurface::find_coinciding(CoincidingPatches& coincidences,
+                                    const std::vector<std::uint32_t>& numbers, std::size_t first_triangle) {
   const auto place = [edges = edge_count()](std::uint32_t n) {
     return n < kFirstPatch ? n : n - kFirstPatch + edges;
   };
   std::vector<CoincidingPatches::Suspect> suspects;
   for (const std::uint32_t n : numbers) suspects.push_back({place(n), n >= kFirstPatch});
-  const SuspectPlaces places(suspects, edge_count() + patches_.size());
-  const std::vector<std::uint32_t> found = CoincidingPatches::find(suspects, [&](const auto& visit) {
-    for (std::size_t n = first_triangle; n < triangles_.size(); ++n) {
-      const auto& [a, b, c] = triangles_[n];
-      const Triangle t{place(a), place(b), place(c)};
-      if (places.has_any(t) && !is_apart(a) && !is_apart(b) && !is_apart(c)) places.visit_corners(t, visit);
-    }
-  });
+  std::vector<bool> is_suspect(edge_count() + patches_.size());
+  for (const CoincidingPatches::Suspect& s : suspects) is_suspect[s.patch] = true;
+  std::vector<Triangle> with_suspects;
+  for (std::size_t n = first_triangle; n < triangles_.size(); ++n) {
+    const auto& [a, b, c] = triangles_[n];
+    const Triangle t{place(a), place(b), place(c)};
+    if ((is_suspect[t[0]] || is_suspect[t[1]] || is_suspect[t[2]]) && !is_apart(a) && !is_apart(b) &&
+        !is_apart(c))
+      with_suspects.push_back(t);
+  }
+  const std::vector<std::uint32_t> found =
+      coincidences.find(is_suspect.size(), suspects, [&](const auto& visit) {
+        for (const Triangle& t : with_suspects) visit(t);
+      });
   for (const std::uint32_t p : found) {
     if (p >= edge_count() && patches_[p - edge_count()].of.points != 0) coinciding_.push_back(p - edge_count());
   }
@@ -222,13 +228,13 @@ Contour JoinedSurface::finish() {
   numbers.reserve(patches_.size());
   std::uint32_t next = edges;
   for (const Patch& patch : patches_) numbers.push_back(patch.of.points == 0 ? kNone : next++);
-  if (next < edges + patches_.size()) {
-    std::erase_if(triangles_,
-                  [this](const Triangle& t) { return is_apart(t[0]) || is_apart(t[1]) || is_apart(t[2]); });
+  const auto number = [&](std::uint32_t n) { return n < kFirstPatch ? n : numbers[n - kFirstPatch]; };
+  std::size_t kept = 0;
+  for (const Triangle& triangle : triangles_) {
+    const Triangle t{number(triangle[0]), number(triangle[1]), number(triangle[2])};
+    if (t[0] != kNone && t[1] != kNone && t[2] != kNone) triangles_[kept++] = t;
   }
-  for (Triangle& t : triangles_) {
-    for (std::uint32_t& n : t) n = n < kFirstPatch ? n : numbers[n - kFirstPatch];
-  }
+  triangles_.resize(kept);
   result.triangles = std::move(triangles_);
   result.edge_points = std::move(edge_points_);
   result.points = std::move(edge_positions_);

@@ -8,6 +8,7 @@
 #include "core/lattice/lattice_map.h"
 #include "core/lattice/lattice_point.h"
 #include "isosurface/contour/cell_contour.h"
+#include "isosurface/contour/coinciding_patches.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/contour/joined_point.h"
 
@@ -55,7 +56,7 @@ struct SurfaceSlab {
   void clear(std::int32_t first_plane, std::int32_t last_plane);
   /// Takes apart what coincides inside, without its triangles and points. `sample`: the spacing of samples in
   /// lattice units.
-  std::vector<PointsOfVertex> take_apart(std::int32_t sample);
+  std::vector<PointsOfVertex> take_apart(std::int32_t sample, CoincidingPatches& coincidences);
   /// Shares the points next to these vertices as well.
   void share(const LatticeMap<bool>& vertices, std::int32_t sample);
 
@@ -79,7 +80,7 @@ class JoinedSurface {
   [[nodiscard]] bool has_suspects() const { return !suspects_.empty() || !separated_.empty(); }
   /// Takes apart patches that coincide with something else, without their triangles and points: the first time
   /// what is next to planes between slabs, then what may coincide since something was taken apart.
-  std::vector<PointsOfVertex> take_apart();
+  std::vector<PointsOfVertex> take_apart(CoincidingPatches& coincidences);
   /// An empty slab that shares the points next to these vertices, for triangles and points of what was taken
   /// apart.
   [[nodiscard]] SurfaceSlab addition(const LatticeMap<bool>& vertices) const;
@@ -101,7 +102,8 @@ class JoinedSurface {
   }
   [[nodiscard]] Vec3 position(const JoinedPoint& joined) const;
   /// Looks at triangles from one on.
-  void find_coinciding(const std::vector<std::uint32_t>& suspects, std::size_t first_triangle);
+  void find_coinciding(CoincidingPatches& coincidences, const std::vector<std::uint32_t>& suspects,
+                       std::size_t first_triangle);
 
   std::int32_t sample_;
   Box3 box_;

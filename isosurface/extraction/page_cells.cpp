@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "core/base/error.h"
 
@@ -33,6 +34,15 @@ constexpr ByAxis by_axis(std::int32_t way) {
   return found;
 }
 constexpr ByAxis kLess = by_axis(-1), kSame = by_axis(0), kGreater = by_axis(1);
+
+/// The greatest parameter of a point that is nearer to the first end of its edge.
+constexpr double kBelowHalf = 0.5 - std::numeric_limits<double>::epsilon() / 4;
+
+/// Of the contour's point on an edge: by how far the values at its ends are from the isovalue. In the middle it is
+/// nearer to the second.
+bool is_nearer(double height, double other_height, bool is_first) {
+  return is_first ? height < other_height : height <= other_height;
+}
 
 unsigned parity(LatticePoint p) {
   return static_cast<unsigned>((p.i & 1) | (p.j & 1) << 1 | (p.k & 1) << 2);
@@ -104,15 +114,15 @@ const CellContour& PageCells<Sample>::contour_of(LatticePoint cell, SurfaceSlab&
   };
   const unsigned above = pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6;
   const CellContour& contour = CellContour::of(parity(cell), above);
+  const std::uint16_t* const places = places_.data() + edge_place(2 * cell);
   for (std::size_t e = 0; e < contour.edge_count; ++e) {
-    const LatticePoint a = cell + corner(contour.edges[e].a), b = cell + corner(contour.edges[e].b);
-    const auto place = static_cast<std::size_t>(edge_place(a + b));
-    if (places_[place] == kNone) {
-      const bool a_is_first = a < b;
-      const double t = a_is_first ? parameter(a, b) : parameter(b, a);
-      add_vertex(a_is_first == (t < 0.5) ? a : b, slab);
+    const CellContour::Edge& edge = contour.edges[e];
+    const std::uint16_t& place = places[kPlacesOfSums[edge.sum]];
+    if (place == kNone) {
+      const LatticePoint a = cell + corner(edge.a), b = cell + corner(edge.b);
+      add_vertex(is_nearer(height(a), height(b), a < b) ? a : b, slab);
     }
-    edges[e] = places_[place];
+    edges[e] = place;
   }
   return contour;
 }
@@ -179,17 +189,20 @@ void PageCells<Sample>::add_vertex(LatticePoint v, SurfaceSlab& slab) {
 template <class Sample>
 Set PageCells<Sample>::points_near(LatticePoint v, const VertexLink& link) {
   const Set above = neighbours_above(v);
+  const double height_of_v = height(v);
   Set found = 0;
   for (Set crossed = (is_above(v) ? ~above : above) & link.neighbours & ~outside(v); crossed != 0;
        crossed &= crossed - 1) {
     const int n = std::countr_zero(crossed);
     const LatticePoint w = v + VertexLink::step(n);
     const bool v_is_first = (kBefore >> n & 1) == 0;
-    const LatticePoint first = v_is_first ? v : w, second = v_is_first ? w : v;
-    const double exact = parameter(first, second);
-    if (v_is_first != (exact < 0.5)) continue;
+    if (!is_nearer(height_of_v, height(w), v_is_first)) continue;
     found |= 1u << n;
-    const double t = std::clamp(exact, least_parameter_, 1 - least_parameter_);
+    const LatticePoint first = v_is_first ? v : w, second = v_is_first ? w : v;
+    const double exact = edge_parameter(box_.value(first), box_.value(second), isovalue_);
+    // Rounding leaves the point on its half of the edge.
+    const double t = v_is_first ? std::clamp(exact, least_parameter_, kBelowHalf)
+                                : std::clamp(exact, 0.5, 1 - least_parameter_);
     const EdgePoint point{in_lattice(first), in_lattice(second), t};
     near_[static_cast<std::size_t>(n)] = point;
     positions_[static_cast<std::size_t>(n)] = point_between(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,6 +40,13 @@ class PageCells {
                                                    PageBox<Sample>::kFirst};
     return at.i + kEdgeSide * (at.j + kEdgeSide * at.k);
   }
+  /// By CellContour::Edge::sum: the place less that of twice the cell's first corner.
+  static constexpr auto kPlacesOfSums = [] {
+    std::array<std::int32_t, 27> places{};
+    for (std::int32_t n = 0; n < 27; ++n)
+      places[static_cast<std::size_t>(n)] = n % 3 + kEdgeSide * (n / 3 % 3 + kEdgeSide * (n / 9));
+    return places;
+  }();
   static constexpr LatticePoint corner(unsigned n) {
     return {static_cast<std::int32_t>(n & 1), static_cast<std::int32_t>(n >> 1 & 1),
             static_cast<std::int32_t>(n >> 2)};
@@ -63,9 +71,8 @@ class PageCells {
   std::uint32_t number_of(LatticePoint v, Set points, SurfaceSlab& slab);
   [[nodiscard]] Set neighbours_above(LatticePoint v) const;
   [[nodiscard]] bool is_above(LatticePoint v) const { return (box_.above(v.j, v.k) >> (v.i + 1) & 1) != 0; }
-  [[nodiscard]] double parameter(LatticePoint first, LatticePoint second) const {
-    return edge_parameter(box_.value(first), box_.value(second), isovalue_);
-  }
+  /// How far a sample is from the isovalue.
+  [[nodiscard]] double height(LatticePoint v) const { return std::abs(box_.value(v) - isovalue_); }
   /// Neighbours of the vertex that the data do not have, and those on a side of the data's box that has the
   /// vertex too.
   [[nodiscard]] Set outside(LatticePoint v) const;

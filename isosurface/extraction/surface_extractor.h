@@ -16,13 +16,15 @@ namespace adamas {
 /// Isosurfaces of a store. They are contours of the mesh in which just those diamonds are split that the
 /// surface crosses and whose error is too great. This mesh is conforming, since no child has a greater error
 /// or range than a parent; so whether a diamond is split can be told of each one alone, without a table of
-/// the mesh.
+/// the mesh. Where joined surfaces of all that the samples say are wanted, nearly all of them are split: then
+/// the mesh is the whole lattice (FullContour), but for flat parts of volumes, where few triangles are enough.
 template <class Sample>
 class SurfaceExtractor {
  public:
   /// The pages must outlive this.
   explicit SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages);
 
+  [[nodiscard]] StoredPages<OrderedWord<Sample>>& pages() const { return pages_; }
   [[nodiscard]] const Domain& domain() const { return diamonds_.domain(); }
   /// From the first sample to the last, in the frame.
   [[nodiscard]] Box3 data_box() const {

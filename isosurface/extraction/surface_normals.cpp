@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "core/base/large_pages.h"
+#include "core/base/parallel.h"
 #include "core/lattice/lattice_map.h"
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/volume/samples.h"
@@ -119,32 +120,73 @@ class VertexGradients {
   std::vector<KnownGradient> known_ = std::vector<KnownGradient>(std::size_t{1} << kKnownBits);
 };
 
+/// The normals of the n-th of several parts of a surface's points of each kind.
+template <class Sample>
+class NormalsOfPart {
+ public:
+  NormalsOfPart(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour, std::vector<Vec3>& normals)
+      : gradients_(pages), contour_(contour), normals_(normals) {}
+
+  void find(std::size_t n, std::size_t parts, Progress& progress) {
+    std::size_t first = 0;
+    const auto each = [&](const auto& points, const auto& gradient) {
+      const std::size_t begin = points.size() * n / parts, end = points.size() * (n + 1) / parts;
+      for (std::size_t p = begin; p < end; ++p) {
+        if (p % 65536 == 0) progress.step("normals", static_cast<double>(first + p) / static_cast<double>(normals_.size()));
+        normals_[first + p] = downwards(gradient(points[p]));
+      }
+      first += points.size();
+    };
+    each(contour_.edge_points, [&](const EdgePoint& edge) {
+      const Vec3 a = gradients_.at(edge.first, edge.step()), b = gradients_.at(edge.second, edge.step());
+      return (1 - edge.parameter) * a + edge.parameter * b;
+    });
+    each(contour_.vertex_points,
+         [&](const VertexPoint& point) { return gradients_.at(point.vertex, point.step); });
+    each(contour_.mean_points, [&](const MeanPoint& point) {
+      Vec3 gradient;
+      for (std::size_t v = 0; v < 4; ++v) {
+        if (point.weights[v] != 0) gradient += point.weights[v] * gradients_.at(point.vertices[v], point.step);
+      }
+      return gradient;
+    });
+  }
+  [[nodiscard]] const std::vector<PageId>& lost() const { return gradients_.lost(); }
+
+ private:
+  VertexGradients<Sample> gradients_;
+  const Contour& contour_;
+  std::vector<Vec3>& normals_;
+};
+
 }  // namespace
 
 template <class Sample>
 SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
                                Progress& progress) {
-  VertexGradients<Sample> gradients(pages);
-  std::vector<Vec3> normals;
-  reserve_in_large_pages(normals, contour.points.size());
-  for (const EdgePoint& edge : contour.edge_points) {
-    if (normals.size() % 65536 == 0)
-      progress.step("normals",
-                    static_cast<double>(normals.size()) / static_cast<double>(contour.points.size()));
-    const std::int32_t step = edge.step();
-    const Vec3 a = gradients.at(edge.first, step), b = gradients.at(edge.second, step);
-    normals.push_back(downwards((1 - edge.parameter) * a + edge.parameter * b));
-  }
-  for (const VertexPoint& point : contour.vertex_points)
-    normals.push_back(downwards(gradients.at(point.vertex, point.step)));
-  for (const MeanPoint& point : contour.mean_points) {
-    Vec3 gradient;
-    for (std::size_t v = 0; v < 4; ++v) {
-      if (point.weights[v] != 0) gradient += point.weights[v] * gradients.at(point.vertices[v], point.step);
+  SurfaceNormals result;
+  reserve_in_large_pages(result.normals, contour.points.size());
+  result.normals.resize(contour.points.size());
+  progress.step("normals", 0);
+  // Threads do not pay for a few points. What one of them has for one part of the surface it had for the
+  // triangles too.
+  constexpr std::size_t kLeastPoints = 20'000;
+  const std::vector<StoredPages<OrderedWord<Sample>>*> of_threads =
+      pages.for_threads(std::clamp<std::size_t>(contour.points.size() / kLeastPoints, 1, thread_limit()));
+  std::vector<std::vector<PageId>> lost(of_threads.size());
+  parallel_for(of_threads.size(), 1, [&](std::size_t n) {
+    NormalsOfPart<Sample> normals(*of_threads[n], contour, result.normals);
+    Progress& reported = n == 0 ? progress : SilentProgress::instance();
+    normals.find(n, of_threads.size(), reported);
+    lost[n] = normals.lost();
+  });
+  for (const std::vector<PageId>& pages_of_thread : lost) {
+    for (const PageId& page : pages_of_thread) {
+      if (std::find(result.lost.begin(), result.lost.end(), page) == result.lost.end())
+        result.lost.push_back(page);
     }
-    normals.push_back(downwards(gradient));
   }
-  return {std::move(normals), gradients.lost()};
+  return result;
 }
 
 template SurfaceNormals surface_normals<std::uint8_t>(StoredPages<std::uint8_t>&, const Contour&, Progress&);

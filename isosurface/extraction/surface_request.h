@@ -55,8 +55,9 @@ void check_surface_request(const std::string& name, const VolumeGrid& grid, cons
 /// A surface and what it took to get it.
 struct ExtractedSurface {
   Contour contour;
-  std::uint64_t diamonds = 0;    ///< that are split
-  std::uint64_t tetrahedra = 0;  ///< of the mesh
+  std::uint64_t diamonds = 0;  ///< that are split; 0 where all are
+  /// Of the mesh; where all diamonds are split, of the cells of samples that the surface crosses.
+  std::uint64_t tetrahedra = 0;
   /// The greatest isosurface error among the diamonds that the surface crosses, and what decimation adds: an
   /// estimate.
   double max_error = 0;

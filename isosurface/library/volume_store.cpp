@@ -8,9 +8,7 @@
 #include "core/base/naming.h"
 #include "core/base/output_file.h"
 #include "core/data/volume_placement.h"
-#include "isosurface/extraction/surface_certificate.h"
-#include "isosurface/extraction/surface_extractor.h"
-#include "isosurface/extraction/surface_normals.h"
+#include "isosurface/extraction/complete_surface.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/stored_pages.h"
@@ -99,30 +97,18 @@ class VolumeStore::ContentsOf final : public Contents {
   }
 
   Isosurface extract(const SurfaceRequest& wanted, const IsosurfaceRequest& request, Progress& progress) {
-    auto& [pages, extractor] = open();
+    auto [found, distance, own] =
+        extract_complete(open().extractor, wanted, request.certify, request.normals, progress);
     Isosurface result;
-    ExtractedSurface found;
-    if (request.certify) {
-      CertifiedSurface certified = extract_certified(extractor, wanted, progress);
-      found = std::move(certified.surface);
-      const SurfaceCertificate distance = in_space(grid(), certified.certificate);
-      result.distance = {distance.certified, distance.found};
-    } else {
-      found = extractor.extract(wanted, progress);
-    }
+    if (distance) result.distance = {distance->certified, distance->found};
     result.max_error = grid().greatest_stretch() * found.max_error;
     result.tetrahedra = found.tetrahedra;
     result.diamonds = found.diamonds;
     result.bodies_left_out = found.bodies_left_out;
-    if (request.normals) {
-      SurfaceNormals own = surface_normals<Sample>(pages, found.contour, progress);
-      if (wanted.strict && !own.lost.empty())
-        fail("{} is damaged, on which normals depend", page_name(own.lost.front()));
-      result.surface.normals = std::move(own.normals);
-      for (const PageId& page : own.lost) {
-        if (std::find(found.lost.begin(), found.lost.end(), page) == found.lost.end())
-          found.lost.push_back(page);
-      }
+    result.surface.normals = std::move(own.normals);
+    for (const PageId& page : own.lost) {
+      if (std::find(found.lost.begin(), found.lost.end(), page) == found.lost.end())
+        found.lost.push_back(page);
     }
     result.damaged_pages = found.lost.size();
     result.surface.points = std::move(found.contour.points);

@@ -37,6 +37,9 @@ class PageCache {
   static constexpr std::size_t kLeast = 64;
 
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
+  [[nodiscard]] std::size_t memory() const { return memory_; }
+  /// Pages that are in memory stay there until others need room.
+  void set_memory(std::size_t bytes) { memory_ = bytes; }
 
   /// A part of a page, or null where it or one that it is predicted from cannot be had. Valid until the next
   /// call.

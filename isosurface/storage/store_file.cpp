@@ -30,11 +30,7 @@ StoreFile::StoreFile(const std::filesystem::path& path, Paging paging) : name_(p
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
   try {
-    if (paging == Paging::kMap && size_ > 0) {
-      void* mapping = mmap(nullptr, size_, PROT_READ, MAP_SHARED, file_, 0);
-      if (mapping == MAP_FAILED) fail("{}: cannot be mapped: {}", name_, std::strerror(errno));
-      mapping_ = static_cast<const std::byte*>(mapping);
-    }
+    if (paging == Paging::kMap && size_ > 0) map();
     const StorePrologue prologue =
         StorePrologue::parse(bytes_at(0, std::min<std::uint64_t>(size_, StorePrologue::kBytes)), name_);
     if (prologue.root_offset > size_ || prologue.root_size != size_ - prologue.root_offset)
@@ -50,7 +46,25 @@ StoreFile::StoreFile(const std::filesystem::path& path, Paging paging) : name_(p
 
 StoreFile::~StoreFile() {
   if (mapping_ != nullptr) munmap(const_cast<std::byte*>(mapping_), size_);
-  close(file_);
+  if (file_ >= 0) close(file_);
+}
+
+void StoreFile::map() {
+  void* mapping = mmap(nullptr, size_, PROT_READ, MAP_SHARED, file_, 0);
+  if (mapping == MAP_FAILED) fail("{}: cannot be mapped: {}", name_, std::strerror(errno));
+  mapping_ = static_cast<const std::byte*>(mapping);
+}
+
+std::unique_ptr<StoreFile> StoreFile::for_another_thread() const {
+  std::unique_ptr<StoreFile> other(new StoreFile);
+  other->name_ = name_;
+  other->size_ = size_;
+  other->root_ = root_;
+  other->grid_ = grid_;
+  other->file_ = fcntl(file_, F_DUPFD_CLOEXEC, 0);
+  if (other->file_ < 0) fail("{}: cannot be opened again: {}", name_, std::strerror(errno));
+  if (mapping_ != nullptr) other->map();
+  return other;
 }
 
 std::span<const std::byte> StoreFile::bytes_at(std::uint64_t offset, std::uint64_t size) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,6 +34,8 @@ class StoreFile {
   ~StoreFile();
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
+  /// The same file, as it was opened, for another thread. Throws Error where the system does not allow more.
+  [[nodiscard]] std::unique_ptr<StoreFile> for_another_thread() const;
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const StoreHeader& header() const { return root_.header; }
@@ -59,6 +62,9 @@ class StoreFile {
   [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
 
  private:
+  StoreFile() = default;
+  void map();
+
   using ChunkKey = std::pair<std::uint32_t, std::uint64_t>;
   struct Chunk {
     std::vector<std::uint64_t> numbers;

@@ -14,6 +14,7 @@ StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t 
     : PageCache<Word>(file.grid(), memory),
       file_(file),
       step_(step),
+      memory_(memory),
       sample_codec_(
           parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())) {}
 
@@ -48,7 +49,30 @@ bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageToL
 template <class Word>
 PageCounts StoredPages<Word>::counts() const {
   const std::uint64_t predictors = this->loaded_as_predictors();
-  return {this->loaded() - predictors, predictors, file_.bytes_read(), copies_, damaged_.size()};
+  PageCounts all{this->loaded() - predictors, predictors, file_.bytes_read(), copies_, damaged_.size()};
+  for (const OfThread& other : others_) {
+    const PageCounts of = other.pages->counts();
+    all.pages += of.pages;
+    all.predictors += of.predictors;
+    all.bytes += of.bytes;
+    all.copies += of.copies;
+    all.damaged += of.damaged;
+  }
+  return all;
+}
+
+template <class Word>
+std::vector<StoredPages<Word>*> StoredPages<Word>::for_threads(std::size_t count) {
+  while (others_.size() + 1 < count) {
+    OfThread other{file_.for_another_thread(), nullptr};
+    other.pages = std::make_unique<StoredPages>(*other.file, step_, memory_);
+    others_.push_back(std::move(other));
+  }
+  std::vector<StoredPages*> result{this};
+  for (const OfThread& other : others_) result.push_back(other.pages.get());
+  for (StoredPages* pages : result) pages->set_memory(memory_ / result.size());
+  result.resize(std::max<std::size_t>(1, count));
+  return result;
 }
 
 template class StoredPages<std::uint8_t>;

@@ -41,6 +41,9 @@ class StoredPages : public PageCache<Word> {
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
 
   [[nodiscard]] StoreFile& file() { return file_; }
+  /// The same step of the same file for each of some threads, the first of which has these pages: they share the
+  /// memory, and the others stay for later calls. Not to be called by several threads at once.
+  std::vector<StoredPages*> for_threads(std::size_t count);
   [[nodiscard]] std::uint32_t step() const { return step_; }
 
   /// The same as samples() and bounds(), for pages without which there is no way to go on. Throw PageLost.
@@ -64,8 +67,15 @@ class StoredPages : public PageCache<Word> {
     return *part;
   }
 
+  struct OfThread {
+    std::unique_ptr<StoreFile> file;
+    std::unique_ptr<StoredPages> pages;
+  };
+
   StoreFile& file_;
   std::uint32_t step_;
+  std::size_t memory_;  ///< for the pages of all threads
+  std::vector<OfThread> others_;
   std::unique_ptr<SampleCodec<Word>> sample_codec_;
   std::optional<BoundsCodec<Word>> bounds_codec_;  ///< none before bounds are asked for
   std::vector<PageId> damaged_;
