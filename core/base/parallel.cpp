@@ -52,9 +52,8 @@ void set_thread_limit(unsigned threads) {
 }
 
 unsigned thread_limit() {
-  const std::size_t allowed =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return static_cast<unsigned>(std::min<std::size_t>(allowed, std::max(1u, std::thread::hardware_concurrency())));
+  return static_cast<unsigned>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
 void block_signals_in_workers(const sigset_t& signals) { keeper = {true, pthread_self(), signals}; }

@@ -200,7 +200,14 @@ TEST_F(StoreCommands, PlainAndCertifiedSurfaces) {
   };
   const auto joined = figures({}), plain = figures({"--plain"});
   EXPECT_LT(2 * joined["triangles"].get<int>(), plain["triangles"].get<int>());
-  EXPECT_EQ(joined["tetrahedra"], plain["tetrahedra"]);
+  // Of the lattice of all samples: whole cells.
+  EXPECT_GT(joined["tetrahedra"], 0);
+  EXPECT_EQ(joined["tetrahedra"].get<int>() % 6, 0);
+  EXPECT_EQ(joined["diamonds"], 0);
+  const auto coarse = figures({"--error", "0.2"}), coarse_plain = figures({"--error", "0.2", "--plain"});
+  EXPECT_LT(2 * coarse["triangles"].get<int>(), coarse_plain["triangles"].get<int>());
+  EXPECT_EQ(coarse["tetrahedra"], coarse_plain["tetrahedra"]);
+  EXPECT_EQ(coarse["diamonds"], coarse_plain["diamonds"]);
   EXPECT_FALSE(joined.contains("distance"));
   const auto certified = figures({"--certify", "--error", "0.4"});
   EXPECT_LE(certified["distance"]["certified"].get<double>(), 0.4);

@@ -129,6 +129,22 @@ TEST(FullContour, HasBodiesOfOneSampleAtBordersOfPages) {
   }
 }
 
+/// Slabs go to threads, and what lies between them is put together.
+TEST(FullContour, IsTheSameOnAnyNumberOfThreads) {
+  const MemoryVolume<std::uint8_t> volume({40, 36, 200}, [random = std::mt19937(8)](LatticePoint p) mutable {
+    return 100 + 60 * std::sin(0.35 * p.i + 0.2 * p.k) * std::cos(0.3 * p.j) + random() % 40;
+  });
+  std::vector<Contour> found;
+  for (const unsigned threads : {1u, 2u, 3u, 7u}) {
+    set_thread_limit(threads);
+    OpenStore<std::uint8_t> store(volume);
+    found.push_back(full_contour(store, 120));
+    EXPECT_TRUE(found.back() == found.front()) << threads;
+  }
+  set_thread_limit(0);
+  test::expect_closed(found.front(), volume.grid.box());
+}
+
 TEST(FullContour, IsNoneWhereSamplesAreNotFinite) {
   const MemoryVolume<float> volume({20, 20, 20}, [](LatticePoint p) {
     return p == LatticePoint{7, 8, 9} ? std::numeric_limits<double>::quiet_NaN() : p.i + 0.1 * p.j * p.k;

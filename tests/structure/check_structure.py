@@ -24,7 +24,7 @@ FOLDER_ORDER = {
     "core": ["base", "geometry", "distance", "lattice", "data", "refinement"],
     "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "library", "reference"],
-    "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "library"],
+    "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.

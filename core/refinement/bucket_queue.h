@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/assert.h"
+#include "core/lattice/lattice_map.h"
+#include "core/lattice/lattice_point.h"
+
+namespace adamas {
+
+/// Lattice points in buckets (D 4.8): each operation takes a time that does not depend on how many there are, but
+/// for a step over empty buckets.
+class BucketQueue {
+ public:
+  explicit BucketQueue(std::size_t buckets) : buckets_(buckets) {}
+
+  [[nodiscard]] bool empty() const { return places_.size() == 0; }
+  [[nodiscard]] std::size_t size() const { return places_.size(); }
+  [[nodiscard]] bool has(LatticePoint p) const { return places_.find(p) != nullptr; }
+
+  /// A point that is in the queue goes to its new bucket.
+  void put(LatticePoint p, std::size_t bucket) {
+    ADAMAS_ASSERT(bucket < buckets_.size());
+    erase(p);
+    *places_.insert(p).first = {bucket, buckets_[bucket].size()};
+    buckets_[bucket].push_back(p);
+    least_ = size() == 1 || bucket < least_ ? bucket : least_;
+    greatest_ = size() == 1 || bucket > greatest_ ? bucket : greatest_;
+  }
+  /// Does nothing for a point that is not in the queue.
+  void erase(LatticePoint p) {
+    const Place* const found = places_.find(p);
+    if (found == nullptr) return;
+    const Place place = *found;
+    places_.erase(p);
+    std::vector<LatticePoint>& bucket = buckets_[place.bucket];
+    // The bucket's last point takes its place.
+    if (place.at + 1 < bucket.size()) {
+      bucket[place.at] = bucket.back();
+      places_.find(bucket.back())->at = place.at;
+    }
+    bucket.pop_back();
+  }
+  void clear() {
+    for (std::vector<LatticePoint>& bucket : buckets_) bucket.clear();
+    places_.clear();
+  }
+
+  /// The least and the greatest bucket that has points. The queue must not be empty.
+  [[nodiscard]] std::size_t least() {
+    while (buckets_[least_].empty()) ++least_;
+    return least_;
+  }
+  [[nodiscard]] std::size_t greatest() {
+    while (buckets_[greatest_].empty()) --greatest_;
+    return greatest_;
+  }
+  /// The points of a bucket, in an order that depends on history.
+  [[nodiscard]] const std::vector<LatticePoint>& bucket(std::size_t n) const { return buckets_[n]; }
+
+ private:
+  struct Place {
+    std::size_t bucket, at;
+  };
+
+  std::vector<std::vector<LatticePoint>> buckets_;
+  LatticeMap<Place> places_;
+  std::size_t least_ = 0, greatest_ = 0;  ///< no bucket before or behind has points
+};
+
+}  // namespace adamas

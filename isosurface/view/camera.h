@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// From where a surface is seen, in the frame of the grid.
+struct Camera {
+  Vec3 eye{0, 0, 1};
+  Vec3 target{0, 0, 0};  ///< in the middle of the picture
+  Vec3 up{0, 1, 0};      ///< not along the line of sight
+  /// Between the lower and the upper edge of the picture, in radians; below pi.
+  double field_of_view = 0.7853981633974483;
+  /// Of the picture, in units of length, for parallel projection; 0: perspective.
+  double height = 0;
+  double near = 1e-3;  ///< what is nearer to the eye than this along the line of sight is not shown
+  std::int32_t width_pixels = 1024, height_pixels = 768;
+};
+
+/// A box of the frame that stands for what lies in it, by its centre and half of its sides.
+struct CentredBox {
+  Vec3 centre, half;
+};
+
+/// What a camera makes of lengths. Both answers are monotone: a box that contains another one is visible if that
+/// is, and lengths have at least as many pixels in it.
+class View {
+ public:
+  /// Throws Error where a number is not finite, the picture has no pixels, the eye is at the target, or the
+  /// angle is not between 0 and pi.
+  explicit View(const Camera& camera);
+
+  [[nodiscard]] const Camera& camera() const { return camera_; }
+  /// False where all of the box is outside the picture. May be true where it is near the picture's corners.
+  [[nodiscard]] bool is_visible(const CentredBox& box) const;
+  /// Two points of the box at this distance from each other are no farther apart in the picture, in pixels, where
+  /// the one that is nearer to the eye is in the picture.
+  [[nodiscard]] double pixels(double length, const CentredBox& box) const;
+
+ private:
+  struct Side {
+    Vec3 normal;  ///< of length 1, to the inside
+    double offset;
+  };
+
+  Camera camera_;
+  std::array<Side, 5> sides_;  ///< left, right, lower, upper, near
+  double scale_;               ///< pixels for a length, at the distance 1 in perspective
+};
+
+}  // namespace adamas

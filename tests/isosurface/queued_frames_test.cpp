@@ -1,0 +1,181 @@
+#include "isosurface/view/queued_frames.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/isosurface/contour_checks.h"
+#include "tests/isosurface/surface_checks.h"
+
+namespace adamas {
+namespace {
+
+using test::MemoryVolume;
+using test::OpenStore;
+
+MemoryVolume<std::uint8_t> hills(const test::Dimensions& dimensions, double noise) {
+  return {dimensions, [noise, random = std::mt19937(6)](LatticePoint p) mutable {
+            return 100 + 60 * std::sin(0.35 * p.i + 0.2 * p.k) * std::cos(0.3 * p.j) +
+                   noise * static_cast<double>(random() % 1024) / 1024;
+          }};
+}
+
+/// A path of cameras round and through a box, with jumps.
+class CameraPath {
+ public:
+  CameraPath(const Box3& box, unsigned seed) : box_(box), random_(seed) {}
+
+  Camera next() {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto point = [&](double size) {
+      const Vec3 half = 0.5 * size * box_.size();
+      return 0.5 * (box_.min + box_.max) + Vec3{unit(random_) * half.x, unit(random_) * half.y, unit(random_) * half.z};
+    };
+    Camera camera;
+    camera.eye = random_() % 3 == 0 ? point(1) : point(4);
+    camera.target = point(1);
+    camera.up = {0.1, 0.2, 1};
+    camera.near = 0.5;
+    camera.width_pixels = 400;
+    camera.height_pixels = 300;
+    camera.height = random_() % 5 == 0 ? box_.diagonal() / 2 : 0;
+    return camera;
+  }
+  std::uint32_t number(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
+
+ private:
+  Box3 box_;
+  std::mt19937 random_;
+};
+
+/// The volume of a store as a field for contours of any mesh.
+class Frames : public testing::TestWithParam<unsigned> {
+ protected:
+  MemoryVolume<std::uint8_t> volume = hills({35, 30, 22}, GetParam() % 2 == 0 ? 2 : 40);
+  OpenStore<std::uint8_t> store{volume};
+  CameraPath path{volume.grid.box(), GetParam()};
+
+  [[nodiscard]] QueuedFrames<std::uint8_t> frames() { return QueuedFrames<std::uint8_t>(store.pages()); }
+  FrameRequest request() {
+    FrameRequest result;
+    result.camera = path.next();
+    result.isovalue = 80.5 + path.number(3) * 20;
+    result.pixels = 0.5 * (1 + path.number(16));
+    return result;
+  }
+  Contour contour(const QueuedFrames<std::uint8_t>& of, double isovalue) {
+    const int lods = store.pages().grid().depth();
+    return extract_contour(of.mesh(), test::field_of(volume, lods), isovalue,
+                           test::options_of(volume, lods, 1.0 / 1024));
+  }
+  void expect_sound(const QueuedFrames<std::uint8_t>& of, const FrameRequest& request, const FrameFigures& figures) {
+    of.mesh().validate();
+    const Contour found = contour(of, request.isovalue);
+    test::expect_sound(found, volume.grid.box());
+    EXPECT_EQ(found.triangles.size(), figures.triangles);
+  }
+  /// How many triangles there are where nothing is split.
+  std::uint64_t least_triangles(double isovalue) {
+    FrameRequest all;
+    all.isovalue = isovalue;
+    all.stop = [] { return true; };
+    auto root = frames();
+    return root.refine(all).triangles;
+  }
+};
+
+TEST_P(Frames, AreTheMeshOfTheWantedErrorWhereverTheyComeFrom) {
+  const test::DiamondTable table(store);
+  auto found = frames();
+  FrameRequest first = request();
+  found.refine(first);
+  const std::uint64_t first_mesh = found.mesh().checksum();
+  for (int n = 0; n < 12; ++n) {
+    const FrameRequest wanted = request();
+    const FrameFigures figures = found.refine(wanted);
+    expect_sound(found, wanted, figures);
+    EXPECT_LE(figures.largest_error, wanted.pixels);
+    // From scratch: by queues, and by a look at all diamonds there are.
+    auto fresh = frames();
+    const FrameFigures of_fresh = fresh.refine(wanted);
+    EXPECT_EQ(fresh.mesh().checksum(), found.mesh().checksum());
+    EXPECT_EQ(of_fresh.merges, 0u);
+    EXPECT_EQ(of_fresh.largest_error, figures.largest_error);
+    StoredDiamonds<std::uint8_t> diamonds(store.pages());
+    diamonds.set_contour(wanted.isovalue);
+    const ViewErrors<std::uint8_t> errors(diamonds);
+    const View view(wanted.camera);
+    IndexedHierarchy direct(diamonds.domain(), diamonds.lods());
+    std::vector<LatticePoint> done;
+    for (const auto& [p, values] : table.diamonds()) {
+      const LatticePoint q = diamonds.lattice_step(0) * p;
+      if (errors.pixels(view, q) > wanted.pixels) direct.split(q, done);
+    }
+    EXPECT_EQ(direct.checksum(), found.mesh().checksum());
+  }
+  found.refine(first);
+  EXPECT_EQ(found.mesh().checksum(), first_mesh);
+}
+
+TEST_P(Frames, AreWithinTheirBudgetWhereverTheWorkIsStopped) {
+  auto found = frames();
+  std::size_t stopped = 0;
+  for (int n = 0; n < 60; ++n) {
+    FrameRequest wanted = request();
+    wanted.pixels = 0.5;
+    wanted.max_triangles = 40 + path.number(3000);
+    const std::uint32_t steps = path.number(400);
+    std::uint32_t done = 0;
+    wanted.stop = [&] { return done++ == steps; };
+    const FrameFigures figures = found.refine(wanted);
+    stopped += figures.stopped ? 1 : 0;
+    EXPECT_EQ(figures.splits + figures.merges + 1, done);
+    EXPECT_LE(figures.triangles, std::max(*wanted.max_triangles, least_triangles(wanted.isovalue)));
+    expect_sound(found, wanted, figures);
+  }
+  EXPECT_GT(stopped, 10u);
+}
+
+TEST_P(Frames, HaveTheSameLargestErrorWithinABudgetWhereverTheyComeFrom) {
+  auto found = frames();
+  std::size_t limited = 0;
+  for (int n = 0; n < 20; ++n) {
+    FrameRequest wanted = request();
+    wanted.max_triangles = 300 + path.number(3000);
+    const FrameFigures figures = found.refine(wanted);
+    auto fresh = frames();
+    const FrameFigures of_fresh = fresh.refine(wanted);
+    EXPECT_EQ(ViewErrors<std::uint8_t>::class_of(figures.largest_error),
+              ViewErrors<std::uint8_t>::class_of(of_fresh.largest_error));
+    if (figures.largest_error <= wanted.pixels) continue;
+    ++limited;
+    EXPECT_GE(static_cast<double>(figures.triangles), 0.95 * static_cast<double>(*wanted.max_triangles));
+  }
+  EXPECT_GT(limited, 3u);
+}
+
+TEST_P(Frames, StateNoLessThanASurfaceOfAllSamplesWouldShow) {
+  // What is not split has the error that the store has for it, wherever it is nearest to the eye.
+  auto found = frames();
+  FrameRequest wanted = request();
+  wanted.max_triangles = 500;
+  const FrameFigures figures = found.refine(wanted);
+  const View view(wanted.camera);
+  found.mesh().for_each_diamond([&](const Diamond& diamond, std::uint8_t) {
+    if (!found.diamonds().is_stored(diamond.point())) return;
+    const double error = found.diamonds().error(found.diamonds().class_if_crossed(diamond.point()));
+    const double scale = diamond.scale();
+    const CentredBox box{found.mesh().domain().position(diamond.point()), scale * found.mesh().domain().spacing()};
+    if (view.is_visible(box)) {
+      EXPECT_LE(view.pixels(error, box), figures.largest_error * (1 + 1e-12));
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Frames, testing::Range(0u, 3u));
+
+}  // namespace
+}  // namespace adamas
