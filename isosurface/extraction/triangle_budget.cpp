@@ -258,6 +258,10 @@ SurfaceCut TriangleBudget<Sample>::find(std::uint64_t triangles, int least_class
   return {.error_class = least_class};
 }
 
+template class TriangleCounter<std::uint8_t>;
+template class TriangleCounter<std::uint16_t>;
+template class TriangleCounter<std::int16_t>;
+template class TriangleCounter<float>;
 template class TriangleBudget<std::uint8_t>;
 template class TriangleBudget<std::uint16_t>;
 template class TriangleBudget<std::int16_t>;

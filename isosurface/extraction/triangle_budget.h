@@ -77,6 +77,10 @@ class TriangleBudget {
   Counts added_;  ///< triangles, by class and generation
 };
 
+extern template class TriangleCounter<std::uint8_t>;
+extern template class TriangleCounter<std::uint16_t>;
+extern template class TriangleCounter<std::int16_t>;
+extern template class TriangleCounter<float>;
 extern template class TriangleBudget<std::uint8_t>;
 extern template class TriangleBudget<std::uint16_t>;
 extern template class TriangleBudget<std::int16_t>;

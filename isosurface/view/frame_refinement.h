@@ -4,13 +4,13 @@
 #include <functional>
 #include <optional>
 
-#include "isosurface/view/camera.h"
+#include "isosurface/view/viewpoint.h"
 
 namespace adamas {
 
 /// What a frame is to be like.
 struct FrameRequest {
-  Camera camera;
+  Viewpoint viewpoint;
   double isovalue = 0;
   /// Diamonds whose isosurface error may take more pixels are split.
   double pixels = 1;

@@ -60,7 +60,7 @@ std::size_t QueuedFrames<Sample>::bucket(LatticePoint p) const {
 
 template <class Sample>
 FrameFigures QueuedFrames<Sample>::refine(const FrameRequest& request) {
-  view_ = View(request.camera);
+  view_ = View(request.viewpoint);
   pixels_ = request.pixels;
   constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
   max_triangles_ = static_cast<std::int64_t>(std::min<std::uint64_t>(request.max_triangles.value_or(kMost), kMost));
@@ -146,13 +146,15 @@ bool QueuedFrames<Sample>::step(FrameFigures& figures) {
   return true;
 }
 
-/// Of the diamonds with the greatest class of errors, one for whose triangles there is room.
+/// Of the diamonds with the greatest class of errors, one for whose triangles there is room; so far as one is found
+/// among some of them.
 template <class Sample>
 std::optional<typename QueuedFrames<Sample>::Split> QueuedFrames<Sample>::next_split() {
+  int looks = 64;
   const std::size_t greatest = splits_.greatest();
   for (std::size_t n = greatest + 1; n-- > class_of_bucket(greatest) * generations();) {
     const std::vector<LatticePoint>& bucket = splits_.bucket(n);
-    for (auto p = bucket.rbegin(); p != bucket.rend(); ++p) {
+    for (auto p = bucket.rbegin(); p != bucket.rend() && looks > 0; ++p, --looks) {
       if (waits_for_parents(*p)) continue;
       const std::int64_t added = counter_.added_by_split(Diamond(*p));
       if (triangles_ + added <= max_triangles_) return Split{*p, added};

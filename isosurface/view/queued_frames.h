@@ -81,7 +81,7 @@ class QueuedFrames {
   LatticeMap<std::int64_t> split_;  ///< split diamonds, and how many triangles that added
   std::int64_t triangles_ = 0;
   std::optional<double> isovalue_;  ///< none before the first frame
-  View view_{Camera{}};
+  View view_{Viewpoint{}};
   double pixels_ = 0;
   std::int64_t max_triangles_ = 0;
   BucketQueue splits_, merges_;

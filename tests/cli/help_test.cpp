@@ -19,7 +19,7 @@ TEST_F(Help, HelpAndCompletion) {
   const std::string check = "bash -n '" + (folder() / "completion.bash").string() + "'";
   EXPECT_EQ(std::system(check.c_str()), 0);
   for (const std::string command : {"info", "reconstruct", "resample", "select", "slice", "probe", "store",
-                                    "restore", "verify", "isosurface"}) {
+                                    "restore", "verify", "isosurface", "view"}) {
     EXPECT_NE(all.find("  " + command), std::string::npos);
     const std::string help = run_well({command, "--help"}).out;
     EXPECT_NE(help.find("Example:\n  adamas " + command), std::string::npos);
@@ -63,7 +63,7 @@ TEST_F(Help, TheManualKnowsEveryOption) {
     if (page[i] != '\\') plain += page[i];
   }
   for (const std::string command : {"info", "reconstruct", "resample", "select", "compare", "slice", "probe",
-                                    "experiment", "store", "restore", "verify", "isosurface"}) {
+                                    "experiment", "store", "restore", "verify", "isosurface", "view"}) {
     const std::size_t section = plain.find(".SS " + command + "\n");
     ASSERT_NE(section, std::string::npos) << command;
     std::istringstream lines(run_well({command, "--help"}).out);
@@ -89,7 +89,7 @@ TEST_F(Help, TheManualKnowsEveryOption) {
 
 TEST_F(Help, HelpFitsTheScreen) {
   for (const std::string command : {"generate", "info", "reconstruct", "resample", "select", "slice", "probe",
-                                    "store", "restore", "verify", "isosurface"}) {
+                                    "store", "restore", "verify", "isosurface", "view"}) {
     const std::string help = run_well({command, "--help"}).out;
     std::istringstream lines(help);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;

@@ -24,25 +24,25 @@ MemoryVolume<std::uint8_t> hills(const test::Dimensions& dimensions, double nois
 }
 
 /// A path of cameras round and through a box, with jumps.
-class CameraPath {
+class Flight {
  public:
-  CameraPath(const Box3& box, unsigned seed) : box_(box), random_(seed) {}
+  Flight(const Box3& box, unsigned seed) : box_(box), random_(seed) {}
 
-  Camera next() {
+  Viewpoint next() {
     std::uniform_real_distribution<double> unit(-1, 1);
     const auto point = [&](double size) {
       const Vec3 half = 0.5 * size * box_.size();
       return 0.5 * (box_.min + box_.max) + Vec3{unit(random_) * half.x, unit(random_) * half.y, unit(random_) * half.z};
     };
-    Camera camera;
-    camera.eye = random_() % 3 == 0 ? point(1) : point(4);
-    camera.target = point(1);
-    camera.up = {0.1, 0.2, 1};
-    camera.near = 0.5;
-    camera.width_pixels = 400;
-    camera.height_pixels = 300;
-    camera.height = random_() % 5 == 0 ? box_.diagonal() / 2 : 0;
-    return camera;
+    Viewpoint viewpoint;
+    viewpoint.eye = random_() % 3 == 0 ? point(1) : point(4);
+    viewpoint.target = point(1);
+    viewpoint.up = {0.1, 0.2, 1};
+    viewpoint.near = 0.5;
+    viewpoint.width_pixels = 400;
+    viewpoint.height_pixels = 300;
+    viewpoint.height = random_() % 5 == 0 ? box_.diagonal() / 2 : 0;
+    return viewpoint;
   }
   std::uint32_t number(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
 
@@ -56,12 +56,12 @@ class Frames : public testing::TestWithParam<unsigned> {
  protected:
   MemoryVolume<std::uint8_t> volume = hills({35, 30, 22}, GetParam() % 2 == 0 ? 2 : 40);
   OpenStore<std::uint8_t> store{volume};
-  CameraPath path{volume.grid.box(), GetParam()};
+  Flight path{volume.grid.box(), GetParam()};
 
   [[nodiscard]] QueuedFrames<std::uint8_t> frames() { return QueuedFrames<std::uint8_t>(store.pages()); }
   FrameRequest request() {
     FrameRequest result;
-    result.camera = path.next();
+    result.viewpoint = path.next();
     result.isovalue = 80.5 + path.number(3) * 20;
     result.pixels = 0.5 * (1 + path.number(16));
     return result;
@@ -107,7 +107,7 @@ TEST_P(Frames, AreTheMeshOfTheWantedErrorWhereverTheyComeFrom) {
     StoredDiamonds<std::uint8_t> diamonds(store.pages());
     diamonds.set_contour(wanted.isovalue);
     const ViewErrors<std::uint8_t> errors(diamonds);
-    const View view(wanted.camera);
+    const View view(wanted.viewpoint);
     IndexedHierarchy direct(diamonds.domain(), diamonds.lods());
     std::vector<LatticePoint> done;
     for (const auto& [p, values] : table.diamonds()) {
@@ -163,7 +163,7 @@ TEST_P(Frames, StateNoLessThanASurfaceOfAllSamplesWouldShow) {
   FrameRequest wanted = request();
   wanted.max_triangles = 500;
   const FrameFigures figures = found.refine(wanted);
-  const View view(wanted.camera);
+  const View view(wanted.viewpoint);
   found.mesh().for_each_diamond([&](const Diamond& diamond, std::uint8_t) {
     if (!found.diamonds().is_stored(diamond.point())) return;
     const double error = found.diamonds().error(found.diamonds().class_if_crossed(diamond.point()));

@@ -16,8 +16,9 @@ MAY_INCLUDE = {
     "interfaces": ["core"],
     "isosurface": ["core"],
     "datasets": ["core"],
-    "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets"],
-    "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "cli"],
+    "viewer": ["core", "core/picture", "isosurface"],
+    "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "viewer"],
+    "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "viewer", "cli"],
 }
 # Within a module: a folder may include those before it.
 FOLDER_ORDER = {
@@ -25,6 +26,7 @@ FOLDER_ORDER = {
     "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "library", "reference"],
     "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
+    "viewer": ["scene", "gl"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.
@@ -36,6 +38,7 @@ OWNED = {
     r"Eigen/.*": ["interfaces", "tests"],
     r"OpenMesh/.*": ["interfaces", "tests"],
     r"tiffio\.h|zlib\.h|bzlib\.h|png\.h|hdf5\.h|expat\.h": ["core/io", "tests"],
+    r"epoxy/.*|GL/.*|EGL/.*": ["viewer", "tests"],
     r"CLI/.*": ["cli", "tests"],
     r"nlohmann/.*": ["cli", "tests"],
 }
@@ -44,7 +47,7 @@ LIGHT = [r"CLI/.*", r"nlohmann/.*"]
 SLOW = {r"CLI/.*": ["cli/command.cpp", "cli/command_line.cpp", "cli/config_file.cpp", "cli/help.cpp"]}
 # Headers that are there to convert to the types of a library: for .cpp files of every folder.
 CONVERSIONS = ["interfaces/simplification/openmesh_patches.h"]
-FOLDERS = ["include", "core", "interfaces", "isosurface", "datasets", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
+FOLDERS = ["include", "core", "interfaces", "isosurface", "datasets", "viewer", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
 ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
 LIBRARY_PAGE = "docs/library.md"
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}

@@ -1,4 +1,4 @@
-#include "isosurface/view/camera.h"
+#include "isosurface/view/viewpoint.h"
 
 #include <gtest/gtest.h>
 
@@ -10,32 +10,32 @@
 namespace adamas {
 namespace {
 
-Camera random_camera(std::mt19937& random) {
+Viewpoint random_viewpoint(std::mt19937& random) {
   std::uniform_real_distribution<double> place(-3, 3), angle(0.2, 2);
-  Camera camera;
+  Viewpoint viewpoint;
   const auto point = [&] { return Vec3{place(random), place(random), place(random)}; };
-  camera.eye = point();
-  camera.target = point();
-  camera.up = point();
-  camera.field_of_view = angle(random);
-  camera.height = random() % 3 == 0 ? 2 : 0;
-  camera.near = 0.05;
-  camera.width_pixels = 300 + static_cast<int>(random() % 600);
-  return camera;
+  viewpoint.eye = point();
+  viewpoint.target = point();
+  viewpoint.up = point();
+  viewpoint.field_of_view = angle(random);
+  viewpoint.height = random() % 3 == 0 ? 2 : 0;
+  viewpoint.near = 0.05;
+  viewpoint.width_pixels = 300 + static_cast<int>(random() % 600);
+  return viewpoint;
 }
 
 /// Where a point is in the picture, from its middle, in pixels; and how far it is along the line of sight.
 struct Place {
   double x, y, depth;
 };
-Place project(const Camera& camera, const Vec3& p) {
-  const Vec3 forward = normalized(camera.target - camera.eye),
-             right = normalized(cross(forward, camera.up)), up = cross(right, forward);
-  const Vec3 way = p - camera.eye;
+Place project(const Viewpoint& viewpoint, const Vec3& p) {
+  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
+             right = normalized(cross(forward, viewpoint.up)), up = cross(right, forward);
+  const Vec3 way = p - viewpoint.eye;
   const double depth = dot(way, forward);
-  const double scale = camera.height > 0
-                           ? camera.height_pixels / camera.height
-                           : camera.height_pixels / (2 * std::tan(camera.field_of_view / 2)) / depth;
+  const double scale = viewpoint.height > 0
+                           ? viewpoint.height_pixels / viewpoint.height
+                           : viewpoint.height_pixels / (2 * std::tan(viewpoint.field_of_view / 2)) / depth;
   return {scale * dot(way, right), scale * dot(way, up), depth};
 }
 
@@ -44,8 +44,8 @@ TEST(View, BoundsWhatTheCameraShows) {
   std::uniform_real_distribution<double> unit(-1, 1), place(-3, 3);
   std::size_t seen = 0;
   for (int n = 0; n < 20'000; ++n) {
-    const Camera camera = random_camera(random);
-    const View view(camera);
+    const Viewpoint viewpoint = random_viewpoint(random);
+    const View view(viewpoint);
     const CentredBox box{{place(random), place(random), place(random)},
                          {std::abs(unit(random)), std::abs(unit(random)), std::abs(unit(random))}};
     const auto in_box = [&] {
@@ -53,9 +53,9 @@ TEST(View, BoundsWhatTheCameraShows) {
              Vec3{unit(random) * box.half.x, unit(random) * box.half.y, unit(random) * box.half.z};
     };
     const Vec3 a = in_box(), b = in_box();
-    const Place p = project(camera, a), q = project(camera, b);
-    const bool in_picture = p.depth >= camera.near && 2 * std::abs(p.x) <= camera.width_pixels &&
-                            2 * std::abs(p.y) <= camera.height_pixels;
+    const Place p = project(viewpoint, a), q = project(viewpoint, b);
+    const bool in_picture = p.depth >= viewpoint.near && 2 * std::abs(p.x) <= viewpoint.width_pixels &&
+                            2 * std::abs(p.y) <= viewpoint.height_pixels;
     if (!in_picture) continue;
     EXPECT_TRUE(view.is_visible(box));
     if (q.depth < p.depth) continue;
@@ -69,7 +69,7 @@ TEST(View, IsMonotone) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(0, 1), place(-3, 3);
   for (int n = 0; n < 20'000; ++n) {
-    const View view(random_camera(random));
+    const View view(random_viewpoint(random));
     const CentredBox outer{{place(random), place(random), place(random)}, {1.5, 1, 2}};
     const Vec3 half{1.5 * unit(random), unit(random), 2 * unit(random)}, room = outer.half - half;
     const auto way = [&](double r) { return (2 * unit(random) - 1) * r; };
@@ -83,16 +83,16 @@ TEST(View, IsMonotone) {
 
 TEST(View, RefusesCamerasThatSeeNothing) {
   const auto refused = [](auto change) {
-    Camera camera;
-    change(camera);
-    EXPECT_THROW(View{camera}, Error);
+    Viewpoint viewpoint;
+    change(viewpoint);
+    EXPECT_THROW(View{viewpoint}, Error);
   };
-  refused([](Camera& c) { c.eye = c.target; });
-  refused([](Camera& c) { c.up = c.target - c.eye; });
-  refused([](Camera& c) { c.width_pixels = 0; });
-  refused([](Camera& c) { c.field_of_view = 4; });
-  refused([](Camera& c) { c.near = 0; });
-  refused([](Camera& c) { c.eye.x = NAN; });
+  refused([](Viewpoint& c) { c.eye = c.target; });
+  refused([](Viewpoint& c) { c.up = c.target - c.eye; });
+  refused([](Viewpoint& c) { c.width_pixels = 0; });
+  refused([](Viewpoint& c) { c.field_of_view = 4; });
+  refused([](Viewpoint& c) { c.near = 0; });
+  refused([](Viewpoint& c) { c.eye.x = NAN; });
 }
 
 }  // namespace

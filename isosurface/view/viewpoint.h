@@ -8,7 +8,7 @@
 namespace adamas {
 
 /// From where a surface is seen, in the frame of the grid.
-struct Camera {
+struct Viewpoint {
   Vec3 eye{0, 0, 1};
   Vec3 target{0, 0, 0};  ///< in the middle of the picture
   Vec3 up{0, 1, 0};      ///< not along the line of sight
@@ -31,9 +31,9 @@ class View {
  public:
   /// Throws Error where a number is not finite, the picture has no pixels, the eye is at the target, or the
   /// angle is not between 0 and pi.
-  explicit View(const Camera& camera);
+  explicit View(const Viewpoint& viewpoint);
 
-  [[nodiscard]] const Camera& camera() const { return camera_; }
+  [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
   /// False where all of the box is outside the picture. May be true where it is near the picture's corners.
   [[nodiscard]] bool is_visible(const CentredBox& box) const;
   /// Two points of the box at this distance from each other are no farther apart in the picture, in pixels, where
@@ -46,7 +46,7 @@ class View {
     double offset;
   };
 
-  Camera camera_;
+  Viewpoint viewpoint_;
   std::array<Side, 5> sides_;  ///< left, right, lower, upper, near
   double scale_;               ///< pixels for a length, at the distance 1 in perspective
 };

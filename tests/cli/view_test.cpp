@@ -1,0 +1,106 @@
+// adamas view: frames of a flight, without a window.
+
+#include <filesystem>
+#include <set>
+
+#include "store_test.h"
+
+namespace adamas::test {
+
+namespace {
+
+class ViewCommand : public StoreTest {
+ protected:
+  void SetUp() override {
+    make_ball();
+    make_store();
+    const RunResult tried = view({"--camera-path", "orbit:1", "--json", "tried.json"});
+    if (tried.err.find("expected EGL") != std::string::npos ||
+        tried.err.find("expected OpenGL 4.5") != std::string::npos)
+      GTEST_SKIP() << tried.err;
+    ASSERT_EQ(tried.status, 0) << tried.err;
+  }
+  RunResult view(const std::vector<std::string>& more) {
+    std::vector<std::string> all{"view", "b.adm", "--isovalue", "80.5", "--offscreen", "--size", "160,120"};
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  }
+};
+
+TEST_F(ViewCommand, WritesAPictureAndFiguresForEachFrame) {
+  const RunResult result = view({"--camera-path", "orbit:3", "--frames", "frames", "--json", "f.json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("drawn by"), std::string::npos);
+  const auto figures = read_json("f.json");
+  EXPECT_NE(figures["drawn_by"].get<std::string>().find("EGL"), std::string::npos);
+  ASSERT_EQ(figures["frames"].size(), 3u);
+  std::set<std::string> pictures;
+  for (const char* name : {"frames/frame0001.png", "frames/frame0002.png", "frames/frame0003.png"}) {
+    const std::string bytes = read(name);
+    EXPECT_EQ(bytes.substr(1, 3), "PNG");
+    pictures.insert(bytes);
+  }
+  EXPECT_EQ(pictures.size(), 3u) << "the same from other places";
+  for (const auto& frame : figures["frames"]) {
+    EXPECT_GT(frame["triangles"], 100);
+    EXPECT_LE(frame["largest_error_pixels"], 1);
+    EXPECT_GE(frame["update_seconds"], 0);
+  }
+  EXPECT_GT(figures["frames"][0]["splits"], 0);
+  EXPECT_EQ(figures["frames"][0]["merges"], 0);
+  // What is there is replaced when that is wanted alone.
+  EXPECT_EQ(view({"--camera-path", "orbit:3", "--frames", "frames"}).status, 1);
+  ASSERT_EQ(view({"--camera-path", "orbit:1", "--frames", "frames", "--overwrite"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "frames/frame0002.png"));
+}
+
+TEST_F(ViewCommand, ComesBackToTheSamePicture) {
+  write("path.txt",
+        "100 20 30  19.5 19.5 19.5  0 0 1\n"
+        "25 -15 18  19.5 19.5 19.5  0 0 1\n"
+        "100 20 30  19.5 19.5 19.5  0 0 1\n");
+  ASSERT_EQ(view({"--camera-path", "path.txt", "--frames", "frames", "--json", "f.json"}).status, 0);
+  const auto frames = read_json("f.json")["frames"];
+  EXPECT_GT(frames[1]["triangles"], frames[0]["triangles"]) << "nearer";
+  EXPECT_GT(frames[2]["merges"], 0);
+  EXPECT_EQ(frames[2]["triangles"], frames[0]["triangles"]);
+  EXPECT_EQ(read("frames/frame0003.png"), read("frames/frame0001.png"));
+}
+
+TEST_F(ViewCommand, KeepsToItsLimits) {
+  ASSERT_EQ(view({"--camera-path", "orbit:2", "--max-triangles", "500", "--pixels", "0.1", "--json", "f.json"}).status, 0);
+  const auto figures = read_json("f.json");
+  for (const auto& frame : figures["frames"]) {
+    EXPECT_LE(frame["triangles"], 500);
+    EXPECT_GT(frame["triangles"], 450);
+    EXPECT_GT(frame["largest_error_pixels"], 0.1);
+  }
+  ASSERT_EQ(view({"--camera-path", "orbit:2", "--pixels", "20", "--json", "g.json", "--shading", "sphere"}).status, 0);
+  EXPECT_LE(read_json("g.json")["frames"][0]["largest_error_pixels"], 20);
+}
+
+TEST_F(ViewCommand, TellsWhatIsWrong) {
+  const auto expect = [this](const std::vector<std::string>& options, int status, const std::string& part) {
+    const RunResult result = run(options);
+    EXPECT_EQ(result.status, status);
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+  };
+  const std::vector<std::string> good{"view", "b.adm", "--isovalue", "80.5", "--offscreen", "--json", "f.json"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = good;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expect({"view", "b.adm", "--isovalue", "80.5", "--json", "f.json"}, 2, "expected --offscreen");
+  expect({"view", "b.adm", "--isovalue", "80.5", "--offscreen"}, 2, "expected --frames or --json");
+  expect(with({"--size", "4,4"}), 2, "from 16 to 8192");
+  expect(with({"--pixels", "0"}), 2, "--pixels");
+  expect(with({"--camera-path", "none.txt"}), 1, "none.txt: expected a file of viewpoints or orbit:N");
+  expect(with({"--camera-path", "orbit:0"}), 1, "expected a number of frames");
+  expect({"view", "ball.raw", "--isovalue", "80.5", "--offscreen", "--json", "f.json"}, 1, "ball.raw: expected a store");
+  expect({"view", "none.adm", "--isovalue", "80.5", "--offscreen", "--json", "f.json"}, 1, "none.adm: expected a store");
+}
+
+}  // namespace
+
+}  // namespace adamas::test

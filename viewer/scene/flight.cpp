@@ -1,0 +1,117 @@
+#include "viewer/scene/flight.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <string_view>
+
+#include "core/base/error.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr int kMostFrames = 100'000;
+
+/// What is nearer than a small part of the box is not shown.
+double near_plane(const Box3& box) { return 1e-3 * box.diagonal(); }
+
+/// How many places on an orbit stand for all of it.
+constexpr int kMarks = 72;
+
+std::vector<Viewpoint> orbit_at(int frames, double distance, Viewpoint viewpoint, const Box3& box) {
+  constexpr double kHeight = 0.45, kStart = -0.7;
+  viewpoint.target = 0.5 * (box.min + box.max);
+  viewpoint.up = {0, 0, 1};
+  std::vector<Viewpoint> result;
+  for (int n = 0; n < frames; ++n) {
+    const double angle = 2 * std::numbers::pi * n / frames + kStart;
+    viewpoint.eye =
+        viewpoint.target + distance * normalized(Vec3{std::cos(angle), std::sin(angle), kHeight});
+    result.push_back(viewpoint);
+  }
+  return result;
+}
+
+bool sees_all(const std::vector<Viewpoint>& viewpoints, const Box3& box) {
+  const auto corners = box.corners();
+  return std::ranges::all_of(viewpoints, [&](const Viewpoint& viewpoint) {
+    const View view(viewpoint);
+    return std::ranges::all_of(corners, [&](const Vec3& corner) { return view.is_visible({corner, {}}); });
+  });
+}
+
+std::vector<Viewpoint> orbit(std::string_view count, const Viewpoint& first, const Box3& box) {
+  int frames = 0;
+  const auto [end, code] = std::from_chars(count.data(), count.data() + count.size(), frames);
+  if (code != std::errc() || end != count.data() + count.size() || frames < 1 || frames > kMostFrames)
+    fail("orbit: expected a number of frames from 1 to {}, found '{}'", kMostFrames, count);
+  // As near as all of the box is in sight from everywhere.
+  double near = 0, far = 20 * box.diagonal();
+  while (far - near > 1e-3 * box.diagonal()) {
+    const double middle = 0.5 * (near + far);
+    (sees_all(orbit_at(kMarks, middle, first, box), box) ? far : near) = middle;
+  }
+  constexpr double kBetweenMarks = 1.01;
+  return orbit_at(frames, kBetweenMarks * far, first, box);
+}
+
+Viewpoint viewpoint_of(std::string_view line, Viewpoint viewpoint, const std::string& place) {
+  std::vector<double> numbers;
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  while (at != end) {
+    if (*at == ' ' || *at == '\t' || *at == ',' || *at == '\r') {
+      ++at;
+      continue;
+    }
+    double number = 0;
+    const auto [next, code] = std::from_chars(at, end, number);
+    if (code != std::errc() || !std::isfinite(number))
+      fail("{}: expected nine finite numbers, found '{}'", place, line);
+    numbers.push_back(number);
+    at = next;
+  }
+  if (numbers.size() != 9) fail("{}: expected nine numbers, found {}", place, numbers.size());
+  viewpoint.eye = {numbers[0], numbers[1], numbers[2]};
+  viewpoint.target = {numbers[3], numbers[4], numbers[5]};
+  viewpoint.up = {numbers[6], numbers[7], numbers[8]};
+  try {
+    const View checked(viewpoint);
+  } catch (const Error& error) {
+    fail("{}: {}", place, error.what());
+  }
+  return viewpoint;
+}
+
+std::vector<Viewpoint> flight_of_file(const std::string& path, const Viewpoint& first) {
+  std::ifstream file(path);
+  if (!file) fail("{}: expected a file of viewpoints or orbit:N, found no file that can be read", path);
+  std::vector<Viewpoint> result;
+  std::string line;
+  for (int n = 1; std::getline(file, line); ++n) {
+    const std::string_view numbers = std::string_view(line).substr(0, line.find('#'));
+    if (numbers.find_first_not_of(" \t\r,") == std::string_view::npos) continue;
+    result.push_back(viewpoint_of(numbers, first, fmt::format("{}, line {}", path, n)));
+    if (result.size() > kMostFrames) fail("{}: expected at most {} viewpoints", path, kMostFrames);
+  }
+  if (file.bad()) fail("{}: cannot be read to its end", path);
+  if (result.empty()) fail("{}: expected viewpoints, found none", path);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Viewpoint> flight(const std::string& path, const Box3& box, int width_pixels, int height_pixels) {
+  Viewpoint first;
+  first.width_pixels = width_pixels;
+  first.height_pixels = height_pixels;
+  first.near = near_plane(box);
+  constexpr std::string_view kOrbit = "orbit:";
+  return path.starts_with(kOrbit) ? orbit(std::string_view(path).substr(kOrbit.size()), first, box)
+                                  : flight_of_file(path, first);
+}
+
+}  // namespace adamas

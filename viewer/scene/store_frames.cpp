@@ -1,0 +1,75 @@
+#include "viewer/scene/store_frames.h"
+
+#include <chrono>
+#include <utility>
+
+#include "core/base/error.h"
+#include "isosurface/extraction/surface_normals.h"
+#include "isosurface/view/queued_frames.h"
+#include "isosurface/volume/samples.h"
+
+namespace adamas {
+
+namespace {
+
+/// Seconds since it was made or last asked.
+class Clock {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+template <class Sample>
+class StoreFramesOf final : public StoreFrames {
+ public:
+  StoreFramesOf(StoreFile& file, std::size_t memory) : pages_(file, 0, memory), frames_(pages_) {}
+
+  Frame next(const FrameRequest& request) override {
+    try {
+      return found(request);
+    } catch (const PageLost& lost) {
+      fail("{}: {} is damaged", pages_.file().name(), page_name(lost.damaged));
+    }
+  }
+  [[nodiscard]] PageCounts counts() const override { return pages_.counts(); }
+  [[nodiscard]] Box3 data_box() const override {
+    StoredDiamonds<Sample>& diamonds = frames_.diamonds();
+    return {diamonds.domain().box().min, diamonds.domain().position(diamonds.last_sample())};
+  }
+
+ private:
+  Frame found(const FrameRequest& request) {
+    Frame frame;
+    Clock clock;
+    frame.figures = frames_.refine(request);
+    frame.update_seconds = clock.lap();
+    StoredDiamonds<Sample>& diamonds = frames_.diamonds();
+    SurfaceRequest surface;
+    const ContourOptions options = surface.contour_options(diamonds.last_sample(), diamonds.spacing());
+    Contour contour = extract_contour(
+        frames_.mesh(), [&](LatticePoint p) { return diamonds.sample(p); }, request.isovalue, options);
+    frame.surface.normals = surface_normals<Sample>(pages_, contour).normals;
+    frame.surface.points = std::move(contour.points);
+    frame.surface.triangles = std::move(contour.triangles);
+    frame.contour_seconds = clock.lap();
+    return frame;
+  }
+
+  StoredPages<OrderedWord<Sample>> pages_;
+  mutable QueuedFrames<Sample> frames_;
+};
+
+}  // namespace
+
+std::unique_ptr<StoreFrames> StoreFrames::open(StoreFile& file, std::size_t memory) {
+  return with_sample_type(file.header().grid.type, [&](auto sample) -> std::unique_ptr<StoreFrames> {
+    return std::make_unique<StoreFramesOf<decltype(sample)>>(file, memory);
+  });
+}
+
+}  // namespace adamas

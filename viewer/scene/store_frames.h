@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "adamas/meshes.h"
+#include "isosurface/storage/stored_pages.h"
+#include "isosurface/view/frame_refinement.h"
+
+namespace adamas {
+
+/// What is to be drawn in a frame.
+struct Frame {
+  TriangleSurface surface;  ///< with normals, in the frame of the grid
+  FrameFigures figures;
+  double update_seconds = 0;   ///< to bring the mesh to what is wanted
+  double contour_seconds = 0;  ///< from the mesh to triangles with normals
+};
+
+/// The surface of a store, frame after frame.
+class StoreFrames {
+ public:
+  virtual ~StoreFrames() = default;
+
+  /// Throws Error where the store is damaged.
+  virtual Frame next(const FrameRequest& request) = 0;
+  [[nodiscard]] virtual PageCounts counts() const = 0;
+  /// From the first sample to the last, in the grid's frame.
+  [[nodiscard]] virtual Box3 data_box() const = 0;
+
+  /// `memory`: bytes that decoded pages may take. The file must outlive the frames.
+  static std::unique_ptr<StoreFrames> open(StoreFile& file, std::size_t memory);
+};
+
+}  // namespace adamas
