@@ -115,9 +115,8 @@ void run(const Options& options, Session& session) {
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
   const VolumeGrid& grid = file->header().grid;
   const std::unique_ptr<StoreFrames> frames = StoreFrames::open(*file, memory);
-  Figures figures = naming(options.input.path, [&] {
-    return fly(options, *frames, grid, folder ? &*folder : nullptr, session);
-  });
+  Figures figures = naming(options.input.path,
+                           [&] { return fly(options, *frames, grid, folder ? &*folder : nullptr, session); });
   add_page_counts(frames->counts(), figures);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
@@ -135,11 +134,13 @@ void add_view(const Command& app, Session& session) {
                   [options, &session] { run(*options, session); });
   add_store_input(command, options->input);
   command.add_option("--isovalue", options->isovalue, "The value of the surface").required().type_name("V");
-  command.add_flag("--offscreen", options->offscreen, "Draw without a window: by a graphics device, or the processor");
+  command.add_flag("--offscreen", options->offscreen,
+                   "Draw without a window: by a graphics device, or the processor");
   command
-      .add_option("--camera-path", options->path,
-                  "orbit:N: once round the data in N frames; or a file with a viewpoint on each line: eye, target "
-                  "and upward direction, nine numbers in the frame of the grid")
+      .add_option(
+          "--camera-path", options->path,
+          "orbit:N: once round the data in N frames; or a file with a viewpoint on each line: eye, target "
+          "and upward direction, nine numbers in the frame of the grid")
       .type_name("orbit:N|FILE")
       .show_default();
   command.add_option("--frames", options->frames, "The folder of the pictures: frame0001.png and so on")
@@ -147,15 +148,22 @@ void add_view(const Command& app, Session& session) {
   command.add_flag("--overwrite", options->overwrite, "Replace a folder of frames that is there");
   command
       .add_option("--pixels", options->pixels,
-                  "The greatest isosurface error, an estimate of the distance to the surface of all samples, as it is "
+                  "The greatest isosurface error, an estimate of the distance to the surface of all samples, "
+                  "as it is "
                   "seen: in pixels")
       .type_name("E")
       .show_default();
-  command.add_option("--max-triangles", options->max_triangles, "Never more triangles in a frame, whatever the error")
+  command
+      .add_option("--max-triangles", options->max_triangles,
+                  "Never more triangles in a frame, whatever the error")
       .type_name("N")
       .show_default();
-  command.add_option("--size", options->size, "Width and height of the pictures").type_name("W,H").show_default();
-  command.add_option("--shading", options->shading, "Lit by a light beside the eye, or as a sphere is with silhouettes")
+  command.add_option("--size", options->size, "Width and height of the pictures")
+      .type_name("W,H")
+      .show_default();
+  command
+      .add_option("--shading", options->shading,
+                  "Lit by a light beside the eye, or as a sphere is with silhouettes")
       .one_of({"lit", "sphere"})
       .show_default();
 }

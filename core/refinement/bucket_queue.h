@@ -10,8 +10,8 @@
 
 namespace adamas {
 
-/// Lattice points in buckets (D 4.8): each operation takes a time that does not depend on how many there are, but
-/// for a step over empty buckets.
+/// Lattice points in buckets (D 4.8): each operation takes a time that does not depend on how many there are,
+/// but for a step over empty buckets.
 class BucketQueue {
  public:
   explicit BucketQueue(std::size_t buckets) : buckets_(buckets) {}

@@ -22,8 +22,8 @@ LatticePoint offset_of(unsigned corner) {
           static_cast<std::int32_t>(corner >> 2 & 1)};
 }
 
-/// The corners of the cell's tetrahedra, positively oriented: those of the diamond whose split vertex would be
-/// the cell's centre.
+/// The corners of the cell's tetrahedra, positively oriented: those of the diamond whose split vertex would
+/// be the cell's centre.
 CellTetrahedra tetrahedra_of(unsigned parity) {
   const LatticePoint first = offset_of(parity);
   const LatticePoint centre = 2 * first + LatticePoint{1, 1, 1};

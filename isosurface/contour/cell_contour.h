@@ -26,8 +26,8 @@ struct CellContour {
   static const CellContour& of(unsigned parity, unsigned above);
 };
 
-/// The neighbours of a vertex of that lattice, as numbers and as bits of a set: 13 + i + 3 j + 9 k for those at
-/// steps from -1 to 1.
+/// The neighbours of a vertex of that lattice, as numbers and as bits of a set: 13 + i + 3 j + 9 k for those
+/// at steps from -1 to 1.
 struct VertexLink {
   using Set = std::uint32_t;
   static constexpr int kCount = 27;

@@ -9,9 +9,9 @@
 
 namespace adamas {
 
-/// Finds, of the patches that points of a surface are joined to, those that have to be taken apart again: both
-/// of two edges that begin at one patch and end at one; three where two triangles lie on each other; and a
-/// patch that has fewer than three triangles, since all that is left of a body may lie in two patches. The
+/// Finds, of the patches that points of a surface are joined to, those that have to be taken apart again:
+/// both of two edges that begin at one patch and end at one; three where two triangles lie on each other; and
+/// a patch that has fewer than three triangles, since all that is left of a body may lie in two patches. The
 /// memory that it takes stays for the next call.
 class CoincidingPatches {
  public:
@@ -76,7 +76,8 @@ class CoincidingPatches {
   }
 
   std::vector<std::uint32_t> places_;  ///< of suspects by their patches, or kNone
-  std::vector<std::uint32_t> begin_;   ///< by suspect: where in around_ it begins, and after that where it ends
+  std::vector<std::uint32_t>
+      begin_;  ///< by suspect: where in around_ it begins, and after that where it ends
   std::vector<Pair> around_;
 };
 

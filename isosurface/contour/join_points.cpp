@@ -181,7 +181,8 @@ class PointJoiner {
       const Triangle t = joined(triangle);
       for (std::size_t n = 0; n < 3; ++n) {
         const bool is_first = n == 0 || (t[n] != t[0] && (n == 1 || t[n] != t[1]));
-        if (is_first && sizes[t[n]] > 1) means[numbers[t[n]] - edge_count].add_triangle(area_vector, area, moment);
+        if (is_first && sizes[t[n]] > 1)
+          means[numbers[t[n]] - edge_count].add_triangle(area_vector, area, moment);
       }
     }
     for (const JoinedPoint& mean : means) {
@@ -202,7 +203,7 @@ class PointJoiner {
   std::vector<bool> is_joined_;       ///< whether a patch has several points, by its number
   std::vector<std::uint32_t> apart_;  ///< patches that are to be taken apart
   CoincidingPatches coinciding_;
-  std::vector<bool> is_suspect_;      ///< patches with which something may coincide
+  std::vector<bool> is_suspect_;  ///< patches with which something may coincide
 };
 
 }  // namespace

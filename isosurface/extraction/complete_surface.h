@@ -16,11 +16,12 @@ struct CompleteSurface {
   SurfaceNormals normals;
 };
 
-/// Extracts a surface as the request says, by extract_certified where it is to be certified. Throws what these
-/// throw, and Error where normals depend on a damaged page and the request is strict.
+/// Extracts a surface as the request says, by extract_certified where it is to be certified. Throws what
+/// these throw, and Error where normals depend on a damaged page and the request is strict.
 template <class Sample>
-CompleteSurface extract_complete(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request, bool certify,
-                                 bool normals, Progress& progress = SilentProgress::instance()) {
+CompleteSurface extract_complete(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,
+                                 bool certify, bool normals,
+                                 Progress& progress = SilentProgress::instance()) {
   CompleteSurface result;
   if (certify) {
     CertifiedSurface certified = extract_certified(extractor, request, progress);

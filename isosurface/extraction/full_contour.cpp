@@ -80,14 +80,16 @@ void FullContour<Sample>::make_workers() {
   constexpr double kPartOfFirst = 0.9;
   const std::size_t slabs = slabs_.size() - 1;
   const std::size_t threads = std::clamp<std::size_t>(slabs / kLeastSlabs, 1, thread_limit());
-  const double pages = static_cast<double>(blocks_.size()) / (static_cast<double>(threads) - 1 + kPartOfFirst);
+  const double pages =
+      static_cast<double>(blocks_.size()) / (static_cast<double>(threads) - 1 + kPartOfFirst);
   std::size_t first = 0;
   for (StoredPages<OrderedWord<Sample>>* of_thread : diamonds_.pages().for_threads(threads)) {
     workers_.push_back(std::make_unique<Worker>(*of_thread, isovalue_, least_parameter_));
     Worker& worker = *workers_.back();
     worker.first = first;
     const double part = static_cast<double>(workers_.size()) - 1 + kPartOfFirst;
-    const auto next = std::lower_bound(slabs_.begin(), slabs_.end() - 1, static_cast<std::size_t>(pages * part));
+    const auto next =
+        std::lower_bound(slabs_.begin(), slabs_.end() - 1, static_cast<std::size_t>(pages * part));
     worker.last = workers_.size() == threads ? slabs : static_cast<std::size_t>(next - slabs_.begin());
     first = worker.last;
   }
@@ -96,7 +98,8 @@ void FullContour<Sample>::make_workers() {
 template <class Sample>
 std::optional<Contour> FullContour<Sample>::run(Progress& progress) {
   const Domain& domain = diamonds_.domain();
-  JoinedSurface surface(diamonds_.lattice_step(0), {domain.box().min, domain.position(diamonds_.last_sample())});
+  JoinedSurface surface(diamonds_.lattice_step(0),
+                        {domain.box().min, domain.position(diamonds_.last_sample())});
   make_workers();
   const auto part = [this](std::size_t n) {
     return static_cast<double>(slabs_[n + 1]) / static_cast<double>(blocks_.size());

@@ -8,10 +8,10 @@
 
 #include "adamas/progress.h"
 #include "isosurface/contour/contour.h"
+#include "isosurface/extraction/joined_surface.h"
 #include "isosurface/extraction/page_cells.h"
 #include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/stored_diamonds.h"
-#include "isosurface/extraction/joined_surface.h"
 
 namespace adamas {
 
@@ -29,9 +29,9 @@ class FullContour {
   /// there are some would have hardly fewer triangles. Throws PageLost.
   [[nodiscard]] bool is_worthwhile();
 
-  /// The contour, up to the data's box; nothing where some sample next to it is not finite. On as many threads
-  /// as are allowed, and the same on any number of them. Throws PageLost, and Error where the surface has more
-  /// points than can be numbered.
+  /// The contour, up to the data's box; nothing where some sample next to it is not finite. On as many
+  /// threads as are allowed, and the same on any number of them. Throws PageLost, and Error where the surface
+  /// has more points than can be numbered.
   std::optional<Contour> run(Progress& progress);
 
   /// How many cells of samples it crosses.
@@ -50,7 +50,7 @@ class FullContour {
     PageCells<Sample> cells;
     typename PageCells<Sample>::Apart apart{};  ///< patches next to its slabs' vertices
     CoincidingPatches coincidences{};
-    std::size_t first = 0, last = 0;            ///< the first slab, and the first of the next worker
+    std::size_t first = 0, last = 0;  ///< the first slab, and the first of the next worker
 
     Worker(StoredPages<OrderedWord<Sample>>& pages, double isovalue, double least_parameter)
         : diamonds(pages), cells(diamonds, isovalue, least_parameter) {

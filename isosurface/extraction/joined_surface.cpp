@@ -27,7 +27,8 @@ void make_room(std::vector<T>& all, std::size_t more, double part) {
   const std::size_t size = all.size() + more;
   constexpr double kSpare = 1.05;
   if (size > all.capacity())
-    reserve_in_large_pages(all, std::max(size, static_cast<std::size_t>(kSpare * static_cast<double>(size) / part)));
+    reserve_in_large_pages(
+        all, std::max(size, static_cast<std::size_t>(kSpare * static_cast<double>(size) / part)));
 }
 
 /// Adds the numbers of points next to some vertices to a map, by key.
@@ -202,7 +203,8 @@ void JoinedSurface::find_coinciding(CoincidingPatches& coincidences,
         for (const Triangle& t : with_suspects) visit(t);
       });
   for (const std::uint32_t p : found) {
-    if (p >= edge_count() && patches_[p - edge_count()].of.points != 0) coinciding_.push_back(p - edge_count());
+    if (p >= edge_count() && patches_[p - edge_count()].of.points != 0)
+      coinciding_.push_back(p - edge_count());
   }
 }
 
@@ -217,7 +219,8 @@ void JoinedSurface::add(const SurfaceSlab& addition) {
   for (std::size_t n = 0; n < addition.edge_points.size(); ++n)
     suspects_.push_back(static_cast<std::uint32_t>(edge_points_.size() + n));
   edge_points_.insert(edge_points_.end(), addition.edge_points.begin(), addition.edge_points.end());
-  edge_positions_.insert(edge_positions_.end(), addition.edge_positions.begin(), addition.edge_positions.end());
+  edge_positions_.insert(edge_positions_.end(), addition.edge_positions.begin(),
+                         addition.edge_positions.end());
   triangles_.insert(triangles_.end(), addition.triangles.begin(), addition.triangles.end());
 }
 

@@ -14,8 +14,8 @@
 
 namespace adamas {
 
-/// Numbers of edge points are those from 0 on, and numbers of patches, each of which is points that are joined
-/// to one, those from here on.
+/// Numbers of edge points are those from 0 on, and numbers of patches, each of which is points that are
+/// joined to one, those from here on.
 inline constexpr std::uint32_t kFirstPatch = 1u << 31;
 
 /// A name that all edge points have: twice the middle of the edge between a vertex and a neighbour, in
@@ -49,8 +49,8 @@ struct SurfaceSlab {
   std::uint64_t crossed_cells = 0;
   /// Edge points from here on are those of patches that were taken apart.
   std::size_t first_separated = 0;
-  /// Patches next to the planes, less kFirstPatch, that have to be taken apart: what is there has triangles in
-  /// other slabs.
+  /// Patches next to the planes, less kFirstPatch, that have to be taken apart: what is there has triangles
+  /// in other slabs.
   std::vector<std::uint32_t> coinciding;
 
   void clear(std::int32_t first_plane, std::int32_t last_plane);
@@ -70,16 +70,16 @@ class JoinedSurface {
   /// `sample`: the spacing of samples in lattice units; `box`: the data's, which no point leaves.
   JoinedSurface(std::int32_t sample, const Box3& box) : sample_(sample), box_(box) {}
 
-  /// Appends a slab that lies behind those before, whose points on its first plane it shares. `part`: how much
-  /// of the whole surface there will be then, about.
+  /// Appends a slab that lies behind those before, whose points on its first plane it shares. `part`: how
+  /// much of the whole surface there will be then, about.
   void append(const SurfaceSlab& slab, double part);
 
   [[nodiscard]] std::uint64_t crossed_cells() const { return crossed_cells_; }
 
   /// Whether something may coincide that was not looked at.
   [[nodiscard]] bool has_suspects() const { return !suspects_.empty() || !separated_.empty(); }
-  /// Takes apart patches that coincide with something else, without their triangles and points: the first time
-  /// what is next to planes between slabs, then what may coincide since something was taken apart.
+  /// Takes apart patches that coincide with something else, without their triangles and points: the first
+  /// time what is next to planes between slabs, then what may coincide since something was taken apart.
   std::vector<PointsOfVertex> take_apart(CoincidingPatches& coincidences);
   /// An empty slab that shares the points next to these vertices, for triangles and points of what was taken
   /// apart.
@@ -115,7 +115,7 @@ class JoinedSurface {
   LatticeMap<std::uint32_t> shared_;                         ///< with the next slab
   std::unordered_map<std::uint32_t, JoinedPoint> on_plane_;  ///< the patches among these, by number
   std::vector<std::uint32_t> coinciding_;                    ///< patches, less kFirstPatch
-  std::vector<std::uint32_t> suspects_;   ///< points that are to be looked at, and
+  std::vector<std::uint32_t> suspects_;                      ///< points that are to be looked at, and
   std::vector<std::uint32_t> separated_;  ///< after those, the ones of patches that slabs took apart
   int rounds_ = 0;
   std::size_t first_added_ = 0;  ///< the first triangle that was added after the last round

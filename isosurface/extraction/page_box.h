@@ -9,8 +9,8 @@
 
 namespace adamas {
 
-/// The samples of a page of the finest LOD and of the points round it, one before the page to two behind it, so
-/// that all corners of its cells have all their neighbours: coordinates from -1 to 17.
+/// The samples of a page of the finest LOD and of the points round it, one before the page to two behind it,
+/// so that all corners of its cells have all their neighbours: coordinates from -1 to 17.
 template <class Sample>
 class PageBox {
  public:
@@ -23,8 +23,8 @@ class PageBox {
   /// Gets the samples of a page, and on which side of the contour each lies. Throws PageLost.
   void load(LatticePoint block);
 
-  /// The sample at a corner of a cell of the page that the contour crosses, or at the end of an edge from such
-  /// a corner that it crosses.
+  /// The sample at a corner of a cell of the page that the contour crosses, or at the end of an edge from
+  /// such a corner that it crosses.
   [[nodiscard]] double value(LatticePoint q) const { return from_ordered<Sample>(words_[place(q)]); }
   /// Which samples of a row along i are not below the isovalue: bit q.i + 1.
   [[nodiscard]] std::uint32_t above(std::int32_t j, std::int32_t k) const { return above_[row(j, k)]; }
@@ -47,7 +47,11 @@ class PageBox {
   /// The part of the box that lies on a page: of coordinates, the first and how many.
   struct Run {
     std::int32_t first, count;
-    explicit Run(std::int32_t step) : first(step < 0 ? -1 : 16 * step), count(step < 0 ? 1 : step > 0 ? 2 : 16) {}
+    explicit Run(std::int32_t step)
+        : first(step < 0 ? -1 : 16 * step),
+          count(step < 0   ? 1
+                : step > 0 ? 2
+                           : 16) {}
   };
 
   void copy(LatticePoint step);

@@ -38,15 +38,13 @@ constexpr ByAxis kLess = by_axis(-1), kSame = by_axis(0), kGreater = by_axis(1);
 /// The greatest parameter of a point that is nearer to the first end of its edge.
 constexpr double kBelowHalf = 0.5 - std::numeric_limits<double>::epsilon() / 4;
 
-/// Of the contour's point on an edge: by how far the values at its ends are from the isovalue. In the middle it is
-/// nearer to the second.
+/// Of the contour's point on an edge: by how far the values at its ends are from the isovalue. In the middle
+/// it is nearer to the second.
 bool is_nearer(double height, double other_height, bool is_first) {
   return is_first ? height < other_height : height <= other_height;
 }
 
-unsigned parity(LatticePoint p) {
-  return static_cast<unsigned>((p.i & 1) | (p.j & 1) << 1 | (p.k & 1) << 2);
-}
+unsigned parity(LatticePoint p) { return static_cast<unsigned>((p.i & 1) | (p.j & 1) << 1 | (p.k & 1) << 2); }
 
 }  // namespace
 
@@ -99,8 +97,8 @@ void PageCells<Sample>::add_again(LatticePoint block, std::span<const LatticePoi
     for (std::size_t n = 0; n < contour.triangle_count; ++n) {
       std::array<std::uint32_t, 3> t;
       for (std::size_t c = 0; c < 3; ++c) t[c] = crossed_[edges[contour.triangles[n][c]]].number;
-      const bool is_new = std::ranges::any_of(
-          t, [&](std::uint32_t p) { return p >= first_new && p < kFirstPatch; });
+      const bool is_new =
+          std::ranges::any_of(t, [&](std::uint32_t p) { return p >= first_new && p < kFirstPatch; });
       if (is_new && t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) slab.triangles.push_back(t);
     }
   }
@@ -205,8 +203,8 @@ Set PageCells<Sample>::points_near(LatticePoint v, const VertexLink& link) {
                                 : std::clamp(exact, 0.5, 1 - least_parameter_);
     const EdgePoint point{in_lattice(first), in_lattice(second), t};
     near_[static_cast<std::size_t>(n)] = point;
-    positions_[static_cast<std::size_t>(n)] = point_between(
-        diamonds_.domain().position(point.first), diamonds_.domain().position(point.second), t);
+    positions_[static_cast<std::size_t>(n)] =
+        point_between(diamonds_.domain().position(point.first), diamonds_.domain().position(point.second), t);
   }
   return found;
 }
@@ -215,7 +213,8 @@ template <class Sample>
 std::uint32_t PageCells<Sample>::number_of(LatticePoint v, Set points, SurfaceSlab& slab) {
   const int first = std::countr_zero(points);
   constexpr std::int32_t kEnd = PageGrid::kSide;
-  const bool is_shared = apart_ != nullptr || std::min({v.i, v.j, v.k}) == 0 || std::max({v.i, v.j, v.k}) == kEnd;
+  const bool is_shared =
+      apart_ != nullptr || std::min({v.i, v.j, v.k}) == 0 || std::max({v.i, v.j, v.k}) == kEnd;
   std::uint32_t* known = nullptr;
   if (is_shared) {
     const auto [number, is_new] = slab.shared.insert(point_key(in_samples(v), first));

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "isosurface/contour/cell_contour.h"
-#include "isosurface/extraction/page_box.h"
 #include "isosurface/extraction/joined_surface.h"
+#include "isosurface/extraction/page_box.h"
 
 namespace adamas {
 
@@ -26,7 +26,8 @@ class PageCells {
   /// PageLost.
   bool add(LatticePoint block, SurfaceSlab& slab);
   /// Adds those triangles of some of the cells that have edge points with numbers from `first_new` on. All
-  /// others next to the cells' corners are shared by the slab. `cells`: first corners, from that of the page on.
+  /// others next to the cells' corners are shared by the slab. `cells`: first corners, from that of the page
+  /// on.
   void add_again(LatticePoint block, std::span<const LatticePoint> cells, const Apart& apart,
                  std::uint32_t first_new, SurfaceSlab& slab);
 
@@ -36,8 +37,8 @@ class PageCells {
   /// Edges have places by the sums of their ends, which lie in a grid of so many points along each axis.
   static constexpr std::int32_t kEdgeSide = 2 * (PageBox<Sample>::kLast - PageBox<Sample>::kFirst) + 1;
   static constexpr std::int32_t edge_place(LatticePoint sum) {
-    const LatticePoint at = sum - 2 * LatticePoint{PageBox<Sample>::kFirst, PageBox<Sample>::kFirst,
-                                                   PageBox<Sample>::kFirst};
+    const LatticePoint at =
+        sum - 2 * LatticePoint{PageBox<Sample>::kFirst, PageBox<Sample>::kFirst, PageBox<Sample>::kFirst};
     return at.i + kEdgeSide * (at.j + kEdgeSide * at.k);
   }
   /// By CellContour::Edge::sum: the place less that of twice the cell's first corner.
@@ -84,8 +85,8 @@ class PageCells {
   double isovalue_, least_parameter_;
   std::int32_t lattice_step_;
   PageBox<Sample> box_;
-  LatticePoint first_{};                            ///< the page's first point, in samples
-  const Apart* apart_ = nullptr;                    ///< null where all that can be is joined
+  LatticePoint first_{};          ///< the page's first point, in samples
+  const Apart* apart_ = nullptr;  ///< null where all that can be is joined
   std::vector<CrossedEdge> crossed_;
   std::vector<std::uint16_t> places_;               ///< by edge_place: the place in crossed_, or kNone
   std::vector<std::int32_t> used_;                  ///< the edge_place of each in crossed_

@@ -42,8 +42,8 @@ class StoredDiamonds : public LatticeSamples<Sample> {
   /// The error class of a stored diamond where the contour may cross it, and 0 where it does not. Throws
   /// PageLost.
   int class_if_crossed(LatticePoint p);
-  /// On which sides of the contour the page's samples lie, and those of the cells of its LOD in its cube; both
-  /// where the directory does not tell. Throws PageLost.
+  /// On which sides of the contour the page's samples lie, and those of the cells of its LOD in its cube;
+  /// both where the directory does not tell. Throws PageLost.
   enum class Side : std::uint8_t { kBelow, kAbove, kBoth };
   Side side(const PageId& id);
   /// The least word of a sample not below the isovalue; greater than all words where there is none.

@@ -17,7 +17,8 @@ namespace adamas {
 /// surface crosses and whose error is too great. This mesh is conforming, since no child has a greater error
 /// or range than a parent; so whether a diamond is split can be told of each one alone, without a table of
 /// the mesh. Where joined surfaces of all that the samples say are wanted, nearly all of them are split: then
-/// the mesh is the whole lattice (FullContour), but for flat parts of volumes, where few triangles are enough.
+/// the mesh is the whole lattice (FullContour), but for flat parts of volumes, where few triangles are
+/// enough.
 template <class Sample>
 class SurfaceExtractor {
  public:

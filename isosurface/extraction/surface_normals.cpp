@@ -132,7 +132,8 @@ class NormalsOfPart {
     const auto each = [&](const auto& points, const auto& gradient) {
       const std::size_t begin = points.size() * n / parts, end = points.size() * (n + 1) / parts;
       for (std::size_t p = begin; p < end; ++p) {
-        if (p % 65536 == 0) progress.step("normals", static_cast<double>(first + p) / static_cast<double>(normals_.size()));
+        if (p % 65536 == 0)
+          progress.step("normals", static_cast<double>(first + p) / static_cast<double>(normals_.size()));
         normals_[first + p] = downwards(gradient(points[p]));
       }
       first += points.size();
@@ -146,7 +147,8 @@ class NormalsOfPart {
     each(contour_.mean_points, [&](const MeanPoint& point) {
       Vec3 gradient;
       for (std::size_t v = 0; v < 4; ++v) {
-        if (point.weights[v] != 0) gradient += point.weights[v] * gradients_.at(point.vertices[v], point.step);
+        if (point.weights[v] != 0)
+          gradient += point.weights[v] * gradients_.at(point.vertices[v], point.step);
       }
       return gradient;
     });

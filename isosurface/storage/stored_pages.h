@@ -41,8 +41,8 @@ class StoredPages : public PageCache<Word> {
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
 
   [[nodiscard]] StoreFile& file() { return file_; }
-  /// The same step of the same file for each of some threads, the first of which has these pages: they share the
-  /// memory, and the others stay for later calls. Not to be called by several threads at once.
+  /// The same step of the same file for each of some threads, the first of which has these pages: they share
+  /// the memory, and the others stay for later calls. Not to be called by several threads at once.
   std::vector<StoredPages*> for_threads(std::size_t count);
   [[nodiscard]] std::uint32_t step() const { return step_; }
 

@@ -63,7 +63,8 @@ FrameFigures QueuedFrames<Sample>::refine(const FrameRequest& request) {
   view_ = View(request.viewpoint);
   pixels_ = request.pixels;
   constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
-  max_triangles_ = static_cast<std::int64_t>(std::min<std::uint64_t>(request.max_triangles.value_or(kMost), kMost));
+  max_triangles_ =
+      static_cast<std::int64_t>(std::min<std::uint64_t>(request.max_triangles.value_or(kMost), kMost));
   if (isovalue_ != request.isovalue) set_contour(request.isovalue);
   if (triangles_ > max_triangles_) forget_splits();
   fill_queues();
@@ -129,8 +130,8 @@ void QueuedFrames<Sample>::queue_merge(LatticePoint p) {
 
 template <class Sample>
 bool QueuedFrames<Sample>::step(FrameFigures& figures) {
-  // What needs no split is merged first. Then what has the greatest error is split, and where there is no room
-  // for it, what has a lesser one is merged.
+  // What needs no split is merged first. Then what has the greatest error is split, and where there is no
+  // room for it, what has a lesser one is merged.
   std::optional<LatticePoint> merged = next_merge(0);
   if (!merged && !splits_.empty()) {
     if (const std::optional<Split> found = next_split()) {
@@ -146,8 +147,8 @@ bool QueuedFrames<Sample>::step(FrameFigures& figures) {
   return true;
 }
 
-/// Of the diamonds with the greatest class of errors, one for whose triangles there is room; so far as one is found
-/// among some of them.
+/// Of the diamonds with the greatest class of errors, one for whose triangles there is room; so far as one is
+/// found among some of them.
 template <class Sample>
 std::optional<typename QueuedFrames<Sample>::Split> QueuedFrames<Sample>::next_split() {
   int looks = 64;
@@ -192,7 +193,8 @@ void QueuedFrames<Sample>::split(LatticePoint p, std::int64_t added) {
   mesh_.split(p, done);
   triangles_ += added;
   for (const LatticePoint q : done) {
-    // Parents come before their children in the queue, but for those outside the data, which have no triangles.
+    // Parents come before their children in the queue, but for those outside the data, which have no
+    // triangles.
     ADAMAS_ASSERT(q == p || !diamonds_.is_stored(q));
     *split_.insert(q).first = q == p ? added : 0;
     splits_.erase(q);

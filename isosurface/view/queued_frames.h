@@ -18,8 +18,9 @@ class ViewErrors {
   /// Of the contour that is set in the diamonds, which must outlive this.
   explicit ViewErrors(StoredDiamonds<Sample>& diamonds) : diamonds_(diamonds) {}
 
-  /// The diamond's isosurface error in pixels, where it is in sight and the contour crosses it; otherwise 0. It
-  /// is seen where that diamond, or one that comes from splitting it, is nearest to the eye. Throws PageLost.
+  /// The diamond's isosurface error in pixels, where it is in sight and the contour crosses it; otherwise 0.
+  /// It is seen where that diamond, or one that comes from splitting it, is nearest to the eye. Throws
+  /// PageLost.
   [[nodiscard]] double pixels(const View& view, LatticePoint p) const;
 
   /// Errors of the same class differ by less than a quarter of an octave; 0: none.
@@ -30,18 +31,18 @@ class ViewErrors {
   StoredDiamonds<Sample>& diamonds_;
 };
 
-/// Frames after D 4.8: the mesh is a table of diamonds, those that may be split and those that may be merged lie
-/// in two queues by their errors in the view, and each frame goes on from the mesh of the last one. It looks at
-/// all diamonds of the mesh for each frame.
+/// Frames after D 4.8: the mesh is a table of diamonds, those that may be split and those that may be merged
+/// lie in two queues by their errors in the view, and each frame goes on from the mesh of the last one. It
+/// looks at all diamonds of the mesh for each frame.
 template <class Sample>
 class QueuedFrames {
  public:
   /// The pages must outlive this.
   explicit QueuedFrames(StoredPages<OrderedWord<Sample>>& pages);
 
-  /// Brings the mesh to what is wanted, by splits and merges from where it stands; from the mesh in which nothing
-  /// is split where another isovalue or limit has the present one at too many triangles. Throws PageLost, after
-  /// which the mesh is whole.
+  /// Brings the mesh to what is wanted, by splits and merges from where it stands; from the mesh in which
+  /// nothing is split where another isovalue or limit has the present one at too many triangles. Throws
+  /// PageLost, after which the mesh is whole.
   FrameFigures refine(const FrameRequest& request);
 
   [[nodiscard]] const IndexedHierarchy& mesh() const { return mesh_; }
@@ -49,8 +50,8 @@ class QueuedFrames {
 
  private:
   /// Buckets are in the order of classes, and in a class from the finest generation to the coarsest, so that
-  /// what is split first has split parents, and what is merged first has merged children. The classes of errors
-  /// that need no split count as 0.
+  /// what is split first has split parents, and what is merged first has merged children. The classes of
+  /// errors that need no split count as 0.
   [[nodiscard]] std::size_t bucket(LatticePoint p) const;
   [[nodiscard]] std::size_t class_of_bucket(std::size_t bucket) const { return bucket / generations(); }
   [[nodiscard]] std::size_t generations() const { return 3 * static_cast<std::size_t>(diamonds_.lods()); }

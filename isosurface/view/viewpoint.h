@@ -25,8 +25,8 @@ struct CentredBox {
   Vec3 centre, half;
 };
 
-/// What a camera makes of lengths. Both answers are monotone: a box that contains another one is visible if that
-/// is, and lengths have at least as many pixels in it.
+/// What a camera makes of lengths. Both answers are monotone: a box that contains another one is visible if
+/// that is, and lengths have at least as many pixels in it.
 class View {
  public:
   /// Throws Error where a number is not finite, the picture has no pixels, the eye is at the target, or the
@@ -36,8 +36,8 @@ class View {
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
   /// False where all of the box is outside the picture. May be true where it is near the picture's corners.
   [[nodiscard]] bool is_visible(const CentredBox& box) const;
-  /// Two points of the box at this distance from each other are no farther apart in the picture, in pixels, where
-  /// the one that is nearer to the eye is in the picture.
+  /// Two points of the box at this distance from each other are no farther apart in the picture, in pixels,
+  /// where the one that is nearer to the eye is in the picture.
   [[nodiscard]] double pixels(double length, const CentredBox& box) const;
 
  private:

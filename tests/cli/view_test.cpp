@@ -68,14 +68,19 @@ TEST_F(ViewCommand, ComesBackToTheSamePicture) {
 }
 
 TEST_F(ViewCommand, KeepsToItsLimits) {
-  ASSERT_EQ(view({"--camera-path", "orbit:2", "--max-triangles", "500", "--pixels", "0.1", "--json", "f.json"}).status, 0);
+  ASSERT_EQ(
+      view({"--camera-path", "orbit:2", "--max-triangles", "500", "--pixels", "0.1", "--json", "f.json"})
+          .status,
+      0);
   const auto figures = read_json("f.json");
   for (const auto& frame : figures["frames"]) {
     EXPECT_LE(frame["triangles"], 500);
     EXPECT_GT(frame["triangles"], 450);
     EXPECT_GT(frame["largest_error_pixels"], 0.1);
   }
-  ASSERT_EQ(view({"--camera-path", "orbit:2", "--pixels", "20", "--json", "g.json", "--shading", "sphere"}).status, 0);
+  ASSERT_EQ(
+      view({"--camera-path", "orbit:2", "--pixels", "20", "--json", "g.json", "--shading", "sphere"}).status,
+      0);
   EXPECT_LE(read_json("g.json")["frames"][0]["largest_error_pixels"], 20);
 }
 
@@ -85,7 +90,8 @@ TEST_F(ViewCommand, TellsWhatIsWrong) {
     EXPECT_EQ(result.status, status);
     EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
   };
-  const std::vector<std::string> good{"view", "b.adm", "--isovalue", "80.5", "--offscreen", "--json", "f.json"};
+  const std::vector<std::string> good{"view",        "b.adm",  "--isovalue", "80.5",
+                                      "--offscreen", "--json", "f.json"};
   const auto with = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all = good;
     all.insert(all.end(), more.begin(), more.end());
@@ -97,8 +103,10 @@ TEST_F(ViewCommand, TellsWhatIsWrong) {
   expect(with({"--pixels", "0"}), 2, "--pixels");
   expect(with({"--camera-path", "none.txt"}), 1, "none.txt: expected a file of viewpoints or orbit:N");
   expect(with({"--camera-path", "orbit:0"}), 1, "expected a number of frames");
-  expect({"view", "ball.raw", "--isovalue", "80.5", "--offscreen", "--json", "f.json"}, 1, "ball.raw: expected a store");
-  expect({"view", "none.adm", "--isovalue", "80.5", "--offscreen", "--json", "f.json"}, 1, "none.adm: expected a store");
+  expect({"view", "ball.raw", "--isovalue", "80.5", "--offscreen", "--json", "f.json"}, 1,
+         "ball.raw: expected a store");
+  expect({"view", "none.adm", "--isovalue", "80.5", "--offscreen", "--json", "f.json"}, 1,
+         "none.adm: expected a store");
 }
 
 }  // namespace

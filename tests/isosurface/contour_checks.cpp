@@ -106,7 +106,8 @@ std::vector<int> topology(const Contour& contour) {
 }
 
 void expect_closed(const Contour& contour, const Box3& box) {
-  EXPECT_EQ(contour.points.size(), contour.edge_points.size() + contour.vertex_points.size() + contour.mean_points.size());
+  EXPECT_EQ(contour.points.size(),
+            contour.edge_points.size() + contour.vertex_points.size() + contour.mean_points.size());
   for (const Vec3& p : contour.points) ASSERT_TRUE(box.contains(p));
   for (const auto& [a, b] : border_edges(contour)) {
     const Vec3 &p = contour.points[a], &q = contour.points[b];

@@ -19,8 +19,8 @@ using test::Dimensions;
 using test::MemoryVolume;
 using test::OpenStore;
 
-/// What two surfaces with the same points in another order have in common: each triangle by its corners' places
-/// among the points in order of space.
+/// What two surfaces with the same points in another order have in common: each triangle by its corners'
+/// places among the points in order of space.
 std::multiset<std::array<std::size_t, 3>> triangles_in_space(const Contour& contour) {
   std::vector<std::size_t> order(contour.points.size()), places(contour.points.size());
   for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
@@ -119,13 +119,13 @@ TYPED_TEST(FullContourOf, IsTheJoinedContourOfTheFullMesh) {
 TEST(FullContour, HasBodiesOfOneSampleAtBordersOfPages) {
   for (const LatticePoint at : std::vector<LatticePoint>{
            {16, 16, 16}, {16, 15, 17}, {15, 16, 8}, {31, 16, 16}, {32, 32, 32}, {17, 31, 15}, {0, 16, 7}}) {
-    const MemoryVolume<std::uint8_t> volume({40, 40, 40}, [at](LatticePoint p) { return p == at ? 200 : 10; });
+    const MemoryVolume<std::uint8_t> volume({40, 40, 40},
+                                            [at](LatticePoint p) { return p == at ? 200 : 10; });
     OpenStore<std::uint8_t> store(volume);
     const Contour found = full_contour(store, 100);
     test::expect_closed(found, volume.grid.box());
     EXPECT_EQ(test::topology(found), std::vector<int>{at.i == 0 ? 1 : 2});
-    EXPECT_TRUE(triangles_in_space(found) ==
-                triangles_in_space(joined_full_contour(store, volume, 100)));
+    EXPECT_TRUE(triangles_in_space(found) == triangles_in_space(joined_full_contour(store, volume, 100)));
   }
 }
 

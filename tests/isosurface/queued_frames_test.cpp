@@ -32,7 +32,8 @@ class Flight {
     std::uniform_real_distribution<double> unit(-1, 1);
     const auto point = [&](double size) {
       const Vec3 half = 0.5 * size * box_.size();
-      return 0.5 * (box_.min + box_.max) + Vec3{unit(random_) * half.x, unit(random_) * half.y, unit(random_) * half.z};
+      return 0.5 * (box_.min + box_.max) +
+             Vec3{unit(random_) * half.x, unit(random_) * half.y, unit(random_) * half.z};
     };
     Viewpoint viewpoint;
     viewpoint.eye = random_() % 3 == 0 ? point(1) : point(4);
@@ -71,7 +72,8 @@ class Frames : public testing::TestWithParam<unsigned> {
     return extract_contour(of.mesh(), test::field_of(volume, lods), isovalue,
                            test::options_of(volume, lods, 1.0 / 1024));
   }
-  void expect_sound(const QueuedFrames<std::uint8_t>& of, const FrameRequest& request, const FrameFigures& figures) {
+  void expect_sound(const QueuedFrames<std::uint8_t>& of, const FrameRequest& request,
+                    const FrameFigures& figures) {
     of.mesh().validate();
     const Contour found = contour(of, request.isovalue);
     test::expect_sound(found, volume.grid.box());
@@ -168,7 +170,8 @@ TEST_P(Frames, StateNoLessThanASurfaceOfAllSamplesWouldShow) {
     if (!found.diamonds().is_stored(diamond.point())) return;
     const double error = found.diamonds().error(found.diamonds().class_if_crossed(diamond.point()));
     const double scale = diamond.scale();
-    const CentredBox box{found.mesh().domain().position(diamond.point()), scale * found.mesh().domain().spacing()};
+    const CentredBox box{found.mesh().domain().position(diamond.point()),
+                         scale * found.mesh().domain().spacing()};
     if (view.is_visible(box)) {
       EXPECT_LE(view.pixels(error, box), figures.largest_error * (1 + 1e-12));
     }

@@ -69,9 +69,9 @@ TEST_F(Renderer, ShowsABallWhereItIs) {
     from.height = height;
     const double distance = norm(Vec3{3, -4, 2});
     // The radius of its outline, in pixels.
-    const double radius = height > 0 ? kHeight / height
-                                     : kHeight / (2 * std::tan(from.field_of_view / 2)) /
-                                           std::sqrt(distance * distance - 1);
+    const double radius =
+        height > 0 ? kHeight / height
+                   : kHeight / (2 * std::tan(from.field_of_view / 2)) / std::sqrt(distance * distance - 1);
     for (const Shading shading : {Shading::kLit, Shading::kSphere}) {
       const Raster raster = renderer.draw(from, shading);
       for (int y = 0; y < kHeight; ++y) {

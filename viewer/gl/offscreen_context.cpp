@@ -69,9 +69,9 @@ std::vector<Candidate> candidates() {
     EGLint count = 0;
     if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count) == EGL_TRUE) {
       for (EGLint n = 0; n < count; ++n)
-        found.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT,
-                                                  devices[static_cast<std::size_t>(n)], nullptr),
-                         fmt::format("EGL device {}", n)});
+        found.push_back(
+            {eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(n)], nullptr),
+             fmt::format("EGL device {}", n)});
     }
   }
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
@@ -104,7 +104,8 @@ OffscreenContext::OffscreenContext() {
       return;
     }
   }
-  fail("pictures by OpenGL: expected OpenGL 4.5 by EGL, found none ({})", tried.empty() ? "no display" : tried);
+  fail("pictures by OpenGL: expected OpenGL 4.5 by EGL, found none ({})",
+       tried.empty() ? "no display" : tried);
 }
 
 OffscreenContext::~OffscreenContext() = default;

@@ -5,8 +5,8 @@
 
 namespace adamas {
 
-/// OpenGL 4.5 without a window, current in the thread that made it: of a graphics device by EGL where there is one,
-/// otherwise by the processor.
+/// OpenGL 4.5 without a window, current in the thread that made it: of a graphics device by EGL where there
+/// is one, otherwise by the processor.
 class OffscreenContext {
  public:
   /// Throws Error that tells what was tried where there is none.

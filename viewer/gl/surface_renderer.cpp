@@ -15,8 +15,8 @@ namespace adamas {
 
 namespace {
 
-// Places are relative to the middle of the surface, so that single precision suffices; in the view the eye is at
-// the origin and looks along -z.
+// Places are relative to the middle of the surface, so that single precision suffices; in the view the eye is
+// at the origin and looks along -z.
 constexpr const char* kVertexShader = R"(#version 450 core
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
@@ -104,7 +104,8 @@ Matrix view_matrix(const Viewpoint& viewpoint, const Vec3& middle) {
 }
 
 Matrix picture_matrix(const Viewpoint& viewpoint, double far) {
-  const double near = viewpoint.near, aspect = static_cast<double>(viewpoint.width_pixels) / viewpoint.height_pixels;
+  const double near = viewpoint.near,
+               aspect = static_cast<double>(viewpoint.width_pixels) / viewpoint.height_pixels;
   Matrix m{};
   if (viewpoint.height > 0) {
     m[0] = static_cast<float>(2 / (aspect * viewpoint.height));
@@ -128,8 +129,8 @@ Matrix picture_matrix(const Viewpoint& viewpoint, double far) {
 struct SurfaceRenderer::Objects {
   int width, height;
   GLuint program = 0, array = 0, vertices = 0, triangles = 0;
-  GLuint drawn = 0, colour = 0, depth = 0;      ///< with several samples a pixel
-  GLuint resolved = 0, resolved_colour = 0;     ///< with one
+  GLuint drawn = 0, colour = 0, depth = 0;   ///< with several samples a pixel
+  GLuint resolved = 0, resolved_colour = 0;  ///< with one
   GLsizei corners = 0;
   Vec3 middle;
   Box3 box;
@@ -253,8 +254,8 @@ Raster SurfaceRenderer::draw(const Viewpoint& wanted, Shading shading) {
     glBindVertexArray(o.array);
     glDrawElements(GL_TRIANGLES, o.corners, GL_UNSIGNED_INT, nullptr);
   }
-  glBlitNamedFramebuffer(o.drawn, o.resolved, 0, 0, o.width, o.height, 0, 0, o.width, o.height, GL_COLOR_BUFFER_BIT,
-                         GL_NEAREST);
+  glBlitNamedFramebuffer(o.drawn, o.resolved, 0, 0, o.width, o.height, 0, 0, o.width, o.height,
+                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
   std::vector<std::uint8_t> bytes(std::size_t{4} * static_cast<std::size_t>(o.width) *
                                   static_cast<std::size_t>(o.height));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, o.resolved);

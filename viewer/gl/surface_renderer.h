@@ -25,7 +25,8 @@ class SurfaceRenderer {
 
   /// Triangles for the following pictures. Points without a normal have that of their triangle.
   void set_surface(const TriangleSurface& surface);
-  /// The picture has the renderer's size, whatever the viewpoint says. Throws Error where the context was lost.
+  /// The picture has the renderer's size, whatever the viewpoint says. Throws Error where the context was
+  /// lost.
   Raster draw(const Viewpoint& viewpoint, Shading shading);
 
  private:

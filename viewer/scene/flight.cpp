@@ -28,8 +28,7 @@ std::vector<Viewpoint> orbit_at(int frames, double distance, Viewpoint viewpoint
   std::vector<Viewpoint> result;
   for (int n = 0; n < frames; ++n) {
     const double angle = 2 * std::numbers::pi * n / frames + kStart;
-    viewpoint.eye =
-        viewpoint.target + distance * normalized(Vec3{std::cos(angle), std::sin(angle), kHeight});
+    viewpoint.eye = viewpoint.target + distance * normalized(Vec3{std::cos(angle), std::sin(angle), kHeight});
     result.push_back(viewpoint);
   }
   return result;

@@ -8,9 +8,10 @@
 
 namespace adamas {
 
-/// The viewpoints of a flight, with pictures of this size. `path` is "orbit:N", once round a box in N frames, with z
-/// upwards; or the name of a text file with a viewpoint on each line: the coordinates of the eye, of the target and of
-/// the upward direction, nine numbers between commas or spaces; what follows # is no number. Throws Error.
+/// The viewpoints of a flight, with pictures of this size. `path` is "orbit:N", once round a box in N frames,
+/// with z upwards; or the name of a text file with a viewpoint on each line: the coordinates of the eye, of
+/// the target and of the upward direction, nine numbers between commas or spaces; what follows # is no
+/// number. Throws Error.
 std::vector<Viewpoint> flight(const std::string& path, const Box3& box, int width_pixels, int height_pixels);
 
 }  // namespace adamas
