@@ -20,7 +20,7 @@ namespace {
 
 struct Options {
   StoreInput input;
-  std::string isovalue, pixels = "1", max_triangles = "200000", path = "orbit:36", frames, size = "1024,768",
+  std::string isovalue, pixels = "1", max_triangles = "500000", path = "orbit:36", frames, size = "1024,768",
                         shading = "lit";
   bool offscreen = false, overwrite = false;
 };
@@ -61,7 +61,7 @@ Figures figures_of(const Frame& frame, double draw_seconds) {
           {"merges", frame.figures.merges},
           {"largest_error_pixels", frame.figures.largest_error},
           {"update_seconds", frame.update_seconds},
-          {"contour_seconds", frame.contour_seconds},
+          {"normal_seconds", frame.normal_seconds},
           {"draw_seconds", draw_seconds}};
 }
 
@@ -88,7 +88,7 @@ Figures fly(const Options& options, StoreFrames& frames, const VolumeGrid& grid,
     const double draw_seconds = session.console.seconds() - before;
     if (folder != nullptr) folder->fill([&] { write_frame(folder->file(frame_name(n)), raster); });
     all.push_back(figures_of(frame, draw_seconds));
-    seconds += frame.update_seconds + frame.contour_seconds + draw_seconds;
+    seconds += frame.update_seconds + frame.normal_seconds + draw_seconds;
     largest = std::max(largest, frame.figures.largest_error);
     most = std::max(most, frame.figures.triangles);
   }

@@ -58,6 +58,17 @@ class PageContour {
   int greatest_class_at_lost_ = 0;
 };
 
+/// The contour of the mesh in which nothing is split. Throws PageLost.
+template <class Sample>
+Contour root_contour(StoredDiamonds<Sample>& diamonds, double isovalue, const ContourOptions& options) {
+  const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
+  const Diamond root({middle, middle, middle});
+  ContourBuilder builder(diamonds.domain(), isovalue, options);
+  DiamondContour(builder, isovalue, options.last_sample)
+      .add(root, (1u << root.tetrahedron_count()) - 1, [&](LatticePoint p) { return diamonds.sample(p); });
+  return builder.finish();
+}
+
 extern template class PageContour<std::uint8_t>;
 extern template class PageContour<std::uint16_t>;
 extern template class PageContour<std::int16_t>;

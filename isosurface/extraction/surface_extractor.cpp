@@ -66,14 +66,9 @@ std::optional<ExtractedSurface> SurfaceExtractor<Sample>::full_contour(Progress&
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
-  const Diamond root(root_);
-  ContourBuilder builder(domain(), request_.isovalue, contour_options());
-  DiamondContour(builder, request_.isovalue, diamonds_.last_sample())
-      .add(root, (1u << root.tetrahedron_count()) - 1,
-           [this](LatticePoint p) { return diamonds_.sample(p); });
   ExtractedSurface surface;
-  surface.contour = builder.finish();
-  surface.tetrahedra = static_cast<std::uint64_t>(root.tetrahedron_count());
+  surface.contour = root_contour(diamonds_, request_.isovalue, contour_options());
+  surface.tetrahedra = static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count());
   surface.max_error = diamonds_.error(split_pages_.class_if_allowed(root_));
   return surface;
 }

@@ -20,39 +20,18 @@ LatticePoint root_point() {
 }  // namespace
 
 template <class Sample>
-int ViewErrors<Sample>::class_of(double pixels) {
-  if (!(pixels > 0)) return 0;
-  constexpr double kPerOctave = 4, kLeastOctave = -32;
-  const double at = 1 + std::floor(kPerOctave * (std::log2(pixels) - kLeastOctave));
-  return static_cast<int>(std::clamp(at, 1.0, kClasses - 1.0));
-}
-
-template <class Sample>
-double ViewErrors<Sample>::pixels(const View& view, LatticePoint p) const {
-  if (!diamonds_.is_stored(p)) return 0;
-  const Diamond diamond(p);
-  const Domain& domain = diamonds_.domain();
-  const double reach = static_cast<double>(nested_reach(diamond.phase())) * diamond.scale();
-  const CentredBox box{domain.position(p), reach * domain.spacing()};
-  if (!view.is_visible(box)) return 0;
-  const int error_class = diamonds_.class_if_crossed(p);
-  return error_class == 0 ? 0 : view.pixels(diamonds_.error(error_class), box);
-}
-
-template <class Sample>
 QueuedFrames<Sample>::QueuedFrames(StoredPages<OrderedWord<Sample>>& pages)
     : diamonds_(pages),
       counter_(diamonds_, counted_),
-      errors_(diamonds_),
       mesh_(diamonds_.domain(), diamonds_.lods()),
-      splits_(ViewErrors<Sample>::kClasses * generations()),
-      merges_(ViewErrors<Sample>::kClasses * generations()) {}
+      splits_(ViewedDiamonds<Sample>::kClasses * generations()),
+      merges_(ViewedDiamonds<Sample>::kClasses * generations()) {}
 
 template <class Sample>
-std::size_t QueuedFrames<Sample>::bucket(LatticePoint p) const {
-  const double pixels = errors_.pixels(view_, p);
+std::size_t QueuedFrames<Sample>::bucket(LatticePoint p) {
+  const double pixels = diamonds_.pixels(p);
   const auto error_class =
-      pixels > pixels_ ? static_cast<std::size_t>(ViewErrors<Sample>::class_of(pixels)) : std::size_t{0};
+      pixels > pixels_ ? static_cast<std::size_t>(diamonds_.view_class(pixels)) : std::size_t{0};
   const Diamond diamond(p);
   const auto generation = static_cast<std::size_t>(3 * diamond.level() + diamond.phase());
   return error_class * generations() + generations() - 1 - generation;
@@ -60,7 +39,7 @@ std::size_t QueuedFrames<Sample>::bucket(LatticePoint p) const {
 
 template <class Sample>
 FrameFigures QueuedFrames<Sample>::refine(const FrameRequest& request) {
-  view_ = View(request.viewpoint);
+  diamonds_.set_view(View(request.viewpoint));
   pixels_ = request.pixels;
   constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
   max_triangles_ =
@@ -81,7 +60,7 @@ template <class Sample>
 void QueuedFrames<Sample>::set_contour(double isovalue) {
   // Where a page is lost meanwhile, this is done again.
   isovalue_.reset();
-  diamonds_.set_contour(isovalue);
+  diamonds_.set_contour_in_view(isovalue);
   counted_.isovalue = isovalue;
   triangles_ = counter_.triangles(Diamond(root_point()));
   std::vector<LatticePoint> points;
@@ -216,18 +195,14 @@ void QueuedFrames<Sample>::merge(LatticePoint p) {
 }
 
 template <class Sample>
-double QueuedFrames<Sample>::largest_error() const {
+double QueuedFrames<Sample>::largest_error() {
   double largest = 0;
   mesh_.for_each_diamond([&](const Diamond& diamond, std::uint8_t) {
-    largest = std::max(largest, errors_.pixels(view_, diamond.point()));
+    largest = std::max(largest, diamonds_.pixels(diamond.point()));
   });
   return largest;
 }
 
-template class ViewErrors<std::uint8_t>;
-template class ViewErrors<std::uint16_t>;
-template class ViewErrors<std::int16_t>;
-template class ViewErrors<float>;
 template class QueuedFrames<std::uint8_t>;
 template class QueuedFrames<std::uint16_t>;
 template class QueuedFrames<std::int16_t>;

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "isosurface/extraction/surface_normals.h"
-#include "isosurface/view/queued_frames.h"
+#include "isosurface/view/paged_frames.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -38,7 +38,7 @@ class StoreFramesOf final : public StoreFrames {
   }
   [[nodiscard]] PageCounts counts() const override { return pages_.counts(); }
   [[nodiscard]] Box3 data_box() const override {
-    StoredDiamonds<Sample>& diamonds = frames_.diamonds();
+    const StoredDiamonds<Sample>& diamonds = frames_.diamonds();
     return {diamonds.domain().box().min, diamonds.domain().position(diamonds.last_sample())};
   }
 
@@ -48,20 +48,16 @@ class StoreFramesOf final : public StoreFrames {
     Clock clock;
     frame.figures = frames_.refine(request);
     frame.update_seconds = clock.lap();
-    StoredDiamonds<Sample>& diamonds = frames_.diamonds();
-    SurfaceRequest surface;
-    const ContourOptions options = surface.contour_options(diamonds.last_sample(), diamonds.spacing());
-    Contour contour = extract_contour(
-        frames_.mesh(), [&](LatticePoint p) { return diamonds.sample(p); }, request.isovalue, options);
+    const Contour& contour = frames_.contour();
     frame.surface.normals = surface_normals<Sample>(pages_, contour).normals;
-    frame.surface.points = std::move(contour.points);
-    frame.surface.triangles = std::move(contour.triangles);
-    frame.contour_seconds = clock.lap();
+    frame.surface.points = contour.points;
+    frame.surface.triangles = contour.triangles;
+    frame.normal_seconds = clock.lap();
     return frame;
   }
 
   StoredPages<OrderedWord<Sample>> pages_;
-  mutable QueuedFrames<Sample> frames_;
+  mutable PagedFrames<Sample> frames_;
 };
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace adamas {
 struct Frame {
   TriangleSurface surface;  ///< with normals, in the frame of the grid
   FrameFigures figures;
-  double update_seconds = 0;   ///< to bring the mesh to what is wanted
-  double contour_seconds = 0;  ///< from the mesh to triangles with normals
+  double update_seconds = 0;  ///< to find the mesh and its triangles
+  double normal_seconds = 0;
 };
 
 /// The surface of a store, frame after frame.

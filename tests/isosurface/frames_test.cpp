@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 
+#include "isosurface/view/paged_frames.h"
 #include "tests/isosurface/contour_checks.h"
 #include "tests/isosurface/surface_checks.h"
 
@@ -106,15 +108,14 @@ TEST_P(Frames, AreTheMeshOfTheWantedErrorWhereverTheyComeFrom) {
     EXPECT_EQ(fresh.mesh().checksum(), found.mesh().checksum());
     EXPECT_EQ(of_fresh.merges, 0u);
     EXPECT_EQ(of_fresh.largest_error, figures.largest_error);
-    StoredDiamonds<std::uint8_t> diamonds(store.pages());
-    diamonds.set_contour(wanted.isovalue);
-    const ViewErrors<std::uint8_t> errors(diamonds);
-    const View view(wanted.viewpoint);
+    ViewedDiamonds<std::uint8_t> diamonds(store.pages());
+    diamonds.set_contour_in_view(wanted.isovalue);
+    diamonds.set_view(View(wanted.viewpoint));
     IndexedHierarchy direct(diamonds.domain(), diamonds.lods());
     std::vector<LatticePoint> done;
     for (const auto& [p, values] : table.diamonds()) {
       const LatticePoint q = diamonds.lattice_step(0) * p;
-      if (errors.pixels(view, q) > wanted.pixels) direct.split(q, done);
+      if (diamonds.pixels(q) > wanted.pixels) direct.split(q, done);
     }
     EXPECT_EQ(direct.checksum(), found.mesh().checksum());
   }
@@ -150,8 +151,8 @@ TEST_P(Frames, HaveTheSameLargestErrorWithinABudgetWhereverTheyComeFrom) {
     const FrameFigures figures = found.refine(wanted);
     auto fresh = frames();
     const FrameFigures of_fresh = fresh.refine(wanted);
-    EXPECT_EQ(ViewErrors<std::uint8_t>::class_of(figures.largest_error),
-              ViewErrors<std::uint8_t>::class_of(of_fresh.largest_error));
+    EXPECT_EQ(found.diamonds().view_class(figures.largest_error),
+              found.diamonds().view_class(of_fresh.largest_error));
     if (figures.largest_error <= wanted.pixels) continue;
     ++limited;
     EXPECT_GE(static_cast<double>(figures.triangles), 0.95 * static_cast<double>(*wanted.max_triangles));
@@ -166,9 +167,11 @@ TEST_P(Frames, StateNoLessThanASurfaceOfAllSamplesWouldShow) {
   wanted.max_triangles = 500;
   const FrameFigures figures = found.refine(wanted);
   const View view(wanted.viewpoint);
+  StoredDiamonds<std::uint8_t> stored(store.pages());
+  stored.set_contour(wanted.isovalue);
   found.mesh().for_each_diamond([&](const Diamond& diamond, std::uint8_t) {
     if (!found.diamonds().is_stored(diamond.point())) return;
-    const double error = found.diamonds().error(found.diamonds().class_if_crossed(diamond.point()));
+    const double error = found.diamonds().error(stored.class_if_crossed(diamond.point()));
     const double scale = diamond.scale();
     const CentredBox box{found.mesh().domain().position(diamond.point()),
                          scale * found.mesh().domain().spacing()};
@@ -176,6 +179,71 @@ TEST_P(Frames, StateNoLessThanASurfaceOfAllSamplesWouldShow) {
       EXPECT_LE(view.pixels(error, box), figures.largest_error * (1 + 1e-12));
     }
   });
+}
+
+/// The edges of the mesh that the points lie on, but for what the border of the data cut.
+std::set<test::Edge> edges_of(const Contour& contour) {
+  std::set<test::Edge> edges;
+  for (const EdgePoint& p : contour.edge_points) edges.insert({p.first, p.second});
+  return edges;
+}
+
+TEST_P(Frames, ByPagesAreThoseByQueues) {
+  auto queued = frames();
+  PagedFrames<std::uint8_t> paged(store.pages());
+  std::uint64_t splits = 0, merges = 0;
+  for (int n = 0; n < 20; ++n) {
+    FrameRequest wanted = request();
+    // The least error of a class.
+    const double least = std::exp2(0.25 * (static_cast<double>(path.number(16)) - 4));
+    wanted.pixels = (1 + 1e-9) * least;
+    const FrameFigures found = paged.refine(wanted);
+    wanted.pixels = (1 - 1e-12) * least;
+    const FrameFigures expected = queued.refine(wanted);
+    EXPECT_EQ(found.triangles, expected.triangles);
+    EXPECT_LE(expected.largest_error, found.largest_error * (1 + 1e-12));
+    EXPECT_LE(found.largest_error, (1 + 1e-9) * least);
+    const Contour by_queues = contour(queued, wanted.isovalue);
+    EXPECT_EQ(paged.contour().points.size(), by_queues.points.size());
+    EXPECT_EQ(edges_of(paged.contour()), edges_of(by_queues));
+    const test::SurfaceMeasure measure = test::measure(by_queues);
+    test::expect_near(test::measure(paged.contour()), measure, 1e-7 * (1 + measure.area));
+    test::expect_sound(paged.contour(), volume.grid.box());
+    splits += found.splits;
+    merges += found.merges;
+  }
+  EXPECT_GT(splits, 1000u);
+  EXPECT_GT(merges, 100u);
+}
+
+TEST_P(Frames, ByPagesAreWithinTheirBudgetWhereverTheWorkIsStopped) {
+  PagedFrames<std::uint8_t> paged(store.pages());
+  std::size_t stopped = 0, limited = 0;
+  for (int n = 0; n < 60; ++n) {
+    FrameRequest wanted = request();
+    wanted.pixels = 0.5;
+    wanted.max_triangles = 40 + path.number(3000);
+    const std::uint32_t steps = 1 + path.number(80);
+    std::uint32_t done = 0;
+    if (n % 2 == 0) wanted.stop = [&] { return ++done == steps; };
+    const FrameFigures figures = paged.refine(wanted);
+    stopped += figures.stopped ? 1 : 0;
+    const std::uint64_t most = std::max(*wanted.max_triangles, least_triangles(wanted.isovalue));
+    EXPECT_EQ(figures.triangles, paged.contour().triangles.size());
+    test::expect_sound(paged.contour(), volume.grid.box());
+    EXPECT_LE(figures.triangles, most);
+    if (figures.stopped || figures.largest_error <= wanted.pixels * 1.2) continue;
+    ++limited;
+    EXPECT_GE(static_cast<double>(figures.triangles) + 16, 0.95 * static_cast<double>(*wanted.max_triangles));
+    // The greatest error that is left is that of the queues, to a class.
+    auto queued = frames();
+    wanted.stop = nullptr;
+    const FrameFigures expected = queued.refine(wanted);
+    EXPECT_LE(expected.largest_error, figures.largest_error * (1 + 1e-12));
+    EXPECT_LE(figures.largest_error, 1.5 * expected.largest_error);
+  }
+  EXPECT_GT(stopped, 5u);
+  EXPECT_GT(limited, 5u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Frames, testing::Range(0u, 3u));
