@@ -49,15 +49,20 @@ bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageToL
 template <class Word>
 PageCounts StoredPages<Word>::counts() const {
   const std::uint64_t predictors = this->loaded_as_predictors();
-  PageCounts all{this->loaded() - predictors, predictors, file_.bytes_read(), copies_, damaged_.size()};
+  PageCounts all{this->loaded() - predictors, predictors, file_.bytes_read(), copies_, 0};
+  // Several threads may meet with the same damage.
+  std::vector<PageId> damaged = damaged_;
   for (const OfThread& other : others_) {
+    for (const PageId& page : other.pages->damaged()) {
+      if (std::find(damaged.begin(), damaged.end(), page) == damaged.end()) damaged.push_back(page);
+    }
     const PageCounts of = other.pages->counts();
     all.pages += of.pages;
     all.predictors += of.predictors;
     all.bytes += of.bytes;
     all.copies += of.copies;
-    all.damaged += of.damaged;
   }
+  all.damaged = damaged.size();
   return all;
 }
 
