@@ -133,7 +133,7 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
 
 void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".ply", ".stl", ".obj", ".vtp", ".glb", ".gltf"});
-  session.outputs.declare("--picture", options.picture.file, {".png", ".svg", ".pdf"});
+  session.outputs.declare("--picture", options.picture.file, {".png", ".svg", ".pdf", ".html"});
   if (options.output.empty() && options.picture.file.empty() && session.json.empty())
     wrong_usage("expected -o, --picture or --json, found no output");
   parse_isovalues(options.isovalues);

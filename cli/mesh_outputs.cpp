@@ -216,7 +216,7 @@ void MeshOutputs::declare(OutputSet& outputs) const {
   outputs.declare("--interfaces-out", interfaces, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   cut.declare(outputs);
   outputs.declare("--ledger", ledger, {".csv"});
-  outputs.declare("--picture", picture.camera.file, {".png", ".svg", ".pdf"});
+  outputs.declare("--picture", picture.camera.file, {".png", ".svg", ".pdf", ".html"});
 }
 
 void add_mesh_output_options(const Command& command, MeshOutputs& outputs) {

@@ -138,7 +138,7 @@ void run(const Options& options, Session& session) {
   const SimplificationRequest request(options.simplification);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
-  session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf"});
+  session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf", ".html"});
   options.picture.check();
   Console& console = session.console;
   Figures figures;

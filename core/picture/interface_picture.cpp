@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/picture/axes.h"
+#include "core/picture/turning_picture.h"
 
 namespace adamas {
 
@@ -133,7 +134,10 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
 
 void write_interfaces(const InterfacePicture& picture, const std::filesystem::path& path,
                       const InterfacePictureOptions& options) {
-  write_bytes(path, draw_interfaces(picture, picture_format(path), options));
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  write_bytes(path, extension == ".html" ? turning_page(picture)
+                                         : draw_interfaces(picture, picture_format(path), options));
 }
 
 }  // namespace adamas
