@@ -124,6 +124,7 @@ void Experiment::refine() {
   record_.interfaces =
       run_resampler(input_.source, without_fields(targets_), console_, &interface_mesh_, &approximated);
   write_interfaces_of(approximated, "mesh-interfaces", true);
+  write_surface_picture(folder_.file("mesh-interfaces.html"), approximated, input_.source.box, options_.pictures);
   const auto wanted = [](const auto& target) { return target.has_value(); };
   if (std::any_of(targets_.field_errors.begin(), targets_.field_errors.end(), wanted))
     record_.with_fields = run_resampler(input_.source, targets_, console_, &mesh_);
@@ -131,6 +132,8 @@ void Experiment::refine() {
 
 void Experiment::show_meshes() {
   record_.mesh_pictures.push_back({"mesh-interfaces.png", "Interfaces of the mesh, triangle by triangle."});
+  record_.mesh_pictures.push_back(
+      {"mesh-interfaces.html", "The same, to be turned: materials go on and off, and a plane cuts."});
   if (record_.with_fields) {
     write_unstructured_mesh(folder_.file("interface-mesh.vtu"), to_unstructured_mesh(interface_mesh_));
   }

@@ -24,8 +24,14 @@ std::string read_bytes(const std::filesystem::path& path) {
 
 void add_pictures(HtmlReport& report, const std::vector<ExperimentPicture>& pictures,
                   const std::filesystem::path& folder) {
-  for (const auto& [file, caption] : pictures)
-    report.picture(read_bytes(folder / file), PictureFormat::kPng, caption);
+  for (const auto& [file, caption] : pictures) {
+    const std::string bytes = read_bytes(folder / file);
+    if (file.ends_with(".html")) {
+      report.page(bytes, caption);
+    } else {
+      report.picture(bytes, PictureFormat::kPng, caption);
+    }
+  }
 }
 
 double upper(const ExperimentRun& run) {

@@ -41,8 +41,9 @@ tbody tr:hover { background: var(--panel); }
 .number { text-align: right; white-space: nowrap; }
 figure { margin: 1.4rem 0; }
 figure img { display: block; max-width: 100%; height: auto; background: #ffffff; border: 1px solid var(--line); border-radius: .4rem; }
+figure iframe { display: block; width: 100%; height: 70vh; background: #ffffff; border: 1px solid var(--line); border-radius: .4rem; box-sizing: border-box; }
 figcaption { color: var(--soft); font-size: .92rem; margin-top: .5rem; max-width: 52rem; }
-@media print { main { padding: 0; } h2 { break-after: avoid; } figure, tr { break-inside: avoid; } nav { display: none; } }
+@media print { main { padding: 0; } h2 { break-after: avoid; } figure, tr { break-inside: avoid; } nav, figure:has(iframe) { display: none; } }
 )css";
 
 std::string escaped(std::string_view text) { return escape_markup(one_line(text)); }
@@ -139,6 +140,24 @@ void HtmlReport::picture(std::string_view bytes, PictureFormat format, std::stri
   body_ += fmt::format(
       "<figure><img src=\"data:{};base64,{}\" alt=\"{}\">\n<figcaption>Figure {}. {}</figcaption></figure>\n",
       type, base64(bytes), escaped(caption), pictures_, escaped(caption));
+}
+
+void HtmlReport::page(std::string_view html, std::string_view caption) {
+  ++pictures_;
+  std::string source;
+  source.reserve(html.size() + html.size() / 8);
+  for (const char c : html) {
+    if (c == '&') {
+      source += "&amp;";
+    } else if (c == '"') {
+      source += "&quot;";
+    } else {
+      source += c;
+    }
+  }
+  body_ += fmt::format(
+      "<figure><iframe title=\"{}\" srcdoc=\"{}\"></iframe>\n<figcaption>Figure {}. {}</figcaption></figure>\n",
+      escaped(caption), source, pictures_, escaped(caption));
 }
 
 std::string HtmlReport::html() const {

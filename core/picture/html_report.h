@@ -23,7 +23,7 @@ struct KeyFigure {
   std::string unit{};
 };
 
-/// Builds a report as one HTML file that needs nothing else: pictures are embedded, no scripts, no outside
+/// Builds a report as one HTML file that needs nothing else: pictures are embedded, and there are no outside
 /// references. All text is escaped. Readable on small screens, in light and dark, and on paper.
 class HtmlReport {
  public:
@@ -37,6 +37,8 @@ class HtmlReport {
   void table(const ReportTable& table);
   /// A picture by the bytes of a PNG or SVG file. Throws Error for PDF.
   void picture(std::string_view bytes, PictureFormat format, std::string_view caption);
+  /// A page within the report, as turning_page makes it: the only scripts that a report has.
+  void page(std::string_view html, std::string_view caption);
 
   [[nodiscard]] std::string html() const;
   /// Through OutputFile; throws Error when the file cannot be written.
