@@ -124,7 +124,8 @@ void Experiment::refine() {
   record_.interfaces =
       run_resampler(input_.source, without_fields(targets_), console_, &interface_mesh_, &approximated);
   write_interfaces_of(approximated, "mesh-interfaces", true);
-  write_surface_picture(folder_.file("mesh-interfaces.html"), approximated, input_.source.box, options_.pictures);
+  write_surface_picture(folder_.file("mesh-interfaces.html"), approximated, input_.source.box,
+                        options_.pictures);
   const auto wanted = [](const auto& target) { return target.has_value(); };
   if (std::any_of(targets_.field_errors.begin(), targets_.field_errors.end(), wanted))
     record_.with_fields = run_resampler(input_.source, targets_, console_, &mesh_);

@@ -99,7 +99,9 @@ void add_picture_options(const Command& command, PictureOptions& options, const 
                          bool own_file) {
   options.own_file = own_file;
   if (own_file)
-    command.add_option("--picture", options.file, "A picture of " + subject + ": .png, .svg, .pdf, or .html, which turns in a browser")
+    command
+        .add_option("--picture", options.file,
+                    "A picture of " + subject + ": .png, .svg, .pdf, or .html, which turns in a browser")
         .type_name("FILE");
   command.add_option("--direction", options.direction, "The way that the picture's camera looks; z is up")
       .type_name("x,y,z")

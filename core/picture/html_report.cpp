@@ -156,7 +156,8 @@ void HtmlReport::page(std::string_view html, std::string_view caption) {
     }
   }
   body_ += fmt::format(
-      "<figure><iframe title=\"{}\" srcdoc=\"{}\"></iframe>\n<figcaption>Figure {}. {}</figcaption></figure>\n",
+      "<figure><iframe title=\"{}\" srcdoc=\"{}\"></iframe>\n<figcaption>Figure {}. "
+      "{}</figcaption></figure>\n",
       escaped(caption), source, pictures_, escaped(caption));
 }
 

@@ -40,8 +40,8 @@ struct InterfacePictureOptions {
 std::string draw_interfaces(const InterfacePicture& picture, PictureFormat format,
                             const InterfacePictureOptions& options = {});
 
-/// Writes a .png file (or .svg, .pdf with the picture embedded, or .html as turning_page makes it); also throws
-/// Error when it cannot be written.
+/// Writes a .png file (or .svg, .pdf with the picture embedded, or .html as turning_page makes it); also
+/// throws Error when it cannot be written.
 void write_interfaces(const InterfacePicture& picture, const std::filesystem::path& path,
                       const InterfacePictureOptions& options = {});
 

@@ -18,10 +18,9 @@
 #ifdef ADAMAS_THREE_JS
 
 // The scripts lie in the program as they are: the assembler reads them.
-#define ADAMAS_EMBED(NAME, PATH)                                                                  \
-  __asm__(".pushsection .rodata\n.global adamas_" #NAME "_begin\nadamas_" #NAME                   \
-          "_begin:\n.incbin \"" PATH "\"\n.global adamas_" #NAME "_end\nadamas_" #NAME            \
-          "_end:\n.byte 0\n.popsection\n");                                                       \
+#define ADAMAS_EMBED(NAME, PATH)                                                                           \
+  __asm__(".pushsection .rodata\n.global adamas_" #NAME "_begin\nadamas_" #NAME "_begin:\n.incbin \"" PATH \
+          "\"\n.global adamas_" #NAME "_end\nadamas_" #NAME "_end:\n.byte 0\n.popsection\n");              \
   extern "C" const char adamas_##NAME##_begin[], adamas_##NAME##_end[];
 
 ADAMAS_EMBED(three, ADAMAS_THREE_JS)
@@ -43,9 +42,7 @@ std::string scripts() {
          script(adamas_viewer_begin, adamas_viewer_end);
 }
 #else
-std::string scripts() {
-  fail("pictures that turn: expected three.js, which this program was built without");
-}
+std::string scripts() { fail("pictures that turn: expected three.js, which this program was built without"); }
 #endif
 
 constexpr std::string_view kStyle = R"(
@@ -104,8 +101,7 @@ struct Part {
       const Vec3 at = p - middle;
       const std::array<float, 3> place{static_cast<float>(at.x), static_cast<float>(at.y),
                                        static_cast<float>(at.z)};
-      const auto [known, is_new] =
-          numbers.try_emplace(place, static_cast<std::uint32_t>(points.size() / 3));
+      const auto [known, is_new] = numbers_.try_emplace(place, static_cast<std::uint32_t>(points.size() / 3));
       if (is_new) points.insert(points.end(), place.begin(), place.end());
       triangles.push_back(known->second);
     }
@@ -123,7 +119,7 @@ struct Part {
       return hash;
     }
   };
-  std::unordered_map<std::array<float, 3>, std::uint32_t, Hash> numbers;
+  std::unordered_map<std::array<float, 3>, std::uint32_t, Hash> numbers_;
 };
 
 class Page {
@@ -147,7 +143,8 @@ class Page {
     return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
            escape_markup(picture_.title) + "</title>\n<style>" + std::string(kStyle) +
-           "</style>\n</head>\n<body data-state=\"loading\">\n<div id=\"view\"></div>\n<div id=\"panel\">\n<h1>" +
+           "</style>\n</head>\n<body data-state=\"loading\">\n<div id=\"view\"></div>\n<div "
+           "id=\"panel\">\n<h1>" +
            escape_markup(picture_.title) +
            "</h1>\n<h2>Materials</h2>\n<div id=\"materials\"></div>\n<h2>Clipping plane</h2>\n"
            "<select id=\"clip-axis\"><option value=\"\">none</option><option>x</option><option>y</option>"
@@ -181,8 +178,9 @@ class Page {
     result += "],\"parts\":[";
     const char* separator = "";
     for (const auto& [sides, part] : parts) {
-      result += fmt::format("{}{{\"front\":{},\"back\":{},\"points\":{},\"triangles\":{}}}", separator,
-                            sides.first, sides.second, json_numbers(part.points), json_numbers(part.triangles));
+      result +=
+          fmt::format("{}{{\"front\":{},\"back\":{},\"points\":{},\"triangles\":{}}}", separator, sides.first,
+                      sides.second, json_numbers(part.points), json_numbers(part.triangles));
       separator = ",";
     }
     const std::string extent =

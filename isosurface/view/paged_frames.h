@@ -14,18 +14,19 @@
 
 namespace adamas {
 
-/// Frames by masks of pages: each frame is the cut of the diamonds by their classes in the view, and a limit of
-/// triangles splits them in the order of SurfaceCut. So a frame does not depend on those before it, but for the
-/// pages that are in memory. The mesh is that of QueuedFrames, where the error wanted is the least of a class and
-/// there is room.
+/// Frames by masks of pages: each frame is the cut of the diamonds by their classes in the view, and a limit
+/// of triangles splits them in the order of SurfaceCut. So a frame does not depend on those before it, but
+/// for the pages that are in memory. The mesh is that of QueuedFrames, where the error wanted is the least of
+/// a class and there is room.
 template <class Sample>
 class PagedFrames {
  public:
   /// The pages must outlive this.
   explicit PagedFrames(StoredPages<OrderedWord<Sample>>& pages);
 
-  /// Finds the surface of a frame. A stopped one leaves what there was, or the mesh in which nothing is split where
-  /// that is of another contour or has too many triangles; its greatest error is not known then. Throws PageLost.
+  /// Finds the surface of a frame. A stopped one leaves what there was, or the mesh in which nothing is split
+  /// where that is of another contour or has too many triangles; its greatest error is not known then. Throws
+  /// PageLost.
   FrameFigures refine(const FrameRequest& request);
 
   /// The surface of the last frame, clipped to the data's box.
@@ -45,7 +46,7 @@ class PagedFrames {
   SurfaceRequest surface_;
   std::optional<double> isovalue_;  ///< none before the first frame
   Contour contour_;
-  FrameFigures figures_;  ///< of the last frame that was not stopped
+  FrameFigures figures_;                     ///< of the last frame that was not stopped
   std::vector<LatticeMap<PageMask>> masks_;  ///< by LOD: what was split in that frame, by block
 };
 

@@ -9,9 +9,9 @@
 
 namespace adamas {
 
-/// A store's diamonds as a camera sees them: their classes are of errors in pixels, and 0 also for what is out of
-/// sight. A child never has a greater class than its parents, so that all that works with classes of errors works
-/// with these: cuts, limits of triangles, contours.
+/// A store's diamonds as a camera sees them: their classes are of errors in pixels, and 0 also for what is
+/// out of sight. A child never has a greater class than its parents, so that all that works with classes of
+/// errors works with these: cuts, limits of triangles, contours.
 template <class Sample>
 class ViewedDiamonds final : public StoredDiamonds<Sample> {
  public:
@@ -25,8 +25,9 @@ class ViewedDiamonds final : public StoredDiamonds<Sample> {
   /// Sets the contour, as StoredDiamonds does, and forgets what is known of another one.
   void set_contour_in_view(double isovalue);
 
-  /// The isosurface error of a diamond in pixels, where it is in sight and the contour crosses it; otherwise 0. It
-  /// is seen where that diamond, or one that comes from splitting it, is nearest to the eye. Throws PageLost.
+  /// The isosurface error of a diamond in pixels, where it is in sight and the contour crosses it; otherwise
+  /// 0. It is seen where that diamond, or one that comes from splitting it, is nearest to the eye. Throws
+  /// PageLost.
   double pixels(LatticePoint p);
 
   /// The class of an error in pixels, four to an octave.

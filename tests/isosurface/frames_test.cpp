@@ -1,5 +1,3 @@
-#include "isosurface/view/queued_frames.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <set>
 
 #include "isosurface/view/paged_frames.h"
+#include "isosurface/view/queued_frames.h"
 #include "tests/isosurface/contour_checks.h"
 #include "tests/isosurface/surface_checks.h"
 
