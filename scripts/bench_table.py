@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 
+from bench_frames import frame_rows
 from bench_large import large_rows
 from bench_volumes import volume_rows
 
@@ -181,7 +182,7 @@ def print_table(rows):
 
 
 PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "selection": selection_rows,
-         "sphere": sphere_rows, "impact": impact_rows, "cth": cth_rows, "volumes": volume_rows, "large": large_rows}
+         "sphere": sphere_rows, "impact": impact_rows, "cth": cth_rows, "volumes": volume_rows, "frames": frame_rows, "large": large_rows}
 
 
 def main():

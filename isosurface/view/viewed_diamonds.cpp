@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "isosurface/extraction/split_limits.h"
 
@@ -18,8 +19,12 @@ void ViewedDiamonds<Sample>::set_contour_in_view(double isovalue) {
 template <class Sample>
 int ViewedDiamonds<Sample>::view_class(double pixels) const {
   if (!(pixels > 0)) return 0;
-  const double at = class_of_one() + std::floor(4 * std::log2(pixels));
-  return static_cast<int>(std::clamp<double>(at, 4 * (this->lods() - 1) + 1, kMostCode));
+  // The exponent tells the octave, and the rest which quarter of it.
+  int octave = 0;
+  const double part = 2 * std::frexp(std::min(pixels, std::numeric_limits<double>::max()), &octave);
+  const int quarter = (part >= 0x1.306fe0a31b715p+0 ? 1 : 0) + (part >= 0x1.6a09e667f3bcdp+0 ? 1 : 0) +
+                      (part >= 0x1.ae89f995ad3adp+0 ? 1 : 0);
+  return std::clamp(class_of_one() + 4 * (octave - 1) + quarter, 4 * (this->lods() - 1) + 1, kMostCode);
 }
 
 template <class Sample>
@@ -46,15 +51,19 @@ double ViewedDiamonds<Sample>::pixels(LatticePoint p) {
 }
 
 template <class Sample>
+CentredBox ViewedDiamonds<Sample>::box_of_page(const PageId& id) const {
+  const std::int32_t step = this->lattice_step(id.lod);
+  const LatticePoint first = step * (PageGrid::kSide * id.block);
+  const double middle = 0.5 * (PageGrid::kSide - 1), reach = 1 + middle + nested_reach(0);
+  const Vec3 spacing = static_cast<double>(step) * this->domain().spacing();
+  return {this->domain().position(first) + middle * spacing, reach * spacing};
+}
+
+template <class Sample>
 int ViewedDiamonds<Sample>::greatest_class(const PageId& id) {
   const int error_class = StoredDiamonds<Sample>::greatest_class(id);
   if (error_class == 0) return 0;
-  // The box of all boxes of the page's diamonds.
-  const std::int32_t step = this->lattice_step(id.lod);
-  const LatticePoint first = step * (PageGrid::kSide * id.block);
-  const double middle = 0.5 * (PageGrid::kSide - 1), reach = middle + nested_reach(0);
-  const Vec3 spacing = static_cast<double>(step) * this->domain().spacing();
-  const CentredBox box{this->domain().position(first) + middle * spacing, reach * spacing};
+  const CentredBox box = box_of_page(id);
   if (!view_.is_visible(box)) return 0;
   return view_class(view_.pixels(this->error(error_class), box));
 }
@@ -81,6 +90,7 @@ void ViewedDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
   codes.fill(0);
   const Crossed& found = crossed(id);
   const bool is_coarsest = id.lod == this->grid().top();
+  const bool all_visible = !is_coarsest && view_.shows_all_of(box_of_page(id));
   for (std::size_t n = 0; n < found.places.size(); ++n) {
     const std::int32_t place = found.places[n];
     const LatticePoint q{place % PageGrid::kSide, place / PageGrid::kSide % PageGrid::kSide,
@@ -94,7 +104,7 @@ void ViewedDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
     // Others than the coarsest page do not know of the points of coarser LODs.
     if (phase == 3) continue;
     const CentredBox box = nested_box(p, this->lattice_step(lod), phase);
-    if (!view_.is_visible(box)) continue;
+    if (!all_visible && !view_.is_visible(box)) continue;
     const double error = this->error(error_class(found.codes[n], lod));
     const int in_view = view_class(view_.pixels(error, box));
     codes[static_cast<std::size_t>(place)] = static_cast<std::uint8_t>(in_view == 0 ? 0 : in_view - 4 * lod);

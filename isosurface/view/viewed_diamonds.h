@@ -52,6 +52,8 @@ class ViewedDiamonds final : public StoredDiamonds<Sample> {
   [[nodiscard]] int class_of_one() const { return 4 * (this->lods() - 1) + 1 + 4 * kOctavesBelowOne; }
   /// How far a diamond and what comes from splitting it may reach, in space.
   [[nodiscard]] CentredBox nested_box(LatticePoint p, std::int32_t scale, int phase) const;
+  /// A box that contains those of all diamonds of a page, other than the coarsest.
+  [[nodiscard]] CentredBox box_of_page(const PageId& id) const;
   const Crossed& crossed(const PageId& id);
 
   static constexpr int kOctavesBelowOne = 8, kMostCode = kClasses - 1;

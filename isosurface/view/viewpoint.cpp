@@ -68,6 +68,11 @@ bool View::is_visible(const CentredBox& box) const {
       sides_, [&](const Side& s) { return dot(s.normal, box.centre) - s.offset >= -reach(box, s.normal); });
 }
 
+bool View::shows_all_of(const CentredBox& box) const {
+  return std::ranges::all_of(
+      sides_, [&](const Side& s) { return dot(s.normal, box.centre) - s.offset >= reach(box, s.normal); });
+}
+
 double View::pixels(double length, const CentredBox& box) const {
   if (viewpoint_.height > 0) return scale_ * length;
   const Side& near = sides_[4];

@@ -36,6 +36,8 @@ class View {
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
   /// False where all of the box is outside the picture. May be true where it is near the picture's corners.
   [[nodiscard]] bool is_visible(const CentredBox& box) const;
+  /// Whether all of the box is in the picture. Then so is what lies in it.
+  [[nodiscard]] bool shows_all_of(const CentredBox& box) const;
   /// Two points of the box at this distance from each other are no farther apart in the picture, in pixels,
   /// where the one that is nearer to the eye is in the picture.
   [[nodiscard]] double pixels(double length, const CentredBox& box) const;
