@@ -127,7 +127,7 @@ void measure_ours(const VolumeInMemory& volume, SampleCoding coding, const std::
               [&](std::uint64_t k, std::span<std::byte> to) {
                 std::memcpy(to.data(), volume.bytes.data() + k * to.size(), to.size());
               },
-              {coding, 0, std::filesystem::temp_directory_path()});
+              {.coding = coding});
   Figures figures;
   {
     StoreFile file(path);
