@@ -66,11 +66,8 @@ Figures figures_of(const Frame& frame, double draw_seconds) {
 }
 
 /// Draws the frames into the folder, where there is one.
-Figures fly(const Options& options, StoreFrames& frames, const VolumeGrid& grid, const OutputFolder* folder,
-            Session& session) {
-  const Size size = size_of(options);
-  FrameRequest request = request_of(options);
-  request.isovalue = grid.sample(request.isovalue);
+Figures fly(const Options& options, const Size& size, FrameRequest request, StoreFrames& frames,
+            const OutputFolder* folder, Session& session) {
   const OffscreenContext context;
   SurfaceRenderer renderer(size.width, size.height);
   const Shading shading = options.shading == "sphere" ? Shading::kSphere : Shading::kLit;
@@ -106,17 +103,18 @@ void run(const Options& options, Session& session) {
   if (!options.offscreen) wrong_usage("expected --offscreen: pictures are drawn without a window");
   if (options.frames.empty() && session.json.empty())
     wrong_usage("expected --frames or --json, found no output");
-  size_of(options);
-  request_of(options);
+  const Size size = size_of(options);
+  FrameRequest request = request_of(options);
   const std::size_t memory = store_memory(options.input);
   std::optional<OutputFolder> folder;
   if (!options.frames.empty())
     folder.emplace(options.frames, options.overwrite, std::initializer_list<const char*>{"frame0001.png"});
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
-  const VolumeGrid& grid = file->header().grid;
+  request.isovalue = file->header().grid.sample(request.isovalue);
   const std::unique_ptr<StoreFrames> frames = StoreFrames::open(*file, memory);
-  Figures figures = naming(options.input.path,
-                           [&] { return fly(options, *frames, grid, folder ? &*folder : nullptr, session); });
+  Figures figures = naming(options.input.path, [&] {
+    return fly(options, size, request, *frames, folder ? &*folder : nullptr, session);
+  });
   add_page_counts(frames->counts(), figures);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });

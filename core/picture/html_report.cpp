@@ -144,21 +144,10 @@ void HtmlReport::picture(std::string_view bytes, PictureFormat format, std::stri
 
 void HtmlReport::page(std::string_view html, std::string_view caption) {
   ++pictures_;
-  std::string source;
-  source.reserve(html.size() + html.size() / 8);
-  for (const char c : html) {
-    if (c == '&') {
-      source += "&amp;";
-    } else if (c == '"') {
-      source += "&quot;";
-    } else {
-      source += c;
-    }
-  }
   body_ += fmt::format(
       "<figure><iframe title=\"{}\" srcdoc=\"{}\"></iframe>\n<figcaption>Figure {}. "
       "{}</figcaption></figure>\n",
-      escaped(caption), source, pictures_, escaped(caption));
+      escaped(caption), escape_markup(html), pictures_, escaped(caption));
 }
 
 std::string HtmlReport::html() const {

@@ -134,10 +134,9 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
 
 void write_interfaces(const InterfacePicture& picture, const std::filesystem::path& path,
                       const InterfacePictureOptions& options) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  write_bytes(path, extension == ".html" ? turning_page(picture)
-                                         : draw_interfaces(picture, picture_format(path), options));
+  write_bytes(path, lower_extension(path) == ".html"
+                        ? turning_page(picture)
+                        : draw_interfaces(picture, picture_format(path), options));
 }
 
 }  // namespace adamas

@@ -9,9 +9,14 @@
 
 namespace adamas {
 
-PictureFormat picture_format(const std::filesystem::path& path) {
+std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
+PictureFormat picture_format(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
   if (extension == ".png") return PictureFormat::kPng;
   if (extension == ".svg") return PictureFormat::kSvg;
   if (extension == ".pdf") return PictureFormat::kPdf;

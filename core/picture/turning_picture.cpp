@@ -7,8 +7,8 @@
 #include <cstring>
 #include <map>
 #include <string_view>
-#include <tuple>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"

@@ -17,15 +17,11 @@ std::uint8_t corner_at(LatticePoint from_centre) {
   return static_cast<std::uint8_t>((from_centre.i > 0 ? 1 : 0) | (from_centre.j > 0 ? 2 : 0) |
                                    (from_centre.k > 0 ? 4 : 0));
 }
-LatticePoint offset_of(unsigned corner) {
-  return {static_cast<std::int32_t>(corner & 1), static_cast<std::int32_t>(corner >> 1 & 1),
-          static_cast<std::int32_t>(corner >> 2 & 1)};
-}
 
 /// The corners of the cell's tetrahedra, positively oriented: those of the diamond whose split vertex would
 /// be the cell's centre.
 CellTetrahedra tetrahedra_of(unsigned parity) {
-  const LatticePoint first = offset_of(parity);
+  const LatticePoint first = corner_offset(parity);
   const LatticePoint centre = 2 * first + LatticePoint{1, 1, 1};
   const DiamondType& type = kDiamondTypes[static_cast<std::size_t>(diamond_type(centre, 0))];
   CellTetrahedra result{};
@@ -41,7 +37,7 @@ std::uint8_t place_of(CellContour& contour, std::uint8_t a, std::uint8_t b) {
     const auto& edge = contour.edges[n];
     if ((edge.a == a && edge.b == b) || (edge.a == b && edge.b == a)) return n;
   }
-  const LatticePoint sum = offset_of(a) + offset_of(b);
+  const LatticePoint sum = corner_offset(a) + corner_offset(b);
   contour.edges[contour.edge_count] = {a, b, static_cast<std::uint8_t>(sum.i + 3 * sum.j + 9 * sum.k)};
   return contour.edge_count++;
 }
@@ -74,7 +70,7 @@ VertexLink link_of(unsigned parity) {
       bool has_vertex = false;
       for (const std::uint8_t other : tetrahedron) {
         has_vertex = has_vertex || other == corner;
-        if (other != corner) others |= 1u << neighbour_at(offset_of(other) - offset_of(corner));
+        if (other != corner) others |= 1u << neighbour_at(corner_offset(other) - corner_offset(corner));
       }
       if (!has_vertex) continue;
       result.neighbours |= others;

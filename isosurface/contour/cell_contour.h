@@ -12,6 +12,11 @@ namespace adamas {
 /// round the diagonal from its corner with even coordinates to the one with odd ones. So a cell is one of
 /// eight by the parities of its first corner, and a vertex one of eight by its own; parities are bits, that
 /// of i lowest. A cell's corner has bit 0 where it is behind the first one along i, 1 along j, 2 along k.
+constexpr LatticePoint corner_offset(unsigned corner) {
+  return {static_cast<std::int32_t>(corner & 1), static_cast<std::int32_t>(corner >> 1 & 1),
+          static_cast<std::int32_t>(corner >> 2 & 1)};
+}
+
 struct CellContour {
   struct Edge {
     std::uint8_t a, b;  ///< corners

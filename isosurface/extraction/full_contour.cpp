@@ -52,8 +52,7 @@ void FullContour<Sample>::find_blocks(int lod, LatticePoint block) {
     blocks_.push_back(block);
     return;
   }
-  for (int child = 0; child < 8; ++child)
-    find_blocks(lod - 1, 2 * block + LatticePoint{child & 1, child >> 1 & 1, child >> 2});
+  for (unsigned child = 0; child < 8; ++child) find_blocks(lod - 1, 2 * block + corner_offset(child));
 }
 
 template <class Sample>
@@ -97,9 +96,7 @@ void FullContour<Sample>::make_workers() {
 
 template <class Sample>
 std::optional<Contour> FullContour<Sample>::run(Progress& progress) {
-  const Domain& domain = diamonds_.domain();
-  JoinedSurface surface(diamonds_.lattice_step(0),
-                        {domain.box().min, domain.position(diamonds_.last_sample())});
+  JoinedSurface surface(diamonds_.lattice_step(0), diamonds_.data_box());
   make_workers();
   const auto part = [this](std::size_t n) {
     return static_cast<double>(slabs_[n + 1]) / static_cast<double>(blocks_.size());
@@ -188,8 +185,7 @@ template <class Sample>
 LatticeMap<bool> FullContour<Sample>::corners_of(const std::vector<CellOfPage>& cells) {
   LatticeMap<bool> corners;
   for (const CellOfPage& c : cells) {
-    for (int n = 0; n < 8; ++n)
-      corners.insert(kSide * c.block + c.cell + LatticePoint{n & 1, n >> 1 & 1, n >> 2});
+    for (unsigned n = 0; n < 8; ++n) corners.insert(kSide * c.block + c.cell + corner_offset(n));
   }
   return corners;
 }
@@ -200,8 +196,8 @@ std::vector<typename FullContour<Sample>::CellOfPage> FullContour<Sample>::cells
   const LatticePoint last = diamonds_.grid().last();
   std::vector<CellOfPage> found;
   for (const PointsOfVertex& patch : patches) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const LatticePoint c = patch.vertex - LatticePoint{corner & 1, corner >> 1 & 1, corner >> 2};
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      const LatticePoint c = patch.vertex - corner_offset(corner);
       if (std::min({c.i, c.j, c.k}) < 0 || c.i >= last.i || c.j >= last.j || c.k >= last.k) continue;
       const LatticePoint block{c.i / kSide, c.j / kSide, c.k / kSide};
       found.push_back({block, c - kSide * block});

@@ -26,6 +26,13 @@ class LatticeSamples {
   [[nodiscard]] StoredPages<Word>& pages() const { return pages_; }
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   [[nodiscard]] const Domain& domain() const { return domain_; }
+  /// The diamond of the mesh in which nothing is split.
+  [[nodiscard]] static Diamond root() {
+    const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
+    return Diamond({middle, middle, middle});
+  }
+  /// From the first sample to the last, in the frame.
+  [[nodiscard]] Box3 data_box() const { return {domain_.box().min, domain_.position(last_sample())}; }
   /// The spacing of samples in space.
   [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, -grid_.depth()) * domain_.box().size(); }
   /// The lattice point of the last sample.

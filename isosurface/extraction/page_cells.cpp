@@ -117,7 +117,7 @@ const CellContour& PageCells<Sample>::contour_of(LatticePoint cell, SurfaceSlab&
     const CellContour::Edge& edge = contour.edges[e];
     const std::uint16_t& place = places[kPlacesOfSums[edge.sum]];
     if (place == kNone) {
-      const LatticePoint a = cell + corner(edge.a), b = cell + corner(edge.b);
+      const LatticePoint a = cell + corner_offset(edge.a), b = cell + corner_offset(edge.b);
       add_vertex(is_nearer(height(a), height(b), a < b) ? a : b, slab);
     }
     edges[e] = place;

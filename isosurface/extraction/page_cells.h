@@ -48,10 +48,6 @@ class PageCells {
       places[static_cast<std::size_t>(n)] = n % 3 + kEdgeSide * (n / 3 % 3 + kEdgeSide * (n / 9));
     return places;
   }();
-  static constexpr LatticePoint corner(unsigned n) {
-    return {static_cast<std::int32_t>(n & 1), static_cast<std::int32_t>(n >> 1 & 1),
-            static_cast<std::int32_t>(n >> 2)};
-  }
 
   /// Where the contour crosses an edge, and the number of what that point is joined to.
   struct CrossedEdge {

@@ -61,8 +61,7 @@ class PageContour {
 /// The contour of the mesh in which nothing is split. Throws PageLost.
 template <class Sample>
 Contour root_contour(StoredDiamonds<Sample>& diamonds, double isovalue, const ContourOptions& options) {
-  const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
-  const Diamond root({middle, middle, middle});
+  const Diamond root = diamonds.root();
   ContourBuilder builder(diamonds.domain(), isovalue, options);
   DiamondContour(builder, isovalue, options.last_sample)
       .add(root, (1u << root.tetrahedron_count()) - 1, [&](LatticePoint p) { return diamonds.sample(p); });

@@ -15,10 +15,7 @@ namespace adamas {
 
 template <class Sample>
 SurfaceExtractor<Sample>::SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages)
-    : pages_(pages), diamonds_(pages), split_pages_(diamonds_, limits_) {
-  const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
-  root_ = {middle, middle, middle};
-}
+    : pages_(pages), diamonds_(pages), split_pages_(diamonds_, limits_) {}
 
 template <class Sample>
 std::array<double, 2> SurfaceExtractor<Sample>::range() {
@@ -68,8 +65,8 @@ template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
   ExtractedSurface surface;
   surface.contour = root_contour(diamonds_, request_.isovalue, contour_options());
-  surface.tetrahedra = static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count());
-  surface.max_error = diamonds_.error(split_pages_.class_if_allowed(root_));
+  surface.tetrahedra = static_cast<std::uint64_t>(diamonds_.root().tetrahedron_count());
+  surface.max_error = diamonds_.error(split_pages_.class_if_allowed(diamonds_.root().point()));
   return surface;
 }
 
@@ -87,7 +84,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
   ExtractedSurface surface;
   surface.diamonds = split_pages_.count();
   surface.tetrahedra =
-      static_cast<std::uint64_t>(Diamond(root_).tetrahedron_count()) + contour.tetrahedra_added();
+      static_cast<std::uint64_t>(diamonds_.root().tetrahedron_count()) + contour.tetrahedra_added();
   surface.max_error =
       diamonds_.error(std::max(contour.greatest_class_at_lost(), split_pages_.greatest_left()));
   surface.contour = builder.finish();
@@ -108,7 +105,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract_once(Progress& progress) {
 template <class Sample>
 SurfaceCut SurfaceExtractor<Sample>::cut_of(std::uint64_t triangles, int least_class, Progress& progress) {
   TriangleBudget<Sample> chosen(diamonds_, split_pages_, request_);
-  return chosen.find(triangles, least_class, Diamond(root_), progress);
+  return chosen.find(triangles, least_class, diamonds_.root(), progress);
 }
 
 template <class Sample>

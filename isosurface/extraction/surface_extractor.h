@@ -28,9 +28,7 @@ class SurfaceExtractor {
   [[nodiscard]] StoredPages<OrderedWord<Sample>>& pages() const { return pages_; }
   [[nodiscard]] const Domain& domain() const { return diamonds_.domain(); }
   /// From the first sample to the last, in the frame.
-  [[nodiscard]] Box3 data_box() const {
-    return {domain().box().min, domain().position(diamonds_.last_sample())};
-  }
+  [[nodiscard]] Box3 data_box() const { return diamonds_.data_box(); }
   [[nodiscard]] Vec3 spacing() const { return diamonds_.spacing(); }
   /// The least and the greatest finite sample of the store, the first greater where there is none. Throws
   /// PageLost.
@@ -57,7 +55,6 @@ class SurfaceExtractor {
 
   StoredPages<OrderedWord<Sample>>& pages_;
   StoredDiamonds<Sample> diamonds_;
-  LatticePoint root_;
   SurfaceRequest request_;
   SplitLimits limits_;
   SplitPages<Sample> split_pages_;

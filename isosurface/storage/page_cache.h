@@ -37,7 +37,6 @@ class PageCache {
   static constexpr std::size_t kLeast = 64;
 
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
-  [[nodiscard]] std::size_t memory() const { return memory_; }
   /// Pages that are in memory stay there until others need room.
   void set_memory(std::size_t bytes) { memory_ = bytes; }
 

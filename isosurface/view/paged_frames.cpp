@@ -87,9 +87,8 @@ SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, Progress& pr
   const int least_class = std::max(1, diamonds_.view_class(request.pixels));
   split_pages_.forget(request.max_triangles.has_value());
   if (!request.max_triangles) return {.error_class = least_class};
-  const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
   TriangleBudget<Sample> budget(diamonds_, split_pages_, surface_);
-  return budget.find(*request.max_triangles, least_class, Diamond({middle, middle, middle}), progress);
+  return budget.find(*request.max_triangles, least_class, diamonds_.root(), progress);
 }
 
 template <class Sample>

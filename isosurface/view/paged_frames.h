@@ -31,7 +31,7 @@ class PagedFrames {
 
   /// The surface of the last frame, clipped to the data's box.
   [[nodiscard]] const Contour& contour() const { return contour_; }
-  [[nodiscard]] ViewedDiamonds<Sample>& diamonds() { return diamonds_; }
+  [[nodiscard]] const ViewedDiamonds<Sample>& diamonds() const { return diamonds_; }
 
  private:
   /// Leaves the surface of the mesh in which nothing is split.

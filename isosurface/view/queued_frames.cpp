@@ -1,23 +1,12 @@
 #include "isosurface/view/queued_frames.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/base/assert.h"
 
 namespace adamas {
-
-namespace {
-
-/// The split vertex of the diamond in which nothing is split yet.
-LatticePoint root_point() {
-  const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
-  return {middle, middle, middle};
-}
-
-}  // namespace
 
 template <class Sample>
 QueuedFrames<Sample>::QueuedFrames(StoredPages<OrderedWord<Sample>>& pages)
@@ -62,7 +51,7 @@ void QueuedFrames<Sample>::set_contour(double isovalue) {
   isovalue_.reset();
   diamonds_.set_contour_in_view(isovalue);
   counted_.isovalue = isovalue;
-  triangles_ = counter_.triangles(Diamond(root_point()));
+  triangles_ = counter_.triangles(diamonds_.root());
   std::vector<LatticePoint> points;
   split_.for_each([&](LatticePoint p, std::int64_t) { points.push_back(p); });
   for (const LatticePoint p : points) {
@@ -77,7 +66,7 @@ template <class Sample>
 void QueuedFrames<Sample>::forget_splits() {
   mesh_ = IndexedHierarchy(diamonds_.domain(), diamonds_.lods());
   split_.clear();
-  triangles_ = counter_.triangles(Diamond(root_point()));
+  triangles_ = counter_.triangles(diamonds_.root());
 }
 
 template <class Sample>

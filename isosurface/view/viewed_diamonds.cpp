@@ -1,7 +1,6 @@
 #include "isosurface/view/viewed_diamonds.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 

@@ -37,10 +37,7 @@ class StoreFramesOf final : public StoreFrames {
     }
   }
   [[nodiscard]] PageCounts counts() const override { return pages_.counts(); }
-  [[nodiscard]] Box3 data_box() const override {
-    const StoredDiamonds<Sample>& diamonds = frames_.diamonds();
-    return {diamonds.domain().box().min, diamonds.domain().position(diamonds.last_sample())};
-  }
+  [[nodiscard]] Box3 data_box() const override { return frames_.diamonds().data_box(); }
 
  private:
   Frame found(const FrameRequest& request) {
@@ -57,7 +54,7 @@ class StoreFramesOf final : public StoreFrames {
   }
 
   StoredPages<OrderedWord<Sample>> pages_;
-  mutable PagedFrames<Sample> frames_;
+  PagedFrames<Sample> frames_;
 };
 
 }  // namespace
