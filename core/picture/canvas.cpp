@@ -305,4 +305,11 @@ std::string Canvas::finish(std::string_view title) {
   return std::move(p.bytes);
 }
 
+void write_png(const std::filesystem::path& path, const Raster& raster) {
+  const double width = raster.width(), height = raster.height();
+  Canvas canvas(PictureFormat::kPng, width, height);
+  canvas.image(raster, {{0, 0}, {width, height}});
+  write_bytes(path, canvas.finish(""));
+}
+
 }  // namespace adamas

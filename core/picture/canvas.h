@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -70,5 +71,8 @@ class Canvas {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// Writes a picture of pixels as .png. Throws Error where that cannot be written.
+void write_png(const std::filesystem::path& path, const Raster& raster);
 
 }  // namespace adamas

@@ -37,6 +37,30 @@ double lab_distance(const LabColour& p, const LabColour& q) {
                    (p.b - q.b) * (p.b - q.b));
 }
 
+/// A map of others, by colours at equal distances: 0xrrggbb.
+struct KnownMap {
+  std::string name;
+  std::vector<std::uint32_t> colours;
+};
+
+const std::vector<KnownMap>& known_maps() {
+  static const std::vector<KnownMap> kMaps{
+      {"viridis",
+       {0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e, 0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725}},
+      {"magma",
+       {0x000004, 0x180f3d, 0x440f76, 0x721f81, 0x9e2f7f, 0xcd4071, 0xf1605d, 0xfd9668, 0xfeca8d, 0xfcfdbf}},
+      {"inferno",
+       {0x000004, 0x1b0c41, 0x4a0c6b, 0x781c6d, 0xa52c60, 0xcf4446, 0xed6925, 0xfb9b06, 0xf7d13d, 0xfcffa4}},
+      {"plasma",
+       {0x0d0887, 0x46039f, 0x7201a8, 0x9c179e, 0xbd3786, 0xd8576b, 0xed7953, 0xfb9f3a, 0xfdca26, 0xf0f921}},
+      {"cividis",
+       {0x00204d, 0x00336f, 0x39486b, 0x575c6d, 0x707173, 0x8a8779, 0xa69d75, 0xc4b56c, 0xe4cf5b, 0xffea46}},
+      {"cool-warm",
+       {0x3b4cc0, 0x6282ea, 0x8db0fe, 0xb8d0f9, 0xdddddd, 0xf5c4ad, 0xf49a7b, 0xde604d, 0xb40426}},
+  };
+  return kMaps;
+}
+
 }  // namespace
 
 ColourMap::ColourMap(const std::vector<LabColour>& control_points, std::size_t arms) {
@@ -80,8 +104,28 @@ ColourMap ColourMap::diverging() {
 
 ColourMap ColourMap::grey() { return ColourMap({lch(12, 0, 0), lch(97, 0, 0)}, 1); }
 
+ColourMap::ColourMap(const std::vector<std::uint32_t>& colours) {
+  std::vector<LabColour> known;
+  for (const std::uint32_t rgb : colours) {
+    const auto part = [rgb](unsigned shift) { return ((rgb >> shift) & 0xffu) / 255.0; };
+    known.push_back(to_lab({part(16), part(8), part(0)}));
+  }
+  for (std::size_t k = 0; k <= kCells; ++k) {
+    const double place = static_cast<double>(k * (known.size() - 1)) / static_cast<double>(kCells);
+    const std::size_t span = std::min(static_cast<std::size_t>(place), known.size() - 2);
+    const double t = place - static_cast<double>(span);
+    const LabColour &p = known[span], &q = known[span + 1];
+    table_.push_back(from_lab(
+        {p.lightness + t * (q.lightness - p.lightness), p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)}));
+  }
+}
+
 const std::vector<std::string>& ColourMap::names() {
-  static const std::vector<std::string> kNames{"sequential", "diverging", "grey"};
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names{"sequential", "diverging", "grey"};
+    for (const KnownMap& map : known_maps()) names.push_back(map.name);
+    return names;
+  }();
   return kNames;
 }
 
@@ -89,7 +133,12 @@ ColourMap ColourMap::by_name(std::string_view name) {
   if (name == "sequential") return sequential();
   if (name == "diverging") return diverging();
   if (name == "grey") return grey();
-  fail("colour map: expected sequential, diverging or grey, found '{}'", name);
+  for (const KnownMap& map : known_maps()) {
+    if (map.name == name) return ColourMap(map.colours);
+  }
+  std::string all;
+  for (const std::string& known : names()) all += (all.empty() ? "" : ", ") + known;
+  fail("colour map: expected one of {}, found '{}'", all, name);
 }
 
 Colour ColourMap::at(double t) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,7 +9,8 @@
 
 namespace adamas {
 
-/// A continuous colour map, in equal steps of CIE L*a*b* distance.
+/// A continuous colour map. Those of our own are in equal steps of CIE L*a*b* distance; those that people
+/// know from elsewhere are linear in L*a*b* between some of their colours.
 class ColourMap {
  public:
   /// Dark violet over blue and green to yellow, lightness rising throughout: the default for fields.
@@ -17,7 +19,8 @@ class ColourMap {
   static ColourMap diverging();
   /// Dark to light grey, lightness linear.
   static ColourMap grey();
-  /// "sequential", "diverging" or "grey"; throws Error for another name.
+  /// Our own, then viridis, magma, inferno, plasma (Smith and van der Walt 2015), cividis (Nunez, Anderton
+  /// and Renslow 2018) and cool-warm (Moreland 2009). Throws Error for another name than those of names().
   static ColourMap by_name(std::string_view name);
   static const std::vector<std::string>& names();
 
@@ -30,6 +33,7 @@ class ColourMap {
   /// `arms`: 1, or 2 for maps whose middle control point belongs in the middle; steps are equal within an
   /// arm.
   ColourMap(const std::vector<LabColour>& control_points, std::size_t arms);
+  explicit ColourMap(const std::vector<std::uint32_t>& colours);
   void append_arm(const std::vector<LabColour>& samples, std::size_t cells);
 
   std::vector<Colour> table_;

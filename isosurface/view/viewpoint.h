@@ -18,6 +18,8 @@ struct Viewpoint {
   double height = 0;
   double near = 1e-3;  ///< what is nearer to the eye than this along the line of sight is not shown
   std::int32_t width_pixels = 1024, height_pixels = 768;
+
+  bool operator==(const Viewpoint&) const = default;
 };
 
 /// A box of the frame that stands for what lies in it, by its centre and half of its sides.

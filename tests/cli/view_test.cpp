@@ -1,5 +1,6 @@
 // adamas view: frames of a flight, without a window.
 
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -84,6 +85,69 @@ TEST_F(ViewCommand, KeepsToItsLimits) {
   EXPECT_LE(read_json("g.json")["frames"][0]["largest_error_pixels"], 20);
 }
 
+TEST_F(ViewCommand, ShowsSeveralSurfacesColoursAndStates) {
+  const auto picture = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"--camera-path", "orbit:1", "--frames", "frames",
+                                 "--overwrite",   "--json",  "f.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const RunResult result = view(all);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read("frames/frame0001.png");
+  };
+  std::set<std::string> pictures{picture({})};
+  const auto triangles = read_json("f.json")["frames"][0]["triangles"].get<int>();
+  EXPECT_TRUE(pictures.insert(picture({"--isovalue", "40", "--opacity", "1", "--opacity", "0.4"})).second);
+  EXPECT_GT(read_json("f.json")["frames"][0]["triangles"], triangles);
+  EXPECT_TRUE(
+      pictures.insert(picture({"--colour-by", "b.adm", "--range", "0,100", "--field", "b.adm"})).second);
+  EXPECT_TRUE(pictures.insert(picture({"--plane", "x=19"})).second);
+  EXPECT_TRUE(pictures.insert(picture({"--edges"})).second);
+  EXPECT_TRUE(pictures.insert(picture({"--plain"})).second);
+  EXPECT_TRUE(pictures.insert(picture({"--shading", "sphere"})).second);
+  write("state.json", "{}");
+  EXPECT_NE(view({"--state", "state.json", "--json", "f.json"}).err.find("state.json: expected 'viewpoint'"),
+            std::string::npos);
+}
+
+TEST_F(ViewCommand, ShowsMeshesWithTheirFields) {
+  ASSERT_EQ(run({"generate", "scene", "sphere", "--dimensions", "12,12,12", "-o", "s.vtr"}).status, 0);
+  ASSERT_EQ(run({"resample", "s.vtr", "--interface-error", "3%", "-o", "s.vtu", "--save", "s.h5",
+                 "--interfaces-out", "s.vtp"})
+                .status,
+            0);
+  const auto picture = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"view",          file,      "--offscreen", "--size", "160,120",
+                                 "--camera-path", "orbit:1", "--frames",    "frames", "--overwrite"};
+    all.insert(all.end(), more.begin(), more.end());
+    const RunResult result = run(all);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read("frames/frame0001.png");
+  };
+  const std::string plain = picture("s.vtu", {});
+  EXPECT_EQ(plain, picture("s.h5", {})) << "the whole mesh is the one that was written";
+  EXPECT_NE(plain, picture("s.vtu", {"--field", "smooth", "--plane", "x=0.5"}));
+  EXPECT_NE(plain, picture("s.vtu", {"--hide", "ball", "--hide", "outside"}));
+  EXPECT_NE(plain, picture("b.adm", {"--isovalue", "80"}));
+  picture("s.vtp", {});
+  const auto failure = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"view", "s.vtu", "--offscreen", "--json", "f.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const RunResult result = run(all);
+    EXPECT_EQ(result.status, 1);
+    return result.err;
+  };
+  EXPECT_NE(failure({"--field", "none"}).find("--field: expected one of"), std::string::npos);
+  EXPECT_NE(failure({"--hide", "none"}).find("--hide: expected one of"), std::string::npos);
+}
+
+TEST_F(ViewCommand, NeedsADisplayForItsWindow) {
+  for (const char* variable : {"DISPLAY", "WAYLAND_DISPLAY"}) unsetenv(variable);
+  const RunResult result = run({"view", "b.adm"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("view: expected a display for a window, found none"), std::string::npos)
+      << result.err;
+}
+
 TEST_F(ViewCommand, TellsWhatIsWrong) {
   const auto expect = [this](const std::vector<std::string>& options, int status, const std::string& part) {
     const RunResult result = run(options);
@@ -101,6 +165,12 @@ TEST_F(ViewCommand, TellsWhatIsWrong) {
   expect({"view", "b.adm", "--isovalue", "80.5", "--offscreen"}, 2, "expected --frames or --json");
   expect(with({"--size", "4,4"}), 2, "from 16 to 8192");
   expect(with({"--pixels", "0"}), 2, "--pixels");
+  expect(with({"--opacity", "2"}), 2, "--opacity: expected a number above 0");
+  expect(with({"--opacity", "1", "--opacity", "1"}), 2, "--opacity: expected one for each --isovalue");
+  expect(with({"--range", "3,1"}), 2, "--range: expected a < b");
+  expect(with({"--origin", "0,0,0"}), 2, "expected both --origin and --normal");
+  expect(with({"--colour-by", "none.adm"}), 1, "none.adm: expected a store");
+  expect({"view", "b.adm", "--camera-path", "orbit:3"}, 2, "--camera-path: expected --offscreen as well");
   expect(with({"--camera-path", "none.txt"}), 1, "none.txt: expected a file of viewpoints or orbit:N");
   expect(with({"--camera-path", "orbit:0"}), 1, "expected a number of frames");
   expect({"view", "ball.raw", "--isovalue", "80.5", "--offscreen", "--json", "f.json"}, 1,

@@ -96,8 +96,8 @@ TEST(ColourMaps, DivergingMapIsLightestInTheMiddleAndSymmetric) {
   }
 }
 
-TEST(ColourMaps, EqualStepsLookEqual) {
-  for (const std::string& name : ColourMap::names()) {
+TEST(ColourMaps, EqualStepsOfOurOwnLookEqual) {
+  for (const char* name : {"sequential", "diverging", "grey"}) {
     const ColourMap map = ColourMap::by_name(name);
     double least = 1e9, greatest = 0;
     for (int i = 0; i < 256; ++i) {
@@ -105,6 +105,27 @@ TEST(ColourMaps, EqualStepsLookEqual) {
       least = std::min(least, step), greatest = std::max(greatest, step);
     }
     EXPECT_LT(greatest / least, 1.15) << name;
+  }
+}
+
+TEST(ColourMaps, KnownOnesHaveTheirColours) {
+  const auto near = [](const std::string& name, double t, const Colour& wanted) {
+    const Colour found = ColourMap::by_name(name).at(t);
+    EXPECT_LT(std::abs(found.r - wanted.r) + std::abs(found.g - wanted.g) + std::abs(found.b - wanted.b), 0.08)
+        << name << ' ' << t;
+  };
+  // As matplotlib and ParaView have them.
+  near("viridis", 0, {0.267, 0.005, 0.329});
+  near("viridis", 0.5, {0.128, 0.567, 0.551});
+  near("viridis", 1, {0.993, 0.906, 0.144});
+  near("magma", 0.5, {0.716, 0.215, 0.475});
+  near("inferno", 0.5, {0.736, 0.216, 0.330});
+  near("plasma", 0.5, {0.798, 0.280, 0.470});
+  near("cividis", 0.5, {0.486, 0.482, 0.472});
+  near("cool-warm", 0.5, {0.865, 0.865, 0.865});
+  for (const std::string& name : ColourMap::names()) {
+    const ColourMap map = ColourMap::by_name(name);
+    for (int i = 0; i <= 256; ++i) ASSERT_TRUE(in_gamut(map.at(i / 256.0))) << name;
   }
 }
 

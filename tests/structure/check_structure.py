@@ -16,7 +16,7 @@ MAY_INCLUDE = {
     "interfaces": ["core"],
     "isosurface": ["core"],
     "datasets": ["core"],
-    "viewer": ["core", "core/picture", "isosurface"],
+    "viewer": ["core", "core/io", "core/picture", "interfaces", "isosurface"],
     "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "viewer"],
     "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "viewer", "cli"],
 }
@@ -26,7 +26,7 @@ FOLDER_ORDER = {
     "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "library", "reference"],
     "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
-    "viewer": ["scene", "gl"],
+    "viewer": ["scene", "gl", "window"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.
@@ -38,9 +38,9 @@ OWNED = {
     r"Eigen/.*": ["interfaces", "tests"],
     r"OpenMesh/.*": ["interfaces", "tests"],
     r"tiffio\.h|zlib\.h|bzlib\.h|png\.h|hdf5\.h|expat\.h": ["core/io", "tests"],
-    r"epoxy/.*|GL/.*|EGL/.*": ["viewer", "tests"],
+    r"epoxy/.*|GL/.*|GLFW/.*|EGL/.*|imgui.*": ["viewer", "tests"],
     r"CLI/.*": ["cli", "tests"],
-    r"nlohmann/.*": ["cli", "tests"],
+    r"nlohmann/.*": ["viewer", "cli", "tests"],
 }
 LIGHT = [r"CLI/.*", r"nlohmann/.*"]
 # Headers that take seconds to compile: of the program's files, only these include them.

@@ -1,0 +1,161 @@
+"""The window of `adamas view`, with a real mouse and keys: on a screen that is none, by Xvfb and xdotool.
+
+Usage: window_events.py ADAMAS. Exits with 77 where there is no Xvfb or xdotool."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+SKIPPED = 77
+
+
+def wait_for(what, fails, seconds=120):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if what():
+            return
+        time.sleep(0.1)
+    sys.exit(f"window: {fails}")
+
+
+class Screen:
+    """A screen without a device."""
+
+    def __init__(self):
+        read, write = os.pipe()
+        self.process = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1000x700x24", "-nolisten", "tcp"],
+                                        pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as number:
+            self.display = ":" + number.readline().strip()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+
+
+class Window:
+    """The program on that screen, in a folder of its own."""
+
+    def __init__(self, adamas, screen, folder, *arguments):
+        self.folder = folder
+        self.environment = {**os.environ, "DISPLAY": screen.display, "XDG_STATE_HOME": os.path.join(folder, "state"), "LIBGL_ALWAYS_SOFTWARE": "1"}
+        self.process = subprocess.Popen([adamas, "view", *arguments, "--size", "900,600"], cwd=folder, env=self.environment,
+                                        stderr=subprocess.PIPE, text=True)
+        wait_for(lambda: self.process.poll() is not None or self.do("search", "--name", "adamas", fails=False), "no window came")
+
+    def do(self, *arguments, fails=True):
+        found = subprocess.run(["xdotool", *arguments], env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+        if fails and found.returncode != 0:
+            sys.exit(f"window: xdotool {' '.join(arguments)} failed")
+        return found.returncode == 0
+
+    def pictures(self):
+        return sorted(name for name in os.listdir(self.folder) if name.startswith("adamas-") and name.endswith(".png"))
+
+    def screenshot(self):
+        """The picture after all that was done before: keys are answered in their order."""
+        before = len(self.pictures())
+        for _ in range(12):
+            # A window that has just come may not listen yet.
+            self.do("key", "F12")
+            end = time.monotonic() + 10
+            while time.monotonic() < end and self.process.poll() is None:
+                if len(self.pictures()) > before:
+                    with open(os.path.join(self.folder, self.pictures()[-1]), "rb") as file:
+                        return file.read()
+                time.sleep(0.05)
+        if self.process.poll() is not None:
+            sys.exit(f"window: it ended: {self.process.stderr.read()}")
+        return sys.exit(f"window: no screenshot after {before} others")
+
+    def settled(self):
+        """Screenshots until two are the same."""
+        last = self.screenshot()
+        for _ in range(60):
+            now = self.screenshot()
+            if now == last:
+                return now
+            last = now
+        return sys.exit("window: the picture does not settle")
+
+    def drag(self, button, x, y, to_x, to_y):
+        self.do("mousemove", str(x), str(y))
+        time.sleep(0.2)
+        self.do("mousedown", str(button))
+        for n in range(1, 5):
+            time.sleep(0.1)
+            self.do("mousemove", str(x + (to_x - x) * n // 4), str(y + (to_y - y) * n // 4))
+        time.sleep(0.2)
+        self.do("mouseup", str(button))
+
+    def end(self):
+        self.do("key", "Escape")
+        wait_for(lambda: self.process.poll() is not None, "Escape does not end it")
+        error = self.process.stderr.read()
+        if self.process.returncode != 0:
+            sys.exit(f"window: it ended with {self.process.returncode}: {error}")
+
+
+def check(holds, what):
+    if not holds:
+        sys.exit(f"window: {what}")
+
+
+def try_mouse_and_keys(window):
+    first = window.settled()
+    window.drag(1, 600, 300, 660, 330)
+    turned = window.settled()
+    check(turned != first, "the left button turns nothing")
+    window.do("mousemove", "600", "300", "click", "4", "click", "4")
+    zoomed = window.settled()
+    check(zoomed != turned, "the wheel zooms nothing")
+    window.do("key", "e")
+    check(window.settled() != zoomed, "E shows no edges")
+    window.do("key", "p")
+    window.do("key", "9")
+    window.do("key", "5")
+    window.settled()
+
+
+def run(adamas):
+    with tempfile.TemporaryDirectory() as folder, Screen() as screen:
+        def adamas_in_folder(*arguments):
+            subprocess.run([adamas, *arguments, "-q"], cwd=folder, check=True)
+
+        adamas_in_folder("generate", "buckyball", "--dimensions", "32", "-o", "ball.vti")
+        adamas_in_folder("store", "ball.vti", "-o", "ball.adm")
+        window = Window(adamas, screen, folder, "ball.adm", "--isovalue", "80")
+        try_mouse_and_keys(window)
+        window.end()
+        with open(os.path.join(folder, "state", "adamas", "view.json"), encoding="utf-8") as file:
+            state = json.load(file)[0]["state"]
+        check(state["edges"] and state["cut"]["on"], "what the keys did is not remembered")
+        check(state["viewpoint"]["height"] > 0, "the projection is not remembered")
+        # It goes on from there, and damage is told, not died of.
+        window = Window(adamas, screen, folder, "ball.adm")
+        window.settled()
+        os.truncate(os.path.join(folder, "ball.adm"), 300)
+        window.do("key", "3")
+        window.do("key", "e")
+        window.settled()
+        window.end()
+
+
+def main():
+    if not (shutil.which("Xvfb") and shutil.which("xdotool")):
+        print("window: no Xvfb or xdotool")
+        return SKIPPED
+    run(os.path.abspath(sys.argv[1]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

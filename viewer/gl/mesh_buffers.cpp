@@ -1,0 +1,160 @@
+#include "viewer/gl/mesh_buffers.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <span>
+
+#include "core/base/error.h"
+#include "viewer/gl/range_allocator.h"
+
+namespace adamas {
+
+namespace {
+
+/// Of a block, at least: 8 MiB of vertices and as many of indices.
+constexpr std::size_t kBlockVertices = std::size_t{1} << 18, kBlockIndices = std::size_t{1} << 21;
+/// Pictures that a device may still be at work on.
+constexpr std::uint64_t kPicturesInFlight = 3;
+
+constexpr GLbitfield kMapped = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+
+/// Memory of the device that the program writes into.
+class MappedBuffer {
+ public:
+  explicit MappedBuffer(std::size_t bytes) {
+    glCreateBuffers(1, &name_);
+    glNamedBufferStorage(name_, static_cast<GLsizeiptr>(bytes), nullptr, kMapped);
+    bytes_ =
+        static_cast<std::byte*>(glMapNamedBufferRange(name_, 0, static_cast<GLsizeiptr>(bytes), kMapped));
+    if (bytes_ == nullptr) {
+      glDeleteBuffers(1, &name_);
+      fail("pictures by OpenGL: no {} bytes for meshes can be had: is the graphics memory full?", bytes);
+    }
+  }
+  MappedBuffer(const MappedBuffer&) = delete;
+  MappedBuffer& operator=(const MappedBuffer&) = delete;
+  ~MappedBuffer() { glDeleteBuffers(1, &name_); }
+
+  [[nodiscard]] GLuint name() const { return name_; }
+  void write(std::size_t at, std::span<const std::byte> bytes) {
+    if (!bytes.empty()) std::memcpy(bytes_ + at, bytes.data(), bytes.size());
+  }
+
+ private:
+  GLuint name_ = 0;
+  std::byte* bytes_ = nullptr;
+};
+
+}  // namespace
+
+struct MeshBuffers::Block {
+  RangeAllocator vertices, indices;
+  MappedBuffer vertex_buffer, index_buffer;
+  GLuint array = 0;
+
+  Block(std::size_t vertex_count, std::size_t index_count)
+      : vertices(vertex_count),
+        indices(index_count),
+        vertex_buffer(vertex_count * sizeof(DrawnMesh::Vertex)),
+        index_buffer(index_count * sizeof(std::uint32_t)) {
+    struct Attribute {
+      GLint count;
+      std::size_t offset;
+    };
+    constexpr std::array<Attribute, 3> kAttributes{{{3, offsetof(DrawnMesh::Vertex, place)},
+                                                    {3, offsetof(DrawnMesh::Vertex, normal)},
+                                                    {2, offsetof(DrawnMesh::Vertex, front_value)}}};
+    glCreateVertexArrays(1, &array);
+    for (GLuint n = 0; n < kAttributes.size(); ++n) {
+      glEnableVertexArrayAttrib(array, n);
+      glVertexArrayAttribFormat(array, n, kAttributes[n].count, GL_FLOAT, GL_FALSE,
+                                static_cast<GLuint>(kAttributes[n].offset));
+      glVertexArrayAttribBinding(array, n, 0);
+    }
+    glVertexArrayVertexBuffer(array, 0, vertex_buffer.name(), 0, sizeof(DrawnMesh::Vertex));
+  }
+  Block(const Block&) = delete;
+  Block& operator=(const Block&) = delete;
+  ~Block() { glDeleteVertexArrays(1, &array); }
+};
+
+MeshBuffers::MeshBuffers() = default;
+
+MeshBuffers::~MeshBuffers() {
+  for (void* const fence : fences_) glDeleteSync(static_cast<GLsync>(fence));
+}
+
+std::uint32_t MeshBuffers::vertex_array(std::size_t block) const { return blocks_[block]->array; }
+
+std::uint32_t MeshBuffers::index_buffer(std::size_t block) const {
+  return blocks_[block]->index_buffer.name();
+}
+
+const MeshBuffers::Place& MeshBuffers::place(const SharedMesh& mesh) {
+  auto found = known_.find(mesh.get());
+  if (found == known_.end()) found = known_.emplace(mesh.get(), Known{mesh, copied(*mesh), picture_}).first;
+  found->second.last_picture = picture_;
+  return found->second.place;
+}
+
+MeshBuffers::Place MeshBuffers::copied(const DrawnMesh& mesh) {
+  bool is_found = false;
+  for (std::size_t n = 0; n < blocks_.size(); ++n) {
+    const Place place = place_in(n, mesh, is_found);
+    if (is_found) return place;
+  }
+  blocks_.push_back(std::make_unique<Block>(std::max(kBlockVertices, mesh.vertices.size()),
+                                            std::max(kBlockIndices, mesh.indices.size())));
+  return place_in(blocks_.size() - 1, mesh, is_found);
+}
+
+MeshBuffers::Place MeshBuffers::place_in(std::size_t block, const DrawnMesh& mesh, bool& is_found) {
+  Block& into = *blocks_[block];
+  const auto vertices = into.vertices.take(mesh.vertices.size());
+  if (!vertices) return {};
+  const auto indices = into.indices.take(mesh.indices.size());
+  if (!indices) {
+    into.vertices.give_back(*vertices, mesh.vertices.size());
+    return {};
+  }
+  is_found = true;
+  into.vertex_buffer.write(*vertices * sizeof(DrawnMesh::Vertex), std::as_bytes(std::span(mesh.vertices)));
+  into.index_buffer.write(*indices * sizeof(std::uint32_t), std::as_bytes(std::span(mesh.indices)));
+  copied_bytes_ +=
+      mesh.vertices.size() * sizeof(DrawnMesh::Vertex) + mesh.indices.size() * sizeof(std::uint32_t);
+  return {block, static_cast<std::uint32_t>(*vertices), static_cast<std::uint32_t>(*indices),
+          static_cast<std::uint32_t>(mesh.indices.size())};
+}
+
+void MeshBuffers::begin_picture() {
+  ++picture_;
+  if (fences_.size() >= kPicturesInFlight) {
+    constexpr GLuint64 kLong = 10'000'000'000;  // nanoseconds
+    const auto oldest = static_cast<GLsync>(fences_.front());
+    glClientWaitSync(oldest, GL_SYNC_FLUSH_COMMANDS_BIT, kLong);
+    glDeleteSync(oldest);
+    fences_.erase(fences_.begin());
+  }
+  std::erase_if(known_, [&](const auto& entry) {
+    const Known& known = entry.second;
+    if (known.last_picture + kPicturesInFlight >= picture_) return false;
+    Block& block = *blocks_[known.place.block];
+    block.vertices.give_back(known.place.first_vertex, known.mesh->vertices.size());
+    block.indices.give_back(known.place.first_index, known.mesh->indices.size());
+    return true;
+  });
+  // The last blocks go where they are empty; others keep their numbers.
+  const auto is_empty = [](const Block& block) {
+    return block.vertices.free_size() == block.vertices.size() &&
+           block.indices.free_size() == block.indices.size();
+  };
+  while (blocks_.size() > 1 && is_empty(*blocks_.back())) blocks_.pop_back();
+}
+
+void MeshBuffers::end_picture() { fences_.push_back(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)); }
+
+}  // namespace adamas

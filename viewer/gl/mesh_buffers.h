@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "viewer/scene/drawn_mesh.h"
+
+namespace adamas {
+
+/// The memory of a graphics device for meshes: large blocks that stay mapped, of which meshes take parts. For
+/// the OpenGL context that is current.
+class MeshBuffers {
+ public:
+  MeshBuffers();
+  ~MeshBuffers();
+  MeshBuffers(const MeshBuffers&) = delete;
+  MeshBuffers& operator=(const MeshBuffers&) = delete;
+
+  /// Where a mesh lies.
+  struct Place {
+    std::size_t block;
+    std::uint32_t first_vertex, first_index, index_count;
+  };
+  /// Copies a mesh that is not there yet. Throws Error where there is no memory for it.
+  const Place& place(const SharedMesh& mesh);
+  /// Begins a picture: what was in none of the last few ones gives up its memory, as soon as the device has
+  /// done with it.
+  void begin_picture();
+  /// Ends it, after the last command that reads meshes.
+  void end_picture();
+
+  /// The vertex array of a block: attributes 0 to 2 are place, normal and values.
+  [[nodiscard]] std::uint32_t vertex_array(std::size_t block) const;
+  /// The buffer of its indices.
+  [[nodiscard]] std::uint32_t index_buffer(std::size_t block) const;
+  [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
+  /// Bytes that were copied since this was made, and meshes that are there.
+  [[nodiscard]] std::uint64_t copied_bytes() const { return copied_bytes_; }
+  [[nodiscard]] std::size_t meshes() const { return known_.size(); }
+
+ private:
+  struct Block;
+  struct Known {
+    SharedMesh mesh;  ///< held, so that no other one gets its address
+    Place place;
+    std::uint64_t last_picture;
+  };
+
+  Place copied(const DrawnMesh& mesh);
+  Place place_in(std::size_t block, const DrawnMesh& mesh, bool& is_found);
+
+  std::vector<std::unique_ptr<Block>> blocks_;
+  std::unordered_map<const DrawnMesh*, Known> known_;
+  std::uint64_t picture_ = 0;
+  std::vector<void*> fences_;  ///< of the last pictures
+  std::uint64_t copied_bytes_ = 0;
+};
+
+}  // namespace adamas

@@ -1,0 +1,390 @@
+#include "viewer/gl/renderer.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "core/base/error.h"
+#include "core/picture/colour_map.h"
+#include "viewer/gl/mesh_buffers.h"
+#include "viewer/gl/shaders.h"
+
+namespace adamas {
+
+namespace {
+
+using Matrix = std::array<float, 16>;  ///< by columns
+
+constexpr GLsizei kMapColours = 256;
+
+// As the shaders have them.
+struct Draw {
+  std::array<float, 4> origin;
+  std::array<std::uint32_t, 4> style;  ///< its number, whether the mesh is clipped
+};
+struct Style {
+  std::array<float, 4> front, back, range;
+  std::array<std::uint32_t, 4> flags;  ///< coloured by value, flat
+};
+/// As OpenGL has it for indirect drawing.
+struct Command {
+  std::uint32_t count, instances, first_index, base_vertex, base_instance;
+};
+
+GLuint compiled(GLenum kind, std::string_view source) {
+  const GLuint shader = glCreateShader(kind);
+  const char* const text = source.data();
+  const auto length = static_cast<GLint>(source.size());
+  glShaderSource(shader, 1, &text, &length);
+  glCompileShader(shader);
+  GLint done = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
+  if (done == GL_FALSE) {
+    std::array<char, 1024> log{};
+    glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    fail("pictures by OpenGL: a shader was refused: {}", log.data());
+  }
+  return shader;
+}
+
+GLuint linked_program() {
+  const GLuint program = glCreateProgram();
+  for (const auto& [kind, source] :
+       {std::pair{GL_VERTEX_SHADER, kVertexShader}, std::pair{GL_FRAGMENT_SHADER, kFragmentShader}}) {
+    const GLuint shader = compiled(static_cast<GLenum>(kind), source);
+    glAttachShader(program, shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(program);
+  GLint done = GL_FALSE;
+  glGetProgramiv(program, GL_LINK_STATUS, &done);
+  if (done == GL_FALSE) fail("pictures by OpenGL: the shaders do not fit together");
+  return program;
+}
+
+/// The directions of the view, and where the target lies in it.
+Matrix view_matrix(const Viewpoint& viewpoint) {
+  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
+             right = normalized(cross(forward, viewpoint.up)), up = cross(right, forward);
+  const Vec3 eye = viewpoint.eye - viewpoint.target;
+  const std::array<Vec3, 3> rows{right, up, -forward};
+  Matrix m{};
+  for (std::size_t r = 0; r < 3; ++r) {
+    m[r] = static_cast<float>(rows[r].x);
+    m[4 + r] = static_cast<float>(rows[r].y);
+    m[8 + r] = static_cast<float>(rows[r].z);
+    m[12 + r] = static_cast<float>(-dot(rows[r], eye));
+  }
+  m[15] = 1;
+  return m;
+}
+
+Matrix picture_matrix(const Viewpoint& viewpoint, double far) {
+  const double near = viewpoint.near,
+               aspect = static_cast<double>(viewpoint.width_pixels) / viewpoint.height_pixels;
+  Matrix m{};
+  if (viewpoint.height > 0) {
+    m[0] = static_cast<float>(2 / (aspect * viewpoint.height));
+    m[5] = static_cast<float>(2 / viewpoint.height);
+    m[10] = static_cast<float>(-2 / (far - near));
+    m[14] = static_cast<float>(-(far + near) / (far - near));
+    m[15] = 1;
+    return m;
+  }
+  const double scale = 1 / std::tan(viewpoint.field_of_view / 2);
+  m[0] = static_cast<float>(scale / aspect);
+  m[5] = static_cast<float>(scale);
+  m[10] = static_cast<float>(-(far + near) / (far - near));
+  m[11] = -1;
+  m[14] = static_cast<float>(-2 * far * near / (far - near));
+  return m;
+}
+
+/// How far the parts reach behind the near plane along the line of sight.
+double far_plane(const Viewpoint& viewpoint, std::span<const DrawnPart> parts) {
+  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
+  double far = 2 * viewpoint.near;
+  for (const DrawnPart& part : parts) {
+    if (part.mesh->vertices.empty()) continue;
+    for (const Vec3& corner : part.mesh->box.corners())
+      far = std::max(far, 1.01 * dot(corner - viewpoint.eye, forward));
+  }
+  return far;
+}
+
+std::array<float, 4> in_single(const Colour& colour, double opacity) {
+  return {static_cast<float>(colour.r), static_cast<float>(colour.g), static_cast<float>(colour.b),
+          static_cast<float>(opacity)};
+}
+
+std::array<float, 4> in_single(const Vec3& v, double last) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
+          static_cast<float>(last)};
+}
+
+Style style_of(const PartStyle& style) {
+  return {in_single(style.front, style.opacity),
+          in_single(style.back, style.opacity),
+          {static_cast<float>(style.low), static_cast<float>(style.high), 0, 0},
+          {style.is_coloured_by_value ? 1u : 0u, style.is_flat ? 1u : 0u, 0, 0}};
+}
+
+/// A buffer that is filled anew for each picture.
+class StreamBuffer {
+ public:
+  StreamBuffer() { glCreateBuffers(1, &name_); }
+  StreamBuffer(const StreamBuffer&) = delete;
+  StreamBuffer& operator=(const StreamBuffer&) = delete;
+  ~StreamBuffer() { glDeleteBuffers(1, &name_); }
+
+  [[nodiscard]] GLuint name() const { return name_; }
+  template <class T>
+  void fill(const std::vector<T>& values) const {
+    // At least one, since empty buffers cannot be bound.
+    const T none{};
+    glNamedBufferData(name_, static_cast<GLsizeiptr>(std::max<std::size_t>(1, values.size()) * sizeof(T)),
+                      values.empty() ? &none : values.data(), GL_STREAM_DRAW);
+  }
+
+ private:
+  GLuint name_ = 0;
+};
+
+bool is_transparent(const DrawnPart& part) { return part.style.opacity < 1 && !part.mesh->is_lines; }
+
+/// Triangles of transparent parts, from far to near.
+class SortedTriangles {
+ public:
+  SortedTriangles(std::span<const DrawnPart> parts, const Viewpoint& viewpoint) {
+    const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (!is_transparent(parts[p])) continue;
+      const DrawnMesh& mesh = *parts[p].mesh;
+      const auto origin = static_cast<float>(dot(mesh.origin - viewpoint.eye, forward));
+      const auto [fx, fy, fz] = std::array{static_cast<float>(forward.x), static_cast<float>(forward.y),
+                                           static_cast<float>(forward.z)};
+      for (std::size_t t = 0; 3 * t + 2 < mesh.indices.size(); ++t) {
+        float depth = 3 * origin;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const auto& place = mesh.vertices[mesh.indices[3 * t + c]].place;
+          depth += fx * place[0] + fy * place[1] + fz * place[2];
+        }
+        triangles_.push_back({depth, static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(t)});
+      }
+    }
+    std::ranges::stable_sort(triangles_, std::greater<>{}, &Triangle::depth);
+  }
+
+  struct Triangle {
+    float depth;
+    std::uint32_t part, triangle;
+  };
+  [[nodiscard]] const std::vector<Triangle>& all() const { return triangles_; }
+
+ private:
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace
+
+struct Renderer::Objects {
+  GLuint program = linked_program();
+  GLuint map_texture = 0;
+  std::string map_name;
+  MeshBuffers meshes;
+  StreamBuffer draws, styles, commands, numbers, sorted_indices;
+  std::vector<MeshBuffers::Place> places;  ///< of the parts of the picture
+  DrawFigures figures;
+
+  Objects() {
+    glCreateTextures(GL_TEXTURE_1D, 1, &map_texture);
+    glTextureStorage1D(map_texture, 1, GL_RGBA8, kMapColours);
+    glTextureParameteri(map_texture, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(map_texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  }
+  Objects(const Objects&) = delete;
+  Objects& operator=(const Objects&) = delete;
+  ~Objects() {
+    glDeleteProgram(program);
+    glDeleteTextures(1, &map_texture);
+  }
+
+  void set_colour_map(const std::string& name) {
+    if (name == map_name) return;
+    const ColourMap map = ColourMap::by_name(name);
+    std::vector<std::array<std::uint8_t, 4>> colours;
+    for (GLsizei n = 0; n < kMapColours; ++n) {
+      const auto [r, g, b] = to_bytes(map.at(n / static_cast<double>(kMapColours - 1)));
+      colours.push_back({r, g, b, 255});
+    }
+    glTextureSubImage1D(map_texture, 0, 0, kMapColours, GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
+    map_name = name;
+  }
+
+  /// Copies what is new, and tells the shaders where each mesh lies and how it looks.
+  void take_parts(const PictureContents& contents) {
+    std::vector<Draw> all_draws;
+    std::vector<Style> all_styles;
+    places.clear();
+    for (const DrawnPart& part : contents.parts) {
+      places.push_back(meshes.place(part.mesh));
+      all_draws.push_back(
+          {in_single(part.mesh->origin - contents.viewpoint.target, 0),
+           {static_cast<std::uint32_t>(all_styles.size()), part.style.is_clipped ? 1u : 0u, 0, 0}});
+      all_styles.push_back(style_of(part.style));
+    }
+    draws.fill(all_draws);
+    styles.fill(all_styles);
+    std::vector<std::uint32_t> all_numbers(std::max<std::size_t>(1, contents.parts.size()));
+    std::iota(all_numbers.begin(), all_numbers.end(), 0u);
+    numbers.fill(all_numbers);
+    for (std::size_t block = 0; block < meshes.blocks(); ++block) {
+      const GLuint array = meshes.vertex_array(block);
+      // One number for each command, by way of an instance.
+      glEnableVertexArrayAttrib(array, 3);
+      glVertexArrayAttribIFormat(array, 3, 1, GL_UNSIGNED_INT, 0);
+      glVertexArrayAttribBinding(array, 3, 1);
+      glVertexArrayBindingDivisor(array, 1, 1);
+      glVertexArrayVertexBuffer(array, 1, numbers.name(), 0, sizeof(std::uint32_t));
+    }
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, draws.name());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, styles.name());
+  }
+
+  [[nodiscard]] Command command(std::size_t part) const {
+    const MeshBuffers::Place& place = places[part];
+    return {place.index_count, 1, place.first_index, place.first_vertex, static_cast<std::uint32_t>(part)};
+  }
+
+  /// Draws the parts that `chosen` accepts, by one command for each block.
+  template <class Chosen>
+  void draw_parts(std::span<const DrawnPart> parts, GLenum mode, Chosen&& chosen) {
+    for (std::size_t block = 0; block < meshes.blocks(); ++block) {
+      std::vector<Command> all;
+      for (std::size_t p = 0; p < parts.size(); ++p) {
+        if (places[p].block == block && places[p].index_count > 0 && chosen(parts[p]))
+          all.push_back(command(p));
+      }
+      if (all.empty()) continue;
+      commands.fill(all);
+      glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.name());
+      const GLuint array = meshes.vertex_array(block);
+      glVertexArrayElementBuffer(array, meshes.index_buffer(block));
+      glBindVertexArray(array);
+      glMultiDrawElementsIndirect(mode, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(all.size()), 0);
+      ++figures.draw_calls;
+    }
+  }
+
+  /// Draws transparent triangles in their order, as many by one command as follow each other in a part.
+  void draw_transparent(const PictureContents& contents) {
+    if (std::ranges::none_of(contents.parts, is_transparent)) return;
+    const SortedTriangles sorted(contents.parts, contents.viewpoint);
+    std::vector<std::uint32_t> indices;
+    for (const auto& each : sorted.all()) {
+      const auto& from = contents.parts[each.part].mesh->indices;
+      for (std::size_t c = 0; c < 3; ++c) indices.push_back(from[3 * std::size_t{each.triangle} + c]);
+    }
+    sorted_indices.fill(indices);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glDepthMask(GL_FALSE);
+    const auto& all = sorted.all();
+    for (std::size_t begin = 0; begin < all.size();) {
+      std::size_t end = begin + 1;
+      while (end < all.size() && all[end].part == all[begin].part) ++end;
+      const MeshBuffers::Place& place = places[all[begin].part];
+      const GLuint array = meshes.vertex_array(place.block);
+      glVertexArrayElementBuffer(array, sorted_indices.name());
+      glBindVertexArray(array);
+      const std::uintptr_t offset = 3 * begin * sizeof(std::uint32_t);
+      glDrawElementsInstancedBaseVertexBaseInstance(
+          GL_TRIANGLES, static_cast<GLsizei>(3 * (end - begin)), GL_UNSIGNED_INT,
+          reinterpret_cast<const void*>(offset),  // NOLINT(performance-no-int-to-ptr): OpenGL's way
+          1, static_cast<GLint>(place.first_vertex), all[begin].part);
+      ++figures.draw_calls;
+      begin = end;
+    }
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+  }
+
+  void set_view(const PictureContents& contents, const Viewpoint& viewpoint) const {
+    glUseProgram(program);
+    glUniformMatrix4fv(0, 1, GL_FALSE, view_matrix(viewpoint).data());
+    glUniformMatrix4fv(1, 1, GL_FALSE,
+                       picture_matrix(viewpoint, far_plane(viewpoint, contents.parts)).data());
+    const Plane plane = contents.clip.value_or(Plane{{}, {}});
+    glUniform4fv(2, 1, in_single(plane.normal, dot(plane.normal, viewpoint.target - plane.origin)).data());
+    glUniform1i(3, contents.shading == Shading::kSphere ? 1 : 0);
+    glUniform1i(4, viewpoint.height > 0 ? 1 : 0);
+    glUniform1i(5, 0);
+    glBindTextureUnit(0, map_texture);
+  }
+
+  void draw_all(const PictureContents& contents) {
+    // Filled areas a little behind, so that lines upon them are seen.
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1, 1);
+    draw_parts(contents.parts, GL_TRIANGLES,
+               [](const DrawnPart& part) { return !part.mesh->is_lines && !is_transparent(part); });
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    glUniform1i(5, 1);
+    draw_parts(contents.parts, GL_TRIANGLES, [](const DrawnPart& part) {
+      return !part.mesh->is_lines && !is_transparent(part) && part.style.has_edges;
+    });
+    glUniform1i(5, 0);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    draw_parts(contents.parts, GL_LINES, [](const DrawnPart& part) { return part.mesh->is_lines; });
+    draw_transparent(contents);
+  }
+};
+
+Renderer::Renderer() : objects_(std::make_unique<Objects>()) {}
+
+Renderer::~Renderer() = default;
+
+DrawFigures Renderer::draw(const PictureContents& contents, std::uint32_t framebuffer, int width,
+                           int height) {
+  Objects& o = *objects_;
+  o.figures = {};
+  const std::uint64_t copied_before = o.meshes.copied_bytes();
+  Viewpoint viewpoint = contents.viewpoint;
+  viewpoint.width_pixels = width;
+  viewpoint.height_pixels = height;
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  glViewport(0, 0, width, height);
+  glEnable(GL_DEPTH_TEST);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  const Colour& background = contents.background;
+  glClearColor(static_cast<float>(background.r), static_cast<float>(background.g),
+               static_cast<float>(background.b), 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  o.meshes.begin_picture();
+  if (!contents.parts.empty()) {
+    o.set_colour_map(contents.colour_map);
+    o.take_parts(contents);
+    o.set_view(contents, viewpoint);
+    if (contents.clip) glEnable(GL_CLIP_DISTANCE0);
+    o.draw_all(contents);
+    glDisable(GL_CLIP_DISTANCE0);
+    glBindVertexArray(0);
+  }
+  o.meshes.end_picture();
+  if (const GLenum error = glGetError(); error != GL_NO_ERROR)
+    fail("pictures by OpenGL: a picture failed (error {:#x}): is the graphics memory full?", error);
+  for (const DrawnPart& part : contents.parts) {
+    if (!part.mesh->is_lines) o.figures.triangles += part.mesh->indices.size() / 3;
+  }
+  o.figures.copied_bytes = o.meshes.copied_bytes() - copied_before;
+  return o.figures;
+}
+
+}  // namespace adamas

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace adamas {
+
+/// What a key does in the window.
+enum class Action {
+  kViewFront,
+  kViewRight,
+  kViewTop,
+  kViewIsometric,
+  kProjection,
+  kShowAll,
+  kCameraMode,
+  kEdges,
+  kField,
+  kColourBar,
+  kColourMap,
+  kAxes,
+  kBox,
+  kShading,
+  kCut,
+  kCulledFrom,
+  kPanels,
+  kHelp,
+  kBookmark,
+  kNextBookmark,
+  kRecord,
+  kPlay,
+  kScreenshot,
+  kQuit,
+};
+
+struct KeyBinding {
+  Action action;
+  std::string_view key;  ///< as GLFW names it: a capital letter, a digit, "Enter", "Space", "F12", "Escape"
+  std::string_view what;
+};
+
+/// All keys, as the help shows them.
+inline constexpr std::array<KeyBinding, 24> kKeyBindings{{
+    {Action::kViewFront, "1", "View from the front, along y"},
+    {Action::kViewRight, "3", "View from the right, against x"},
+    {Action::kViewTop, "7", "View from above, against z"},
+    {Action::kViewIsometric, "9", "View from a corner"},
+    {Action::kProjection, "5", "Orthographic or perspective"},
+    {Action::kShowAll, "Enter", "Show all of the data"},
+    {Action::kCameraMode, "T", "Trackball, turntable, fly"},
+    {Action::kEdges, "E", "Edges of the mesh"},
+    {Action::kField, "S", "Next field of colours"},
+    {Action::kColourBar, "B", "Colour bar"},
+    {Action::kColourMap, "C", "Next colour map"},
+    {Action::kAxes, "X", "Axes"},
+    {Action::kBox, "G", "Box of the data"},
+    {Action::kShading, "L", "Lit, or shaded as a sphere"},
+    {Action::kCut, "P", "Plane of a cross section"},
+    {Action::kCulledFrom, "O", "Keep the mesh of this view, to look at it from elsewhere"},
+    {Action::kPanels, "Tab", "Panels"},
+    {Action::kHelp, "H", "This help"},
+    {Action::kBookmark, "M", "Keep this view as a bookmark"},
+    {Action::kNextBookmark, "N", "Go to the next bookmark"},
+    {Action::kRecord, "R", "Begin or end recording the camera's path"},
+    {Action::kPlay, "Space", "Play the recorded path, or turn"},
+    {Action::kScreenshot, "F12", "Screenshot"},
+    {Action::kQuit, "Escape", "End"},
+}};
+
+}  // namespace adamas

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adamas/progress.h"
+#include "core/geometry/vec3.h"
+#include "isosurface/storage/stored_pages.h"
+#include "viewer/scene/drawn_mesh.h"
+#include "viewer/scene/view_state.h"
+
+namespace adamas {
+
+/// What a file has to be looked at.
+struct DocumentFacts {
+  std::string name;                    ///< of the file
+  std::string summary;                 ///< its size in its own terms
+  Box3 box;                            ///< in space
+  std::vector<std::string> materials;  ///< of interfaces; none of a store
+  std::vector<Colour> material_colours;
+  std::vector<std::string> fields;       ///< that colours may show
+  bool has_isovalues = false;            ///< a store, whose surfaces are chosen
+  std::array<double, 2> value_range{};   ///< of a store's samples
+  std::vector<std::uint64_t> histogram;  ///< of some of them, in equal parts of the range
+};
+
+/// What the last update of a document came to.
+struct UpdateReport {
+  std::uint64_t triangles = 0, splits = 0, merges = 0;
+  double largest_error_pixels = 0;  ///< an estimate
+  double seconds = 0;               ///< to work it out, but for the normals of surfaces
+  double normal_seconds = 0;        ///< to work those out
+  bool is_current = true;           ///< it is what the state asks for
+  std::string problem;              ///< why it could not be had; empty: nothing
+};
+
+/// What is known of a place.
+struct Reading {
+  std::string material;         ///< empty: none
+  std::optional<double> value;  ///< of the chosen field, or of the samples
+  std::optional<double> error;  ///< of the interface or the isosurface there, an estimate, in units of length
+};
+
+/// An open file, as parts of pictures. What takes long goes on in a thread of its own: parts() never waits.
+class Document {
+ public:
+  virtual ~Document() = default;
+
+  [[nodiscard]] virtual const DocumentFacts& facts() const = 0;
+  /// What there is to be drawn, and asks for what the state wants where that is something else.
+  virtual std::vector<DrawnPart> parts(const ViewState& view, const DocumentState& state) = 0;
+  /// Waits until parts() gives what the state asks for, or there is a problem.
+  virtual void finish(const ViewState& view, const DocumentState& state) = 0;
+  [[nodiscard]] virtual UpdateReport report() const = 0;
+  /// What reading a store has met with until the last update.
+  [[nodiscard]] virtual PageCounts page_counts() const { return {}; }
+  /// The values at the ends of the colour map, where a field is chosen.
+  [[nodiscard]] virtual std::optional<std::array<double, 2>> colour_range(
+      const DocumentState& state) const = 0;
+  [[nodiscard]] virtual Reading at(const Vec3& place, const DocumentState& state) = 0;
+  /// What is shown of it at first.
+  [[nodiscard]] virtual DocumentState first_state() const = 0;
+};
+
+struct DocumentOptions {
+  std::size_t memory = std::size_t{256} << 20;  ///< bytes that decoded pages may take
+  std::string colour_by;                        ///< another store, whose values colour surfaces; empty: none
+};
+
+/// Opens a store, a resampled mesh, a saved hierarchy or interfaces. Throws Error for another file.
+std::unique_ptr<Document> open_document(const std::string& path, const DocumentOptions& options,
+                                        Progress& progress);
+
+}  // namespace adamas

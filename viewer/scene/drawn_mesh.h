@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "core/picture/colour.h"
+
+namespace adamas {
+
+/// Triangles, or lines, as a renderer takes them. One that was handed out never changes: what is to look
+/// different is made anew, so that a renderer knows by the address what it has already.
+struct DrawnMesh {
+  struct Vertex {
+    std::array<float, 3> place;   ///< relative to `origin`, so that single precision suffices
+    std::array<float, 3> normal;  ///< of length 1 to the front side; zero: that of the triangle
+    /// What a colour map shows on the front and on the back side; NaN: nothing, so that the side's colour is.
+    float front_value = std::numeric_limits<float>::quiet_NaN();
+    float back_value = std::numeric_limits<float>::quiet_NaN();
+  };
+
+  Vec3 origin;
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t>
+      indices;  ///< three for a triangle, counterclockwise from the front; two for a line
+  bool is_lines = false;
+  Box3 box;  ///< of all vertices, in the frame of the data
+};
+
+using SharedMesh = std::shared_ptr<const DrawnMesh>;
+
+/// How a mesh looks.
+struct PartStyle {
+  Colour front{0.93, 0.85, 0.71}, back{0.62, 0.45, 0.40};
+  double opacity = 1;  ///< 0 to 1
+  bool is_coloured_by_value = false;
+  double low = 0, high = 1;  ///< the values at the ends of the colour map
+  bool is_flat = false;      ///< not shaded: cross sections and lines
+  bool is_clipped = false;   ///< what lies in front of the picture's plane is cut away
+  bool has_edges = false;    ///< with the edges of its triangles
+};
+
+/// One thing in a picture.
+struct DrawnPart {
+  SharedMesh mesh;
+  PartStyle style;
+};
+
+}  // namespace adamas

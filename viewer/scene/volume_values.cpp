@@ -1,0 +1,100 @@
+#include "viewer/scene/volume_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "isosurface/extraction/lattice_samples.h"
+#include "isosurface/storage/restore.h"
+#include "isosurface/volume/samples.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t kMostOfSome = 1'000'000;
+
+template <class Sample>
+class ValuesOf final : public VolumeValues {
+ public:
+  ValuesOf(const std::string& path, std::size_t memory)
+      : memory_(memory), file_(path), pages_(file_, 0, memory), samples_(pages_) {}
+
+  [[nodiscard]] double at(const Vec3& in_space) override {
+    const VolumeGrid& grid = file_.header().grid;
+    const Vec3 offset = grid.in_frame(in_space) - grid.origin;
+    LatticePoint low{};
+    Vec3 part;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = offset[axis] / grid.spacing[axis];
+      const auto last = static_cast<double>(grid.dimensions[static_cast<std::size_t>(axis)] - 1);
+      // A little beyond is round-off.
+      if (!(place >= -1e-6 && place <= last + 1e-6)) return kNone;
+      const double below = std::clamp(std::floor(place), 0.0, std::max(0.0, last - 1));
+      low[axis] = static_cast<std::int32_t>(below);
+      part[axis] = std::clamp(place - below, 0.0, 1.0);
+    }
+    try {
+      return grid.value(between(low, part));
+    } catch (const PageLost&) {
+      return kNone;
+    }
+  }
+
+  [[nodiscard]] std::vector<double> some() override {
+    const VolumeGrid& grid = file_.header().grid;
+    int lod = 0;
+    while ((grid.samples() >> (3 * lod)) > kMostOfSome) ++lod;
+    std::vector<double> values;
+    const RestoredPart part = restored_part(grid, std::min(lod, samples_.lods()), std::nullopt, file_.name());
+    restore(
+        file_, 0, part, memory_,
+        [&](std::span<const std::byte> plane) {
+          for (std::size_t n = 0; n < plane.size() / sizeof(Sample); ++n) {
+            Sample sample;
+            std::memcpy(&sample, plane.data() + n * sizeof(Sample), sizeof(Sample));
+            const double value = grid.value(static_cast<double>(sample));
+            if (std::isfinite(value)) values.push_back(value);
+          }
+        },
+        SilentProgress::instance());
+    return values;
+  }
+
+  [[nodiscard]] const std::string& name() const override { return file_.name(); }
+
+ private:
+  double between(LatticePoint low, const Vec3& part) {
+    double sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      LatticePoint p = low;
+      double weight = 1;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int bit = (corner >> axis) & 1;
+        p[axis] += bit;
+        weight *= bit == 0 ? 1 - part[axis] : part[axis];
+      }
+      // Samples without weight need not exist, nor be numbers.
+      if (weight > 0) sum += weight * LatticeSamples<Sample>::value(samples_.word(p));
+    }
+    return sum;
+  }
+
+  std::size_t memory_;
+  StoreFile file_;
+  StoredPages<OrderedWord<Sample>> pages_;
+  LatticeSamples<Sample> samples_;
+};
+
+}  // namespace
+
+std::unique_ptr<VolumeValues> VolumeValues::open(const std::string& path, std::size_t memory) {
+  const SampleType type = StoreFile(path).header().grid.type;
+  return with_sample_type(type, [&](auto sample) -> std::unique_ptr<VolumeValues> {
+    return std::make_unique<ValuesOf<decltype(sample)>>(path, memory);
+  });
+}
+
+}  // namespace adamas

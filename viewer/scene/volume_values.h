@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// The values of a store at places, linear along each axis between samples.
+class VolumeValues {
+ public:
+  virtual ~VolumeValues() = default;
+
+  /// NaN where a place lies outside of the samples, or a page cannot be had.
+  [[nodiscard]] virtual double at(const Vec3& in_space) = 0;
+  /// Of one sample of every cube of 2^N a side, N as small as there are a million at most: those that are
+  /// finite.
+  [[nodiscard]] virtual std::vector<double> some() = 0;
+  [[nodiscard]] virtual const std::string& name() const = 0;
+
+  /// `memory`: bytes that decoded pages may take. Throws Error where the file is no store.
+  static std::unique_ptr<VolumeValues> open(const std::string& path, std::size_t memory);
+};
+
+}  // namespace adamas

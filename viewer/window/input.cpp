@@ -1,0 +1,89 @@
+#include "viewer/window/input.h"
+
+#include <cmath>
+
+#include "viewer/scene/camera_control.h"
+#include "viewer/scene/picking.h"
+
+namespace adamas {
+
+namespace {
+
+/// How near to the plane's handle the mouse takes it, and how far it may stray in a click, in pixels.
+constexpr double kHandleRadius = 14, kClickWay = 4;
+/// Steps of the wheel for a pixel of the right button.
+constexpr double kStepsPerPixel = 0.05;
+
+bool is_at_handle(const ViewSession& session, double x, double y) {
+  if (!session.state().cut.is_on) return false;
+  const auto handle = in_picture(session.state().viewpoint, session.cut_handle());
+  return handle && std::hypot((*handle)[0] - x, (*handle)[1] - y) < kHandleRadius;
+}
+
+}  // namespace
+
+void Input::press(MouseButton button, bool has_shift, double x, double y) {
+  x_ = x;
+  y_ = y;
+  way_ = 0;
+  if (button == MouseButton::kRight) {
+    drag_ = Drag::kZoom;
+  } else if (button == MouseButton::kMiddle || has_shift) {
+    drag_ = Drag::kPan;
+  } else {
+    drag_ = is_at_handle(session_, x, y) ? Drag::kCut : Drag::kTurn;
+  }
+}
+
+void Input::move(double x, double y) {
+  const double right = x - x_, down = y - y_;
+  x_ = x;
+  y_ = y;
+  if (drag_ == Drag::kNone) return;
+  way_ += std::hypot(right, down);
+  Viewpoint& viewpoint = session_.state().viewpoint;
+  switch (drag_) {
+    case Drag::kTurn:
+      viewpoint = rotated(viewpoint, session_.state().camera_mode, right, down);
+      break;
+    case Drag::kPan:
+      viewpoint = panned(viewpoint, right, down);
+      break;
+    case Drag::kZoom:
+      viewpoint = zoomed(viewpoint, -kStepsPerPixel * down);
+      break;
+    case Drag::kCut:
+      session_.drag_cut(right, down);
+      break;
+    case Drag::kNone:
+      break;
+  }
+}
+
+void Input::release(double x, double y) {
+  const bool is_click = drag_ == Drag::kTurn && way_ < kClickWay;
+  drag_ = Drag::kNone;
+  if (is_click) picked_ = session_.pick(x, y);
+}
+
+void Input::wheel(double steps) {
+  Viewpoint& viewpoint = session_.state().viewpoint;
+  viewpoint = zoomed(viewpoint, steps);
+}
+
+bool Input::key(std::string_view name) {
+  for (const KeyBinding& binding : kKeyBindings) {
+    if (binding.key != name) continue;
+    session_.act(binding.action);
+    return true;
+  }
+  return false;
+}
+
+void Input::fly(double forward, double right, double up, double seconds) {
+  if (session_.state().camera_mode != CameraMode::kFly) return;
+  Viewpoint& viewpoint = session_.state().viewpoint;
+  viewpoint = flown(viewpoint, seconds * forward, seconds * right, seconds * up);
+}
+
+}  // namespace adamas

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/picture/raster.h"
+#include "viewer/gl/renderer.h"
+#include "viewer/scene/view_session.h"
+
+namespace adamas {
+
+/// What the window would show of a session, its panels apart, without a window.
+class OffscreenPictures {
+ public:
+  /// The session must outlive this. Throws Error where there is no OpenGL 4.5, or no picture of this size.
+  OffscreenPictures(ViewSession& session, int width, int height);
+  ~OffscreenPictures();
+
+  /// What there is to be seen from a viewpoint, once it is worked out. Throws Error where that fails.
+  Raster draw(const Viewpoint& viewpoint);
+
+  // Of the last picture.
+  [[nodiscard]] const UpdateReport& report() const { return report_; }
+  [[nodiscard]] const DrawFigures& drawn() const { return drawn_; }
+  [[nodiscard]] double draw_seconds() const { return draw_seconds_; }
+  /// How OpenGL was had, and what draws.
+  [[nodiscard]] const std::string& drawn_by() const;
+
+ private:
+  struct Parts;
+
+  ViewSession& session_;
+  std::unique_ptr<Parts> parts_;
+  UpdateReport report_;
+  DrawFigures drawn_;
+  double draw_seconds_ = 0;
+};
+
+}  // namespace adamas

@@ -1,0 +1,376 @@
+#include "viewer/window/panels.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/picture/colour_map.h"
+#include "core/picture/ticks.h"
+#include "viewer/scene/camera_control.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::size_t kHistory = 240;
+
+float em() { return ImGui::GetFontSize(); }
+
+bool slider(const char* label, double& value, double least, double greatest, const char* format,
+            ImGuiSliderFlags flags = 0) {
+  return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &least, &greatest, format, flags);
+}
+
+void help_mark(const char* text) {
+  ImGui::SameLine();
+  ImGui::TextDisabled("(?)");
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(22 * em());
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+/// How many samples have which value, and where the isovalues are; a click or a drag moves the nearest one.
+void show_histogram(const DocumentFacts& facts, DocumentState& state) {
+  const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 5 * em()};
+  ImGui::InvisibleButton("histogram", size);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, IM_COL32(255, 255, 255, 255));
+  const std::uint64_t most = std::max<std::uint64_t>(1, *std::ranges::max_element(facts.histogram));
+  const auto parts = static_cast<float>(facts.histogram.size());
+  for (std::size_t n = 0; n < facts.histogram.size(); ++n) {
+    // Logarithms, since there is mostly one value of which there is most.
+    const double part =
+        std::log1p(static_cast<double>(facts.histogram[n])) / std::log1p(static_cast<double>(most));
+    const float left = at.x + size.x * static_cast<float>(n) / parts;
+    list.AddRectFilled({left, at.y + size.y * (1 - static_cast<float>(part))},
+                       {left + size.x / parts, at.y + size.y}, IM_COL32(130, 146, 168, 255));
+  }
+  const auto [least, greatest] = facts.value_range;
+  const double width = greatest > least ? greatest - least : 1;
+  for (const SurfaceState& surface : state.surfaces) {
+    const auto x = at.x + size.x * static_cast<float>((surface.isovalue - least) / width);
+    list.AddLine({x, at.y}, {x, at.y + size.y}, IM_COL32(214, 92, 16, 255), 2);
+  }
+  if (!ImGui::IsItemActive() || state.surfaces.empty()) return;
+  const double wanted = least + width * std::clamp((ImGui::GetIO().MousePos.x - at.x) / size.x, 0.0F, 1.0F);
+  std::ranges::min_element(state.surfaces, {}, [&](const SurfaceState& surface) {
+    return std::abs(surface.isovalue - wanted);
+  })->isovalue = wanted;
+}
+
+void show_surface(const DocumentFacts& facts, SurfaceState& surface, bool& is_removed) {
+  ImGui::Checkbox("##shown", &surface.is_shown);
+  ImGui::SameLine();
+  std::array<float, 3> colour{static_cast<float>(surface.colour.r), static_cast<float>(surface.colour.g),
+                              static_cast<float>(surface.colour.b)};
+  if (ImGui::ColorEdit3("##colour", colour.data(), ImGuiColorEditFlags_NoInputs))
+    surface.colour = {colour[0], colour[1], colour[2]};
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 1.8F * em());
+  const auto [least, greatest] = facts.value_range;
+  slider("##isovalue", surface.isovalue, least, greatest, "isovalue %.5g", ImGuiSliderFlags_NoRoundToFormat);
+  ImGui::SameLine();
+  is_removed = ImGui::SmallButton("x");
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+  slider("##opacity", surface.opacity, 0.05, 1, "opacity %.2f");
+}
+
+void show_surfaces(const DocumentFacts& facts, DocumentState& state) {
+  show_histogram(facts, state);
+  std::size_t removed = state.surfaces.size();
+  for (std::size_t n = 0; n < state.surfaces.size(); ++n) {
+    ImGui::PushID(static_cast<int>(n));
+    bool is_removed = false;
+    show_surface(facts, state.surfaces[n], is_removed);
+    if (is_removed) removed = n;
+    ImGui::PopID();
+  }
+  constexpr std::size_t kMostSurfaces = 8;
+  if (removed < state.surfaces.size() && state.surfaces.size() > 1)
+    state.surfaces.erase(state.surfaces.begin() + static_cast<std::ptrdiff_t>(removed));
+  if (state.surfaces.size() < kMostSurfaces && ImGui::Button("Another isovalue")) {
+    SurfaceState another = state.surfaces.back();
+    another.isovalue = 0.5 * (another.isovalue + facts.value_range[1]);
+    another.colour = {0.45, 0.62, 0.85};
+    another.opacity = 1;
+    // The one that lies outside is seen through.
+    state.surfaces.back().opacity = std::min(state.surfaces.back().opacity, 0.35);
+    state.surfaces.push_back(another);
+  }
+}
+
+void show_materials(const DocumentFacts& facts, DocumentState& state) {
+  if (ImGui::SmallButton("All")) state.hidden.clear();
+  ImGui::SameLine();
+  if (ImGui::SmallButton("None")) state.hidden = {facts.materials.begin(), facts.materials.end()};
+  for (std::size_t m = 0; m < facts.materials.size(); ++m) {
+    const std::string& name = facts.materials[m];
+    const Colour& colour = facts.material_colours[m];
+    ImGui::PushID(static_cast<int>(m));
+    bool is_shown = !state.hidden.contains(name);
+    if (ImGui::Checkbox("##shown", &is_shown)) {
+      if (is_shown) {
+        state.hidden.erase(name);
+      } else {
+        state.hidden.insert(name);
+      }
+    }
+    ImGui::SameLine();
+    ImGui::ColorButton(
+        "##colour",
+        {static_cast<float>(colour.r), static_cast<float>(colour.g), static_cast<float>(colour.b), 1},
+        ImGuiColorEditFlags_NoTooltip, {em(), em()});
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.c_str());
+    ImGui::PopID();
+  }
+}
+
+void show_field(const Document& document, DocumentState& state, ViewState& view) {
+  const DocumentFacts& facts = document.facts();
+  const std::string none = facts.materials.empty() ? "its colour" : "materials";
+  if (ImGui::BeginCombo("coloured by", state.field.empty() ? none.c_str() : state.field.c_str())) {
+    if (ImGui::Selectable(none.c_str(), state.field.empty())) state.field.clear();
+    for (const std::string& field : facts.fields) {
+      if (!ImGui::Selectable(field.c_str(), field == state.field)) continue;
+      state.field = field;
+      state.range.reset();
+    }
+    ImGui::EndCombo();
+  }
+  const auto range = document.colour_range(state);
+  if (!range) return;
+  if (ImGui::BeginCombo("colour map", view.colour_map.c_str())) {
+    for (const std::string& name : ColourMap::names()) {
+      if (ImGui::Selectable(name.c_str(), name == view.colour_map)) view.colour_map = name;
+    }
+    ImGui::EndCombo();
+  }
+  std::array<double, 2> ends = *range;
+  if (ImGui::InputScalarN("range", ImGuiDataType_Double, ends.data(), 2, nullptr, nullptr, "%.4g") &&
+      ends[0] < ends[1])
+    state.range = ends;
+  if (state.range) {
+    ImGui::SameLine();
+    if (ImGui::SmallButton("whole")) state.range.reset();
+  }
+}
+
+void show_document(const Document& document, DocumentState& state, ViewState& view) {
+  const DocumentFacts& facts = document.facts();
+  const std::size_t slash = facts.name.find_last_of('/');
+  const std::string name = slash == std::string::npos ? facts.name : facts.name.substr(slash + 1);
+  if (!ImGui::CollapsingHeader(name.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;
+  ImGui::TextDisabled("%s", facts.summary.c_str());
+  if (facts.has_isovalues) show_surfaces(facts, state);
+  if (!facts.materials.empty()) show_materials(facts, state);
+  if (!facts.fields.empty()) show_field(document, state, view);
+}
+
+void show_detail(ViewState& view) {
+  if (!ImGui::CollapsingHeader("Detail", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  slider("error", view.pixels, 0.25, 32, "%.2f pixels", ImGuiSliderFlags_Logarithmic);
+  help_mark(
+      "The greatest isosurface error as it is seen, an estimate of the distance to the surface of all "
+      "samples.");
+  const std::uint64_t least = 1000, most = 10'000'000;
+  ImGui::SliderScalar("triangles", ImGuiDataType_U64, &view.max_triangles, &least, &most, "%llu",
+                      ImGuiSliderFlags_Logarithmic);
+  help_mark("Never more triangles than these, whatever the error.");
+}
+
+void show_cut(ViewSession& session) {
+  if (!ImGui::CollapsingHeader("Plane", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  CutState& cut = session.state().cut;
+  bool is_on = cut.is_on;
+  if (ImGui::Checkbox("a plane", &is_on)) session.act(Action::kCut);
+  if (!cut.is_on) return;
+  ImGui::SameLine();
+  ImGui::Checkbox("cuts away", &cut.cuts_away);
+  ImGui::SameLine();
+  ImGui::Checkbox("section", &cut.shows_section);
+  constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0) ImGui::SameLine();
+    if (ImGui::Button(kNames[static_cast<std::size_t>(axis)])) {
+      cut.plane.normal = {};
+      cut.plane.normal[axis] = 1;
+    }
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("turn round")) cut.plane.normal = -cut.plane.normal;
+  ImGui::SameLine();
+  if (ImGui::Button("as I look"))
+    cut.plane.normal = normalized(session.state().viewpoint.eye - session.state().viewpoint.target);
+  const Box3 box = session.box();
+  const Vec3 normal = normalized(cut.plane.normal);
+  double low = 0, high = 0;
+  for (const Vec3& corner : box.corners()) {
+    const double along = dot(corner - box.center(), normal);
+    low = std::min(low, along);
+    high = std::max(high, along);
+  }
+  double place = dot(cut.plane.origin - box.center(), normal);
+  if (slider("place", place, low, high, "%.4g")) cut.plane.origin = box.center() + place * normal;
+}
+
+void show_camera(ViewSession& session, PanelState& panels) {
+  if (!ImGui::CollapsingHeader("View", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  ViewState& view = session.state();
+  int mode = static_cast<int>(view.camera_mode);
+  if (ImGui::Combo("mouse", &mode, "trackball\0turntable\0fly\0"))
+    view.camera_mode = static_cast<CameraMode>(mode);
+  bool is_parallel = view.viewpoint.height > 0;
+  if (ImGui::Checkbox("orthographic", &is_parallel)) session.act(Action::kProjection);
+  ImGui::SameLine();
+  ImGui::Checkbox("edges", &view.has_edges);
+  ImGui::SameLine();
+  bool is_sphere = view.shading == Shading::kSphere;
+  if (ImGui::Checkbox("as a sphere", &is_sphere)) session.act(Action::kShading);
+  bool is_kept = view.culled_from.has_value();
+  if (ImGui::Checkbox("keep this view's mesh", &is_kept)) session.act(Action::kCulledFrom);
+  if (ImGui::Button("Bookmark")) session.act(Action::kBookmark);
+  ImGui::SameLine();
+  if (ImGui::Button(session.is_recording() ? "End recording" : "Record")) session.act(Action::kRecord);
+  ImGui::SameLine();
+  if (ImGui::Button(session.is_playing() ? "Stop" : "Play")) session.act(Action::kPlay);
+  if (session.path().size() > 1 && !session.is_recording()) {
+    ImGui::SameLine();
+    if (ImGui::Button("Save path")) panels.wants_path_saved = true;
+  }
+  std::size_t removed = view.bookmarks.size();
+  for (std::size_t n = 0; n < view.bookmarks.size(); ++n) {
+    ImGui::PushID(static_cast<int>(n));
+    if (ImGui::SmallButton("Go")) {
+      const Viewpoint now = view.viewpoint;
+      view.viewpoint = view.bookmarks[n].viewpoint;
+      view.viewpoint.width_pixels = now.width_pixels;
+      view.viewpoint.height_pixels = now.height_pixels;
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 1.8F * em());
+    ImGui::InputText("##name", &view.bookmarks[n].name);
+    ImGui::SameLine();
+    if (ImGui::SmallButton("x")) removed = n;
+    ImGui::PopID();
+  }
+  if (removed < view.bookmarks.size())
+    view.bookmarks.erase(view.bookmarks.begin() + static_cast<std::ptrdiff_t>(removed));
+}
+
+void show_plot(const PanelState& panels, const char* name, const char* format, double FrameTimes::*member) {
+  std::vector<float> values;
+  for (const FrameTimes& times : panels.history) values.push_back(static_cast<float>(times.*member));
+  if (values.empty()) return;
+  const float most = *std::ranges::max_element(values);
+  const std::string text = fmt::format(fmt::runtime(format), values.back());
+  ImGui::PlotLines(name, values.data(), static_cast<int>(values.size()), 0, text.c_str(), 0, 1.2F * most,
+                   {0, 2.6F * em()});
+}
+
+void show_statistics(const ViewSession& session, const PanelState& panels) {
+  if (!ImGui::CollapsingHeader("Statistics")) return;
+  const UpdateReport report = session.report();
+  ImGui::Text("%s triangles, %s splits, %s merges", fmt::format("{}", report.triangles).c_str(),
+              fmt::format("{}", report.splits).c_str(), fmt::format("{}", report.merges).c_str());
+  show_plot(panels, "update", "{:.1f} ms", &FrameTimes::update_milliseconds);
+  show_plot(panels, "drawing", "{:.1f} ms", &FrameTimes::draw_milliseconds);
+  show_plot(panels, "error", "{:.2f} pixels", &FrameTimes::largest_error_pixels);
+  ImGui::TextDisabled("%s", panels.drawn_by.c_str());
+}
+
+void show_file(PanelState& panels) {
+  if (!ImGui::CollapsingHeader("File")) return;
+  const bool is_entered = ImGui::InputText("##path", &panels.path, ImGuiInputTextFlags_EnterReturnsTrue);
+  ImGui::SameLine();
+  if (ImGui::Button("Open") || is_entered) panels.wants_open = !panels.path.empty();
+  ImGui::TextDisabled("or drop files on the window");
+}
+
+void show_picked(const ViewSession& session, Input& input) {
+  if (!input.picked()) return;
+  const Picked& picked = *input.picked();
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x - 0.8F * em(), 0.8F * em()}, ImGuiCond_Always, {1, 0});
+  bool is_open = true;
+  ImGui::Begin(
+      "Place", &is_open,
+      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing);
+  const Vec3& p = picked.place;
+  ImGui::Text("%s, %s, %s", tidy_number(p.x).c_str(), tidy_number(p.y).c_str(), tidy_number(p.z).c_str());
+  if (!picked.reading.material.empty()) ImGui::Text("material: %s", picked.reading.material.c_str());
+  if (picked.reading.value) {
+    const auto field = session.shown_field();
+    ImGui::Text("%s: %s", field ? field->name.c_str() : "value", tidy_number(*picked.reading.value).c_str());
+  }
+  if (picked.reading.error) ImGui::Text("error (estimate): %s", tidy_number(*picked.reading.error).c_str());
+  ImGui::TextDisabled("%s", picked.document.c_str());
+  ImGui::End();
+  if (!is_open) input.forget_picked();
+}
+
+void show_help(ViewSession& session) {
+  if (!session.has_help) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5F * size.x, 0.5F * size.y}, ImGuiCond_Appearing, {0.5F, 0.5F});
+  ImGui::Begin("Keys and mouse", &session.has_help,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::BeginTable("keys", 2);
+  const auto row = [](const std::string& key, const std::string& what) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(key.c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(what.c_str());
+  };
+  row("Left button", "Turn; a click tells what is there");
+  row("Shift, or middle", "Move");
+  row("Right, or wheel", "Zoom");
+  row("Arrows, Page Up, Down", "Move, where the mouse flies");
+  for (const KeyBinding& binding : kKeyBindings) row(std::string(binding.key), std::string(binding.what));
+  ImGui::EndTable();
+  ImGui::End();
+}
+
+}  // namespace
+
+void PanelState::add(const FrameTimes& times) {
+  history.push_back(times);
+  if (history.size() > kHistory) history.erase(history.begin());
+}
+
+void show_panels(ViewSession& session, Input& input, PanelState& panels) {
+  show_help(session);
+  show_picked(session, input);
+  if (!session.has_panels) return;
+  const float height = ImGui::GetIO().DisplaySize.y;
+  ImGui::SetNextWindowPos({0.6F * em(), 0.6F * em()}, ImGuiCond_Once);
+  ImGui::SetNextWindowSizeConstraints({18 * em(), 4 * em()},
+                                      {40 * em(), std::max(4 * em(), height - 8 * em())});
+  ImGui::SetNextWindowSize({22 * em(), std::max(4 * em(), height - 8 * em())}, ImGuiCond_Once);
+  ImGui::Begin("adamas", nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PushItemWidth(0.6F * ImGui::GetContentRegionAvail().x);
+  for (std::size_t n = 0; n < session.documents().size(); ++n) {
+    ImGui::PushID(static_cast<int>(n));
+    show_document(*session.documents()[n], session.state().documents[n], session.state());
+    ImGui::PopID();
+  }
+  show_detail(session.state());
+  show_cut(session);
+  show_camera(session, panels);
+  show_statistics(session, panels);
+  show_file(panels);
+  ImGui::PopItemWidth();
+  ImGui::Separator();
+  ImGui::TextDisabled("H: keys and mouse");
+  if (!panels.message.empty()) ImGui::TextWrapped("%s", panels.message.c_str());
+  ImGui::End();
+}
+
+}  // namespace adamas

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "viewer/scene/view_session.h"
+#include "viewer/window/input.h"
+
+namespace adamas {
+
+/// What a frame of the window took.
+struct FrameTimes {
+  double update_milliseconds = 0, draw_milliseconds = 0;
+  std::uint64_t triangles = 0;
+  double largest_error_pixels = 0;
+};
+
+/// What the panels show besides the session, and what was typed into them.
+struct PanelState {
+  std::string drawn_by;             ///< the graphics device
+  std::vector<FrameTimes> history;  ///< the last frames, the newest last
+  std::string path;                 ///< of a file to be opened
+  std::string message;              ///< what was done last, or why it was not
+  bool wants_open = false, wants_path_saved = false, wants_path_read = false;
+
+  void add(const FrameTimes& times);
+};
+
+/// Shows the panels, and changes the session as they are used. Between PanelContext's begin() and end().
+void show_panels(ViewSession& session, Input& input, PanelState& panels);
+
+}  // namespace adamas

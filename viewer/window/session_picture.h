@@ -1,0 +1,17 @@
+#pragma once
+
+#include "viewer/gl/picture_target.h"
+#include "viewer/gl/renderer.h"
+#include "viewer/scene/view_session.h"
+#include "viewer/window/panel_context.h"
+
+namespace adamas {
+
+/// What a session shows by now.
+PictureContents session_picture(ViewSession& session);
+
+/// Draws that with what explains it, and without the panels: a screenshot.
+DrawFigures draw_session(const ViewSession& session, const PictureContents& contents, Renderer& renderer,
+                         const PictureTarget& target, PanelContext& panels);
+
+}  // namespace adamas
