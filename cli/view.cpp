@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -25,7 +26,7 @@ namespace {
 struct Options {
   std::vector<std::string> paths, isovalues, opacities, hidden;
   std::string memory = "256M", colour_by, pixels, max_triangles, path, frames, size, shading, field, range,
-              colour_map, plane, origin, normal, state;
+              colour_map, plane, origin, normal, state, culled_from;
   bool offscreen = false, overwrite = false, edges = false, plain = false, no_cut = false, fresh = false;
 };
 
@@ -80,12 +81,27 @@ std::optional<std::array<double, 2>> range_of(const Options& options) {
   return std::array{ends[0], ends[1]};
 }
 
+std::optional<Viewpoint> culled_from(const Options& options) {
+  if (options.culled_from.empty()) return std::nullopt;
+  std::istringstream text(options.culled_from);
+  const Size size = size_of(options, {1024, 768});
+  Viewpoint first;
+  first.width_pixels = size.width;
+  first.height_pixels = size.height;
+  try {
+    return read_viewpoints(text, "--culled-from", first).front();
+  } catch (const Error& error) {
+    wrong_usage("{}", error.what());
+  }
+}
+
 /// All that can be wrong with options, before long work.
 void check(const Options& options, const Session& session) {
   static_cast<void>(size_of(options, {1, 1}));
   static_cast<void>(plane_of(options));
   static_cast<void>(range_of(options));
   static_cast<void>(surfaces_of(options));
+  static_cast<void>(culled_from(options));
   static_cast<void>(parse_size("--memory", options.memory));
   if (!options.pixels.empty()) static_cast<void>(parse_positive("--pixels", options.pixels));
   if (!options.max_triangles.empty())
@@ -149,6 +165,7 @@ void apply(const Options& options, ViewSession& view) {
     state.cut.plane = *plane;
     state.cut.cuts_away = !options.no_cut;
   }
+  if (const std::optional<Viewpoint> viewpoint = culled_from(options)) state.culled_from = viewpoint;
   const std::vector<SurfaceState> surfaces = surfaces_of(options);
   for (std::size_t n = 0; n < state.documents.size(); ++n) {
     if (view.documents()[n]->facts().has_isovalues && !surfaces.empty())
@@ -313,6 +330,12 @@ void add_contents_options(const Command& command, Options& options) {
   command.add_option("--origin", options.origin, "A point of the plane").type_name("x,y,z");
   command.add_option("--normal", options.normal, "Where it points to, all is cut away").type_name("x,y,z");
   command.add_flag("--no-cut", options.no_cut, "The plane shows its section and cuts nothing away");
+  command
+      .add_option(
+          "--culled-from", options.culled_from,
+          "The mesh is refined and culled from this viewpoint (nine numbers: eye, target, upward direction), "
+          "and seen from elsewhere")
+      .type_name("NUMBERS");
   command.add_flag("--edges", options.edges, "Edges of triangles and of cells");
   command
       .add_option("--shading", options.shading,

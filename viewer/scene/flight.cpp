@@ -88,20 +88,24 @@ Viewpoint viewpoint_of(std::string_view line, Viewpoint viewpoint, const std::st
 std::vector<Viewpoint> flight_of_file(const std::string& path, const Viewpoint& first) {
   std::ifstream file(path);
   if (!file) fail("{}: expected a file of viewpoints or orbit:N, found no file that can be read", path);
+  return read_viewpoints(file, path, first);
+}
+
+}  // namespace
+
+std::vector<Viewpoint> read_viewpoints(std::istream& file, const std::string& name, const Viewpoint& first) {
   std::vector<Viewpoint> result;
   std::string line;
   for (int n = 1; std::getline(file, line); ++n) {
     const std::string_view numbers = std::string_view(line).substr(0, line.find('#'));
     if (numbers.find_first_not_of(" \t\r,") == std::string_view::npos) continue;
-    result.push_back(viewpoint_of(numbers, first, fmt::format("{}, line {}", path, n)));
-    if (result.size() > kMostFrames) fail("{}: expected at most {} viewpoints", path, kMostFrames);
+    result.push_back(viewpoint_of(numbers, first, fmt::format("{}, line {}", name, n)));
+    if (result.size() > kMostFrames) fail("{}: expected at most {} viewpoints", name, kMostFrames);
   }
-  if (file.bad()) fail("{}: cannot be read to its end", path);
-  if (result.empty()) fail("{}: expected viewpoints, found none", path);
+  if (file.bad()) fail("{}: cannot be read to its end", name);
+  if (result.empty()) fail("{}: expected viewpoints, found none", name);
   return result;
 }
-
-}  // namespace
 
 std::vector<Viewpoint> flight(const std::string& path, const Box3& box, int width_pixels, int height_pixels) {
   Viewpoint first;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -13,5 +14,8 @@ namespace adamas {
 /// the target and of the upward direction, nine numbers between commas or spaces; what follows # is no
 /// number. Throws Error.
 std::vector<Viewpoint> flight(const std::string& path, const Box3& box, int width_pixels, int height_pixels);
+
+/// The viewpoints of such a file; `name` begins messages. What the lines do not say is that of `first`.
+std::vector<Viewpoint> read_viewpoints(std::istream& file, const std::string& name, const Viewpoint& first);
 
 }  // namespace adamas

@@ -141,7 +141,7 @@ void draw_overlay(const ViewSession& session) {
   const UpdateReport report = session.report();
   if (!report.problem.empty()) {
     draw_message(list, report.problem, IM_COL32(176, 24, 24, 255), size.x, size.y);
-  } else if (state.culled_from) {
+  } else if (state.culled_from && session.has_panels) {
     draw_message(list, "The mesh is kept as the red view has it (O: let it go)", kText, size.x, size.y);
   } else if (session.is_recording()) {
     draw_message(list, "The camera's path is being recorded (R: end)", kText, size.x, size.y);

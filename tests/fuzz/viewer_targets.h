@@ -1,0 +1,26 @@
+#pragma once
+
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "tests/fuzz/require.h"
+#include "viewer/scene/flight.h"
+#include "viewer/scene/view_state.h"
+
+namespace adamas::fuzz {
+
+/// A file of viewpoints, or with '{' first a state of the viewer, which is the same after its own text.
+inline void view_text(std::string_view bytes) {
+  if (bytes.starts_with('{')) {
+    const ViewState state = view_state(bytes, "fuzz");
+    require(to_text(view_state(to_text(state), "again")) == to_text(state),
+            "a state that changes in its text");
+    return;
+  }
+  std::istringstream file{std::string(bytes)};
+  const auto viewpoints = read_viewpoints(file, "fuzz", Viewpoint{});
+  for (const Viewpoint& viewpoint : viewpoints) const View view(viewpoint);
+}
+
+}  // namespace adamas::fuzz

@@ -1,0 +1,126 @@
+// Pictures beside those that were looked at when they were made (tests/viewer/golden). Devices round
+// differently, so that small differences of single pixels, and of edges by one pixel, are none.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+
+#include "ball_store.h"
+#include "core/base/error.h"
+#include "core/picture/canvas.h"
+#include "tests/picture/decode_png.h"
+#include "tests/support/scratch.h"
+#include "viewer/scene/flight.h"
+#include "viewer/window/offscreen_pictures.h"
+
+namespace adamas {
+namespace {
+
+constexpr int kWidth = 240, kHeight = 180;
+
+/// The mean of a block of pixels round each pixel, in L*a*b*.
+LabColour round_pixel(const Raster& raster, int x, int y) {
+  LabColour sum;
+  int count = 0;
+  for (int dy = -2; dy <= 2; ++dy) {
+    for (int dx = -2; dx <= 2; ++dx) {
+      if (x + dx < 0 || y + dy < 0 || x + dx >= raster.width() || y + dy >= raster.height()) continue;
+      const Raster::Pixel p = raster.at(x + dx, y + dy);
+      const LabColour lab = to_lab({p.r / 255.0, p.g / 255.0, p.b / 255.0});
+      sum.lightness += lab.lightness;
+      sum.a += lab.a;
+      sum.b += lab.b;
+      ++count;
+    }
+  }
+  return {sum.lightness / count, sum.a / count, sum.b / count};
+}
+
+struct Difference {
+  double mean = 0, greatest = 0;  ///< of L*a*b*, where about 2 can just be seen
+};
+
+Difference difference(const Raster& one, const Raster& other) {
+  Difference result;
+  for (int y = 0; y < one.height(); ++y) {
+    for (int x = 0; x < one.width(); ++x) {
+      const LabColour a = round_pixel(one, x, y), b = round_pixel(other, x, y);
+      const double d = std::hypot(a.lightness - b.lightness, a.a - b.a, a.b - b.b);
+      result.mean += d / (one.width() * one.height());
+      result.greatest = std::max(result.greatest, d);
+    }
+  }
+  return result;
+}
+
+class ReferencePictures : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string path = (folder / "ball.adm").string();
+    test::make_ball_store(path);
+    session.open(path, {std::size_t{64} << 20, path}, SilentProgress::instance());
+    session.state().documents[0].field.clear();
+    session.state().documents[0].surfaces[0].isovalue = 100;
+    // Texts differ by the fonts of the system.
+    session.state().has_axes = session.state().has_colour_bar = false;
+    try {
+      pictures.emplace(session, kWidth, kHeight);
+    } catch (const Error& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  void expect_reference(const std::string& name) {
+    const Raster drawn = pictures->draw(flight("orbit:1", session.box(), kWidth, kHeight)[0]);
+    const std::filesystem::path path =
+        std::filesystem::path(ADAMAS_SOURCE_DIR) / "tests/viewer/golden" / (name + ".png");
+    // Written anew where somebody has asked for that, to be looked at.
+    if (std::getenv("ADAMAS_NEW_PICTURES") != nullptr)
+      write_png(path, drawn);  // NOLINT(concurrency-mt-unsafe)
+    const Difference found = difference(drawn, test::decode_png(test::bytes_of(path)));
+    EXPECT_LT(found.mean, 0.2) << name;
+    EXPECT_LT(found.greatest, 12) << name;
+  }
+
+  test::Scratch folder;
+  ViewSession session{kWidth, kHeight};
+  std::optional<OffscreenPictures> pictures;
+};
+
+TEST_F(ReferencePictures, LitAndAsASphere) {
+  expect_reference("lit");
+  session.state().shading = Shading::kSphere;
+  expect_reference("sphere");
+}
+
+TEST_F(ReferencePictures, TransparentAroundOpaque) {
+  DocumentState& state = session.state().documents[0];
+  state.surfaces.push_back(state.surfaces[0]);
+  state.surfaces[0].opacity = 0.4;
+  state.surfaces[1].isovalue = 150;
+  state.surfaces[1].colour = {0.3, 0.5, 0.9};
+  expect_reference("transparent");
+}
+
+TEST_F(ReferencePictures, CutWithEdges) {
+  session.state().has_edges = true;
+  session.state().cut = {true, {{16, 16, 16}, {1, -0.5, 0.3}}, true, true};
+  expect_reference("cut");
+}
+
+TEST_F(ReferencePictures, ADifferenceThatCanBeSeenIsOne) {
+  const Viewpoint viewpoint = flight("orbit:1", session.box(), kWidth, kHeight)[0];
+  const Raster first = pictures->draw(viewpoint);
+  session.state().documents[0].surfaces[0].isovalue = 97;
+  const Difference moved = difference(first, pictures->draw(viewpoint));
+  EXPECT_GT(moved.mean, 0.2) << "a surface that is a third of a voxel farther out";
+  session.state().documents[0].surfaces[0].isovalue = 100;
+  session.state().documents[0].surfaces[0].colour = {0.93, 0.80, 0.66};
+  EXPECT_GT(difference(first, pictures->draw(viewpoint)).mean, 0.2) << "another colour";
+}
+
+}  // namespace
+}  // namespace adamas
