@@ -8,6 +8,7 @@
 #include "cli/experiment_report.h"
 #include "cli/generated_data.h"
 #include "cli/output_folder.h"
+#include "cli/picture_block.h"
 #include "cli/slice_panels.h"
 #include "cli/surface_picture.h"
 #include "core/io/interface_mesh_io.h"
@@ -124,11 +125,11 @@ void Experiment::refine() {
   record_.interfaces =
       run_resampler(input_.source, without_fields(targets_), console_, &interface_mesh_, &approximated);
   write_interfaces_of(approximated, "mesh-interfaces", true);
-  write_surface_picture(folder_.file("mesh-interfaces.html"), approximated, input_.source.box,
-                        options_.pictures);
   const auto wanted = [](const auto& target) { return target.has_value(); };
   if (std::any_of(targets_.field_errors.begin(), targets_.field_errors.end(), wanted))
     record_.with_fields = run_resampler(input_.source, targets_, console_, &mesh_);
+  write_surface_picture(folder_.file("mesh-interfaces.html"), approximated, input_.source.box,
+                        options_.pictures, picture_block(record_.with_fields ? mesh_ : interface_mesh_));
 }
 
 void Experiment::show_meshes() {

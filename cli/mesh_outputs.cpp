@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/option_values.h"
+#include "cli/picture_block.h"
 #include "cli/resampling_options.h"
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
@@ -235,12 +236,14 @@ void add_mesh_output_options(const Command& command, MeshOutputs& outputs) {
 }
 
 void write_interfaces(const MeshOutputs& outputs, const InterfaceMesh& interfaces, const Box3& box,
-                      Session& session) {
+                      const std::function<ResampledMesh()>& mesh, Session& session) {
   session.console.step("writing interfaces", -1);
   session.outputs.write(outputs.interfaces,
                         [&](const auto& path) { write_interface_mesh(path, interfaces); });
   session.outputs.write(outputs.picture.camera.file, [&](const auto& path) {
-    write_surface_picture(path, interfaces, box, outputs.picture);
+    std::optional<PictureBlock> block;
+    if (turns(outputs.picture.camera.file)) block = picture_block(mesh());
+    write_surface_picture(path, interfaces, box, outputs.picture, std::move(block));
   });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -62,9 +63,9 @@ struct MeshOutputs {
 
 void add_mesh_output_options(const Command& command, MeshOutputs& outputs);
 
-/// Interfaces and their picture.
+/// Interfaces and their picture; `mesh` is called for what a picture that turns shows on a cut.
 void write_interfaces(const MeshOutputs& outputs, const InterfaceMesh& interfaces, const Box3& box,
-                      Session& session);
+                      const std::function<ResampledMesh()>& mesh, Session& session);
 /// The mesh, the cut mesh, and last the ledgers, which get theirs; returns the figures of the cut mesh.
 /// `interface_error` and `source` as for write_cut_mesh.
 Figures write_mesh(const MeshOutputs& outputs, const ResampledMesh& mesh, double interface_error,

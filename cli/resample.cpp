@@ -220,8 +220,9 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
                                   const SimplificationRequest& request, Figures& figures, Session& session) {
   Console& console = session.console;
   if (options.outputs.need_interfaces())
-    write_interfaces(options.outputs, shown_interfaces(resampler, request, figures, console),
-                     resampler.source().box, session);
+    write_interfaces(
+        options.outputs, shown_interfaces(resampler, request, figures, console), resampler.source().box,
+        [&resampler] { return resampled_mesh(resampler); }, session);
   session.outputs.write(options.save, [&](const auto& path) {
     console.step("measuring all cells of the hierarchy", -1);
     const SavedHierarchy hierarchy = take_hierarchy(resampler);

@@ -137,7 +137,8 @@ void run(const Options& options, Session& session) {
     InterfaceMesh interfaces = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, console).mesh;
     interfaces.materials = mesh.materials;
     interfaces.source = options.path;
-    write_interfaces(options.outputs, interfaces, mesh.box, session);
+    write_interfaces(
+        options.outputs, interfaces, mesh.box, [&mesh] { return mesh; }, session);
   }
   std::vector<Ledger> ledgers;
   if (!hierarchy.input_volumes.empty()) ledgers.push_back(volume_ledger("input", hierarchy.input_volumes));

@@ -149,7 +149,7 @@ void add_surface_picture_options(const Command& command, SurfacePictureOptions& 
 }
 
 void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
-                           const SurfacePictureOptions& options) {
+                           const SurfacePictureOptions& options, std::optional<PictureBlock> block) {
   const Choice choice(options.shown, mesh.materials, mesh.source);
   InterfacePicture picture;
   picture.domain = domain;
@@ -168,6 +168,7 @@ void write_surface_picture(const std::filesystem::path& path, const InterfaceMes
       if (shown[m.value] != 0) picture.materials.push_back({mesh.materials[m], material_colour(m.value)});
     }
   }
+  picture.block = std::move(block);
   InterfacePictureOptions drawn = options.camera.sizes();
   drawn.triangle_edges = options.triangle_edges;
   write_interfaces(picture, path, drawn);

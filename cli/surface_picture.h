@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,10 @@ void add_surface_picture_options(const Command& command, SurfacePictureOptions& 
                                  bool own_file = true);
 
 /// Draws interfaces in their domain. Each side of an interface has the colour of the material that lies
-/// behind it, as one sees it: so colours depend on materials alone.
+/// behind it, as one sees it: so colours depend on materials alone. `block`: what a picture that turns shows
+/// where it is cut.
 void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
-                           const SurfacePictureOptions& options = {});
+                           const SurfacePictureOptions& options = {},
+                           std::optional<PictureBlock> block = std::nullopt);
 
 }  // namespace adamas

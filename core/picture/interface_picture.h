@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +13,22 @@
 
 namespace adamas {
 
+/// Materials and fields at points of a grid, for what a picture that turns shows where its plane cuts.
+struct PictureBlock {
+  std::array<std::size_t, 3>
+      counts{};  ///< points along x, y and z, from the lower end of the box to the upper
+  Box3 box;
+  std::vector<LegendEntry> materials;
+  static constexpr std::uint8_t kNothing = 255;
+  std::vector<std::uint8_t> numbers;  ///< of the material at each point, x fastest, or kNothing
+  struct Field {
+    std::string name;
+    double low = 0, high = 0;
+    std::vector<std::uint8_t> parts;  ///< 0 to 254 between low and high at each point, or kNothing
+  };
+  std::vector<Field> fields;
+};
+
 /// A picture of surfaces in space: shaded triangles in a wireframe box on white.
 struct InterfacePicture {
   std::string title{};
@@ -19,7 +37,8 @@ struct InterfacePicture {
   std::optional<Box3> focus{};  ///< framed instead
   std::vector<LegendEntry>
       materials{};  ///< the legend; areas whose colour is not to be seen are left out of it
-  Vec3 direction{-0.62, 0.72, -0.42};  ///< the way the camera looks
+  std::optional<PictureBlock> block{};  ///< of pictures that turn
+  Vec3 direction{-0.62, 0.72, -0.42};   ///< the way the camera looks
   Projection projection = Projection::kPerspective;
 };
 

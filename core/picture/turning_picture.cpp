@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/picture/colour_map.h"
 #include "core/picture/text.h"
 
 #ifdef ADAMAS_THREE_JS
@@ -56,6 +57,10 @@ body { display: flex; }
 #materials label { display: flex; align-items: center; gap: .5em; padding: .15em 0; overflow-wrap: anywhere; }
 .swatch { width: 1em; height: 1em; border: 1px solid #0003; border-radius: 2px; flex: none; }
 #clip-place { width: 100%; }
+#cut-field { width: 100%; }
+#cut-bar { display: flex; flex-wrap: wrap; justify-content: space-between; font-size: .85em; margin-top: .4em; }
+#cut-bar[hidden] { display: none; }
+#cut-bar canvas { width: 100%; height: 1em; }
 .message { position: absolute; inset: 40% 1em auto; text-align: center; }
 .hint { color: #666; font-size: .85em; margin-top: 1.5em; }
 @media (max-width: 700px) { body { flex-direction: column; } #view { height: 60vh; flex: none; width: 100%; } #panel { width: 100%; border-left: 0; } }
@@ -150,6 +155,9 @@ class Page {
            "<select id=\"clip-axis\"><option value=\"\">none</option><option>x</option><option>y</option>"
            "<option>z</option></select>\n"
            "<input id=\"clip-place\" type=\"range\" min=\"0\" max=\"1000\" value=\"500\" disabled>\n"
+           "<div id=\"cut\" hidden><label>on the cut <select id=\"cut-field\"></select></label>\n"
+           "<div id=\"cut-bar\" hidden><canvas width=\"256\" "
+           "height=\"1\"></canvas><span></span><span></span></div></div>\n"
            "<p><button id=\"reset\">Reset the view</button></p>\n"
            "<p class=\"hint\">Left button: turn. Wheel: nearer and farther. Right button: move.</p>\n"
            "</div>\n<script type=\"application/json\" id=\"picture-data\">" +
@@ -157,13 +165,37 @@ class Page {
   }
 
  private:
-  /// The entry of the legend with a colour; one without a name where there is none.
-  std::size_t material_of(const Colour& colour) {
+  /// The entry of the legend with a colour; a new one of that name where there is none.
+  std::size_t material_of(const Colour& colour, const std::string& name = {}) {
     const auto found = std::find_if(materials_.begin(), materials_.end(),
                                     [&](const LegendEntry& m) { return m.colour == colour; });
     if (found != materials_.end()) return static_cast<std::size_t>(found - materials_.begin());
-    materials_.push_back({"", colour});
+    materials_.push_back({name, colour});
     return materials_.size() - 1;
+  }
+
+  /// What the cut shows: the block, and the colour map of its fields.
+  std::string block_json(const PictureBlock& block) {
+    std::string result = fmt::format(
+        "{{\"counts\":[{},{},{}],\"box\":[{},{}],\"materials\":[", block.counts[0], block.counts[1],
+        block.counts[2], json_vector(block.box.min - middle_), json_vector(block.box.max - middle_));
+    for (std::size_t n = 0; n < block.materials.size(); ++n)
+      result += fmt::format("{}{}", n > 0 ? "," : "",
+                            material_of(block.materials[n].colour, block.materials[n].name));
+    result += fmt::format("],\"numbers\":{},\"fields\":[", json_numbers(block.numbers));
+    const char* separator = "";
+    for (const PictureBlock::Field& field : block.fields) {
+      result += fmt::format("{}{{\"name\":{},\"low\":{:.4g},\"high\":{:.4g},\"parts\":{}}}", separator,
+                            json_text(field.name), field.low, field.high, json_numbers(field.parts));
+      separator = ",";
+    }
+    const ColourMap map = ColourMap::sequential();
+    std::vector<std::uint8_t> colours;
+    for (int n = 0; n < 255; ++n) {
+      const auto rgb = to_bytes(map.at(n / 254.0));
+      colours.insert(colours.end(), rgb.begin(), rgb.end());
+    }
+    return result + fmt::format("],\"map\":{}}}", json_numbers(colours));
   }
 
   std::string json() {
@@ -171,6 +203,7 @@ class Page {
     std::map<std::pair<std::size_t, std::size_t>, Part> parts;
     for (const PictureTriangle& t : picture_.triangles)
       parts[{material_of(t.colour), material_of(t.back.value_or(t.colour))}].add(t.points, middle_);
+    const std::string block = picture_.block ? block_json(*picture_.block) : "null";
     std::string result = "{\"materials\":[";
     for (std::size_t n = 0; n < materials_.size(); ++n)
       result += fmt::format("{}{{\"name\":{},\"colour\":\"{}\"}}", n > 0 ? "," : "",
@@ -185,9 +218,9 @@ class Page {
     }
     const std::string extent =
         fmt::format("[{},{}]", json_vector(extent_.min - middle_), json_vector(extent_.max - middle_));
-    return result + fmt::format("],\"extent\":{},\"box\":{},\"size\":{:.9g},\"direction\":{}}}", extent,
-                                has_domain_ ? extent : "null", std::max(extent_.diagonal(), 1e-30),
-                                json_vector(picture_.direction));
+    return result + fmt::format("],\"extent\":{},\"box\":{},\"size\":{:.9g},\"direction\":{},\"block\":{}}}",
+                                extent, has_domain_ ? extent : "null", std::max(extent_.diagonal(), 1e-30),
+                                json_vector(picture_.direction), block);
   }
 
   const InterfacePicture& picture_;

@@ -73,6 +73,23 @@ def main():
         none = int(body_of(browser, acted(page, all_hidden), folder)[0]["triangles"])
         expect(none == 0, f"expected no triangle, found {none}")
 
+        # What a resampled mesh has on a cut: materials, and each field.
+        run(adamas, "resample", data, "--interface-error", "3%", "--ghost", "linear", "-q", "--picture", os.path.join(folder, "cut.html"))
+        cut = os.path.join(folder, "cut.html")
+        expect(body_of(browser, cut, folder)[0].get("state") == "drawn", "expected a picture of a mesh")
+
+        def cut_at(place, field, more=""):
+            script = (f"var f = document.getElementById('cut-field'); f.value = '{field}'; document.getElementById('clip-place').value = {place};"
+                      f"var a = document.getElementById('clip-axis'); a.value = 'x'; a.dispatchEvent(new Event('change')); {more}"
+                      "document.body.dataset.picture = document.querySelector('#view canvas').toDataURL().length + ' ' + "
+                      "document.querySelector('#view canvas').toDataURL().slice(-4000);")
+            found = body_of(browser, acted(cut, script), folder)[0]
+            expect(found.get("cut") == "x " + field, f"expected a cut with {field}, found {found.get('cut')}")
+            return found["picture"]
+
+        pictures = [cut_at(300, "materials"), cut_at(300, "smooth"), cut_at(310, "smooth"), cut_at(300, "materials", all_hidden)]
+        expect(len(set(pictures)) == 4, "expected cuts that differ by what they show")
+
         # Names are text.
         evil = text.replace('"name":"cell0"', '"name":"' + EVIL.replace("<", "\\u003c").replace(">", "\\u003e") + '"')
         with open(page, "w", encoding="utf-8") as file:

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "viewer/scene/view_session.h"
+
+namespace adamas {
+
+/// The options of `adamas view` as they were given; empty where they were not.
+struct ViewOptions {
+  std::vector<std::string> paths, isovalues, opacities, hidden;
+  std::string memory = "256M", colour_by, pixels, max_triangles, path, frames, size, shading, field, range,
+              colour_map, plane, origin, normal, state, culled_from;
+  bool offscreen = false, overwrite = false, edges = false, plain = false, no_cut = false, fresh = false;
+};
+
+struct PictureSize {
+  int width, height;
+};
+
+void add_view_options(const Command& command, ViewOptions& options);
+
+/// The size that was asked for, or another one. Throws UsageError, as the other functions do.
+PictureSize picture_size(const ViewOptions& options, const PictureSize& otherwise);
+/// Looks at all that can be wrong with options, before long work.
+void check_view_options(const ViewOptions& options, const Session& session);
+/// Brings what the options say into the state. Throws Error too where no file has such a field or material.
+void apply_view_options(const ViewOptions& options, ViewSession& view);
+
+}  // namespace adamas

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "isosurface/view/viewpoint.h"
+
+namespace adamas {
+
+/// How far one sees at each pixel of a picture, and at squares of 2^n pixels a side: what lies behind that is
+/// hidden (D 4.10, by hierarchical depths in place of queries).
+class DepthPyramid {
+ public:
+  /// `depths`: distances from the eye along the line of sight of what a picture of that viewpoint shows, from
+  /// its upper row to its lower one; infinite where it shows nothing. There are width_pixels x height_pixels
+  /// of them.
+  DepthPyramid(const Viewpoint& viewpoint, std::span<const float> depths);
+
+  /// Whether all that a picture of that viewpoint could show of a box is hidden. False for a box that the
+  /// near plane cuts, or that lies outside of the picture. What lies in a hidden box is hidden, where it is
+  /// in the picture.
+  [[nodiscard]] bool hides(const CentredBox& box) const;
+
+ private:
+  struct Level {
+    std::int32_t width, height;
+    std::vector<float> farthest;
+  };
+
+  [[nodiscard]] float farthest_in(std::int32_t left, std::int32_t top, std::int32_t right,
+                                  std::int32_t bottom) const;
+
+  Viewpoint viewpoint_;
+  Vec3 right_, up_, forward_;
+  double scale_;  ///< pixels for a length at the distance 1, or in parallel projection
+  std::vector<Level> levels_;
+};
+
+}  // namespace adamas
