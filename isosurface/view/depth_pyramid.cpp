@@ -67,7 +67,7 @@ bool DepthPyramid::hides(const CentredBox& box) const {
   const std::int32_t x0 = pixel(0.5 * width + left - 1, width), x1 = pixel(0.5 * width + right + 1, width),
                      y0 = pixel(0.5 * height - top - 1, height),
                      y1 = pixel(0.5 * height - bottom + 1, height);
-  if (x1 < 0 || y1 < 0 || x0 >= width || y0 >= height) return false;
+  if (x1 < 0 || y1 < 0 || x0 >= width || y0 >= height) return true;
   const float farthest =
       farthest_in(std::max(x0, 0), std::max(y0, 0), std::min(x1, width - 1), std::min(y1, height - 1));
   return static_cast<double>(farthest) < nearest;

@@ -18,9 +18,8 @@ class DepthPyramid {
   /// of them.
   DepthPyramid(const Viewpoint& viewpoint, std::span<const float> depths);
 
-  /// Whether all that a picture of that viewpoint could show of a box is hidden. False for a box that the
-  /// near plane cuts, or that lies outside of the picture. What lies in a hidden box is hidden, where it is
-  /// in the picture.
+  /// Whether a picture of that viewpoint shows nothing of a box: it is behind what is seen, or beside the
+  /// picture. False for a box that the near plane cuts. What lies in a hidden box is hidden.
   [[nodiscard]] bool hides(const CentredBox& box) const;
 
  private:
