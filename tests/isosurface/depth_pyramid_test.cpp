@@ -46,11 +46,11 @@ std::vector<float> depths_of_ball(const Viewpoint& v) {
   return depths;
 }
 
-/// Whether the ball is before a point, on the way to the eye.
+/// Whether the ball is before a point, on the way to the eye, or round it.
 bool is_behind_ball(const Viewpoint& v, const Vec3& p) {
   const Vec3 way = v.height > 0 ? normalized(v.eye - v.target) : normalized(v.eye - p);
   const double along = dot(v.target - p, way);
-  return along > 0 && norm(v.target - p - along * way) < 0.6;
+  return norm(v.target - p) < 0.6 || (along > 0 && norm(v.target - p - along * way) < 0.6);
 }
 
 std::array<Vec3, 8> corners_of(const CentredBox& box) {
