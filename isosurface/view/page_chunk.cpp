@@ -101,9 +101,8 @@ std::unique_ptr<PageChunk> ChunkMaker<Sample>::make(int lod, LatticePoint block,
   add_cells(before, cells, *chunk);
   const auto first_cell = before == nullptr ? 0u : static_cast<unsigned>(std::countr_zero(cells));
   show(before, first_cell, *chunk);
-  number(
-      *chunk, before == nullptr ? nullptr : &before->border, first_cell, chunk->border,
-      [](EdgePlace, double, std::uint16_t) {}, [](const std::array<std::uint32_t, 3>&) {});
+  number(*chunk, before == nullptr ? nullptr : &before->border, first_cell, chunk->border,
+         [](std::size_t, const std::array<std::uint32_t, 3>&) {});
   return chunk;
 }
 
@@ -219,18 +218,17 @@ void ChunkMaker<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q,
 }
 
 template <class Sample>
-template <class AddPoint, class AddTriangle>
-void ChunkMaker<Sample>::number(const PageChunk& chunk, const PageChunk::Part* before, unsigned first_cell,
-                                PageChunk::Part& part, AddPoint&& point, AddTriangle&& triangle) {
-  if (part.triangles.empty()) return part.edges_before.fill(0);
+template <class AddTriangle>
+std::size_t ChunkMaker<Sample>::number(const PageChunk& chunk, const PageChunk::Part* before,
+                                       unsigned first_cell, PageChunk::Part& part, AddTriangle&& triangle) {
+  numbers_of_old_.clear();
+  if (part.triangles.empty()) {
+    part.edges_before.fill(0);
+    return 0;
+  }
+  const std::size_t same = first_cell == 0 ? 0 : before->edges_before[first_cell];
   if (before != nullptr) {
-    // Few points are new.
-    part.edges.reserve(before->edges.size() * 9 / 8);
-    part.parameters.reserve(before->edges.size() * 9 / 8);
-    const std::size_t same = first_cell == 0 ? 0 : before->edges_before[first_cell];
     part.edges.assign(before->edges.begin(), before->edges.begin() + static_cast<std::ptrdiff_t>(same));
-    part.parameters.assign(before->parameters.begin(),
-                           before->parameters.begin() + static_cast<std::ptrdiff_t>(same));
     std::copy_n(before->edges_before.begin(), first_cell, part.edges_before.begin());
     for (std::size_t n = 0; n < same; ++n) numbers_[part.edges[n]].now = static_cast<std::uint16_t>(n);
     for (std::size_t n = same; n < before->edges.size(); ++n)
@@ -245,20 +243,25 @@ void ChunkMaker<Sample>::number(const PageChunk& chunk, const PageChunk::Part* b
         Numbers& of_place = numbers_[place];
         if (of_place.now == kNone) {
           of_place.now = static_cast<std::uint16_t>(part.edges.size());
-          const std::uint16_t old = of_place.before;
-          const double parameter_there = old == kNone ? parameter(chunk, place) : before->parameters[old];
           part.edges.push_back(place);
-          part.parameters.push_back(parameter_there);
-          point(place, parameter_there, old);
+          numbers_of_old_.push_back(of_place.before);
         }
         numbers[c] = of_place.now;
       }
-      triangle(numbers);
+      triangle(t, numbers);
     }
   }
   for (const EdgePlace place : part.edges) numbers_[place] = {};
-  if (before == nullptr) return;
-  for (const EdgePlace place : before->edges) numbers_[place] = {};
+  part.parameters.resize(part.edges.size());
+  if (before != nullptr) {
+    std::copy_n(before->parameters.begin(), same, part.parameters.begin());
+    for (const EdgePlace place : before->edges) numbers_[place] = {};
+  }
+  for (std::size_t n = same; n < part.edges.size(); ++n) {
+    const std::uint16_t old = numbers_of_old_[n - same];
+    part.parameters[n] = old == kNone ? parameter(chunk, part.edges[n]) : before->parameters[old];
+  }
+  return same;
 }
 
 template <class Sample>
@@ -275,32 +278,30 @@ double ChunkMaker<Sample>::parameter(const PageChunk& chunk, EdgePlace place) co
 template <class Sample>
 void ChunkMaker<Sample>::show(const PageChunk* before, unsigned first_cell, PageChunk& chunk) {
   SurfaceChunk& shown = chunk.shown;
-  shown.triangles.reserve(chunk.inside.triangles.size());
-  if (before != nullptr) {
-    const SurfaceChunk& old = before->shown;
-    shown.points.reserve(old.points.size() * 9 / 8);
-    shown.normals.reserve(old.points.size() * 9 / 8);
-    if (first_cell > 0) {
-      const auto points = static_cast<std::ptrdiff_t>(before->inside.edges_before[first_cell]),
-                 triangles = static_cast<std::ptrdiff_t>(before->inside.begins[first_cell]);
-      shown.points.assign(old.points.begin(), old.points.begin() + points);
-      shown.normals.assign(old.normals.begin(), old.normals.begin() + points);
-      shown.triangles.assign(old.triangles.begin(), old.triangles.begin() + triangles);
+  const SurfaceChunk* const old = before == nullptr ? nullptr : &before->shown;
+  shown.triangles.resize(chunk.inside.triangles.size());
+  if (first_cell > 0)
+    std::copy_n(old->triangles.begin(), before->inside.begins[first_cell], shown.triangles.begin());
+  const std::size_t same = number(
+      chunk, before == nullptr ? nullptr : &before->inside, first_cell, chunk.inside,
+      [&](std::size_t n, const std::array<std::uint32_t, 3>& triangle) { shown.triangles[n] = triangle; });
+  const std::size_t count = chunk.inside.edges.size();
+  shown.points.resize(count);
+  shown.normals.resize(count);
+  if (same > 0) {
+    std::copy_n(old->points.begin(), same, shown.points.begin());
+    std::copy_n(old->normals.begin(), same, shown.normals.begin());
+  }
+  for (std::size_t n = same; n < count; ++n) {
+    if (const std::uint16_t number = numbers_of_old_[n - same]; number != kNone) {
+      shown.points[n] = old->points[number];
+      shown.normals[n] = old->normals[number];
+    } else {
+      const EdgePoint added = edge_point(chunk, chunk.inside.edges[n], chunk.inside.parameters[n]);
+      shown.points[n] = position(added);
+      shown.normals[n] = normals_.of(added);
     }
   }
-  number(
-      chunk, before == nullptr ? nullptr : &before->inside, first_cell, chunk.inside,
-      [&](EdgePlace place, double t, std::uint16_t old) {
-        if (old != kNone) {
-          shown.points.push_back(before->shown.points[old]);
-          shown.normals.push_back(before->shown.normals[old]);
-        } else {
-          const EdgePoint added = edge_point(chunk, place, t);
-          shown.points.push_back(position(added));
-          shown.normals.push_back(normals_.of(added));
-        }
-      },
-      [&](const std::array<std::uint32_t, 3>& triangle) { shown.triangles.push_back(triangle); });
 }
 
 template class ChunkMaker<std::uint8_t>;

@@ -105,12 +105,13 @@ class ChunkMaker {
   void add_half(const DiamondStencil& stencil, LatticePoint q, const DiamondStencil::Half& half,
                 DiamondStencil::Members above, PageChunk& chunk) const;
   [[nodiscard]] bool is_in_data(LatticePoint p) const;
-  /// Finds the edges of a part, with their parameters, and calls triangle(numbers) for each triangle, and
-  /// point(edge, parameter, before) for each edge as it is met first. `before`: its number in the part before
-  /// this one, or kNone. The first cells, of which the part before has the same triangles, are passed over.
-  template <class AddPoint, class AddTriangle>
-  void number(const PageChunk& chunk, const PageChunk::Part* before, unsigned first_cell,
-              PageChunk::Part& part, AddPoint&& point, AddTriangle&& triangle);
+  /// Finds the edges of a part, with their parameters, and calls triangle(n, numbers) for its triangles by
+  /// the numbers of these. The first cells, of which the part before has the same triangles, are passed over.
+  /// Returns the number of the first edge of the others; numbers_of_old_ has, from that on, the number that
+  /// each edge has in the part before, or kNone.
+  template <class AddTriangle>
+  std::size_t number(const PageChunk& chunk, const PageChunk::Part* before, unsigned first_cell,
+                     PageChunk::Part& part, AddTriangle&& triangle);
   [[nodiscard]] double parameter(const PageChunk& chunk, EdgePlace place) const;
   /// Sets what is shown; the cells before the first are as they were.
   void show(const PageChunk* before, unsigned first_cell, PageChunk& chunk);
@@ -127,6 +128,7 @@ class ChunkMaker {
     std::uint16_t now = kNone, before = kNone;
   };
   std::vector<Numbers> numbers_;
+  std::vector<std::uint16_t> numbers_of_old_;
 };
 
 extern template class ChunkMaker<std::uint8_t>;

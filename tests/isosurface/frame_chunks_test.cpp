@@ -213,7 +213,7 @@ void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
 
 TEST_P(FrameChunks, AreThoseFromScratch) { fly(MemoryVolume<std::uint8_t>({51, 44, 34}, hills()), true); }
 
-TEST_P(FrameChunks, AreThoseFromScratchOfWordsOnAnAGridOfUnequalSpacing) {
+TEST_P(FrameChunks, AreThoseFromScratchOfWordsOnAGridOfUnequalSpacing) {
   fly(MemoryVolume<std::int16_t>({40, 36, 50}, hills(), {1, 0.7, 1.4}, {-3, 1e3, 7}), true);
 }
 

@@ -51,8 +51,8 @@ class StoreFramesOf final : public StoreFrames {
     Frame frame;
     Clock clock;
     frame.figures = frames_.refine(request);
-    frame.update_seconds = clock.lap();
     frames_.for_each_chunk([&](const SurfaceChunk& chunk) { append(chunk, frame.surface); });
+    frame.update_seconds = clock.lap();
     return frame;
   }
 
