@@ -22,8 +22,15 @@ namespace adamas {
 struct PageMask {
   std::array<std::uint16_t, std::size_t{PageGrid::kSide} * PageGrid::kSide> rows{};
 
+  bool operator==(const PageMask&) const = default;
+
   [[nodiscard]] bool has(LatticePoint q) const {
     return (rows[static_cast<std::size_t>(q.j + PageGrid::kSide * q.k)] >> q.i & 1) != 0;
+  }
+  /// Adds the diamond at a place, PageGrid::place(q, 0).
+  void add(std::uint16_t place) {
+    std::uint16_t& row = rows[place / PageGrid::kSide];
+    row = static_cast<std::uint16_t>(row | 1u << place % PageGrid::kSide);
   }
   [[nodiscard]] bool any() const {
     return std::any_of(rows.begin(), rows.end(), [](std::uint16_t row) { return row != 0; });

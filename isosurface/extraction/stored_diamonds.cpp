@@ -83,7 +83,7 @@ void StoredDiamonds<Sample>::set_contour(double isovalue) {
 template <class Sample>
 void StoredDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
   const PageBounds<Word>& found = this->pages().needed_bounds(id);
-  if (StoredDiamonds::greatest_class(id) == 0) {
+  if (greatest_class(id) == 0) {
     codes.fill(0);
   } else {
     select_crossed(found, static_cast<Word>(least_above_), codes);

@@ -17,7 +17,6 @@ class StoredDiamonds : public LatticeSamples<Sample> {
 
   /// The pages must outlive this.
   explicit StoredDiamonds(StoredPages<Word>& pages);
-  virtual ~StoredDiamonds() = default;
 
   /// Whether pages know of the diamond of a lattice point: the point is no corner of the domain, and the
   /// diamond reaches into the data.
@@ -42,7 +41,7 @@ class StoredDiamonds : public LatticeSamples<Sample> {
   [[nodiscard]] bool is_above(Word word) const { return word >= least_above_; }
   /// The error class of a stored diamond where the contour may cross it, and 0 where it does not. Throws
   /// PageLost.
-  virtual int class_if_crossed(LatticePoint p);
+  int class_if_crossed(LatticePoint p);
   /// On which sides of the contour the page's samples lie, and those of the cells of its LOD in its cube;
   /// both where the directory does not tell. Throws PageLost.
   enum class Side : std::uint8_t { kBelow, kAbove, kBoth };
@@ -51,11 +50,11 @@ class StoredDiamonds : public LatticeSamples<Sample> {
   [[nodiscard]] std::uint64_t least_above() const { return least_above_; }
   /// A class that no diamond of the page exceeds which the contour crosses; 0 where it crosses none. Not for
   /// the coarsest page, which has diamonds of several LODs. Throws PageLost.
-  virtual int greatest_class(const PageId& id);
+  int greatest_class(const PageId& id);
   using Codes = PagePoints<std::uint8_t>;
   /// Gets the error codes of a page's diamonds: of those that the contour crosses, and 0 for the others.
   /// Throws PageLost.
-  virtual void find_crossed(const PageId& id, Codes& codes);
+  void find_crossed(const PageId& id, Codes& codes);
 
  private:
   const PageEntry& entry(const PageId& id);

@@ -120,6 +120,25 @@ class VertexGradients {
   std::vector<KnownGradient> known_ = std::vector<KnownGradient>(std::size_t{1} << kKnownBits);
 };
 
+/// The normal of a point, by the gradients at lattice points.
+template <class Sample>
+Vec3 normal_of(const EdgePoint& edge, VertexGradients<Sample>& gradients) {
+  const Vec3 a = gradients.at(edge.first, edge.step()), b = gradients.at(edge.second, edge.step());
+  return downwards((1 - edge.parameter) * a + edge.parameter * b);
+}
+template <class Sample>
+Vec3 normal_of(const VertexPoint& point, VertexGradients<Sample>& gradients) {
+  return downwards(gradients.at(point.vertex, point.step));
+}
+template <class Sample>
+Vec3 normal_of(const MeanPoint& point, VertexGradients<Sample>& gradients) {
+  Vec3 gradient;
+  for (std::size_t v = 0; v < 4; ++v) {
+    if (point.weights[v] != 0) gradient += point.weights[v] * gradients.at(point.vertices[v], point.step);
+  }
+  return downwards(gradient);
+}
+
 /// The normals of the n-th of several parts of a surface's points of each kind.
 template <class Sample>
 class NormalsOfPart {
@@ -129,29 +148,18 @@ class NormalsOfPart {
 
   void find(std::size_t n, std::size_t parts, Progress& progress) {
     std::size_t first = 0;
-    const auto each = [&](const auto& points, const auto& gradient) {
+    const auto each = [&](const auto& points) {
       const std::size_t begin = points.size() * n / parts, end = points.size() * (n + 1) / parts;
       for (std::size_t p = begin; p < end; ++p) {
         if (p % 65536 == 0)
           progress.step("normals", static_cast<double>(first + p) / static_cast<double>(normals_.size()));
-        normals_[first + p] = downwards(gradient(points[p]));
+        normals_[first + p] = normal_of(points[p], gradients_);
       }
       first += points.size();
     };
-    each(contour_.edge_points, [&](const EdgePoint& edge) {
-      const Vec3 a = gradients_.at(edge.first, edge.step()), b = gradients_.at(edge.second, edge.step());
-      return (1 - edge.parameter) * a + edge.parameter * b;
-    });
-    each(contour_.vertex_points,
-         [&](const VertexPoint& point) { return gradients_.at(point.vertex, point.step); });
-    each(contour_.mean_points, [&](const MeanPoint& point) {
-      Vec3 gradient;
-      for (std::size_t v = 0; v < 4; ++v) {
-        if (point.weights[v] != 0)
-          gradient += point.weights[v] * gradients_.at(point.vertices[v], point.step);
-      }
-      return gradient;
-    });
+    each(contour_.edge_points);
+    each(contour_.vertex_points);
+    each(contour_.mean_points);
   }
   [[nodiscard]] const std::vector<PageId>& lost() const { return gradients_.lost(); }
 
@@ -190,6 +198,33 @@ SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Co
   }
   return result;
 }
+
+template <class Sample>
+class PointNormals<Sample>::Gradients : public VertexGradients<Sample> {
+  using VertexGradients<Sample>::VertexGradients;
+};
+
+template <class Sample>
+PointNormals<Sample>::PointNormals(StoredPages<OrderedWord<Sample>>& pages)
+    : gradients_(std::make_unique<Gradients>(pages)) {}
+template <class Sample>
+PointNormals<Sample>::~PointNormals() = default;
+template <class Sample>
+PointNormals<Sample>::PointNormals(PointNormals&&) noexcept = default;
+
+template <class Sample>
+Vec3 PointNormals<Sample>::of(const EdgePoint& point) {
+  return normal_of<Sample>(point, *gradients_);
+}
+template <class Sample>
+Vec3 PointNormals<Sample>::of(const MeanPoint& point) {
+  return normal_of<Sample>(point, *gradients_);
+}
+
+template class PointNormals<std::uint8_t>;
+template class PointNormals<std::uint16_t>;
+template class PointNormals<std::int16_t>;
+template class PointNormals<float>;
 
 template SurfaceNormals surface_normals<std::uint8_t>(StoredPages<std::uint8_t>&, const Contour&, Progress&);
 template SurfaceNormals surface_normals<std::uint16_t>(StoredPages<std::uint16_t>&, const Contour&,

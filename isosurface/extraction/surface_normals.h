@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "adamas/progress.h"
@@ -26,5 +27,27 @@ struct SurfaceNormals {
 template <class Sample>
 SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
                                Progress& progress = SilentProgress::instance());
+
+/// The same, one point at a time and in any order, with the same result to the last bit.
+template <class Sample>
+class PointNormals {
+ public:
+  /// The pages must outlive this.
+  explicit PointNormals(StoredPages<OrderedWord<Sample>>& pages);
+  ~PointNormals();
+  PointNormals(PointNormals&&) noexcept;
+
+  Vec3 of(const EdgePoint& point);
+  Vec3 of(const MeanPoint& point);
+
+ private:
+  class Gradients;
+  std::unique_ptr<Gradients> gradients_;
+};
+
+extern template class PointNormals<std::uint8_t>;
+extern template class PointNormals<std::uint16_t>;
+extern template class PointNormals<std::int16_t>;
+extern template class PointNormals<float>;
 
 }  // namespace adamas

@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/lattice/point_numbers.h"
+#include "isosurface/contour/contour_clip.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
 
 namespace adamas {
 
 namespace {
+
+constexpr std::int32_t kSide = PageGrid::kSide;
+constexpr int kLodBits = 56;  ///< of a chunk's id: the LOD stands above so many bits
 
 /// Ends the work when the frame's own predicate says so.
 class StoppedByFrame final : public Progress {
@@ -23,105 +29,332 @@ class StoppedByFrame final : public Progress {
   const FrameRequest& request_;
 };
 
-/// How many diamonds one mask has that another has not.
-std::uint64_t more_in(const PageMask& one, const PageMask* other) {
-  std::uint64_t sum = 0;
-  for (std::size_t row = 0; row < one.rows.size(); ++row) {
-    const unsigned others = other == nullptr ? 0u : other->rows[row];
-    sum += static_cast<std::uint64_t>(std::popcount(static_cast<unsigned>(one.rows[row]) & ~others));
+/// How many more error classes may be split in one go: with each class a surface mostly has 2^(1/4) times as
+/// many triangles.
+int classes_further(std::uint64_t triangles, std::uint64_t most) {
+  constexpr double kMost = 8;
+  const double ratio = static_cast<double>(most) / static_cast<double>(std::max<std::uint64_t>(triangles, 1));
+  return static_cast<int>(std::clamp(4 * std::log2(ratio), 1.0, kMost));
+}
+
+/// Joins the points of edges: an edge has one number, whichever triangles name it.
+class JoinedEdges {
+ public:
+  explicit JoinedEdges(Contour& contour) : contour_(contour) {}
+
+  std::uint32_t number(const EdgePoint& point, const Vec3& position) {
+    // No two edges of a mesh have the same middle.
+    const LatticePoint way = point.second - point.first;
+    const auto [number, is_new] =
+        numbers_.insert(point.first + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
+    if (is_new) {
+      *number = static_cast<std::uint32_t>(contour_.points.size());
+      contour_.edge_points.push_back(point);
+      contour_.points.push_back(position);
+    }
+    return *number;
   }
-  return sum;
+
+ private:
+  Contour& contour_;
+  PointNumbers numbers_;
+};
+
+std::array<std::uint32_t, 3> renumbered(const std::array<std::uint32_t, 3>& triangle,
+                                        const std::vector<std::uint32_t>& numbers) {
+  return {numbers[triangle[0]], numbers[triangle[1]], numbers[triangle[2]]};
 }
 
 }  // namespace
 
 template <class Sample>
-PagedFrames<Sample>::PagedFrames(StoredPages<OrderedWord<Sample>>& pages)
+PagedFrames<Sample>::PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory)
     : diamonds_(pages),
-      split_pages_(diamonds_, limits_),
-      masks_(static_cast<std::size_t>(split_pages_.lods())) {}
+      pages_(diamonds_, surface_, memory),
+      maker_(diamonds_, surface_,
+             [this](int lod, LatticePoint block) { return pages_.split_of(lod, block); }) {}
+
+template <class Sample>
+std::uint64_t PagedFrames<Sample>::id_of(int lod, LatticePoint block) {
+  return std::uint64_t{static_cast<unsigned>(lod)} << kLodBits | ZOrder::interleave(block);
+}
+
+template <class Sample>
+const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
+  if (apart_ && apart_->shown.id == id) return &apart_->shown;
+  if (id == kRoot || id == kBorder) return nullptr;
+  const ViewedPage* const page = pages_.find(static_cast<int>(id >> kLodBits),
+                                             ZOrder::deinterleave(id & ((std::uint64_t{1} << kLodBits) - 1)));
+  return page == nullptr || page->chunk == nullptr ? nullptr : &page->chunk->shown;
+}
 
 template <class Sample>
 FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
+  changes_ = {};
   diamonds_.set_view(View(request.viewpoint));
-  StoppedByFrame progress(request);
+  const StoppedByFrame progress(request);
+  FrameFigures figures;
   try {
-    if (isovalue_ != request.isovalue) {
-      isovalue_.reset();
-      diamonds_.set_contour_in_view(request.isovalue);
-      surface_.isovalue = request.isovalue;
-      merge_all();
-      isovalue_ = request.isovalue;
-    }
-    if (request.max_triangles && figures_.triangles > *request.max_triangles) merge_all();
+    if (isovalue_ != request.isovalue) start(request.isovalue);
     const SurfaceCut cut = cut_of(request, progress);
-    split_pages_.find(cut, [&](int, const auto&) { progress.check(); });
-    Contour contour = contour_of_mesh(progress);
+    last_class_ = cut.error_class;
+    figures.largest_error = diamonds_.most_pixels(pages_.split(cut, [&] { progress.check(); }));
+    find_changed_cells(figures);
+    std::vector<NewChunk> made = make_chunks(progress);
     // Nothing stops the frame from here on.
-    contour_ = std::move(contour);
-    figures_ = {};
-    figures_.triangles = contour_.triangles.size();
-    figures_.largest_error = diamonds_.most_pixels(split_pages_.greatest_left());
-    count_changes(figures_);
-    return figures_;
+    take(std::move(made));
+    figures.triangles = 0;
+    for_each_chunk([&](const SurfaceChunk& chunk) { figures.triangles += chunk.triangles.size(); });
+    figures_ = figures;
   } catch (const Cancelled&) {
-    FrameFigures stopped = figures_;
-    stopped.splits = stopped.merges = 0;
-    stopped.stopped = true;
-    return stopped;
+    if (request.max_triangles && figures_.triangles > *request.max_triangles) merge_all();
+    figures = figures_;
+    figures.splits = figures.merges = 0;
+    figures.stopped = true;
+  } catch (...) {
+    isovalue_.reset();
+    throw;
   }
+  pages_.forget_old();
+  find_changes();
+  return figures;
+}
+
+template <class Sample>
+void PagedFrames<Sample>::start(double isovalue) {
+  isovalue_.reset();
+  diamonds_.set_contour(isovalue);
+  surface_.isovalue = isovalue;
+  merge_all();
+  pages_.clear();
+  root_triangles_ =
+      static_cast<std::uint64_t>(TriangleCounter<Sample>(diamonds_, surface_).triangles(diamonds_.root()));
+  last_class_ = 0;
+  isovalue_ = isovalue;
 }
 
 template <class Sample>
 void PagedFrames<Sample>::merge_all() {
-  contour_ = root_contour(diamonds_, surface_.isovalue,
-                          surface_.contour_options(diamonds_.last_sample(), diamonds_.spacing()));
-  figures_ = {};
-  figures_.triangles = contour_.triangles.size();
-  figures_.largest_error = std::numeric_limits<double>::infinity();
-  masks_.assign(masks_.size(), {});
-}
-
-template <class Sample>
-SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, Progress& progress) {
-  const int least_class = std::max(1, diamonds_.view_class(request.pixels));
-  split_pages_.forget(request.max_triangles.has_value());
-  if (!request.max_triangles) return {.error_class = least_class};
-  TriangleBudget<Sample> budget(diamonds_, split_pages_, surface_);
-  return budget.find(*request.max_triangles, least_class, diamonds_.root(), progress);
-}
-
-template <class Sample>
-Contour PagedFrames<Sample>::contour_of_mesh(Progress& progress) {
-  const ContourOptions options = surface_.contour_options(diamonds_.last_sample(), diamonds_.spacing());
-  if (split_pages_.count() == 0) return root_contour(diamonds_, surface_.isovalue, options);
-  ContourBuilder builder(diamonds_.domain(), surface_.isovalue, options);
-  builder.expect(split_pages_.count() * 3 / 2);
-  PageContour<Sample> contour(diamonds_, split_pages_, limits_, builder);
-  split_pages_.for_each_page([&](int lod, const auto& page, double) {
-    progress.check();
-    contour.add(lod, page);
-  });
-  return builder.finish();
-}
-
-template <class Sample>
-void PagedFrames<Sample>::count_changes(FrameFigures& figures) {
-  for (int lod = 0; lod < split_pages_.lods(); ++lod) {
-    LatticeMap<PageMask>& before = masks_[static_cast<std::size_t>(lod)];
-    LatticeMap<PageMask> now;
-    for (const auto& page : split_pages_.pages(lod)) {
-      if (page.split == nullptr) continue;
-      const PageMask* const old = before.find(page.block);
-      figures.splits += more_in(*page.split, old);
-      if (old != nullptr) figures.merges += more_in(*old, page.split);
-      *now.insert(page.block).first = *page.split;
-    }
-    before.for_each([&](LatticePoint block, const PageMask& mask) {
-      if (now.find(block) == nullptr) figures.merges += more_in(mask, nullptr);
-    });
-    before = std::move(now);
+  for (ViewedPage* const page : chunks_) {
+    touch(page->chunk->shown.id, true);
+    page->chunk.reset();
   }
+  chunks_.clear();
+  set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
+  figures_ = {};
+  figures_.triangles = apart_ ? apart_->shown.triangles.size() : 0;
+  figures_.largest_error = std::numeric_limits<double>::infinity();
+}
+
+template <class Sample>
+SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, const Progress& progress) {
+  constexpr int kNothing = ViewedDiamonds<Sample>::kClasses;
+  const auto check = [&] { progress.check(); };
+  const int least = std::max(1, diamonds_.view_class(request.pixels));
+  const std::uint64_t most = request.max_triangles.value_or(std::numeric_limits<std::uint64_t>::max());
+  if (!request.max_triangles || root_triangles_ > most) {
+    const int of_all = request.max_triangles ? kNothing : least;
+    pages_.walk(of_all, std::numeric_limits<std::uint64_t>::max(), check);
+    return {.error_class = of_all};
+  }
+  constexpr int kFirst = 7;
+  int low = last_class_ > 0 ? last_class_
+                            : diamonds_.view_class(diamonds_.pixels(diamonds_.root().point())) - kFirst;
+  // For diamonds of classes from `fits` on there is room, for those from `fails` on there is not.
+  const std::uint64_t all_room = most - root_triangles_;
+  std::uint64_t room = all_room;
+  int fits = kNothing, fails = least - 1;
+  for (int up = 1;;) {
+    low = std::clamp(low, std::max(least, fails), fits - 1);
+    const auto added = pages_.walk(low, room, check);
+    if (!added) {
+      fails = low + 1;
+      low += std::exchange(up, 2 * up);
+      continue;
+    }
+    // Where some splits take triangles away there is room for others.
+    while (added->all().added > room) {
+      const auto found = pages_.cut_within(low, *added, room);
+      if (all_room + found.sum.lost <= room) return found.cut;
+      room = all_room + found.sum.lost;
+      fails = least - 1;
+    }
+    if (low == least) return {.error_class = least};
+    fits = low;
+    low -= classes_further(root_triangles_ + added->all().added, most);
+  }
+}
+
+template <class Sample>
+void PagedFrames<Sample>::find_changed_cells(FrameFigures& figures) {
+  for (ViewedPage* const page : pages_.shown()) note_changes(*page, *page->split, figures);
+  for (ViewedPage* const page : chunks_) {
+    if (pages_.split_of(page->lod, page->block) == nullptr) note_changes(*page, {}, figures);
+  }
+}
+
+template <class Sample>
+void PagedFrames<Sample>::note_changes(ViewedPage& page, const PageMask& now, FrameFigures& figures) {
+  const PageMask* const before = page.chunk == nullptr ? nullptr : &page.chunk->split;
+  if (before != nullptr && *before == now) return;
+  for (std::int32_t row = 0; row < kSide * kSide; ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    const unsigned old = before == nullptr ? 0u : before->rows[r], split = now.rows[r] & ~old,
+                   merged = old & ~unsigned{now.rows[r]};
+    if ((split | merged) == 0) continue;
+    figures.splits += static_cast<std::uint64_t>(std::popcount(split));
+    figures.merges += static_cast<std::uint64_t>(std::popcount(merged));
+    if (chunks_.empty()) continue;
+    for (unsigned bits = split | merged; bits != 0; bits &= bits - 1) {
+      const LatticePoint q{std::countr_zero(bits), row % kSide, row / kSide};
+      const Diamond diamond(diamonds_.lattice_step(page.lod) * (kSide * page.block + q));
+      note_cell(diamond.point());
+      // Its tetrahedra are halves of those of its parents.
+      for (int n = 0; n < diamond.parent_count(); ++n) note_cell(diamond.parent(n));
+    }
+  }
+}
+
+template <class Sample>
+void PagedFrames<Sample>::note_cell(LatticePoint p) {
+  const int lod = diamonds_.lod(p);
+  if (lod >= diamonds_.lods() || !diamonds_.domain().contains(p)) return;
+  const LatticePoint s = diamonds_.in_samples(p), u{s.i >> lod, s.j >> lod, s.k >> lod};
+  ViewedPage* const page = pages_.find(lod, {u.i / kSide, u.j / kSide, u.k / kSide});
+  if (page == nullptr) return;
+  if (std::exchange(page->changed_in, pages_.walk_number()) != pages_.walk_number()) page->changed = 0;
+  page->changed |= std::uint64_t{1} << PageChunk::cell({u.i % kSide, u.j % kSide, u.k % kSide});
+}
+
+template <class Sample>
+std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_chunks(
+    const Progress& progress) {
+  std::vector<NewChunk> made;
+  for (ViewedPage* const page : pages_.shown()) {
+    if (page->chunk != nullptr && page->changed_in != pages_.walk_number()) continue;
+    progress.check();
+    made.push_back({page, maker_.make(page->lod, page->block, page->chunk.get(), page->changed)});
+    made.back().chunk->shown.id = id_of(page->lod, page->block);
+  }
+  return made;
+}
+
+template <class Sample>
+void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
+  ++revision_;
+  bool border_changed = apart_ && apart_->shown.id == kRoot;
+  const auto note_border = [&](const PageChunk& chunk) {
+    border_changed = border_changed || !chunk.border.triangles.empty();
+  };
+  for (ViewedPage* const page : chunks_) {
+    if (pages_.split_of(page->lod, page->block) != nullptr) continue;
+    note_border(*page->chunk);
+    touch(page->chunk->shown.id, true);
+    maker_.recycle(std::move(page->chunk));
+  }
+  for (NewChunk& next : made) {
+    note_border(*next.chunk);
+    if (next.page->chunk != nullptr) note_border(*next.page->chunk);
+    touch(next.chunk->shown.id, next.page->chunk != nullptr);
+    next.chunk->shown.revision = revision_;
+    maker_.recycle(std::exchange(next.page->chunk, std::move(next.chunk)));
+  }
+  chunks_ = pages_.shown();
+  if (chunks_.empty()) {
+    if (!apart_ || apart_->shown.id != kRoot)
+      set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
+  } else if (border_changed) {
+    set_apart(kBorder, border());
+  }
+}
+
+template <class Sample>
+void PagedFrames<Sample>::drop_apart() {
+  if (apart_) touch(apart_->shown.id, true);
+  apart_.reset();
+}
+
+template <class Sample>
+void PagedFrames<Sample>::set_apart(std::uint64_t id, Contour contour) {
+  const bool was_there = apart_ && apart_->shown.id == id;
+  if (!was_there) drop_apart();
+  if (contour.triangles.empty()) return drop_apart();
+  touch(id, was_there);
+  Apart& apart = apart_.emplace();
+  SurfaceChunk& shown = apart.shown;
+  shown.id = id;
+  shown.revision = ++revision_;
+  shown.points = contour.points;
+  shown.triangles = contour.triangles;
+  shown.normals.reserve(contour.points.size());
+  for (const EdgePoint& point : contour.edge_points) shown.normals.push_back(maker_.normals().of(point));
+  for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(maker_.normals().of(point));
+  apart.contour = std::move(contour);
+}
+
+template <class Sample>
+Contour PagedFrames<Sample>::border() const {
+  Contour contour;
+  JoinedEdges edges(contour);
+  std::vector<std::uint32_t> numbers;
+  for (const ViewedPage* const page : chunks_) {
+    const PageChunk& chunk = *page->chunk;
+    // The triangles name edges by their places.
+    numbers.resize(std::numeric_limits<PageChunk::EdgePlace>::max());
+    for (std::size_t n = 0; n < chunk.border.edges.size(); ++n) {
+      const EdgePoint point = maker_.edge_point(chunk, chunk.border.edges[n], chunk.border.parameters[n]);
+      numbers[chunk.border.edges[n]] = edges.number(point, maker_.position(point));
+    }
+    for (const auto& places : chunk.border.triangles)
+      contour.triangles.push_back({numbers[places[0]], numbers[places[1]], numbers[places[2]]});
+  }
+  clip_contour(contour, diamonds_.data_box(), diamonds_.spacing());
+  return contour;
+}
+
+template <class Sample>
+Contour PagedFrames<Sample>::contour() const {
+  Contour contour;
+  JoinedEdges edges(contour);
+  std::vector<std::uint32_t> numbers;
+  for (const ViewedPage* const page : chunks_) {
+    const PageChunk& chunk = *page->chunk;
+    numbers.clear();
+    for (std::size_t n = 0; n < chunk.inside.edges.size(); ++n)
+      numbers.push_back(
+          edges.number(maker_.edge_point(chunk, chunk.inside.edges[n], chunk.inside.parameters[n]),
+                       chunk.shown.points[n]));
+    for (const auto& triangle : chunk.shown.triangles)
+      contour.triangles.push_back(renumbered(triangle, numbers));
+  }
+  if (!apart_) return contour;
+  const Contour& apart = apart_->contour;
+  numbers.clear();
+  for (std::size_t n = 0; n < apart.edge_points.size(); ++n)
+    numbers.push_back(edges.number(apart.edge_points[n], apart.points[n]));
+  for (std::size_t n = apart.edge_points.size(); n < apart.points.size(); ++n) {
+    numbers.push_back(static_cast<std::uint32_t>(contour.points.size()));
+    contour.points.push_back(apart.points[n]);
+  }
+  contour.mean_points = apart.mean_points;
+  for (const auto& triangle : apart.triangles) contour.triangles.push_back(renumbered(triangle, numbers));
+  return contour;
+}
+
+template <class Sample>
+void PagedFrames<Sample>::find_changes() {
+  changes_ = {};
+  // What was touched first tells whether it had been there.
+  std::ranges::stable_sort(touched_, {}, [](const auto& touched) { return touched.first; });
+  for (std::size_t n = 0; n < touched_.size(); ++n) {
+    const auto [id, was_there] = touched_[n];
+    if (n > 0 && touched_[n - 1].first == id) continue;
+    const bool is_there = chunk(id) != nullptr;
+    if (was_there && is_there) changes_.changed.push_back(id);
+    if (was_there && !is_there) changes_.removed.push_back(id);
+    if (!was_there && is_there) changes_.added.push_back(id);
+  }
+  touched_.clear();
 }
 
 template class PagedFrames<std::uint8_t>;

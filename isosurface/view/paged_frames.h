@@ -1,53 +1,110 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/lattice/lattice_map.h"
 #include "isosurface/contour/contour.h"
-#include "isosurface/extraction/split_pages.h"
 #include "isosurface/extraction/surface_request.h"
 #include "isosurface/view/frame_refinement.h"
-#include "isosurface/view/viewed_diamonds.h"
+#include "isosurface/view/page_chunk.h"
+#include "isosurface/view/surface_chunk.h"
+#include "isosurface/view/viewed_pages.h"
 
 namespace adamas {
 
 /// Frames by masks of pages: each frame is the cut of the diamonds by their classes in the view, and a limit
 /// of triangles splits them in the order of SurfaceCut. So a frame does not depend on those before it, but
-/// for the pages that are in memory. The mesh is that of QueuedFrames, where the error wanted is the least of
-/// a class and there is room.
+/// only what is not as in the last one is made anew: surfaces are kept as chunks, one for each page. The mesh
+/// is that of QueuedFrames, where the error wanted is the least of a class and there is room.
 template <class Sample>
 class PagedFrames {
  public:
-  /// The pages must outlive this.
-  explicit PagedFrames(StoredPages<OrderedWord<Sample>>& pages);
+  static constexpr std::size_t kMemory = std::size_t{64} << 20;
+
+  /// `memory`: bytes that may be taken between frames by what is known of pages that the last one did not
+  /// look at. The pages must outlive this.
+  explicit PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory = kMemory);
 
   /// Finds the surface of a frame. A stopped one leaves what there was, or the mesh in which nothing is split
   /// where that is of another contour or has too many triangles; its greatest error is not known then. Throws
   /// PageLost.
   FrameFigures refine(const FrameRequest& request);
 
-  /// The surface of the last frame, clipped to the data's box.
-  [[nodiscard]] const Contour& contour() const { return contour_; }
+  /// Which chunks the last frame has added, made anew and removed.
+  [[nodiscard]] const ChunkChanges& changes() const { return changes_; }
+  /// Calls visit(chunk) for all chunks of the last frame. They stay where they are until they are made anew.
+  template <class Visit>
+  void for_each_chunk(Visit&& visit) const {
+    for (const ViewedPage* const page : chunks_) visit(page->chunk->shown);
+    if (apart_) visit(apart_->shown);
+  }
+  /// A chunk of the last frame; null where there is none of this id.
+  [[nodiscard]] const SurfaceChunk* chunk(std::uint64_t id);
+
+  /// The surface of the last frame as one: clipped to the data's box, with one point for each edge.
+  [[nodiscard]] Contour contour() const;
   [[nodiscard]] const ViewedDiamonds<Sample>& diamonds() const { return diamonds_; }
+  /// Bytes that what is known of pages takes, beside the chunks.
+  [[nodiscard]] std::size_t known_bytes() const { return pages_.bytes(); }
 
  private:
+  /// Ids of the chunks that are not of one page: of the mesh in which nothing is split, and of all triangles
+  /// that the border of the data cuts, which are cut together, so that neighbours stay joined.
+  static constexpr std::uint64_t kRoot = ~std::uint64_t{0}, kBorder = kRoot - 1;
+  static std::uint64_t id_of(int lod, LatticePoint block);
+
+  /// A chunk that is not of one page, and its surface.
+  struct Apart {
+    Contour contour;
+    SurfaceChunk shown;
+  };
+  struct NewChunk {
+    ViewedPage* page;
+    std::unique_ptr<PageChunk> chunk;
+  };
+
+  /// Forgets all of another contour, and leaves the mesh in which nothing is split.
+  void start(double isovalue);
   /// Leaves the surface of the mesh in which nothing is split.
   void merge_all();
-  SurfaceCut cut_of(const FrameRequest& request, Progress& progress);
-  void count_changes(FrameFigures& figures);
-  Contour contour_of_mesh(Progress& progress);
+  SurfaceCut cut_of(const FrameRequest& request, const Progress& progress);
+  /// Finds in which cells of the last frame's chunks triangles are not as they were, and counts splits and
+  /// merges.
+  void find_changed_cells(FrameFigures& figures);
+  void note_changes(ViewedPage& page, const PageMask& now, FrameFigures& figures);
+  void note_cell(LatticePoint p);
+  std::vector<NewChunk> make_chunks(const Progress& progress);
+  /// Puts what was found in the place of the last frame.
+  void take(std::vector<NewChunk> made);
+  void set_apart(std::uint64_t id, Contour contour);
+  void drop_apart();
+  /// All triangles that the border cuts.
+  [[nodiscard]] Contour border() const;
+  /// Notes that a chunk is changed, and whether it was there before.
+  void touch(std::uint64_t id, bool was_there) { touched_.emplace_back(id, was_there); }
+  void find_changes();
+  [[nodiscard]] ContourOptions contour_options() const {
+    return surface_.contour_options(diamonds_.last_sample(), diamonds_.spacing());
+  }
 
   ViewedDiamonds<Sample> diamonds_;
-  SplitLimits limits_;
-  SplitPages<Sample> split_pages_;
   SurfaceRequest surface_;
+  ViewedPages<Sample> pages_;
+  ChunkMaker<Sample> maker_;
   std::optional<double> isovalue_;  ///< none before the first frame
-  Contour contour_;
-  FrameFigures figures_;                     ///< of the last frame that was not stopped
-  std::vector<LatticeMap<PageMask>> masks_;  ///< by LOD: what was split in that frame, by block
+  std::uint64_t root_triangles_ = 0;
+  int last_class_ = 0;    ///< the least class of the last cut of this contour; 0 before there is one
+  FrameFigures figures_;  ///< of the last frame that was not stopped
+  std::uint64_t revision_ = 0;
+  std::vector<ViewedPage*> chunks_;  ///< the pages that have one, from the coarsest LOD on, in z-order
+  std::optional<Apart> apart_;
+  std::vector<std::pair<std::uint64_t, bool>> touched_;
+  ChunkChanges changes_;
 };
 
 extern template class PagedFrames<std::uint8_t>;

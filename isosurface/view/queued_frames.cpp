@@ -49,7 +49,7 @@ template <class Sample>
 void QueuedFrames<Sample>::set_contour(double isovalue) {
   // Where a page is lost meanwhile, this is done again.
   isovalue_.reset();
-  diamonds_.set_contour_in_view(isovalue);
+  diamonds_.set_contour(isovalue);
   counted_.isovalue = isovalue;
   triangles_ = counter_.triangles(diamonds_.root());
   std::vector<LatticePoint> points;

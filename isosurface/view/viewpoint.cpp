@@ -10,11 +10,6 @@ namespace adamas {
 
 namespace {
 
-double reach(const CentredBox& box, const Vec3& direction) {
-  return std::abs(direction.x) * box.half.x + std::abs(direction.y) * box.half.y +
-         std::abs(direction.z) * box.half.z;
-}
-
 void check(const Viewpoint& viewpoint) {
   bool finite = std::isfinite(viewpoint.field_of_view + viewpoint.height + viewpoint.near);
   for (const Vec3& v : {viewpoint.eye, viewpoint.target, viewpoint.up})
@@ -35,6 +30,11 @@ void check(const Viewpoint& viewpoint) {
 }
 
 }  // namespace
+
+double View::reach(const CentredBox& box, const Vec3& direction) {
+  return std::abs(direction.x) * box.half.x + std::abs(direction.y) * box.half.y +
+         std::abs(direction.z) * box.half.z;
+}
 
 View::View(const Viewpoint& viewpoint) : viewpoint_(viewpoint) {
   check(viewpoint);
@@ -73,11 +73,10 @@ bool View::shows_all_of(const CentredBox& box) const {
       sides_, [&](const Side& s) { return dot(s.normal, box.centre) - s.offset >= reach(box, s.normal); });
 }
 
-double View::pixels(double length, const CentredBox& box) const {
-  if (viewpoint_.height > 0) return scale_ * length;
-  const Side& near = sides_[4];
+double View::depth(const CentredBox& box) const {
+  const Side& near = sides_[kNear];
   const double behind_near = dot(near.normal, box.centre) - near.offset - reach(box, near.normal);
-  return scale_ * length / (viewpoint_.near + std::max(0.0, behind_near));
+  return viewpoint_.near + std::max(0.0, behind_near);
 }
 
 }  // namespace adamas

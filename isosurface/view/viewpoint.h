@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/geometry/vec3.h"
@@ -42,17 +43,31 @@ class View {
   [[nodiscard]] bool shows_all_of(const CentredBox& box) const;
   /// Two points of the box at this distance from each other are no farther apart in the picture, in pixels,
   /// where the one that is nearer to the eye is in the picture.
-  [[nodiscard]] double pixels(double length, const CentredBox& box) const;
+  [[nodiscard]] double pixels(double length, const CentredBox& box) const {
+    return pixels_at(length, depth(box));
+  }
+  /// The same, by depth(). Less at greater depths.
+  [[nodiscard]] double pixels_at(double length, double depth) const {
+    return viewpoint_.height > 0 ? scale_ * length : scale_ * length / depth;
+  }
+  /// How far from the eye along the line of sight the nearest part of the box is that is not before the near
+  /// plane; at least the near plane's distance.
+  [[nodiscard]] double depth(const CentredBox& box) const;
 
- private:
   struct Side {
     Vec3 normal;  ///< of length 1, to the inside
     double offset;
   };
+  /// How far a box reaches from its centre along a direction, either way.
+  static double reach(const CentredBox& box, const Vec3& direction);
+  static constexpr std::size_t kNear = 4;
+  /// Left, right, lower, upper, near.
+  [[nodiscard]] const std::array<Side, 5>& sides() const { return sides_; }
 
+ private:
   Viewpoint viewpoint_;
-  std::array<Side, 5> sides_;  ///< left, right, lower, upper, near
-  double scale_;               ///< pixels for a length, at the distance 1 in perspective
+  std::array<Side, 5> sides_;
+  double scale_;  ///< pixels for a length, at the distance 1 in perspective
 };
 
 }  // namespace adamas

@@ -108,7 +108,7 @@ TEST_P(Frames, AreTheMeshOfTheWantedErrorWhereverTheyComeFrom) {
     EXPECT_EQ(of_fresh.merges, 0u);
     EXPECT_EQ(of_fresh.largest_error, figures.largest_error);
     ViewedDiamonds<std::uint8_t> diamonds(store.pages());
-    diamonds.set_contour_in_view(wanted.isovalue);
+    diamonds.set_contour(wanted.isovalue);
     diamonds.set_view(View(wanted.viewpoint));
     IndexedHierarchy direct(diamonds.domain(), diamonds.lods());
     std::vector<LatticePoint> done;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "isosurface/extraction/surface_normals.h"
 #include "isosurface/view/paged_frames.h"
 #include "isosurface/volume/samples.h"
 
@@ -23,6 +22,14 @@ class Clock {
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+void append(const SurfaceChunk& chunk, TriangleSurface& surface) {
+  const auto first = static_cast<std::uint32_t>(surface.points.size());
+  surface.points.insert(surface.points.end(), chunk.points.begin(), chunk.points.end());
+  surface.normals.insert(surface.normals.end(), chunk.normals.begin(), chunk.normals.end());
+  for (const auto& [a, b, c] : chunk.triangles)
+    surface.triangles.push_back({first + a, first + b, first + c});
+}
 
 template <class Sample>
 class StoreFramesOf final : public StoreFrames {
@@ -44,12 +51,8 @@ class StoreFramesOf final : public StoreFrames {
     Frame frame;
     Clock clock;
     frame.figures = frames_.refine(request);
+    frames_.for_each_chunk([&](const SurfaceChunk& chunk) { append(chunk, frame.surface); });
     frame.update_seconds = clock.lap();
-    const Contour& contour = frames_.contour();
-    frame.surface.normals = surface_normals<Sample>(pages_, contour).normals;
-    frame.surface.points = contour.points;
-    frame.surface.triangles = contour.triangles;
-    frame.normal_seconds = clock.lap();
     return frame;
   }
 

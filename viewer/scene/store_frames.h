@@ -11,10 +11,11 @@ namespace adamas {
 
 /// What is to be drawn in a frame.
 struct Frame {
-  TriangleSurface surface;  ///< with normals, in the frame of the grid
+  /// With normals, in the frame of the grid: the chunks of PagedFrames one after the other.
+  TriangleSurface surface;
   FrameFigures figures;
-  double update_seconds = 0;  ///< to find the mesh and its triangles
-  double normal_seconds = 0;
+  double update_seconds = 0;  ///< to find the mesh and its triangles, with normals, and to put them together
+  double normal_seconds = 0;  ///< none: normals are part of the update
 };
 
 /// The surface of a store, frame after frame.

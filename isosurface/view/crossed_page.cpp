@@ -1,0 +1,135 @@
+#include "isosurface/view/crossed_page.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <limits>
+
+#include "core/base/assert.h"
+#include "isosurface/extraction/surface_cut.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::int32_t kSide = PageGrid::kSide;
+
+/// How many keys there are of a code and a phase; the groups are in their order.
+constexpr std::size_t kKeys = std::size_t{3} * ErrorScale::kCodes;
+std::size_t key(std::uint8_t code, int phase) {
+  return 3 * (std::size_t{ErrorScale::kCodes - 1} - code) + static_cast<std::size_t>(phase);
+}
+int phase_of(LatticePoint q) { return 3 - (q.i & 1) - (q.j & 1) - (q.k & 1); }
+
+/// Calls visit(q, code) for each code that is not 0, i running fastest.
+template <class Codes, class Visit>
+void for_each_code(const Codes& codes, Visit&& visit) {
+  for (std::int32_t row = 0; row < kSide * kSide; ++row) {
+    const std::uint8_t* const of_row = codes.data() + kSide * row;
+    for (unsigned bits = row_not_less(of_row, 1); bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits);
+      visit(LatticePoint{i, row % kSide, row / kSide}, of_row[i]);
+    }
+  }
+}
+
+}  // namespace
+
+template <class Sample>
+void CrossedPageReader<Sample>::find_codes(int lod, LatticePoint block) {
+  const PageGrid& grid = diamonds_.grid();
+  const PageId id{std::min(lod, grid.top()), block};
+  diamonds_.find_crossed(id, codes_);
+  // Bounds of the finest LOD predict nothing.
+  if (lod == 0 && grid.top() > 0) diamonds_.pages().drop_bounds(id);
+  const auto all = codes_;
+  codes_.fill(0);
+  const std::int32_t step = 1 << (lod - id.lod);
+  const LatticePoint reach = grid.reach(lod);
+  LatticePoint count;
+  for (int axis = 0; axis < 3; ++axis)
+    count[axis] = std::min({reach[axis] - kSide * block[axis] + 1, kSide, (kSide + step - 1) / step});
+  for (LatticePoint q{}; q.k < count.k; ++q.k) {
+    for (q.j = 0; q.j < count.j; ++q.j) {
+      // Other points are those of coarser LODs.
+      const bool all_own = ((q.j | q.k) & 1) != 0;
+      for (q.i = all_own ? 0 : 1; q.i < count.i; q.i += all_own ? 1 : 2)
+        codes_[PageGrid::place(q, 0)] = all[PageGrid::place(step * q, 0)];
+    }
+  }
+}
+
+template <class Sample>
+CrossedPage CrossedPageReader<Sample>::read(int lod, LatticePoint block) {
+  find_codes(lod, block);
+  CrossedPage page;
+  std::array<std::uint16_t, kKeys> next{};
+  std::size_t total = 0, group_count = 0;
+  for_each_code(codes_, [&](LatticePoint q, std::uint8_t code) { ++next[key(code, phase_of(q))]; });
+  for (const std::uint16_t count : next) {
+    total += count;
+    group_count += count > 0 ? 1 : 0;
+  }
+  page.groups.reserve(group_count);
+  page.places.resize(total);
+  std::uint16_t begin = 0;
+  for (std::size_t k = 0; k < kKeys; ++k) {
+    const auto end = static_cast<std::uint16_t>(begin + next[k]);
+    if (end > begin)
+      page.groups.push_back({.code = static_cast<std::uint8_t>(ErrorScale::kCodes - 1 - k / 3),
+                             .phase = static_cast<std::uint8_t>(k % 3),
+                             .begin = begin,
+                             .end = end});
+    next[k] = begin;
+    begin = end;
+  }
+  for_each_code(codes_, [&](LatticePoint q, std::uint8_t code) {
+    page.places[next[key(code, phase_of(q))]++] = static_cast<std::uint16_t>(PageGrid::place(q, 0));
+  });
+  for (CrossedPage::Group& group : page.groups) {
+    if (group.phase != 2) continue;
+    for (std::size_t n = group.begin; n < group.end; ++n)
+      group.children |= pages_of_children(CrossedPage::point(page.places[n]));
+  }
+  return page;
+}
+
+template <class Sample>
+std::int64_t CrossedPageReader<Sample>::added_at(LatticePoint q) {
+  // Tables tell how many triangles a split adds where nothing is clipped.
+  const bool whole = page_.all_finite() && (page_.is_inside() || counter_.is_inside(page_.diamond(q)));
+  return whole ? page_.triangles_added(DiamondStencil::at(q), q) : counter_.added_by_split(page_.diamond(q));
+}
+
+template <class Sample>
+void CrossedPageReader<Sample>::count(int lod, LatticePoint block, std::size_t groups, CrossedPage& page) {
+  if (groups <= page.counted) return;
+  const std::size_t begin = page.groups[page.counted].begin, end = page.groups[groups - 1].end;
+  PageMask wanted;
+  for (std::size_t n = begin; n < end; ++n) wanted.add(page.places[n]);
+  page_.load(lod, block, wanted);
+  page.added.resize(end);
+  if (!page.lost.empty()) page.lost.resize(end);
+  for (; page.counted < groups; ++page.counted) {
+    CrossedPage::Group& group = page.groups[page.counted];
+    for (std::size_t n = group.begin; n < group.end; ++n) {
+      const std::int64_t more = added_at(CrossedPage::point(page.places[n]));
+      ADAMAS_ASSERT(std::abs(more) <= std::numeric_limits<std::uint8_t>::max());
+      if (more < 0) {
+        page.lost.resize(end);
+        page.lost[n] = static_cast<std::uint8_t>(-more);
+        group.lost += page.lost[n];
+      } else {
+        page.added[n] = static_cast<std::uint8_t>(more);
+        group.added += page.added[n];
+      }
+    }
+  }
+}
+
+template class CrossedPageReader<std::uint8_t>;
+template class CrossedPageReader<std::uint16_t>;
+template class CrossedPageReader<std::int16_t>;
+template class CrossedPageReader<float>;
+
+}  // namespace adamas

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "isosurface/extraction/page_diamonds.h"
+#include "isosurface/extraction/triangle_budget.h"
+
+namespace adamas {
+
+/// The diamonds of a page of an LOD that a contour crosses and that have an error. None of this depends on
+/// where they are seen from. The coarsest page of a store counts as one page for each of its LODs.
+struct CrossedPage {
+  /// Those of one error code and phase.
+  struct Group {
+    std::uint8_t code = 0, phase = 0;
+    std::uint16_t begin = 0, end = 0;  ///< in `places`
+    /// The pages of the next finer LOD that have children of them, where they are of phase 2: for each step
+    /// from -1 to 1 along each axis from twice the page's block a bit, i running fastest.
+    std::uint32_t children = 0;
+    std::uint32_t added = 0, lost = 0;  ///< of all of them
+  };
+
+  std::vector<Group> groups;          ///< greater codes first, then lesser phases
+  std::vector<std::uint16_t> places;  ///< PageGrid::place(q, 0), ascending in each group
+  std::size_t counted = 0;            ///< of how many groups what follows is known
+  /// How many triangles a split adds, by index in `places`. Where the border of the data cuts them it may be
+  /// less than nothing: then `added` is 0, and `lost`, which is empty where there is no such split, tells by
+  /// how many there are less.
+  std::vector<std::uint8_t> added, lost;
+
+  [[nodiscard]] std::size_t bytes() const {
+    return sizeof(*this) + groups.capacity() * sizeof(Group) + places.capacity() * sizeof(std::uint16_t) +
+           added.capacity() + lost.capacity();
+  }
+  static LatticePoint point(std::uint16_t place) {
+    constexpr std::int32_t kSide = PageGrid::kSide;
+    return {place % kSide, place / kSide % kSide, place / (kSide * kSide)};
+  }
+};
+
+/// `CrossedPage::Group::children` of one diamond of phase 2.
+constexpr std::uint32_t pages_of_children(LatticePoint q) {
+  const auto along = [](std::int32_t x) {
+    return (x == 0 ? 1u : 0u) | (x <= PageGrid::kSide / 2 ? 2u : 0u) | (x >= PageGrid::kSide / 2 ? 4u : 0u);
+  };
+  std::uint32_t pages = 0;
+  for (unsigned n = 0; n < 9; ++n) {
+    if ((along(q.j) >> n % 3 & along(q.k) >> n / 3 & 1) != 0) pages |= along(q.i) << 3 * n;
+  }
+  return pages;
+}
+
+/// Finds what a contour crosses on pages.
+template <class Sample>
+class CrossedPageReader {
+ public:
+  /// Both must outlive this.
+  CrossedPageReader(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface)
+      : diamonds_(diamonds), surface_(surface), counter_(diamonds, surface), page_(diamonds) {}
+
+  /// Throws PageLost.
+  CrossedPage read(int lod, LatticePoint block);
+  /// Finds how many triangles splits add in the groups up to `groups`. Throws PageLost.
+  void count(int lod, LatticePoint block, std::size_t groups, CrossedPage& page);
+
+ private:
+  /// The error codes of the page's own diamonds which the contour crosses; 0 of others.
+  void find_codes(int lod, LatticePoint block);
+  [[nodiscard]] std::int64_t added_at(LatticePoint q);
+
+  StoredDiamonds<Sample>& diamonds_;
+  const SurfaceRequest& surface_;
+  TriangleCounter<Sample> counter_;
+  PageDiamonds<Sample> page_;
+  typename StoredDiamonds<Sample>::Codes codes_;
+};
+
+extern template class CrossedPageReader<std::uint8_t>;
+extern template class CrossedPageReader<std::uint16_t>;
+extern template class CrossedPageReader<std::int16_t>;
+extern template class CrossedPageReader<float>;
+
+}  // namespace adamas

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "isosurface/contour/contour.h"
+#include "isosurface/extraction/page_diamonds.h"
+#include "isosurface/extraction/surface_normals.h"
+#include "isosurface/extraction/surface_request.h"
+#include "isosurface/view/surface_chunk.h"
+
+namespace adamas {
+
+/// A chunk and what it takes to make the next one of the same page from it. The page's diamonds lie in cells
+/// of 4^3: the triangles of each cell stay together, and only those are made anew in which something has
+/// changed.
+struct PageChunk {
+  static constexpr std::int32_t kCellSide = 4;
+  static constexpr std::size_t kCells = 64;
+  /// The cell of a diamond of the page.
+  static unsigned cell(LatticePoint q) {
+    return static_cast<unsigned>(q.i / kCellSide + 4 * (q.j / kCellSide) + 16 * (q.k / kCellSide));
+  }
+  /// DiamondStencil::edge_place of an edge whose ends are counted from one step before the page's first point
+  /// on.
+  using EdgePlace = std::uint16_t;
+
+  /// Triangles by the edges that their points lie on.
+  struct Part {
+    /// Those of a cell begin at `begins` of it and end at that of the next one.
+    std::vector<std::array<EdgePlace, 3>> triangles;
+    std::array<std::uint32_t, kCells + 1> begins{};
+    /// How many edges the triangles of the cells before a cell name.
+    std::array<std::uint32_t, kCells> edges_before{};
+    /// The edges that have a point, in the order in which the triangles name them first; and the parameters
+    /// of these points, as in EdgePoint.
+    std::vector<EdgePlace> edges;
+    std::vector<double> parameters;
+  };
+
+  int lod = 0;
+  LatticePoint block{};
+  PageMask split;
+  Part inside;  ///< the triangles that are shown
+  Part border;  ///< those in tetrahedra that reach beyond the data, which are to be cut
+  SurfaceChunk shown;
+};
+
+/// Makes the chunks of pages. That a half of a split diamond is in the mesh follows from the masks of split
+/// diamonds, as in PageContour.
+template <class Sample>
+class ChunkMaker {
+ public:
+  /// What is split of a page; null where nothing is.
+  using SplitOf = std::function<const PageMask*(int lod, LatticePoint block)>;
+
+  using EdgePlace = PageChunk::EdgePlace;
+
+  /// All of these must outlive this.
+  ChunkMaker(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface, SplitOf split_of);
+
+  /// The chunk of a page of which something is split. `before`: the page's chunk until now, or null. Of its
+  /// cells only some are made anew, `cells` as bits, and the points that it has are taken over. Throws
+  /// PageLost.
+  std::unique_ptr<PageChunk> make(int lod, LatticePoint block, const PageChunk* before, std::uint64_t cells);
+  /// Takes a chunk that is not needed any more, whose memory the next one will have.
+  void recycle(std::unique_ptr<PageChunk> chunk);
+  /// The point on an edge of a part of a chunk.
+  [[nodiscard]] EdgePoint edge_point(const PageChunk& chunk, EdgePlace place, double parameter) const {
+    const auto [first, second] = edge(chunk, place);
+    return {first, second, parameter};
+  }
+  [[nodiscard]] Vec3 position(const EdgePoint& point) const {
+    return point_between(diamonds_.domain().position(point.first), diamonds_.domain().position(point.second),
+                         point.parameter);
+  }
+  PointNormals<Sample>& normals() { return normals_; }
+
+ private:
+  static constexpr std::uint16_t kNone = 0xffff;
+  /// What is split round the page, by steps from -1 to 1 along each axis, i running fastest: on its LOD and
+  /// on the next finer one; each as far as it was asked for, as bits.
+  struct Neighbours {
+    int lod = 0;
+    LatticePoint block{};  ///< in the middle
+    std::uint32_t known = 0;
+    std::array<const PageMask*, 27> split{};
+  };
+
+  /// The ends of an edge.
+  [[nodiscard]] std::array<LatticePoint, 2> edge(const PageChunk& chunk, EdgePlace place) const;
+  std::unique_ptr<PageChunk> empty_chunk(int lod, LatticePoint block);
+  void add_cells(const PageChunk* before, std::uint64_t cells, PageChunk& chunk);
+  void add_cell(unsigned cell, PageChunk& chunk);
+  void add_diamond(LatticePoint q, PageChunk& chunk);
+  /// Whether the child of a diamond is split, by its point in units of the page's LOD or of the next finer
+  /// one.
+  [[nodiscard]] bool is_split(LatticePoint child, bool finer);
+  /// Finds what is split on a page round this one.
+  void find_split(std::size_t n, Neighbours& neighbours);
+  void add_half(const DiamondStencil& stencil, LatticePoint q, const DiamondStencil::Half& half,
+                DiamondStencil::Members above, PageChunk& chunk) const;
+  [[nodiscard]] bool is_in_data(LatticePoint p) const;
+  /// Finds the edges of a part, with their parameters, and calls triangle(n, numbers) for its triangles by
+  /// the numbers of these. The first cells, of which the part before has the same triangles, are passed over.
+  /// Returns the number of the first edge of the others; numbers_of_old_ has, from that on, the number that
+  /// each edge has in the part before, or kNone.
+  template <class AddTriangle>
+  std::size_t number(const PageChunk& chunk, const PageChunk::Part* before, unsigned first_cell,
+                     PageChunk::Part& part, AddTriangle&& triangle);
+  [[nodiscard]] double parameter(const PageChunk& chunk, EdgePlace place) const;
+  /// Sets what is shown; the cells before the first are as they were.
+  void show(const PageChunk* before, unsigned first_cell, PageChunk& chunk);
+
+  StoredDiamonds<Sample>& diamonds_;
+  const SurfaceRequest& surface_;
+  PageDiamonds<Sample> page_;
+  PointNormals<Sample> normals_;
+  SplitOf split_of_;
+  std::vector<std::unique_ptr<PageChunk>> free_;
+  std::array<Neighbours, 2> neighbours_;
+  /// Of the points on edges, by place: in the chunk and in the one before it; kNone where there is none.
+  struct Numbers {
+    std::uint16_t now = kNone, before = kNone;
+  };
+  std::vector<Numbers> numbers_;
+  std::vector<std::uint16_t> numbers_of_old_;
+};
+
+extern template class ChunkMaker<std::uint8_t>;
+extern template class ChunkMaker<std::uint16_t>;
+extern template class ChunkMaker<std::int16_t>;
+extern template class ChunkMaker<float>;
+
+}  // namespace adamas

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// A part of the surface of a frame: the triangles that come from splitting the diamonds of one page of one
+/// LOD, or those of the mesh in which nothing is split. All chunks of a frame together are its surface.
+/// Neighbouring chunks have the points that they share each for itself, with the same place and the same
+/// normal to the last bit.
+struct SurfaceChunk {
+  std::uint64_t id = 0;        ///< always that of the same page
+  std::uint64_t revision = 0;  ///< greater each time the chunk is made anew
+  std::vector<Vec3> points;    ///< in the frame of the grid
+  std::vector<Vec3> normals;   ///< of each point: a unit vector to values below the isovalue, or zero
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< normals point to values below the isovalue
+};
+
+/// Which chunks are not as they were before the last frame was asked for, by their ids, in ascending order.
+struct ChunkChanges {
+  std::vector<std::uint64_t> added, changed, removed;
+};
+
+}  // namespace adamas

@@ -1,0 +1,345 @@
+#include "isosurface/view/viewed_pages.h"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "isosurface/volume/z_order.h"
+
+namespace adamas {
+
+template <class Sample>
+typename ViewedPages<Sample>::Sum ViewedPages<Sample>::Added::all() const {
+  Sum sum = above;
+  for (const Sum& of_generation : of_generations) sum += of_generation;
+  return sum;
+}
+
+template <class Sample>
+ViewedPages<Sample>::ViewedPages(ViewedDiamonds<Sample>& diamonds, const SurfaceRequest& surface,
+                                 std::size_t memory)
+    : diamonds_(diamonds),
+      reader_(diamonds, surface),
+      memory_(memory),
+      index_(static_cast<std::size_t>(diamonds.lods())),
+      active_(index_.size()) {
+  for (int lod = 0; lod < diamonds.lods(); ++lod)
+    places_.emplace_back(diamonds.domain(), diamonds.lattice_step(lod), diamonds.grid().reach(lod));
+}
+
+template <class Sample>
+void ViewedPages<Sample>::clear() {
+  shown_.clear();
+  for (auto& of_lod : active_) of_lod.clear();
+  for (auto& of_lod : index_) of_lod.clear();
+  pages_.clear();
+  bytes_ = 0;
+}
+
+template <class Sample>
+typename ViewedPages<Sample>::Depths ViewedPages<Sample>::depths_of(int view_class) const {
+  Depths depths(StoredDiamonds<Sample>::kErrorClasses);
+  for (std::size_t n = 0; n < depths.size(); ++n)
+    depths[n] = diamonds_.farthest(diamonds_.error(static_cast<int>(n)), view_class);
+  return depths;
+}
+
+template <class Sample>
+ViewedPage* ViewedPages<Sample>::find(int lod, LatticePoint block) {
+  if (lod < 0 || lod >= lods()) return nullptr;
+  ViewedPage* const* const found = index_[static_cast<std::size_t>(lod)].find(block);
+  return found == nullptr ? nullptr : *found;
+}
+
+template <class Sample>
+ViewedPage& ViewedPages<Sample>::page(int lod, LatticePoint block) {
+  if (ViewedPage* const known = find(lod, block)) return *known;
+  // The coarsest page has diamonds of several LODs, and the directory does not tell of each.
+  const int greatest = lod < diamonds_.grid().top() ? diamonds_.greatest_class({lod, block})
+                                                    : error_class(ErrorScale::kCodes - 1, lod);
+  ViewedPage& added = pages_.emplace_back();
+  added.lod = lod;
+  added.block = block;
+  added.order = ZOrder::interleave(block);
+  added.greatest = greatest;
+  *index_[static_cast<std::size_t>(lod)].insert(block).first = &added;
+  return added;
+}
+
+template <class Sample>
+void ViewedPages<Sample>::add_candidate(int lod, LatticePoint block) {
+  const LatticePoint blocks = diamonds_.grid().blocks(lod);
+  if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
+      block.k >= blocks.k)
+    return;
+  ViewedPage* known = find(lod, block);
+  if (known == nullptr) {
+    if (lod < diamonds_.grid().top() && !diamonds_.grid().contains({lod, block})) return;
+    known = &page(lod, block);
+  }
+  if (std::exchange(known->met, walk_) == walk_) return;
+  known->split = nullptr;
+  known->children = 0;
+  known->at_low = known->lost_at_low = {};
+  candidates_.push_back(known);
+}
+
+template <class Sample>
+void ViewedPages<Sample>::find_candidates(int lod) {
+  candidates_.clear();
+  if (lod >= diamonds_.grid().top()) return add_candidate(lod, {0, 0, 0});
+  for (const ViewedPage* parent : active_[static_cast<std::size_t>(lod) + 1]) {
+    for (std::int32_t n = 0; n < 27; ++n) {
+      if ((parent->children >> n & 1) != 0)
+        add_candidate(lod, 2 * parent->block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
+    }
+  }
+  // Where the LOD's last points lie in a page's first plane, its diamonds are children of diamonds of the
+  // page before alone.
+  const LatticePoint last = diamonds_.grid().extent(lod);
+  for (std::size_t n = 0; n < candidates_.size(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      LatticePoint next = candidates_[n]->block;
+      if (PageGrid::kSide * ++next[axis] == last[axis]) add_candidate(lod, next);
+    }
+  }
+  std::ranges::sort(candidates_, {}, &ViewedPage::order);
+}
+
+template <class Sample>
+std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int least_class,
+                                                                             std::uint64_t room,
+                                                                             const Check& check) {
+  ++walk_;
+  low_ = depths_of(least_class);
+  next_ = depths_of(least_class + 1);
+  greatest_passed_ = 0;
+  Added added;
+  added.of_generations.resize(static_cast<std::size_t>(generations()));
+  for (int lod = lods() - 1; lod >= 0; --lod) {
+    find_candidates(lod);
+    std::vector<ViewedPage*>& active = active_[static_cast<std::size_t>(lod)];
+    active.clear();
+    for (ViewedPage* const page : candidates_) {
+      check();
+      if (page->greatest == 0) continue;
+      const PageView view = view_of(*page);
+      if (view.is_hidden()) continue;
+      const double depth = view.least_depth(0);
+      if (low_[static_cast<std::size_t>(page->greatest)] < depth) {
+        greatest_passed_ = std::max(greatest_passed_, class_at(page->greatest, depth));
+        continue;
+      }
+      look_at(*page, view, added);
+      active.push_back(page);
+      if (added.above.added > room) return {};
+    }
+  }
+  return added;
+}
+
+template <class Sample>
+const CrossedPage& ViewedPages<Sample>::crossed(ViewedPage& page, const PageView& view) {
+  page.used = frame_;
+  if (page.crossed == nullptr) {
+    page.crossed = std::make_unique<CrossedPage>(reader_.read(page.lod, page.block));
+    page.masks = std::make_unique<ViewedMasks>();
+    bytes_ += bytes_of(page);
+  }
+  CrossedPage& known = *page.crossed;
+  std::size_t needed = known.counted;
+  while (needed < known.groups.size() &&
+         low_[static_cast<std::size_t>(error_class(known.groups[needed].code, page.lod))] >=
+             view.least_depth(0))
+    ++needed;
+  if (needed > known.counted) {
+    bytes_ -= known.bytes();
+    reader_.count(page.lod, page.block, needed, known);
+    bytes_ += known.bytes();
+  }
+  return known;
+}
+
+template <class Sample>
+void ViewedPages<Sample>::look_at(ViewedPage& page, const PageView& view, Added& added) {
+  const CrossedPage& known = crossed(page, view);
+  PageMask &above = page.masks->above, &at_low = page.masks->at_low;
+  above = at_low = {};
+  const bool whole = view.is_whole();
+  for (std::size_t g = 0; g < known.counted; ++g) {
+    const CrossedPage::Group& group = known.groups[g];
+    const auto of_error = static_cast<std::size_t>(error_class(group.code, page.lod));
+    const double low = low_[of_error], next = next_[of_error], least = view.least_depth(group.phase),
+                 greatest = view.greatest_depth(group.phase);
+    if (low < view.least_depth(0)) break;
+    if (low < least) continue;
+    const std::span<const std::uint16_t> places(known.places.data() + group.begin,
+                                                known.places.data() + group.end);
+    if (whole && greatest <= next) {
+      for (const std::uint16_t place : places) above.add(place);
+      added.above += {group.added, group.lost};
+      page.children |= group.children;
+    } else if (whole && next < least && greatest <= low) {
+      for (const std::uint16_t place : places) at_low.add(place);
+      page.at_low[group.phase] += group.added;
+      page.lost_at_low[group.phase] += group.lost;
+      page.children |= group.children;
+    } else {
+      for (std::size_t n = group.begin; n < group.end; ++n) {
+        const std::uint16_t place = known.places[n];
+        const double depth = view.depth(place, group.phase);
+        if (depth > low || (!whole && !view.is_visible(place, group.phase))) continue;
+        const std::uint32_t more = known.added[n], lost = known.lost.empty() ? 0u : known.lost[n];
+        if (depth <= next) {
+          above.add(place);
+          added.above += {more, lost};
+        } else {
+          at_low.add(place);
+          page.at_low[group.phase] += more;
+          page.lost_at_low[group.phase] += lost;
+        }
+        if ((group.children & ~page.children) != 0)
+          page.children |= pages_of_children(CrossedPage::point(place));
+      }
+    }
+  }
+  for (std::size_t phase = 0; phase < 3; ++phase)
+    added.of_generations[static_cast<std::size_t>(generation_of(page.lod)) + phase] +=
+        {page.at_low[phase], page.lost_at_low[phase]};
+}
+
+template <class Sample>
+typename ViewedPages<Sample>::CutAndSum ViewedPages<Sample>::cut_within(int least_class, const Added& added,
+                                                                        std::uint64_t room) {
+  CutAndSum found{{.error_class = least_class, .generation = 0}, added.above};
+  std::size_t generation = 0;
+  for (; found.sum.added + added.of_generations[generation].added <= room; ++generation)
+    found.sum += added.of_generations[generation];
+  found.cut.generation = static_cast<int>(generation);
+  const std::size_t phase = generation % 3;
+  for (const ViewedPage* const page : active_[index_.size() - 1 - generation / 3]) {
+    if (found.sum.added + page->at_low[phase] > room) {
+      end_on(*page, room, found);
+      break;
+    }
+    found.sum += {page->at_low[phase], page->lost_at_low[phase]};
+  }
+  return found;
+}
+
+template <class Sample>
+void ViewedPages<Sample>::end_on(const ViewedPage& page, std::uint64_t room, CutAndSum& found) {
+  const CrossedPage& known = *page.crossed;
+  std::vector<std::pair<std::uint16_t, std::size_t>> at_low;
+  for (std::size_t g = 0; g < known.counted; ++g) {
+    if (known.groups[g].phase != found.cut.generation % 3) continue;
+    for (std::size_t n = known.groups[g].begin; n < known.groups[g].end; ++n) {
+      if (page.masks->at_low.has(CrossedPage::point(known.places[n])))
+        at_low.emplace_back(known.places[n], n);
+    }
+  }
+  std::ranges::sort(at_low);
+  found.cut.page = page.order;
+  for (const auto& [place, n] : at_low) {
+    found.cut.place = place;
+    if (found.sum.added + known.added[n] > room) return;
+    found.sum += {known.added[n], known.lost.empty() ? 0u : known.lost[n]};
+  }
+}
+
+template <class Sample>
+void ViewedPages<Sample>::set_split(ViewedPage& page, int generation, const SurfaceCut& cut) {
+  ViewedMasks& masks = *page.masks;
+  masks.split = masks.above;
+  // In the least class, by phase, as far as the cut goes.
+  std::array<bool, 3> all{};
+  int last_phase = -1;
+  for (int phase = 0; phase < 3; ++phase) {
+    const int own = generation + phase;
+    all[static_cast<std::size_t>(phase)] =
+        own < cut.generation || (own == cut.generation && page.order < cut.page);
+    if (own == cut.generation && page.order == cut.page) last_phase = phase;
+  }
+  if (last_phase < 0 && !all[0]) return;
+  if (all[2]) {
+    for (std::size_t row = 0; row < masks.at_low.rows.size(); ++row)
+      masks.split.rows[row] = static_cast<std::uint16_t>(masks.above.rows[row] | masks.at_low.rows[row]);
+    return;
+  }
+  for (std::size_t row = 0; row < masks.at_low.rows.size(); ++row) {
+    const unsigned at_low = masks.at_low.rows[row];
+    if (at_low == 0) continue;
+    constexpr auto kSide = static_cast<std::size_t>(PageGrid::kSide);
+    const RowPhases phases(static_cast<std::int32_t>(row % kSide), static_cast<std::int32_t>(row / kSide));
+    const auto of = [&](int phase, unsigned points) {
+      if (phase < 0) return 0u;
+      if (all[static_cast<std::size_t>(phase)]) return at_low & points;
+      if (phase != last_phase || cut.place <= kSide * row) return 0u;
+      const std::size_t before = std::min(cut.place - kSide * row, kSide);
+      return at_low & points & ((1u << before) - 1);
+    };
+    masks.split.rows[row] = static_cast<std::uint16_t>(masks.split.rows[row] | of(phases.odd, kOddPoints) |
+                                                       of(phases.even, kEvenPoints));
+  }
+}
+
+template <class Sample>
+int ViewedPages<Sample>::left_on(const ViewedPage& page, const PageView& view, int known) const {
+  for (const CrossedPage::Group& group : page.crossed->groups) {
+    const int of_error = error_class(group.code, page.lod);
+    if (class_at(of_error, view.least_depth(group.phase)) <= known) continue;
+    for (std::size_t n = group.begin; n < group.end; ++n) {
+      const std::uint16_t place = page.crossed->places[n];
+      if (page.split != nullptr && page.split->has(CrossedPage::point(place))) continue;
+      if (view.is_visible(place, group.phase))
+        known = std::max(known, class_at(of_error, view.depth(place, group.phase)));
+    }
+  }
+  return known;
+}
+
+template <class Sample>
+int ViewedPages<Sample>::split(const SurfaceCut& cut, const Check& check) {
+  shown_.clear();
+  int left = greatest_passed_;
+  for (int lod = lods() - 1; lod >= 0; --lod) {
+    // No diamond that is left has a greater class than this, and mostly one has just this class.
+    const int most = cut.generation < generation_of(lod) + 3 ? cut.error_class : cut.error_class - 1;
+    for (ViewedPage* const page : active_[static_cast<std::size_t>(lod)]) {
+      check();
+      set_split(*page, generation_of(lod), cut);
+      if (page->masks->split.any()) {
+        page->split = &page->masks->split;
+        shown_.push_back(page);
+      }
+      if (left < most) left = left_on(*page, view_of(*page), left);
+    }
+  }
+  return left;
+}
+
+template <class Sample>
+void ViewedPages<Sample>::forget_old() {
+  if (bytes_ > memory_) {
+    std::vector<ViewedPage*> old;
+    for (ViewedPage& page : pages_) {
+      if (page.crossed != nullptr && page.used != frame_) old.push_back(&page);
+    }
+    std::ranges::stable_sort(old, {}, &ViewedPage::used);
+    for (ViewedPage* const page : old) {
+      if (bytes_ <= memory_) break;
+      bytes_ -= bytes_of(*page);
+      page->crossed.reset();
+      page->masks.reset();
+    }
+  }
+  ++frame_;
+}
+
+template class ViewedPages<std::uint8_t>;
+template class ViewedPages<std::uint16_t>;
+template class ViewedPages<std::int16_t>;
+template class ViewedPages<float>;
+
+}  // namespace adamas

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/lattice/lattice_map.h"
+#include "isosurface/extraction/surface_cut.h"
+#include "isosurface/view/crossed_page.h"
+#include "isosurface/view/page_chunk.h"
+#include "isosurface/view/page_view.h"
+#include "isosurface/view/viewed_diamonds.h"
+
+namespace adamas {
+
+/// The diamonds of a page in a walk of ViewedPages, and in a frame.
+struct ViewedMasks {
+  PageMask above;   ///< those of greater classes than the walk's least one
+  PageMask at_low;  ///< those of the walk's least class
+  PageMask split;
+};
+
+/// A page of an LOD that some frame has met with, and what is known of it for one contour.
+struct ViewedPage {
+  int lod = 0;
+  LatticePoint block{};
+  std::uint64_t order = 0;  ///< the place of its cube in z-order
+  /// An error class that none of its diamonds exceeds; the greatest one where the directory does not tell.
+  int greatest = 0;
+  std::unique_ptr<CrossedPage> crossed;  ///< null where it is not known
+  std::unique_ptr<ViewedMasks> masks;    ///< null where `crossed` is
+  std::uint64_t used = 0;                ///< when that was last looked at
+  std::uint64_t met = 0;                 ///< the walk that met with it last
+  /// In that walk: where the children of its diamonds of the walk's classes are, as CrossedPage has them.
+  std::uint32_t children = 0;
+  /// In that walk: what its diamonds of the least class add and take away, by phase.
+  std::array<std::uint32_t, 3> at_low{}, lost_at_low{};
+  const PageMask* split = nullptr;  ///< in the present frame; null where nothing is
+  std::uint64_t changed_in = 0;     ///< the walk after which `changed` was noted
+  std::uint64_t changed = 0;  ///< the cells of the chunk in which not all is as in the last frame, as bits
+  std::unique_ptr<PageChunk> chunk;  ///< its triangles in the last frame; null where it had none
+};
+
+/// The pages that matter in a view, and what a cut splits on them. What does not depend on the view is kept
+/// from frame to frame: which diamonds of a page the contour crosses, by their errors, and what they add. In
+/// a page that is small for its distance all diamonds of one error mostly fall in one class, and are not
+/// looked at one by one.
+template <class Sample>
+class ViewedPages {
+ public:
+  /// `memory`: bytes that what is known of crossed diamonds may take after a frame. The diamonds must outlive
+  /// this.
+  ViewedPages(ViewedDiamonds<Sample>& diamonds, const SurfaceRequest& surface, std::size_t memory);
+
+  /// Forgets all pages, for another contour.
+  void clear();
+  /// Called for each page that is looked at; may throw.
+  using Check = std::function<void()>;
+
+  /// Numbers of triangles: those that splits add, and those that splits of other diamonds, which the data's
+  /// border cuts, take away.
+  struct Sum {
+    std::uint64_t added = 0, lost = 0;
+    Sum& operator+=(const Sum& other) {
+      added += other.added;
+      lost += other.lost;
+      return *this;
+    }
+  };
+  /// The sums over the diamonds of classes from some class on.
+  struct Added {
+    Sum above;                        ///< those of greater classes than the least
+    std::vector<Sum> of_generations;  ///< those of the least class, by generation
+    [[nodiscard]] Sum all() const;
+  };
+  /// Walks over all pages on which diamonds may have at least a class, from the coarsest LOD on. Nothing
+  /// where the diamonds of greater classes alone add more than `room`. Throws PageLost.
+  std::optional<Added> walk(int least_class, std::uint64_t room, const Check& check);
+  struct CutAndSum {
+    SurfaceCut cut;
+    Sum sum;  ///< over all that the cut splits
+  };
+  /// The cut in the least class of the last walk that ends where the diamonds' added triangles are more than
+  /// there is room for. There must not be room for all.
+  CutAndSum cut_within(int least_class, const Added& added, std::uint64_t room);
+  /// Finds what a cut splits whose class is the least one of the last walk, for split() and shown(). Returns
+  /// the greatest class of the diamonds in sight that are crossed and not split, as SplitPages does.
+  int split(const SurfaceCut& cut, const Check& check);
+
+  /// The pages on which something is split, from the coarsest LOD on, in z-order.
+  [[nodiscard]] const std::vector<ViewedPage*>& shown() const { return shown_; }
+  /// Null where no frame has met with the page.
+  [[nodiscard]] ViewedPage* find(int lod, LatticePoint block);
+  /// Null where nothing of the page is split in the present frame.
+  [[nodiscard]] const PageMask* split_of(int lod, LatticePoint block) {
+    const ViewedPage* const page = find(lod, block);
+    return page == nullptr || page->met != walk_ ? nullptr : page->split;
+  }
+  /// A number for the last walk, greater than that of all before.
+  [[nodiscard]] std::uint64_t walk_number() const { return walk_; }
+  /// Forgets crossed diamonds of the pages that were not looked at for longest, until there is room. To be
+  /// called between frames.
+  void forget_old();
+  /// Bytes that what is known of crossed diamonds takes.
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+  [[nodiscard]] int lods() const { return static_cast<int>(places_.size()); }
+  [[nodiscard]] int generations() const { return 3 * lods(); }
+
+ private:
+  /// The greatest depths at which errors have at least a class, by error class.
+  using Depths = std::vector<double>;
+  [[nodiscard]] Depths depths_of(int view_class) const;
+
+  ViewedPage& page(int lod, LatticePoint block);
+  /// Sets candidates_ to the pages of an LOD on which diamonds may be split, since coarser ones may.
+  void find_candidates(int lod);
+  void add_candidate(int lod, LatticePoint block);
+  /// Adds the diamonds of a page.
+  void look_at(ViewedPage& page, const PageView& view, Added& added);
+  const CrossedPage& crossed(ViewedPage& page, const PageView& view);
+  [[nodiscard]] PageView view_of(const ViewedPage& page) const {
+    return {diamonds_.view(), places_[static_cast<std::size_t>(page.lod)], page.block};
+  }
+  static std::size_t bytes_of(const ViewedPage& page) { return page.crossed->bytes() + sizeof(ViewedMasks); }
+  [[nodiscard]] int generation_of(int lod) const { return 3 * (lods() - 1 - lod); }
+  /// Ends a cut on a page, at the first diamond of the last generation for which there is no room.
+  static void end_on(const ViewedPage& page, std::uint64_t room, CutAndSum& found);
+  /// Sets the split diamonds of a page that was looked at.
+  static void set_split(ViewedPage& page, int generation, const SurfaceCut& cut);
+  /// The greatest class that is left on a page where not all is split.
+  [[nodiscard]] int left_on(const ViewedPage& page, const PageView& view, int known) const;
+  [[nodiscard]] int class_at(int error_class, double depth) const {
+    return diamonds_.view_class(diamonds_.view().pixels_at(diamonds_.error(error_class), depth));
+  }
+
+  ViewedDiamonds<Sample>& diamonds_;
+  CrossedPageReader<Sample> reader_;
+  std::size_t memory_, bytes_ = 0;
+  std::vector<LodPlaces> places_;  ///< by LOD
+  std::deque<ViewedPage> pages_;
+  std::vector<LatticeMap<ViewedPage*>> index_;  ///< by LOD and block
+  std::uint64_t walk_ = 0, frame_ = 1;
+  Depths low_, next_;        ///< of the least class of the walk, and the next one
+  int greatest_passed_ = 0;  ///< of the pages that the walk met with and did not look at
+  std::vector<ViewedPage*> candidates_, shown_;
+  std::vector<std::vector<ViewedPage*>> active_;  ///< by LOD, in z-order: those that the walk looked at
+};
+
+extern template class ViewedPages<std::uint8_t>;
+extern template class ViewedPages<std::uint16_t>;
+extern template class ViewedPages<std::int16_t>;
+extern template class ViewedPages<float>;
+
+}  // namespace adamas

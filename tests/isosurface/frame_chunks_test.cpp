@@ -1,0 +1,319 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <vector>
+
+#include "isosurface/extraction/surface_normals.h"
+#include "isosurface/view/paged_frames.h"
+#include "tests/isosurface/contour_checks.h"
+#include "tests/isosurface/surface_checks.h"
+
+namespace adamas {
+namespace {
+
+using test::MemoryVolume;
+using test::OpenStore;
+
+/// A camera that mostly moves a little, and now and then jumps.
+class Path {
+ public:
+  Path(const Box3& box, unsigned seed) : box_(box), random_(seed) { jump(); }
+
+  Viewpoint next() {
+    if (number(8) == 0) {
+      jump();
+    } else {
+      viewpoint_.eye += 0.02 * box_.diagonal() * way();
+      viewpoint_.target += 0.01 * box_.diagonal() * way();
+    }
+    return viewpoint_;
+  }
+  std::uint32_t number(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
+
+ private:
+  Vec3 way() {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    return {unit(random_), unit(random_), unit(random_)};
+  }
+  void jump() {
+    const auto place = [&](double size) {
+      const Vec3 half = 0.5 * size * box_.size(), part = way();
+      return box_.center() + Vec3{half.x * part.x, half.y * part.y, half.z * part.z};
+    };
+    viewpoint_.eye = place(number(3) == 0 ? 1 : 3);
+    viewpoint_.target = place(1);
+    viewpoint_.up = {0.1, 0.2, 1};
+    viewpoint_.near = 0.5;
+    viewpoint_.width_pixels = 400;
+    viewpoint_.height_pixels = 300;
+    viewpoint_.height = number(5) == 0 ? box_.diagonal() / 2 : 0;
+  }
+
+  Box3 box_;
+  std::mt19937 random_;
+  Viewpoint viewpoint_;
+};
+
+using Chunks = std::map<std::uint64_t, SurfaceChunk>;
+
+template <class Sample>
+Chunks chunks_of(const PagedFrames<Sample>& frames) {
+  Chunks chunks;
+  frames.for_each_chunk([&](const SurfaceChunk& chunk) {
+    EXPECT_TRUE(chunks.emplace(chunk.id, chunk).second) << "two chunks with one id";
+  });
+  return chunks;
+}
+
+/// The same but for the revisions, which tell how often chunks were made.
+void expect_same(const Chunks& found, const Chunks& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (auto a = found.begin(), b = expected.begin(); a != found.end(); ++a, ++b) {
+    ASSERT_EQ(a->first, b->first);
+    EXPECT_EQ(a->second.points, b->second.points);
+    EXPECT_EQ(a->second.normals, b->second.normals);
+    EXPECT_EQ(a->second.triangles, b->second.triangles);
+  }
+}
+
+/// What a renderer keeps, who gets nothing but changes.
+class Copy {
+ public:
+  template <class Sample>
+  void update(PagedFrames<Sample>& frames) {
+    const ChunkChanges& changes = frames.changes();
+    for (const auto* ids : {&changes.added, &changes.changed, &changes.removed})
+      EXPECT_TRUE(std::ranges::is_sorted(*ids));
+    for (const std::uint64_t id : changes.removed) EXPECT_EQ(chunks_.erase(id), 1u);
+    for (const std::uint64_t id : changes.added) {
+      EXPECT_TRUE(chunks_.emplace(id, *frames.chunk(id)).second);
+    }
+    for (const std::uint64_t id : changes.changed) {
+      const auto known = chunks_.find(id);
+      ASSERT_NE(known, chunks_.end());
+      EXPECT_LT(known->second.revision, frames.chunk(id)->revision);
+      known->second = *frames.chunk(id);
+    }
+    for (const auto& [id, chunk] : chunks_of(frames)) {
+      const auto known = chunks_.find(id);
+      ASSERT_NE(known, chunks_.end());
+      EXPECT_EQ(known->second.revision, chunk.revision);
+    }
+    expect_same(chunks_, chunks_of(frames));
+  }
+
+ private:
+  Chunks chunks_;
+};
+
+using Corner = std::array<double, 3>;
+Corner corner(const Vec3& p) { return {p.x, p.y, p.z}; }
+
+/// The triangles by their places, each from its least corner on, in ascending order.
+void add_triangles(const std::vector<Vec3>& points,
+                   const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                   std::vector<std::array<Corner, 3>>& all) {
+  for (const auto& t : triangles) {
+    std::array<Corner, 3> places{corner(points[t[0]]), corner(points[t[1]]), corner(points[t[2]])};
+    std::ranges::rotate(places, std::ranges::min_element(places));
+    all.push_back(places);
+  }
+}
+
+/// Chunks are the parts of the surface, and have the places and normals of its points.
+template <class Sample>
+void expect_parts(StoredPages<OrderedWord<Sample>>& pages, const PagedFrames<Sample>& frames) {
+  const Contour contour = frames.contour();
+  const std::vector<Vec3> normals = surface_normals<Sample>(pages, contour).normals;
+  std::map<Corner, Vec3> normal_at;
+  for (std::size_t p = 0; p < normals.size(); ++p) normal_at.emplace(corner(contour.points[p]), normals[p]);
+  std::vector<std::array<Corner, 3>> whole, parts;
+  add_triangles(contour.points, contour.triangles, whole);
+  frames.for_each_chunk([&](const SurfaceChunk& chunk) {
+    add_triangles(chunk.points, chunk.triangles, parts);
+    ASSERT_EQ(chunk.points.size(), chunk.normals.size());
+    for (std::size_t p = 0; p < chunk.points.size(); ++p) {
+      const auto expected = normal_at.find(corner(chunk.points[p]));
+      ASSERT_NE(expected, normal_at.end());
+      EXPECT_EQ(chunk.normals[p], expected->second);
+    }
+  });
+  std::ranges::sort(whole);
+  std::ranges::sort(parts);
+  EXPECT_EQ(whole, parts);
+}
+
+class FrameChunks : public testing::TestWithParam<unsigned> {
+ protected:
+  [[nodiscard]] auto hills() const {
+    return [noise = GetParam() % 2 == 0 ? 2.0 : 40.0, random = std::mt19937(6)](LatticePoint p) mutable {
+      return 100 + 60 * std::sin(0.35 * p.i + 0.2 * p.k) * std::cos(0.3 * p.j) +
+             noise * static_cast<double>(random() % 1024) / 1024;
+    };
+  }
+  template <class Sample>
+  void fly(const MemoryVolume<Sample>& volume, bool is_whole);
+};
+
+template <class Sample>
+void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
+  OpenStore<Sample> store(volume), other(volume);
+  Path path(volume.grid.box(), GetParam());
+  PagedFrames<Sample> frames(store.pages(), 1 << 14);
+  Copy copy;
+  FrameRequest first;
+  Chunks first_chunks;
+  std::size_t stopped = 0, kept = 0;
+  double isovalue = 80.5;
+  for (int n = 0; n < 36; ++n) {
+    FrameRequest wanted;
+    wanted.viewpoint = path.next();
+    if (path.number(10) == 0) isovalue = 80.5 + path.number(3) * 20;
+    wanted.isovalue = isovalue;
+    wanted.pixels = 0.5 * (1 + path.number(8));
+    if (path.number(3) != 0) wanted.max_triangles = 40 + path.number(12000);
+    const std::uint32_t steps = 1 + path.number(120);
+    std::uint32_t done = 0;
+    if (path.number(4) == 0) wanted.stop = [&] { return ++done >= steps; };
+    const Chunks before = chunks_of(frames);
+    const FrameFigures figures = frames.refine(wanted);
+    copy.update(frames);
+    const Contour contour = frames.contour();
+    EXPECT_EQ(figures.triangles, contour.triangles.size());
+    if (is_whole) test::expect_sound(contour, volume.grid.box());
+    if (n % 6 == 0) expect_parts<Sample>(store.pages(), frames);
+    if (figures.stopped) {
+      ++stopped;
+      // What there was, or the mesh in which nothing is split.
+      if (chunks_of(frames).size() > 1) expect_same(chunks_of(frames), before);
+      continue;
+    }
+    PagedFrames<Sample> fresh(other.pages());
+    wanted.stop = nullptr;
+    const FrameFigures of_fresh = fresh.refine(wanted);
+    expect_same(chunks_of(frames), chunks_of(fresh));
+    EXPECT_EQ(contour, fresh.contour());
+    EXPECT_EQ(figures.largest_error, of_fresh.largest_error);
+    kept += chunks_of(frames).size() - frames.changes().added.size() - frames.changes().changed.size();
+    if (first_chunks.empty()) {
+      first = wanted;
+      first_chunks = chunks_of(frames);
+    }
+  }
+  EXPECT_GT(stopped, 3u);
+  EXPECT_GT(kept, 20u);
+  frames.refine(first);
+  expect_same(chunks_of(frames), first_chunks);
+}
+
+TEST_P(FrameChunks, AreThoseFromScratch) { fly(MemoryVolume<std::uint8_t>({51, 44, 34}, hills()), true); }
+
+TEST_P(FrameChunks, AreThoseFromScratchOfWordsOnAGridOfUnequalSpacing) {
+  fly(MemoryVolume<std::int16_t>({40, 36, 50}, hills(), {1, 0.7, 1.4}, {-3, 1e3, 7}), true);
+}
+
+TEST_P(FrameChunks, AreThoseFromScratchWhereSamplesAreNoNumbers) {
+  auto with_holes = [value = hills()](LatticePoint p) mutable {
+    const double sample = value(p);
+    return p.i % 23 == 5 && p.j % 17 == 3 ? std::numeric_limits<double>::quiet_NaN() : sample;
+  };
+  fly(MemoryVolume<float>({44, 40, 37}, with_holes), false);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, FrameChunks, testing::Range(0u, 3u));
+
+TEST(PagedFrames, ForgetPagesThatAreOutOfSight) {
+  const MemoryVolume<std::uint8_t> volume({200, 40, 40}, [](LatticePoint p) {
+    return 100 + 60 * std::sin(0.35 * p.i + 0.2 * p.k) * std::cos(0.3 * p.j);
+  });
+  OpenStore<std::uint8_t> store(volume);
+  PagedFrames<std::uint8_t> all(store.pages()), few(store.pages(), 0);
+  FrameRequest wanted;
+  wanted.isovalue = 80.5;
+  wanted.viewpoint.up = {0, 0, 1};
+  wanted.viewpoint.field_of_view = 0.3;
+  for (int n = 0; n < 40; ++n) {
+    wanted.viewpoint.eye = {5.0 * n, -60, 20};
+    wanted.viewpoint.target = {5.0 * n, 20, 20};
+    all.refine(wanted);
+    few.refine(wanted);
+    expect_same(chunks_of(few), chunks_of(all));
+  }
+  EXPECT_LT(few.known_bytes(), all.known_bytes() / 2);
+}
+
+TEST(PageViews, SayOfDiamondsWhatViewsSayOfTheirBoxes) {
+  const MemoryVolume<std::uint8_t> volume({67, 50, 41}, [](LatticePoint p) { return p.i + p.j; });
+  OpenStore<std::uint8_t> store(volume);
+  ViewedDiamonds<std::uint8_t> diamonds(store.pages());
+  Path path(volume.grid.box(), 5);
+  std::size_t hidden = 0, whole = 0, cut = 0;
+  for (int n = 0; n < 200; ++n) {
+    const View view(path.next());
+    const int lod = static_cast<int>(path.number(3) == 0 ? path.number(5) : 0);
+    const LatticePoint reach = diamonds.grid().reach(lod), blocks{reach.i / 16, reach.j / 16, reach.k / 16};
+    const auto one_of = [&](std::int32_t last) {
+      return static_cast<std::int32_t>(path.number(static_cast<std::uint32_t>(last) + 1));
+    };
+    const LatticePoint block{one_of(blocks.i), one_of(blocks.j), one_of(blocks.k)};
+    const PageView page(view, LodPlaces(diamonds.domain(), diamonds.lattice_step(lod), reach), block);
+    hidden += page.is_hidden() ? 1 : 0;
+    whole += page.is_whole() ? 1 : 0;
+    for (std::uint16_t place = 0; place < PageGrid::kPoints; ++place) {
+      const LatticePoint u = 16 * block + CrossedPage::point(place);
+      if (u.i > reach.i || u.j > reach.j || u.k > reach.k || ((u.i | u.j | u.k) & 1) == 0) continue;
+      const Diamond diamond(diamonds.lattice_step(lod) * u);
+      const CentredBox box{diamonds.domain().position(diamond.point()),
+                           nested_half(diamonds.domain(), diamond.scale(), diamond.phase())};
+      const double depth = page.depth(place, diamond.phase());
+      EXPECT_EQ(depth, view.depth(box));
+      EXPECT_LE(page.least_depth(diamond.phase()), depth);
+      EXPECT_GE(page.greatest_depth(diamond.phase()), depth);
+      if (page.is_hidden()) {
+        EXPECT_FALSE(view.is_visible(box));
+      } else {
+        EXPECT_EQ(page.is_visible(place, diamond.phase()), view.is_visible(box));
+        cut += view.is_visible(box) ? 0 : 1;
+      }
+      if (page.is_whole()) {
+        EXPECT_TRUE(view.is_visible(box));
+      }
+    }
+  }
+  EXPECT_GT(hidden, 10u);
+  EXPECT_GT(whole, 10u);
+  EXPECT_GT(cut, 100u);
+}
+
+TEST(ViewedDiamonds, HaveAClassUpToADepth) {
+  const MemoryVolume<std::uint8_t> volume({67, 50, 41}, [](LatticePoint p) { return p.i + p.j; });
+  OpenStore<std::uint8_t> store(volume);
+  ViewedDiamonds<std::uint8_t> diamonds(store.pages());
+  Path path(volume.grid.box(), 7);
+  for (int n = 0; n < 20; ++n) {
+    const View view(path.next());
+    diamonds.set_view(view);
+    for (const double error : {1e-6, 0.01, 0.37, 1.0, 25.0}) {
+      for (int view_class = 1; view_class <= ViewedDiamonds<std::uint8_t>::kClasses; ++view_class) {
+        const double farthest = diamonds.farthest(error, view_class);
+        const auto class_at = [&](double depth) { return diamonds.view_class(view.pixels_at(error, depth)); };
+        if (std::isinf(farthest)) {
+          EXPECT_GE(class_at(std::numeric_limits<double>::max()), view_class);
+        } else if (farthest < 0) {
+          EXPECT_LT(class_at(1e-3), view_class);
+        } else {
+          EXPECT_GE(class_at(farthest), view_class);
+          EXPECT_LT(class_at(std::nextafter(farthest, std::numeric_limits<double>::infinity())), view_class);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adamas
