@@ -41,6 +41,19 @@ class PointNumbers {
     return {&number, number == kNone};
   }
 
+  /// Calls visit(number here, number there) for each point that has a number in both tables.
+  template <class Visit>
+  void for_each_common(PointNumbers& other, Visit&& visit) {
+    blocks_.for_each([&](LatticePoint key, std::uint32_t n) {
+      const std::uint32_t* const found = other.blocks_.find(key);
+      if (found == nullptr) return;
+      const Block &here = numbers_[n], &there = other.numbers_[*found];
+      for (std::size_t p = 0; p < here.size(); ++p) {
+        if (here[p] != kNone && there[p] != kNone) visit(here[p], there[p]);
+      }
+    });
+  }
+
  private:
   using Block = std::array<std::uint32_t, 64>;
   /// A block that was asked for lately. A search in the table would mostly miss the caches.

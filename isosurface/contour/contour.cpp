@@ -67,15 +67,48 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
   const LatticePoint way = b - a;
   const auto [number, is_new] = numbers_.insert(a + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
   if (is_new) {
-    if (contour_.points.size() >= std::numeric_limits<std::uint32_t>::max())
-      fail("a contour has more than 2^32 - 1 points: choose another isovalue or a coarser mesh");
-    *number = static_cast<std::uint32_t>(contour_.points.size());
+    *number = next_number();
     const double t = std::clamp(edge_parameter(value_a, value_b, isovalue_), options_.least_parameter,
                                 1 - options_.least_parameter);
     contour_.edge_points.push_back({a, b, t});
     contour_.points.push_back(point_between(domain_.position(a), domain_.position(b), t));
   }
   return *number;
+}
+
+std::uint32_t ContourBuilder::next_number() const {
+  if (contour_.points.size() >= std::numeric_limits<std::uint32_t>::max())
+    fail("a contour has more than 2^32 - 1 points: choose another isovalue or a coarser mesh");
+  return static_cast<std::uint32_t>(contour_.points.size());
+}
+
+void ContourBuilder::append(std::span<const std::unique_ptr<ContourBuilder>> others) {
+  std::vector<std::vector<std::uint32_t>> numbers(others.size());
+  for (std::size_t n = 0; n < others.size(); ++n) {
+    ContourBuilder& other = *others[n];
+    std::vector<std::uint32_t>& of_other = numbers[n];
+    of_other.assign(other.contour_.points.size(), kNone);
+    other.numbers_.for_each_common(numbers_,
+                                   [&](std::uint32_t there, std::uint32_t here) { of_other[there] = here; });
+    for (std::size_t m = 0; m < n; ++m) {
+      other.numbers_.for_each_common(others[m]->numbers_, [&](std::uint32_t there, std::uint32_t before) {
+        of_other[there] = numbers[m][before];
+      });
+    }
+    append(other.contour_, of_other);
+    other.contour_ = {};
+  }
+}
+
+void ContourBuilder::append(const Contour& other, std::vector<std::uint32_t>& numbers) {
+  for (std::size_t p = 0; p < numbers.size(); ++p) {
+    if (numbers[p] != kNone) continue;
+    numbers[p] = next_number();
+    contour_.points.push_back(other.points[p]);
+    contour_.edge_points.push_back(other.edge_points[p]);
+  }
+  for (const auto& [a, b, c] : other.triangles)
+    contour_.triangles.push_back({numbers[a], numbers[b], numbers[c]});
 }
 
 void ContourBuilder::expect(std::size_t triangles) {

@@ -238,9 +238,18 @@ Vec3 tolerance_in(const Box3& box, const Vec3& spacing) {
   return result;
 }
 
+Box3 box_of(const std::vector<Vec3>& points) {
+  Box3 box;
+  for (const Vec3& p : points) box.extend(p);
+  return box;
+}
+
 void clip_by(const std::vector<HalfSpace>& sides, const Vec3& tolerance, Contour& contour) {
   bool clipped = false;
+  // No point that clipping adds lies outside of this.
+  const Box3 reach = box_of(contour.points);
   for (const HalfSpace& side : sides) {
+    if (side.axis() && side.height(reach.min) <= 0 && side.height(reach.max) <= 0) continue;
     const auto is_outside = [&side](const Vec3& p) { return side.height(p) > 0; };
     if (std::none_of(contour.points.begin(), contour.points.end(), is_outside)) continue;
     PlaneClip(contour, side, tolerance).run();
@@ -262,8 +271,7 @@ void clip_contour(Contour& contour, const Box3& box, const Vec3& spacing) {
 
 void clip_contour(Contour& contour, std::span<const Plane> sides, const Vec3& spacing) {
   if (sides.empty()) return;
-  Box3 box;
-  for (const Vec3& p : contour.points) box.extend(p);
+  const Box3 box = box_of(contour.points);
   const Vec3 tolerance = contour.points.empty() ? Vec3{} : tolerance_in(box, spacing);
   std::vector<HalfSpace> all;
   for (const Plane& side : sides) all.emplace_back(side, tolerance);
