@@ -117,7 +117,6 @@ void ContourBuilder::expect(std::size_t triangles) {
   reserve_in_large_pages(contour_.triangles, triangles);
   reserve_in_large_pages(contour_.points, points);
   reserve_in_large_pages(contour_.edge_points, points);
-  numbers_.expect(points);
 }
 
 Contour ContourBuilder::finish() {

@@ -116,7 +116,16 @@ class PlaneClip {
     if (inside_.axis() && tolerance_[*inside_.axis()] > 0) move_near_points(*inside_.axis());
     std::vector<std::array<std::uint32_t, 3>> triangles;
     triangles.swap(contour_.triangles);
-    for (const auto& triangle : triangles) clip(triangle);
+    contour_.triangles.reserve(triangles.size());
+    sides_.reserve(contour_.points.size());
+    for (const Vec3& point : contour_.points) sides_.push_back(side_of(point));
+    for (const auto& triangle : triangles) {
+      if ((sides_[triangle[0]] & sides_[triangle[1]] & sides_[triangle[2]]) < 0) {
+        contour_.triangles.push_back(triangle);
+      } else {
+        clip(triangle);
+      }
+    }
     if (!merged_.empty()) merge();
   }
 
@@ -148,10 +157,11 @@ class PlaneClip {
   }
 
   /// -1 inside, 0 on the plane, 1 beyond it.
-  [[nodiscard]] int side(std::uint32_t point) const {
-    const double height = inside_.height(contour_.points[point]);
-    return static_cast<int>(height > 0) - static_cast<int>(height < 0);
+  [[nodiscard]] std::int8_t side_of(const Vec3& point) const {
+    const double height = inside_.height(point);
+    return static_cast<std::int8_t>(static_cast<int>(height > 0) - static_cast<int>(height < 0));
   }
+  [[nodiscard]] int side(std::uint32_t point) const { return sides_[point]; }
 
   void clip(const std::array<std::uint32_t, 3>& triangle) {
     const std::array<int, 3> sides{side(triangle[0]), side(triangle[1]), side(triangle[2])};
@@ -179,6 +189,7 @@ class PlaneClip {
       const double t = inside_.cut(p, q);
       entry->second = add(inside_.on_plane(point_between(p, q, t)),
                           between(as_mean(contour_, a), as_mean(contour_, b), t));
+      sides_.push_back(side_of(contour_.points.back()));
     }
     return entry->second;
   }
@@ -221,6 +232,7 @@ class PlaneClip {
   Contour& contour_;
   const HalfSpace& inside_;
   Vec3 tolerance_;
+  std::vector<std::int8_t> sides_;                           ///< by point
   std::unordered_map<std::uint64_t, std::uint32_t> cuts_;    ///< by the two points of an edge
   std::unordered_map<std::uint32_t, std::uint32_t> merged_;  ///< points to lesser ones
 };

@@ -22,7 +22,6 @@ namespace {
 using Triangle = TriangleStars::Triangle;
 using Suspect = CoincidingPatches::Suspect;
 constexpr std::uint32_t kNone = TriangleStars::kNone;
-constexpr LatticePoint kNoVertex = kNoKey<LatticePoint>;
 
 template <class T>
 std::vector<T> filled(std::size_t size, T value) {
@@ -39,63 +38,61 @@ class PointJoiner {
 
   void run() {
     find_vertices();
-    keep_border_points();
     find_patches();
-    keep_patches_that_are_no_discs();
     for (bool found = separate_what_coincides(); found;) found = separate_what_coincides_now();
     replace();
   }
 
  private:
-  /// The vertex that each point is near.
+  /// The vertex that each point is near. Points at the border, which are not joined, have one of their own.
   void find_vertices() {
-    reserve_in_large_pages(vertices_, count_);
-    for (const EdgePoint& point : contour_.edge_points) vertices_.push_back(point.nearer_end());
-  }
-
-  /// Takes the vertices away from the points at the border, which are not joined.
-  void keep_border_points() {
     const std::vector<bool> at_border = border_points(contour_.triangles, count_);
-    for (std::uint32_t p = 0; p < count_; ++p) {
-      if (at_border[p]) vertices_[p] = kNoVertex;
-    }
+    reserve_in_large_pages(vertices_, count_);
+    for (std::uint32_t p = 0; p < count_; ++p)
+      vertices_.push_back(at_border[p] ? LatticePoint{kNoKey<LatticePoint>.i, static_cast<std::int32_t>(p), 0}
+                                       : contour_.edge_points[p].nearer_end());
   }
 
   /// Patches are the parts that hang together of the edges and triangles among points of one vertex. The
-  /// least of a patch's points stands for it.
+  /// least of a patch's points stands for it. Those that are no discs are taken apart: a part of a surface is
+  /// one if its Euler characteristic is 1.
   void find_patches() {
     DisjointSets sets(count_);
-    for (const auto& [p, q, r] : contour_.triangles) {
+    // By point what it adds to that of its patch: 2, less one for each side of a triangle, since an edge has
+    // two triangles, and two for the triangle.
+    std::vector<std::int16_t> twice_euler = filled(count_, std::int16_t{2});
+    reserve_in_large_pages(across_, contour_.triangles.size() / 2);
+    for (std::uint32_t n = 0; n < contour_.triangles.size(); ++n) {
+      const auto [p, q, r] = contour_.triangles[n];
       const LatticePoint near_p = vertices_[p], near_q = vertices_[q], near_r = vertices_[r];
-      const bool first = near_p == near_q, second = near_q == near_r;
-      if (first && near_p != kNoVertex) sets.join(p, q);
-      if (second && near_q != kNoVertex) sets.join(q, r);
-      if (!first && !second && near_r == near_p && near_r != kNoVertex) sets.join(r, p);
+      const bool first = is_same(near_p, near_q), second = is_same(near_q, near_r),
+                 third = is_same(near_r, near_p);
+      if (!(first | second | third)) {
+        across_.push_back(n);
+        continue;
+      }
+      const std::uint32_t in_patch = first | third ? p : q;
+      --twice_euler[in_patch];
+      sets.join(in_patch, first ? q : r);
+      if (first & second) sets.join(q, r);
     }
     vertices_ = {};
     patch_ = std::move(sets).roots();
     is_joined_.resize(count_);
     for (std::uint32_t p = 0; p < count_; ++p) {
-      if (patch_[p] != p) is_joined_[patch_[p]] = true;
-    }
-  }
-
-  /// A part of a surface whose Euler characteristic is 1 is a disc.
-  void keep_patches_that_are_no_discs() {
-    // Each edge is a side of two triangles.
-    std::vector<std::int16_t> twice_euler = filled(count_, std::int16_t{0});
-    for (std::uint32_t p = 0; p < count_; ++p) twice_euler[patch_[p]] += 2;
-    for (const Triangle& triangle : contour_.triangles) {
-      const auto [a, b, c] = joined(triangle);
-      // Two of the sides of a triangle within a patch count here, and the third with its area.
-      if (a == b) --twice_euler[a];
-      if (b == c) --twice_euler[b];
-      if (c == a) twice_euler[c] += a == b ? 1 : -1;
+      if (patch_[p] == p) continue;
+      is_joined_[patch_[p]] = true;
+      twice_euler[patch_[p]] = static_cast<std::int16_t>(twice_euler[patch_[p]] + twice_euler[p]);
     }
     for (std::uint32_t p = 0; p < count_; ++p) {
-      if (twice_euler[patch_[p]] != 2) apart_.push_back(patch_[p]);
+      if (patch_[p] == p && twice_euler[p] != 2) apart_.push_back(p);
     }
     take_apart();
+  }
+
+  /// Without branches: which are the same is as good as random.
+  static bool is_same(LatticePoint a, LatticePoint b) {
+    return ((a.i ^ b.i) | (a.j ^ b.j) | (a.k ^ b.k)) == 0;
   }
 
   /// Makes single points of all that are in the patches of `apart_`.
@@ -106,31 +103,31 @@ class PointJoiner {
       is_joined_[patch] = false;
     }
     is_separated_.assign(count_, false);
-    if (!apart_.empty()) {
-      // A patch has the number of its first point, which is looked at when all others of it still have it.
-      for (std::uint32_t p = count_; p-- > 0;) {
-        if (!is_wanted[patch_[p]]) continue;
-        is_separated_[p] = true;
-        patch_[p] = p;
-      }
+    // A patch has the number of its first point, which is looked at when all others of it still have it.
+    for (std::uint32_t p = count_; !apart_.empty() && p-- > 0;) {
+      if (!is_wanted[patch_[p]]) continue;
+      is_separated_[p] = true;
+      patch_[p] = p;
     }
+    any_separated_ = !apart_.empty();
     apart_.clear();
   }
 
   [[nodiscard]] Triangle joined(const Triangle& t) const {
     return {patch_[t[0]], patch_[t[1]], patch_[t[2]]};
   }
-  static bool has_area(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+  static bool has_area(const Triangle& t) { return (t[0] != t[1]) & (t[1] != t[2]) & (t[2] != t[0]); }
 
   /// Two edges that begin at one patch and end at one, and two triangles at the same three, are kept apart by
   /// taking those patches apart. Returns whether there were any.
   bool separate_what_coincides() {
-    std::vector<Triangle> all;
-    reserve_in_large_pages(all, contour_.triangles.size() / 2);
-    for (const Triangle& triangle : contour_.triangles) {
-      const Triangle t = joined(triangle);
-      if (has_area(t)) all.push_back(t);
+    std::vector<Triangle> all = with_separated();
+    reserve_in_large_pages(all, all.size() + across_.size());
+    for (const std::uint32_t n : across_) {
+      const Triangle& triangle = contour_.triangles[n];
+      if (!has_separated(triangle)) all.push_back(joined(triangle));
     }
+    across_ = {};
     std::vector<Suspect> suspects;
     reserve_in_large_pages(suspects, count_ / 2);
     for (std::uint32_t p = 0; p < count_; ++p) {
@@ -142,17 +139,24 @@ class PointJoiner {
   /// What was taken apart may coincide with something else then, and nothing else may, so that these points
   /// alone are suspect after the first time.
   bool separate_what_coincides_now() {
-    std::vector<Triangle> with_suspects;
-    for (const Triangle& triangle : contour_.triangles) {
-      if (!is_separated_[triangle[0]] && !is_separated_[triangle[1]] && !is_separated_[triangle[2]]) continue;
-      const Triangle t = joined(triangle);
-      if (has_area(t)) with_suspects.push_back(t);
-    }
     std::vector<Suspect> suspects;
     for (std::uint32_t p = 0; p < count_; ++p) {
       if (is_separated_[p]) suspects.push_back({p, false});
     }
-    return separate(suspects, with_suspects);
+    return separate(suspects, with_separated());
+  }
+
+  [[nodiscard]] bool has_separated(const Triangle& t) const {
+    return is_separated_[t[0]] || is_separated_[t[1]] || is_separated_[t[2]];
+  }
+  /// The triangles with an area at points that were taken apart last.
+  [[nodiscard]] std::vector<Triangle> with_separated() const {
+    std::vector<Triangle> found;
+    if (!any_separated_) return found;
+    for (const Triangle& triangle : contour_.triangles) {
+      if (has_separated(triangle) && has_area(joined(triangle))) found.push_back(joined(triangle));
+    }
+    return found;
   }
 
   bool separate(const std::vector<Suspect>& suspects, const std::vector<Triangle>& triangles) {
@@ -231,7 +235,9 @@ class PointJoiner {
           if (is_first && t[n] >= singles) means[t[n] - singles].add_triangle(area_vector, area, moment);
         }
       }
-      if (has_area(t)) contour_.triangles[kept++] = t;
+      // Whether it stays is as good as random, so that a branch would be guessed wrong.
+      contour_.triangles[kept] = t;
+      kept += has_area(t) ? 1 : 0;
     }
     contour_.triangles.resize(kept);
   }
@@ -244,6 +250,8 @@ class PointJoiner {
   std::vector<std::uint32_t> apart_;  ///< patches that are to be taken apart
   CoincidingPatches coinciding_;
   std::vector<bool> is_separated_;  ///< points of what was taken apart last
+  bool any_separated_ = false;
+  std::vector<std::uint32_t> across_;  ///< triangles whose corners are near three vertices
 };
 
 }  // namespace
