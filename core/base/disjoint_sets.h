@@ -18,6 +18,7 @@ class DisjointSets {
     return i;
   }
   void join(std::uint32_t i, std::uint32_t j) {
+    if (parent_[i] == parent_[j]) return;
     i = find(i);
     j = find(j);
     parent_[std::max(i, j)] = std::min(i, j);

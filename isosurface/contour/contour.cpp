@@ -30,26 +30,28 @@ void remove_unused_points(Contour& contour) {
   for (const auto& triangle : contour.triangles) {
     for (const std::uint32_t p : triangle) numbers[p] = 0;
   }
-  Contour kept;
   const std::size_t edge_count = contour.edge_points.size();
   const std::size_t mean_begin = edge_count + contour.vertex_points.size();
+  std::uint32_t kept = 0, edges = 0, vertices = 0, means = 0;
   for (std::size_t p = 0; p < numbers.size(); ++p) {
     if (numbers[p] == ContourBuilder::kNone) continue;
-    numbers[p] = static_cast<std::uint32_t>(kept.points.size());
-    kept.points.push_back(contour.points[p]);
+    contour.points[kept] = contour.points[p];
+    numbers[p] = kept++;
     if (p < edge_count) {
-      kept.edge_points.push_back(contour.edge_points[p]);
+      contour.edge_points[edges++] = contour.edge_points[p];
     } else if (p < mean_begin) {
-      kept.vertex_points.push_back(contour.vertex_points[p - edge_count]);
+      contour.vertex_points[vertices++] = contour.vertex_points[p - edge_count];
     } else {
-      kept.mean_points.push_back(contour.mean_points[p - mean_begin]);
+      contour.mean_points[means++] = contour.mean_points[p - mean_begin];
     }
   }
+  contour.points.resize(kept);
+  contour.edge_points.resize(edges);
+  contour.vertex_points.resize(vertices);
+  contour.mean_points.resize(means);
   for (auto& triangle : contour.triangles) {
     for (std::uint32_t& p : triangle) p = numbers[p];
   }
-  kept.triangles.swap(contour.triangles);
-  contour = std::move(kept);
 }
 
 ContourBuilder::ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/large_pages.h"
 #include "core/lattice/diamond.h"
 
 namespace adamas {
@@ -116,8 +117,8 @@ class PlaneClip {
     if (inside_.axis() && tolerance_[*inside_.axis()] > 0) move_near_points(*inside_.axis());
     std::vector<std::array<std::uint32_t, 3>> triangles;
     triangles.swap(contour_.triangles);
-    contour_.triangles.reserve(triangles.size());
-    sides_.reserve(contour_.points.size());
+    reserve_in_large_pages(contour_.triangles, triangles.size());
+    reserve_in_large_pages(sides_, contour_.points.size());
     for (const Vec3& point : contour_.points) sides_.push_back(side_of(point));
     for (const auto& triangle : triangles) {
       if ((sides_[triangle[0]] & sides_[triangle[1]] & sides_[triangle[2]]) < 0) {

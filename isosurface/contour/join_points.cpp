@@ -10,6 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/disjoint_sets.h"
 #include "core/base/large_pages.h"
+#include "core/base/stable_vector.h"
 #include "core/lattice/lattice_map.h"
 #include "isosurface/contour/coinciding_patches.h"
 #include "isosurface/contour/joined_point.h"
@@ -121,11 +122,11 @@ class PointJoiner {
   /// Two edges that begin at one patch and end at one, and two triangles at the same three, are kept apart by
   /// taking those patches apart. Returns whether there were any.
   bool separate_what_coincides() {
-    std::vector<Triangle> all = with_separated();
-    reserve_in_large_pages(all, all.size() + across_.size());
+    StableVector<Triangle> all;
+    add_with_separated(all);
     for (const std::uint32_t n : across_) {
       const Triangle& triangle = contour_.triangles[n];
-      if (!has_separated(triangle)) all.push_back(joined(triangle));
+      if (!has_separated(triangle)) *all.add() = joined(triangle);
     }
     across_ = {};
     std::vector<Suspect> suspects;
@@ -139,29 +140,29 @@ class PointJoiner {
   /// What was taken apart may coincide with something else then, and nothing else may, so that these points
   /// alone are suspect after the first time.
   bool separate_what_coincides_now() {
+    StableVector<Triangle> with_suspects;
+    add_with_separated(with_suspects);
     std::vector<Suspect> suspects;
     for (std::uint32_t p = 0; p < count_; ++p) {
       if (is_separated_[p]) suspects.push_back({p, false});
     }
-    return separate(suspects, with_separated());
+    return separate(suspects, with_suspects);
   }
 
   [[nodiscard]] bool has_separated(const Triangle& t) const {
     return is_separated_[t[0]] || is_separated_[t[1]] || is_separated_[t[2]];
   }
-  /// The triangles with an area at points that were taken apart last.
-  [[nodiscard]] std::vector<Triangle> with_separated() const {
-    std::vector<Triangle> found;
-    if (!any_separated_) return found;
+  /// Adds the triangles with an area at points that were taken apart last.
+  void add_with_separated(StableVector<Triangle>& triangles) const {
+    if (!any_separated_) return;
     for (const Triangle& triangle : contour_.triangles) {
-      if (has_separated(triangle) && has_area(joined(triangle))) found.push_back(joined(triangle));
+      if (has_separated(triangle) && has_area(joined(triangle))) *triangles.add() = joined(triangle);
     }
-    return found;
   }
 
-  bool separate(const std::vector<Suspect>& suspects, const std::vector<Triangle>& triangles) {
+  bool separate(const std::vector<Suspect>& suspects, StableVector<Triangle>& triangles) {
     apart_ = coinciding_.find(count_, suspects, [&](const auto& visit) {
-      for (const Triangle& t : triangles) visit(t);
+      for (std::size_t n = 0; n < triangles.size(); ++n) visit(triangles[n]);
     });
     const bool found = !apart_.empty();
     if (found) take_apart();
@@ -172,59 +173,51 @@ class PointJoiner {
   /// All of it in the place of what was, since memory that the system has to provide takes as long to get as
   /// to fill.
   void replace() {
-    std::vector<std::uint32_t> numbers = filled(count_, kNone);
-    const std::uint32_t singles = number_points(numbers);
-    std::vector<JoinedPoint> means = means_of_points(numbers, singles);
-    replace_triangles(numbers, singles, means);
+    const std::uint32_t singles = number_points();
+    StableVector<JoinedPoint> means;
     for (std::uint32_t p = 0; p < count_; ++p) {
-      if (numbers[p] >= singles) continue;
-      contour_.points[numbers[p]] = contour_.points[p];
-      contour_.edge_points[numbers[p]] = contour_.edge_points[p];
+      if (numbers_[p] < singles) continue;
+      const std::uint32_t mean = numbers_[p] - singles;
+      if (mean == means.size()) means.add();
+      means[mean].add(contour_.points[p], contour_.edge_points[p]);
+    }
+    replace_triangles(singles, means);
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      if (numbers_[p] >= singles) continue;
+      contour_.points[numbers_[p]] = contour_.points[p];
+      contour_.edge_points[numbers_[p]] = contour_.edge_points[p];
     }
     contour_.points.resize(singles);
     contour_.edge_points.resize(singles);
     reserve_in_large_pages(contour_.vertex_points, means.size());
-    for (const JoinedPoint& mean : means) {
-      contour_.points.push_back(mean.position());
-      contour_.vertex_points.push_back(mean.vertex_point());
+    for (std::size_t n = 0; n < means.size(); ++n) {
+      contour_.points.push_back(means[n].position());
+      contour_.vertex_points.push_back(means[n].vertex_point());
     }
   }
 
-  /// Sets what number each point has in the end. Returns how many points stay.
-  std::uint32_t number_points(std::vector<std::uint32_t>& numbers) const {
+  /// Puts the number that each point has in the end in the place of its patch. Returns how many points stay.
+  std::uint32_t number_points() {
     std::uint32_t singles = 0;
     for (std::uint32_t p = 0; p < count_; ++p) singles += is_joined_[patch_[p]] ? 0 : 1;
+    numbers_ = std::move(patch_);
     std::uint32_t next_single = 0, next_mean = singles;
     for (std::uint32_t p = 0; p < count_; ++p) {
-      const std::uint32_t patch = patch_[p];
-      if (patch != p) {
-        numbers[p] = numbers[patch];
+      std::uint32_t& number = numbers_[p];
+      if (number != p) {
+        number = numbers_[number];
       } else {
-        numbers[p] = is_joined_[p] ? next_mean++ : next_single++;
+        number = is_joined_[p] ? next_mean++ : next_single++;
       }
     }
     return singles;
   }
 
-  [[nodiscard]] std::vector<JoinedPoint> means_of_points(const std::vector<std::uint32_t>& numbers,
-                                                         std::uint32_t singles) const {
-    const std::uint32_t end = 1 + *std::max_element(numbers.begin(), numbers.end());
-    std::vector<JoinedPoint> means;
-    reserve_in_large_pages(means, end - singles);
-    for (std::uint32_t p = 0; p < count_; ++p) {
-      if (numbers[p] < singles) continue;
-      if (patch_[p] == p) means.emplace_back();
-      means[numbers[p] - singles].add(contour_.points[p], contour_.edge_points[p]);
-    }
-    return means;
-  }
-
   /// Leaves the triangles that have an area, and adds all of them to the means at their corners.
-  void replace_triangles(const std::vector<std::uint32_t>& numbers, std::uint32_t singles,
-                         std::vector<JoinedPoint>& means) {
+  void replace_triangles(std::uint32_t singles, StableVector<JoinedPoint>& means) {
     std::size_t kept = 0;
     for (const Triangle& triangle : contour_.triangles) {
-      const Triangle t{numbers[triangle[0]], numbers[triangle[1]], numbers[triangle[2]]};
+      const Triangle t{numbers_[triangle[0]], numbers_[triangle[1]], numbers_[triangle[2]]};
       if (std::max({t[0], t[1], t[2]}) >= singles) {
         const Vec3 &a = contour_.points[triangle[0]], &b = contour_.points[triangle[1]],
                    &c = contour_.points[triangle[2]];
@@ -246,8 +239,9 @@ class PointJoiner {
   std::uint32_t count_;
   std::vector<LatticePoint> vertices_;
   std::vector<std::uint32_t> patch_;
-  std::vector<bool> is_joined_;       ///< whether a patch has several points, by its number
-  std::vector<std::uint32_t> apart_;  ///< patches that are to be taken apart
+  std::vector<std::uint32_t> numbers_;  ///< of points in the end
+  std::vector<bool> is_joined_;         ///< whether a patch has several points, by its number
+  std::vector<std::uint32_t> apart_;    ///< patches that are to be taken apart
   CoincidingPatches coinciding_;
   std::vector<bool> is_separated_;  ///< points of what was taken apart last
   bool any_separated_ = false;
