@@ -36,7 +36,7 @@ void expect_equal(const ExtractedSurface& found, const ExtractedSurface& wanted)
 }
 
 /// Runs of pages go to threads, and what they share is found again.
-TEST(MeshContour, IsTheSameOnAnyNumberOfThreads) {
+TEST(LongMeshContour, IsTheSameOnAnyNumberOfThreads) {
   const MemoryVolume<std::uint8_t> volume = hills<std::uint8_t>();
   std::vector<SurfaceRequest> requests;
   for (const double error : {0.0, 0.4, 2.0}) {
@@ -67,7 +67,7 @@ TEST(MeshContour, IsTheSameOnAnyNumberOfThreads) {
   set_thread_limit(0);
 }
 
-TEST(MeshContour, IsTheSameWhereSamplesAreNotFinite) {
+TEST(LongMeshContour, IsTheSameWhereSamplesAreNotFinite) {
   const MemoryVolume<float> hills_of_floats = hills<float>();
   const MemoryVolume<float> volume({60, 52, 190}, [&, random = std::mt19937(3)](LatticePoint p) mutable {
     return random() % 5000 == 0 ? std::numeric_limits<double>::quiet_NaN() : hills_of_floats.at(p);
@@ -89,7 +89,7 @@ TEST(MeshContour, IsTheSameWhereSamplesAreNotFinite) {
 }
 
 /// Which pages are lost to a surface does not depend on which thread meets with the damage first.
-TEST(MeshContour, LosesTheSamePagesOnAnyNumberOfThreads) {
+TEST(LongMeshContour, LosesTheSamePagesOnAnyNumberOfThreads) {
   OpenStore<std::uint8_t> store(hills<std::uint8_t>());
   std::string bytes = test::bytes_of(store.path());
   std::size_t damaged = 0;
