@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace adamas {
@@ -17,9 +18,16 @@ class DisjointSets {
     return i;
   }
   void join(std::uint32_t i, std::uint32_t j) {
+    if (parent_[i] == parent_[j]) return;
     i = find(i);
     j = find(j);
     parent_[std::max(i, j)] = std::min(i, j);
+  }
+  /// What stands for the set of each member; there are no sets any more after this.
+  [[nodiscard]] std::vector<std::uint32_t> roots() && {
+    // Parents are lower than their children, so that theirs are known already.
+    for (std::uint32_t& parent : parent_) parent = parent_[parent];
+    return std::move(parent_);
   }
 
  private:

@@ -11,56 +11,82 @@
 
 namespace adamas {
 
-/// Numbers of lattice points that lie near each other, as those of a surface do: a table of blocks of 4^3
-/// points of a level, so that what is asked for together lies together in memory. For scattered points a
-/// LatticeMap takes less memory.
+/// Numbers of lattice points that lie near each other, as those of a surface do: in blocks of 4^3 points of a
+/// level, so that what is asked for together lies together in memory, and these in regions of 8^3 blocks, of
+/// which there are so few that the table of them stays in the caches. For scattered points a LatticeMap takes
+/// less memory.
 class PointNumbers {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// Makes room for about so many points.
-  void expect(std::size_t points) {
-    constexpr std::size_t kInBlock = 6;
-    blocks_.reserve(points / kInBlock);
-  }
-
   /// Where the number of p is, for the caller to change, and whether p has none yet; it is kNone then. The
-  /// pointer is valid until the next call.
+  /// pointer is valid as long as this is.
   std::pair<std::uint32_t*, bool> insert(LatticePoint p) {
-    // In units of its level a point has at least one odd coordinate. The key of a block is its centre, from
+    // In units of its level a point has at least one odd coordinate. The key of a region is its centre, from
     // which its level follows.
     const int level = std::min(trailing_zeros(p), kRootBits);
     const LatticePoint q{p.i >> level, p.j >> level, p.k >> level};
-    const auto centre = [level](std::int32_t x) { return ((x & ~3) + 2) << level; };
+    const auto centre = [level](std::int32_t x) { return ((x & ~31) + 16) << level; };
     const LatticePoint key{centre(q.i), centre(q.j), centre(q.k)};
     Recent& recent =
-        recent_[static_cast<std::size_t>((q.i >> 2 & 7) + 8 * (q.j >> 2 & 7) + 64 * (q.k >> 2 & 7))];
-    if (key != recent.key) recent = {key, block(key)};
-    std::uint32_t& number =
-        (*recent.block)[static_cast<std::size_t>((q.i & 3) + 4 * (q.j & 3) + 16 * (q.k & 3))];
+        recent_[place<2>({q.i >> 5, q.j >> 5, q.k >> 5}) + 64 * static_cast<std::size_t>(level & 1)];
+    if (key != recent.key) recent = {key, region(key)};
+    std::uint32_t& block = (*recent.region)[place<3>({q.i >> 2, q.j >> 2, q.k >> 2})];
+    if (block == kNone) {
+      block = static_cast<std::uint32_t>(blocks_.size());
+      blocks_.add()->fill(kNone);
+    }
+    std::uint32_t& number = blocks_[block][place<2>(q)];
     return {&number, number == kNone};
   }
 
- private:
-  using Block = std::array<std::uint32_t, 64>;
-  /// A block that was asked for lately. A search in the table would mostly miss the caches.
-  struct Recent {
-    LatticePoint key = kNoKey<LatticePoint>;
-    Block* block = nullptr;
-  };
-
-  Block* block(LatticePoint key) {
-    const auto [block, is_new] = blocks_.insert(key);
-    if (is_new) {
-      *block = static_cast<std::uint32_t>(numbers_.size());
-      numbers_.add()->fill(kNone);
-    }
-    return &numbers_[*block];
+  /// Calls visit(number here, number there) for each point that has a number in both tables.
+  template <class Visit>
+  void for_each_common(PointNumbers& other, Visit&& visit) {
+    const auto for_each_of_both = [](const auto& here, const auto& there, const auto& call) {
+      for (std::size_t n = 0; n < here.size(); ++n) {
+        if (here[n] != kNone && there[n] != kNone) call(here[n], there[n]);
+      }
+    };
+    indices_.for_each([&](LatticePoint key, std::uint32_t region) {
+      const std::uint32_t* const found = other.indices_.find(key);
+      if (found == nullptr) return;
+      for_each_of_both(regions_[region], other.regions_[*found],
+                       [&](std::uint32_t here, std::uint32_t there) {
+                         for_each_of_both(blocks_[here], other.blocks_[there], visit);
+                       });
+    });
   }
 
-  LatticeMap<std::uint32_t> blocks_;
-  StableVector<Block> numbers_;
-  std::array<Recent, 512> recent_;  ///< by where the block lies among 8^3 of its level
+ private:
+  using Block = std::array<std::uint32_t, 64>;    ///< numbers
+  using Region = std::array<std::uint32_t, 512>;  ///< places of blocks, or kNone
+  /// A region that was asked for lately.
+  struct Recent {
+    LatticePoint key = kNoKey<LatticePoint>;
+    Region* region = nullptr;
+  };
+
+  /// A point's place in a cube of 2^Bits points a side.
+  template <int Bits>
+  static std::size_t place(LatticePoint q) {
+    constexpr std::int32_t kIn = (1 << Bits) - 1;
+    return static_cast<std::size_t>((q.i & kIn) | (q.j & kIn) << Bits | (q.k & kIn) << (2 * Bits));
+  }
+
+  Region* region(LatticePoint key) {
+    const auto [index, is_new] = indices_.insert(key);
+    if (is_new) {
+      *index = static_cast<std::uint32_t>(regions_.size());
+      regions_.add()->fill(kNone);
+    }
+    return &regions_[*index];
+  }
+
+  LatticeMap<std::uint32_t> indices_;  ///< of regions, by key
+  StableVector<Region> regions_;
+  StableVector<Block> blocks_;
+  std::array<Recent, 128> recent_;  ///< by where the region lies among 4^3 of its level, for two levels
 };
 
 }  // namespace adamas

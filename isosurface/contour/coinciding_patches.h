@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/base/hash.h"
+
 namespace adamas {
 
 /// Finds, of the patches that points of a surface are joined to, those that have to be taken apart again:
@@ -66,6 +68,7 @@ class CoincidingPatches {
   static void check(Suspect suspect, std::span<const Pair> around, std::vector<std::uint32_t>& found) {
     const std::uint32_t patch = suspect.patch;
     if (around.size() < 3 && suspect.is_joined) found.push_back(patch);
+    if (!may_coincide(around)) return;
     for (std::size_t n = 0; n < around.size(); ++n) {
       for (std::size_t m = 0; m < n; ++m) {
         if (around[m][0] == around[n][0]) found.insert(found.end(), {patch, around[n][0]});
@@ -73,6 +76,24 @@ class CoincidingPatches {
           found.insert(found.end(), {patch, around[n][0], around[n][1]});
       }
     }
+  }
+
+  /// Whether two of these may begin alike, or be each other's turned round: never false where two do.
+  static bool may_coincide(std::span<const Pair> around) {
+    // Bits of a small table that a hash sets, mostly different ones.
+    std::array<std::uint64_t, 4> firsts{}, pairs{};
+    std::uint64_t twice = 0;
+    const auto set = [&twice](std::array<std::uint64_t, 4>& bits, std::uint64_t key) {
+      const std::uint64_t hash = fibonacci_hash(key), bit = std::uint64_t{1} << (hash >> 56 & 63);
+      std::uint64_t& word = bits[hash >> 62];
+      twice |= word & bit;
+      word |= bit;
+    };
+    for (const Pair& others : around) {
+      set(firsts, others[0]);
+      set(pairs, std::uint64_t{others[0]} + others[1]);
+    }
+    return twice != 0;
   }
 
   std::vector<std::uint32_t> places_;  ///< of suspects by their patches, or kNone

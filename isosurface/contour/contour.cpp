@@ -30,26 +30,28 @@ void remove_unused_points(Contour& contour) {
   for (const auto& triangle : contour.triangles) {
     for (const std::uint32_t p : triangle) numbers[p] = 0;
   }
-  Contour kept;
   const std::size_t edge_count = contour.edge_points.size();
   const std::size_t mean_begin = edge_count + contour.vertex_points.size();
+  std::uint32_t kept = 0, edges = 0, vertices = 0, means = 0;
   for (std::size_t p = 0; p < numbers.size(); ++p) {
     if (numbers[p] == ContourBuilder::kNone) continue;
-    numbers[p] = static_cast<std::uint32_t>(kept.points.size());
-    kept.points.push_back(contour.points[p]);
+    contour.points[kept] = contour.points[p];
+    numbers[p] = kept++;
     if (p < edge_count) {
-      kept.edge_points.push_back(contour.edge_points[p]);
+      contour.edge_points[edges++] = contour.edge_points[p];
     } else if (p < mean_begin) {
-      kept.vertex_points.push_back(contour.vertex_points[p - edge_count]);
+      contour.vertex_points[vertices++] = contour.vertex_points[p - edge_count];
     } else {
-      kept.mean_points.push_back(contour.mean_points[p - mean_begin]);
+      contour.mean_points[means++] = contour.mean_points[p - mean_begin];
     }
   }
+  contour.points.resize(kept);
+  contour.edge_points.resize(edges);
+  contour.vertex_points.resize(vertices);
+  contour.mean_points.resize(means);
   for (auto& triangle : contour.triangles) {
     for (std::uint32_t& p : triangle) p = numbers[p];
   }
-  kept.triangles.swap(contour.triangles);
-  contour = std::move(kept);
 }
 
 ContourBuilder::ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options)
@@ -67,9 +69,7 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
   const LatticePoint way = b - a;
   const auto [number, is_new] = numbers_.insert(a + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
   if (is_new) {
-    if (contour_.points.size() >= std::numeric_limits<std::uint32_t>::max())
-      fail("a contour has more than 2^32 - 1 points: choose another isovalue or a coarser mesh");
-    *number = static_cast<std::uint32_t>(contour_.points.size());
+    *number = next_number();
     const double t = std::clamp(edge_parameter(value_a, value_b, isovalue_), options_.least_parameter,
                                 1 - options_.least_parameter);
     contour_.edge_points.push_back({a, b, t});
@@ -78,13 +78,47 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
   return *number;
 }
 
+std::uint32_t ContourBuilder::next_number() const {
+  if (contour_.points.size() >= std::numeric_limits<std::uint32_t>::max())
+    fail("a contour has more than 2^32 - 1 points: choose another isovalue or a coarser mesh");
+  return static_cast<std::uint32_t>(contour_.points.size());
+}
+
+void ContourBuilder::append(std::span<const std::unique_ptr<ContourBuilder>> others) {
+  std::vector<std::vector<std::uint32_t>> numbers(others.size());
+  for (std::size_t n = 0; n < others.size(); ++n) {
+    ContourBuilder& other = *others[n];
+    std::vector<std::uint32_t>& of_other = numbers[n];
+    of_other.assign(other.contour_.points.size(), kNone);
+    other.numbers_.for_each_common(numbers_,
+                                   [&](std::uint32_t there, std::uint32_t here) { of_other[there] = here; });
+    for (std::size_t m = 0; m < n; ++m) {
+      other.numbers_.for_each_common(others[m]->numbers_, [&](std::uint32_t there, std::uint32_t before) {
+        of_other[there] = numbers[m][before];
+      });
+    }
+    append(other.contour_, of_other);
+    other.contour_ = {};
+  }
+}
+
+void ContourBuilder::append(const Contour& other, std::vector<std::uint32_t>& numbers) {
+  for (std::size_t p = 0; p < numbers.size(); ++p) {
+    if (numbers[p] != kNone) continue;
+    numbers[p] = next_number();
+    contour_.points.push_back(other.points[p]);
+    contour_.edge_points.push_back(other.edge_points[p]);
+  }
+  for (const auto& [a, b, c] : other.triangles)
+    contour_.triangles.push_back({numbers[a], numbers[b], numbers[c]});
+}
+
 void ContourBuilder::expect(std::size_t triangles) {
   // Closed surfaces have half as many points and two for each of their parts, open ones a few more.
   const std::size_t points = triangles / 2 + triangles / 32;
   reserve_in_large_pages(contour_.triangles, triangles);
   reserve_in_large_pages(contour_.points, points);
   reserve_in_large_pages(contour_.edge_points, points);
-  numbers_.expect(points);
 }
 
 Contour ContourBuilder::finish() {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/geometry/tetrahedron_contour.h"
@@ -117,10 +119,18 @@ class ContourBuilder {
   void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }
   /// Makes room for about so many triangles.
   void expect(std::size_t triangles);
+  /// Appends what others have, one after another, as if all of it had been added here: points that are here
+  /// already keep their numbers. The others are not to be used after this.
+  void append(std::span<const std::unique_ptr<ContourBuilder>> others);
   /// The contour, clipped to the data's box; the builder is not to be used after this.
   [[nodiscard]] Contour finish();
 
  private:
+  /// Appends one of them. `numbers`: of its points here, kNone for those that are not here yet.
+  void append(const Contour& other, std::vector<std::uint32_t>& numbers);
+  /// The number of a point that is to be appended.
+  [[nodiscard]] std::uint32_t next_number() const;
+
   Domain domain_;
   double isovalue_;
   ContourOptions options_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/large_pages.h"
 #include "core/lattice/diamond.h"
 
 namespace adamas {
@@ -116,7 +117,16 @@ class PlaneClip {
     if (inside_.axis() && tolerance_[*inside_.axis()] > 0) move_near_points(*inside_.axis());
     std::vector<std::array<std::uint32_t, 3>> triangles;
     triangles.swap(contour_.triangles);
-    for (const auto& triangle : triangles) clip(triangle);
+    reserve_in_large_pages(contour_.triangles, triangles.size());
+    reserve_in_large_pages(sides_, contour_.points.size());
+    for (const Vec3& point : contour_.points) sides_.push_back(side_of(point));
+    for (const auto& triangle : triangles) {
+      if ((sides_[triangle[0]] & sides_[triangle[1]] & sides_[triangle[2]]) < 0) {
+        contour_.triangles.push_back(triangle);
+      } else {
+        clip(triangle);
+      }
+    }
     if (!merged_.empty()) merge();
   }
 
@@ -148,10 +158,11 @@ class PlaneClip {
   }
 
   /// -1 inside, 0 on the plane, 1 beyond it.
-  [[nodiscard]] int side(std::uint32_t point) const {
-    const double height = inside_.height(contour_.points[point]);
-    return static_cast<int>(height > 0) - static_cast<int>(height < 0);
+  [[nodiscard]] std::int8_t side_of(const Vec3& point) const {
+    const double height = inside_.height(point);
+    return static_cast<std::int8_t>(static_cast<int>(height > 0) - static_cast<int>(height < 0));
   }
+  [[nodiscard]] int side(std::uint32_t point) const { return sides_[point]; }
 
   void clip(const std::array<std::uint32_t, 3>& triangle) {
     const std::array<int, 3> sides{side(triangle[0]), side(triangle[1]), side(triangle[2])};
@@ -179,6 +190,7 @@ class PlaneClip {
       const double t = inside_.cut(p, q);
       entry->second = add(inside_.on_plane(point_between(p, q, t)),
                           between(as_mean(contour_, a), as_mean(contour_, b), t));
+      sides_.push_back(side_of(contour_.points.back()));
     }
     return entry->second;
   }
@@ -221,6 +233,7 @@ class PlaneClip {
   Contour& contour_;
   const HalfSpace& inside_;
   Vec3 tolerance_;
+  std::vector<std::int8_t> sides_;                           ///< by point
   std::unordered_map<std::uint64_t, std::uint32_t> cuts_;    ///< by the two points of an edge
   std::unordered_map<std::uint32_t, std::uint32_t> merged_;  ///< points to lesser ones
 };
@@ -238,9 +251,18 @@ Vec3 tolerance_in(const Box3& box, const Vec3& spacing) {
   return result;
 }
 
+Box3 box_of(const std::vector<Vec3>& points) {
+  Box3 box;
+  for (const Vec3& p : points) box.extend(p);
+  return box;
+}
+
 void clip_by(const std::vector<HalfSpace>& sides, const Vec3& tolerance, Contour& contour) {
   bool clipped = false;
+  // No point that clipping adds lies outside of this.
+  const Box3 reach = box_of(contour.points);
   for (const HalfSpace& side : sides) {
+    if (side.axis() && side.height(reach.min) <= 0 && side.height(reach.max) <= 0) continue;
     const auto is_outside = [&side](const Vec3& p) { return side.height(p) > 0; };
     if (std::none_of(contour.points.begin(), contour.points.end(), is_outside)) continue;
     PlaneClip(contour, side, tolerance).run();
@@ -262,8 +284,7 @@ void clip_contour(Contour& contour, const Box3& box, const Vec3& spacing) {
 
 void clip_contour(Contour& contour, std::span<const Plane> sides, const Vec3& spacing) {
   if (sides.empty()) return;
-  Box3 box;
-  for (const Vec3& p : contour.points) box.extend(p);
+  const Box3 box = box_of(contour.points);
   const Vec3 tolerance = contour.points.empty() ? Vec3{} : tolerance_in(box, spacing);
   std::vector<HalfSpace> all;
   for (const Plane& side : sides) all.emplace_back(side, tolerance);

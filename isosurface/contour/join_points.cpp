@@ -10,7 +10,8 @@
 #include "core/base/assert.h"
 #include "core/base/disjoint_sets.h"
 #include "core/base/large_pages.h"
-#include "core/lattice/point_numbers.h"
+#include "core/base/stable_vector.h"
+#include "core/lattice/lattice_map.h"
 #include "isosurface/contour/coinciding_patches.h"
 #include "isosurface/contour/joined_point.h"
 #include "isosurface/contour/triangle_stars.h"
@@ -20,6 +21,7 @@ namespace adamas {
 namespace {
 
 using Triangle = TriangleStars::Triangle;
+using Suspect = CoincidingPatches::Suspect;
 constexpr std::uint32_t kNone = TriangleStars::kNone;
 
 template <class T>
@@ -37,76 +39,61 @@ class PointJoiner {
 
   void run() {
     find_vertices();
-    keep_border_points();
     find_patches();
-    keep_patches_that_are_no_discs();
-    is_suspect_.assign(count_, true);
-    while (separate_what_would_coincide()) {
-    }
+    for (bool found = separate_what_coincides(); found;) found = separate_what_coincides_now();
     replace();
   }
 
  private:
-  /// The vertex that each point is near, as a number.
+  /// The vertex that each point is near. Points at the border, which are not joined, have one of their own.
   void find_vertices() {
-    vertices_ = filled(count_, kNone);
-    PointNumbers numbers;
-    numbers.expect(count_ / 3);
-    std::uint32_t next = 0;
-    for (std::uint32_t p = 0; p < count_; ++p) {
-      const auto [number, is_new] = numbers.insert(contour_.edge_points[p].nearer_end());
-      if (is_new) *number = next++;
-      vertices_[p] = *number;
-    }
-  }
-
-  /// Takes the vertices away from the points at the border, which are not joined.
-  void keep_border_points() {
     const std::vector<bool> at_border = border_points(contour_.triangles, count_);
-    for (std::uint32_t p = 0; p < count_; ++p) {
-      if (at_border[p]) vertices_[p] = kNone;
-    }
-  }
-
-  [[nodiscard]] bool same_vertex(std::uint32_t p, std::uint32_t q) const {
-    return vertices_[p] == vertices_[q] && vertices_[p] != kNone;
+    reserve_in_large_pages(vertices_, count_);
+    for (std::uint32_t p = 0; p < count_; ++p)
+      vertices_.push_back(at_border[p] ? LatticePoint{kNoKey<LatticePoint>.i, static_cast<std::int32_t>(p), 0}
+                                       : contour_.edge_points[p].nearer_end());
   }
 
   /// Patches are the parts that hang together of the edges and triangles among points of one vertex. The
-  /// least of a patch's points stands for it.
+  /// least of a patch's points stands for it. Those that are no discs are taken apart: a part of a surface is
+  /// one if its Euler characteristic is 1.
   void find_patches() {
     DisjointSets sets(count_);
-    for (const Triangle& t : contour_.triangles) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t p = t[c], q = t[(c + 1) % 3];
-        if (same_vertex(p, q)) sets.join(p, q);
+    // By point what it adds to that of its patch: 2, less one for each side of a triangle, since an edge has
+    // two triangles, and two for the triangle.
+    std::vector<std::int16_t> twice_euler = filled(count_, std::int16_t{2});
+    reserve_in_large_pages(across_, contour_.triangles.size() / 2);
+    for (std::uint32_t n = 0; n < contour_.triangles.size(); ++n) {
+      const auto [p, q, r] = contour_.triangles[n];
+      const LatticePoint near_p = vertices_[p], near_q = vertices_[q], near_r = vertices_[r];
+      const bool first = is_same(near_p, near_q), second = is_same(near_q, near_r),
+                 third = is_same(near_r, near_p);
+      if (!(first | second | third)) {
+        across_.push_back(n);
+        continue;
       }
+      const std::uint32_t in_patch = first | third ? p : q;
+      --twice_euler[in_patch];
+      sets.join(in_patch, first ? q : r);
+      if (first & second) sets.join(q, r);
     }
-    patch_.resize(count_);
+    vertices_ = {};
+    patch_ = std::move(sets).roots();
     is_joined_.resize(count_);
     for (std::uint32_t p = 0; p < count_; ++p) {
-      patch_[p] = sets.find(p);
-      if (patch_[p] != p) is_joined_[patch_[p]] = true;
-    }
-  }
-
-  /// A part of a surface whose Euler characteristic is 1 is a disc.
-  void keep_patches_that_are_no_discs() {
-    // Each edge is a side of two triangles.
-    std::vector<std::int32_t> twice_euler = filled(count_, std::int32_t{0});
-    for (std::uint32_t p = 0; p < count_; ++p) twice_euler[patch_[p]] += 2;
-    for (const Triangle& t : contour_.triangles) {
-      const std::array<std::uint32_t, 3> in{patch_[t[0]], patch_[t[1]], patch_[t[2]]};
-      const bool first = in[0] == in[1], second = in[1] == in[2], third = in[2] == in[0];
-      if (first) --twice_euler[in[0]];
-      if (second) --twice_euler[in[1]];
-      if (third) --twice_euler[in[2]];
-      if (first && second) twice_euler[in[0]] += 2;
+      if (patch_[p] == p) continue;
+      is_joined_[patch_[p]] = true;
+      twice_euler[patch_[p]] = static_cast<std::int16_t>(twice_euler[patch_[p]] + twice_euler[p]);
     }
     for (std::uint32_t p = 0; p < count_; ++p) {
-      if (twice_euler[patch_[p]] != 2) apart_.push_back(patch_[p]);
+      if (patch_[p] == p && twice_euler[p] != 2) apart_.push_back(p);
     }
     take_apart();
+  }
+
+  /// Without branches: which are the same is as good as random.
+  static bool is_same(LatticePoint a, LatticePoint b) {
+    return ((a.i ^ b.i) | (a.j ^ b.j) | (a.k ^ b.k)) == 0;
   }
 
   /// Makes single points of all that are in the patches of `apart_`.
@@ -116,34 +103,66 @@ class PointJoiner {
       is_wanted[patch] = true;
       is_joined_[patch] = false;
     }
-    apart_.clear();
-    is_suspect_.assign(count_, false);
+    is_separated_.assign(count_, false);
     // A patch has the number of its first point, which is looked at when all others of it still have it.
-    for (std::uint32_t p = count_; p-- > 0;) {
+    for (std::uint32_t p = count_; !apart_.empty() && p-- > 0;) {
       if (!is_wanted[patch_[p]]) continue;
-      is_suspect_[p] = true;
+      is_separated_[p] = true;
       patch_[p] = p;
     }
+    any_separated_ = !apart_.empty();
+    apart_.clear();
   }
 
   [[nodiscard]] Triangle joined(const Triangle& t) const {
     return {patch_[t[0]], patch_[t[1]], patch_[t[2]]};
   }
-  static bool has_area(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+  static bool has_area(const Triangle& t) { return (t[0] != t[1]) & (t[1] != t[2]) & (t[2] != t[0]); }
 
   /// Two edges that begin at one patch and end at one, and two triangles at the same three, are kept apart by
-  /// taking those patches apart. What was taken apart may coincide with something else then, and nothing else
-  /// may, so that these points alone are suspect the next time. Returns whether there were any.
-  bool separate_what_would_coincide() {
-    std::vector<CoincidingPatches::Suspect> suspects;
-    for (std::uint32_t p = 0; p < count_; ++p) {
-      if (is_suspect_[p] && patch_[p] == p) suspects.push_back({p, is_joined_[p]});
+  /// taking those patches apart. Returns whether there were any.
+  bool separate_what_coincides() {
+    StableVector<Triangle> all;
+    add_with_separated(all);
+    for (const std::uint32_t n : across_) {
+      const Triangle& triangle = contour_.triangles[n];
+      if (!has_separated(triangle)) *all.add() = joined(triangle);
     }
+    across_ = {};
+    std::vector<Suspect> suspects;
+    reserve_in_large_pages(suspects, count_ / 2);
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      if (patch_[p] == p) suspects.push_back({p, is_joined_[p]});
+    }
+    return separate(suspects, all);
+  }
+
+  /// What was taken apart may coincide with something else then, and nothing else may, so that these points
+  /// alone are suspect after the first time.
+  bool separate_what_coincides_now() {
+    StableVector<Triangle> with_suspects;
+    add_with_separated(with_suspects);
+    std::vector<Suspect> suspects;
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      if (is_separated_[p]) suspects.push_back({p, false});
+    }
+    return separate(suspects, with_suspects);
+  }
+
+  [[nodiscard]] bool has_separated(const Triangle& t) const {
+    return is_separated_[t[0]] || is_separated_[t[1]] || is_separated_[t[2]];
+  }
+  /// Adds the triangles with an area at points that were taken apart last.
+  void add_with_separated(StableVector<Triangle>& triangles) const {
+    if (!any_separated_) return;
+    for (const Triangle& triangle : contour_.triangles) {
+      if (has_separated(triangle) && has_area(joined(triangle))) *triangles.add() = joined(triangle);
+    }
+  }
+
+  bool separate(const std::vector<Suspect>& suspects, StableVector<Triangle>& triangles) {
     apart_ = coinciding_.find(count_, suspects, [&](const auto& visit) {
-      for (const Triangle& triangle : contour_.triangles) {
-        const Triangle t = joined(triangle);
-        if (has_area(t)) visit(t);
-      }
+      for (std::size_t n = 0; n < triangles.size(); ++n) visit(triangles[n]);
     });
     const bool found = !apart_.empty();
     if (found) take_apart();
@@ -151,59 +170,82 @@ class PointJoiner {
   }
 
   /// Joins the points: first those that stay, in their order, then the means, in the order of the patches.
+  /// All of it in the place of what was, since memory that the system has to provide takes as long to get as
+  /// to fill.
   void replace() {
-    std::vector<std::uint32_t> sizes = filled(count_, std::uint32_t{0});
-    for (std::uint32_t p = 0; p < count_; ++p) ++sizes[patch_[p]];
-    Contour result;
-    std::vector<std::uint32_t> numbers = filled(count_, kNone);
+    const std::uint32_t singles = number_points();
+    StableVector<JoinedPoint> means;
     for (std::uint32_t p = 0; p < count_; ++p) {
-      if (sizes[patch_[p]] != 1) continue;
-      numbers[p] = static_cast<std::uint32_t>(result.points.size());
-      result.points.push_back(contour_.points[p]);
-      result.edge_points.push_back(contour_.edge_points[p]);
+      if (numbers_[p] < singles) continue;
+      const std::uint32_t mean = numbers_[p] - singles;
+      if (mean == means.size()) means.add();
+      means[mean].add(contour_.points[p], contour_.edge_points[p]);
     }
-    std::vector<JoinedPoint> means;
-    const auto edge_count = static_cast<std::uint32_t>(result.points.size());
+    replace_triangles(singles, means);
     for (std::uint32_t p = 0; p < count_; ++p) {
-      const std::uint32_t patch = patch_[p];
-      if (sizes[patch] == 1) continue;
-      if (patch == p) {
-        numbers[p] = edge_count + static_cast<std::uint32_t>(means.size());
-        means.emplace_back();
+      if (numbers_[p] >= singles) continue;
+      contour_.points[numbers_[p]] = contour_.points[p];
+      contour_.edge_points[numbers_[p]] = contour_.edge_points[p];
+    }
+    contour_.points.resize(singles);
+    contour_.edge_points.resize(singles);
+    reserve_in_large_pages(contour_.vertex_points, means.size());
+    for (std::size_t n = 0; n < means.size(); ++n) {
+      contour_.points.push_back(means[n].position());
+      contour_.vertex_points.push_back(means[n].vertex_point());
+    }
+  }
+
+  /// Puts the number that each point has in the end in the place of its patch. Returns how many points stay.
+  std::uint32_t number_points() {
+    std::uint32_t singles = 0;
+    for (std::uint32_t p = 0; p < count_; ++p) singles += is_joined_[patch_[p]] ? 0 : 1;
+    numbers_ = std::move(patch_);
+    std::uint32_t next_single = 0, next_mean = singles;
+    for (std::uint32_t p = 0; p < count_; ++p) {
+      std::uint32_t& number = numbers_[p];
+      if (number != p) {
+        number = numbers_[number];
+      } else {
+        number = is_joined_[p] ? next_mean++ : next_single++;
       }
-      means[numbers[patch] - edge_count].add(contour_.points[p], contour_.edge_points[p]);
     }
+    return singles;
+  }
+
+  /// Leaves the triangles that have an area, and adds all of them to the means at their corners.
+  void replace_triangles(std::uint32_t singles, StableVector<JoinedPoint>& means) {
+    std::size_t kept = 0;
     for (const Triangle& triangle : contour_.triangles) {
-      const Vec3 &a = contour_.points[triangle[0]], &b = contour_.points[triangle[1]],
-                 &c = contour_.points[triangle[2]];
-      const Vec3 area_vector = 0.5 * cross(b - a, c - a);
-      const double area = norm(area_vector), moment = dot(area_vector, a);
-      const Triangle t = joined(triangle);
-      for (std::size_t n = 0; n < 3; ++n) {
-        const bool is_first = n == 0 || (t[n] != t[0] && (n == 1 || t[n] != t[1]));
-        if (is_first && sizes[t[n]] > 1)
-          means[numbers[t[n]] - edge_count].add_triangle(area_vector, area, moment);
+      const Triangle t{numbers_[triangle[0]], numbers_[triangle[1]], numbers_[triangle[2]]};
+      if (std::max({t[0], t[1], t[2]}) >= singles) {
+        const Vec3 &a = contour_.points[triangle[0]], &b = contour_.points[triangle[1]],
+                   &c = contour_.points[triangle[2]];
+        const Vec3 area_vector = 0.5 * cross(b - a, c - a);
+        const double area = norm(area_vector), moment = dot(area_vector, a);
+        for (std::size_t n = 0; n < 3; ++n) {
+          const bool is_first = n == 0 || (t[n] != t[0] && (n == 1 || t[n] != t[1]));
+          if (is_first && t[n] >= singles) means[t[n] - singles].add_triangle(area_vector, area, moment);
+        }
       }
+      // Whether it stays is as good as random, so that a branch would be guessed wrong.
+      contour_.triangles[kept] = t;
+      kept += has_area(t) ? 1 : 0;
     }
-    for (const JoinedPoint& mean : means) {
-      result.points.push_back(mean.position());
-      result.vertex_points.push_back(mean.vertex_point());
-    }
-    for (const Triangle& triangle : contour_.triangles) {
-      const Triangle t = joined(triangle);
-      if (has_area(t)) result.triangles.push_back({numbers[t[0]], numbers[t[1]], numbers[t[2]]});
-    }
-    contour_ = std::move(result);
+    contour_.triangles.resize(kept);
   }
 
   Contour& contour_;
   std::uint32_t count_;
-  std::vector<std::uint32_t> vertices_;
+  std::vector<LatticePoint> vertices_;
   std::vector<std::uint32_t> patch_;
-  std::vector<bool> is_joined_;       ///< whether a patch has several points, by its number
-  std::vector<std::uint32_t> apart_;  ///< patches that are to be taken apart
+  std::vector<std::uint32_t> numbers_;  ///< of points in the end
+  std::vector<bool> is_joined_;         ///< whether a patch has several points, by its number
+  std::vector<std::uint32_t> apart_;    ///< patches that are to be taken apart
   CoincidingPatches coinciding_;
-  std::vector<bool> is_suspect_;  ///< patches with which something may coincide
+  std::vector<bool> is_separated_;  ///< points of what was taken apart last
+  bool any_separated_ = false;
+  std::vector<std::uint32_t> across_;  ///< triangles whose corners are near three vertices
 };
 
 }  // namespace

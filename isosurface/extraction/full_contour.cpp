@@ -22,8 +22,12 @@ bool in_file_order(LatticePoint a, LatticePoint b) {
 
 template <class Sample>
 FullContour<Sample>::FullContour(StoredDiamonds<Sample>& diamonds, double isovalue, double least_parameter,
-                                 const SplitLimits& limits)
-    : diamonds_(diamonds), isovalue_(isovalue), least_parameter_(least_parameter), limits_(limits) {
+                                 const SplitLimits& limits, std::size_t most_threads)
+    : diamonds_(diamonds),
+      isovalue_(isovalue),
+      least_parameter_(least_parameter),
+      limits_(limits),
+      most_threads_(most_threads) {
   find_blocks(diamonds_.grid().top(), {0, 0, 0});
   std::sort(blocks_.begin(), blocks_.end(), in_file_order);
   find_slabs();
@@ -78,7 +82,7 @@ void FullContour<Sample>::make_workers() {
   constexpr std::size_t kLeastSlabs = 3;
   constexpr double kPartOfFirst = 0.9;
   const std::size_t slabs = slabs_.size() - 1;
-  const std::size_t threads = std::clamp<std::size_t>(slabs / kLeastSlabs, 1, thread_limit());
+  const std::size_t threads = std::clamp<std::size_t>(slabs / kLeastSlabs, 1, most_threads_);
   const double pages =
       static_cast<double>(blocks_.size()) / (static_cast<double>(threads) - 1 + kPartOfFirst);
   std::size_t first = 0;

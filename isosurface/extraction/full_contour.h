@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adamas/progress.h"
+#include "core/base/parallel.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/joined_surface.h"
 #include "isosurface/extraction/page_cells.h"
@@ -21,9 +22,9 @@ template <class Sample>
 class FullContour {
  public:
   /// Of a contour that is set in the diamonds, which must outlive this. `limits`: only what the region
-  /// reaches is wanted.
+  /// reaches is wanted. `most_threads`: how many may work on it.
   FullContour(StoredDiamonds<Sample>& diamonds, double isovalue, double least_parameter,
-              const SplitLimits& limits);
+              const SplitLimits& limits, std::size_t most_threads = thread_limit());
 
   /// Whether most pages that the contour crosses have errors there, so that a mesh that is refined where
   /// there are some would have hardly fewer triangles. Throws PageLost.
@@ -75,6 +76,7 @@ class FullContour {
   StoredDiamonds<Sample>& diamonds_;
   double isovalue_, least_parameter_;
   const SplitLimits& limits_;
+  std::size_t most_threads_;
   std::vector<LatticePoint> blocks_;  ///< pages of the finest LOD that the contour crosses, i running fastest
   std::vector<std::size_t> slabs_;
   std::vector<std::unique_ptr<Worker>> workers_;  ///< by thread

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/large_pages.h"
+#include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 
 namespace adamas {
@@ -31,6 +32,21 @@ void make_room(std::vector<T>& all, std::size_t more, double part) {
         all, std::max(size, static_cast<std::size_t>(kSpare * static_cast<double>(size) / part)));
 }
 
+/// Calls gather(n, found) for numbers from `begin` to `end` - 1, in threads, with a list for each part of
+/// them. Returns what the lists have, in order.
+template <class T, class Gather>
+std::vector<T> gather_in_threads(std::size_t begin, std::size_t end, const Gather& gather) {
+  constexpr std::size_t kPart = 1 << 15;
+  const std::size_t count = end - begin;
+  std::vector<std::vector<T>> parts((count + kPart - 1) / kPart);
+  parallel_chunks(count, kPart, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) gather(begin + n, parts[first / kPart]);
+  });
+  std::vector<T> all;
+  for (const std::vector<T>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 /// Adds the numbers of points next to some vertices to a map, by key.
 template <class Patches>
 void add_numbers_near(const LatticeMap<bool>& vertices, std::int32_t sample,
@@ -45,16 +61,22 @@ void add_numbers_near(const LatticeMap<bool>& vertices, std::int32_t sample,
   std::vector<bool> may_have(std::size_t{1} << kBits);
   vertices.for_each([&](LatticePoint p, bool) { may_have[place(p)] = true; });
   const auto is_near = [&](LatticePoint p) { return may_have[place(p)] && vertices.find(p) != nullptr; };
-  for (std::uint32_t n = 0; n < edge_points.size(); ++n) {
-    const EdgePoint& p = edge_points[n];
-    if (is_near(in_samples(p.nearer_end())))
-      *numbers.insert(in_samples(p.first) + in_samples(p.second)).first = n;
-  }
-  for (std::uint32_t n = 0; n < patches.size(); ++n) {
-    const PointsOfVertex& of = patches[n].of;
-    if (of.points != 0 && is_near(of.vertex))
-      *numbers.insert(point_key(of.vertex, std::countr_zero(of.points))).first = kFirstPatch + n;
-  }
+  using Found = std::pair<LatticePoint, std::uint32_t>;
+  const auto edges_found =
+      gather_in_threads<Found>(0, edge_points.size(), [&](std::size_t n, std::vector<Found>& found) {
+        const EdgePoint& p = edge_points[n];
+        if (is_near(in_samples(p.nearer_end())))
+          found.emplace_back(in_samples(p.first) + in_samples(p.second), static_cast<std::uint32_t>(n));
+      });
+  const auto patches_found =
+      gather_in_threads<Found>(0, patches.size(), [&](std::size_t n, std::vector<Found>& found) {
+        const PointsOfVertex& of = patches[n].of;
+        if (of.points != 0 && is_near(of.vertex))
+          found.emplace_back(point_key(of.vertex, std::countr_zero(of.points)),
+                             kFirstPatch + static_cast<std::uint32_t>(n));
+      });
+  for (const auto& [key, number] : edges_found) *numbers.insert(key).first = number;
+  for (const auto& [key, number] : patches_found) *numbers.insert(key).first = number;
 }
 
 }  // namespace
@@ -190,14 +212,14 @@ void JoinedSurface::find_coinciding(CoincidingPatches& coincidences,
   for (const std::uint32_t n : numbers) suspects.push_back({place(n), n >= kFirstPatch});
   std::vector<bool> is_suspect(edge_count() + patches_.size());
   for (const CoincidingPatches::Suspect& s : suspects) is_suspect[s.patch] = true;
-  std::vector<Triangle> with_suspects;
-  for (std::size_t n = first_triangle; n < triangles_.size(); ++n) {
-    const auto& [a, b, c] = triangles_[n];
-    const Triangle t{place(a), place(b), place(c)};
-    if ((is_suspect[t[0]] || is_suspect[t[1]] || is_suspect[t[2]]) && !is_apart(a) && !is_apart(b) &&
-        !is_apart(c))
-      with_suspects.push_back(t);
-  }
+  const auto with_suspects = gather_in_threads<Triangle>(
+      first_triangle, triangles_.size(), [&](std::size_t n, std::vector<Triangle>& gathered) {
+        const auto& [a, b, c] = triangles_[n];
+        const Triangle t{place(a), place(b), place(c)};
+        if ((is_suspect[t[0]] || is_suspect[t[1]] || is_suspect[t[2]]) && !is_apart(a) && !is_apart(b) &&
+            !is_apart(c))
+          gathered.push_back(t);
+      });
   const std::vector<std::uint32_t> found =
       coincidences.find(is_suspect.size(), suspects, [&](const auto& visit) {
         for (const Triangle& t : with_suspects) visit(t);

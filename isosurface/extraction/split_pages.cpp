@@ -5,8 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "isosurface/contour/contour.h"
-#include "isosurface/volume/z_order.h"
 
 namespace adamas {
 
@@ -212,31 +212,58 @@ std::vector<LatticePoint> SplitPages<Sample>::blocks_of(const Lod& lod) {
 }
 
 template <class Sample>
-bool SplitPages<Sample>::look_into(int lod, LatticePoint block, const SurfaceCut& cut, const Lod& before) {
-  Lod& of = lods_[static_cast<std::size_t>(lod)];
-  *of.indices.insert(block).first = static_cast<std::uint32_t>(of.pages.size());
-  const int generation = 3 * (lods() - 1 - lod);
-  PageOfLod page{.block = block, .cut = {cut, lod, generation, ZOrder::interleave(block)}};
-  // No diamond that is left has a greater class than this, and mostly one has just this class: then others
-  // need not be looked at.
-  const int greatest_possible = cut.generation < generation + 3 ? cut.error_class : cut.error_class - 1;
-  const bool look_at_left = greatest_left_ < greatest_possible;
-  const std::uint32_t* index = before.indices.find(block);
-  const PageOfLod* last = index == nullptr ? nullptr : &before.pages[*index];
-  const bool is_as_before =
-      last != nullptr && last->cut == page.cut && (last->greatest_left != kUnknown || !look_at_left);
-  if (is_as_before) {
-    page = *last;
-  } else {
-    const PageMask split = split_of(lod, look_at_left, page);
-    if (split.any()) {
-      PageMask* const kept = masks_.add();
-      *kept = split;
-      page.split = kept;
-    }
+void SplitPages<Sample>::find(const SurfaceCut& cut, std::span<SplitPages* const> of_threads,
+                              Progress& progress) {
+  greatest_left_ = 0;
+  for (int lod = lods() - 1; lod >= 0; --lod) {
+    progress.step("reading", 1 - (lod + 1.0) / lods());
+    lods_[static_cast<std::size_t>(lod)] = {};
+    const std::vector<LatticePoint> blocks = candidates(lod);
+    std::vector<PageOfLod> pages(blocks.size());
+    std::vector<PageMask> split(blocks.size());
+    // Each thread has about the same part of the volume at all LODs, as finer pages are predicted from
+    // coarser ones.
+    constexpr std::size_t kLeastPages = 16;
+    const std::size_t threads = std::clamp<std::size_t>(blocks.size() / kLeastPages, 1, of_threads.size());
+    for (std::size_t t = 1; t < threads; ++t) of_threads[t]->greatest_left_ = greatest_left_;
+    parallel_for(threads, 1, [&](std::size_t t) {
+      SplitPages& finder = *of_threads[t];
+      for (std::size_t n = blocks.size() * t / threads; n < blocks.size() * (t + 1) / threads; ++n) {
+        pages[n] = unknown_page(lod, blocks[n], cut);
+        split[n] = finder.split_of(lod, finder.look_at_left(lod, cut), pages[n]);
+        finder.greatest_left_ = std::max(finder.greatest_left_, pages[n].greatest_left);
+      }
+    });
+    for (std::size_t n = 0; n < blocks.size(); ++n) add(lod, pages[n], split[n]);
+  }
+}
+
+template <class Sample>
+void SplitPages<Sample>::add(int lod, PageOfLod page, const PageMask& split) {
+  if (split.any()) {
+    PageMask* const kept = masks_.add();
+    *kept = split;
+    page.split = kept;
   }
   greatest_left_ = std::max(greatest_left_, page.greatest_left);
+  Lod& of = lods_[static_cast<std::size_t>(lod)];
+  *of.indices.insert(page.block).first = static_cast<std::uint32_t>(of.pages.size());
   of.pages.push_back(page);
+}
+
+template <class Sample>
+bool SplitPages<Sample>::look_into(int lod, LatticePoint block, const SurfaceCut& cut, const Lod& before) {
+  PageOfLod page = unknown_page(lod, block, cut);
+  const std::uint32_t* index = before.indices.find(block);
+  const PageOfLod* last = index == nullptr ? nullptr : &before.pages[*index];
+  const bool is_as_before = last != nullptr && last->cut == page.cut &&
+                            (last->greatest_left != kUnknown || !look_at_left(lod, cut));
+  if (is_as_before) {
+    add(lod, *last, {});
+  } else {
+    const PageMask split = split_of(lod, look_at_left(lod, cut), page);
+    add(lod, page, split);
+  }
   return is_as_before;
 }
 

@@ -6,15 +6,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "adamas/progress.h"
 #include "core/base/stable_vector.h"
 #include "core/lattice/lattice_map.h"
 #include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/extraction/surface_cut.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas {
 
@@ -98,6 +101,9 @@ class SplitPages {
       }
     }
   }
+  /// The same for a single cut, without visits, on a thread for each of these, the first of which is this
+  /// one. All have the same contour, the same limits and the same store, but pages of their own.
+  void find(const SurfaceCut& cut, std::span<SplitPages* const> of_threads, Progress& progress);
   /// Forgets what was found. To be called when the contour or the limits have changed. `several_cuts`:
   /// whether find() will be called more than once.
   void forget(bool several_cuts) {
@@ -195,8 +201,22 @@ class SplitPages {
   void find_finest_codes(const PageId& page);
   /// Gathers the codes of an LOD that is coarser than the coarsest page's own, so that they lie side by side.
   void gather_codes(int lod);
+  /// A page of which it is not known yet what is split.
+  [[nodiscard]] PageOfLod unknown_page(int lod, LatticePoint block, const SurfaceCut& cut) const {
+    return {.block = block, .cut = {cut, lod, generation(lod), ZOrder::interleave(block)}};
+  }
+  /// Adds a page to its LOD; with the diamonds that are split, where they are not kept already.
+  void add(int lod, PageOfLod page, const PageMask& split);
   /// Adds a page to its LOD. Returns whether the same is split on it as before.
   bool look_into(int lod, LatticePoint block, const SurfaceCut& cut, const Lod& before);
+  /// The generation of an LOD's diamonds of phase 0.
+  [[nodiscard]] int generation(int lod) const { return 3 * (lods() - 1 - lod); }
+  /// Whether diamonds of an LOD that are left have to be looked at for the greatest class.
+  [[nodiscard]] bool look_at_left(int lod, const SurfaceCut& cut) const {
+    // No diamond that is left has a greater class than this, and mostly one has just this class: then others
+    // need not be looked at.
+    return greatest_left_ < (cut.generation < generation(lod) + 3 ? cut.error_class : cut.error_class - 1);
+  }
   /// The diamonds of a page that its cut splits. Sets the greatest class that is left where that is wanted or
   /// known without looking.
   PageMask split_of(int lod, bool look_at_left, PageOfLod& page);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/contour/decimate.h"
 #include "isosurface/extraction/full_contour.h"
+#include "isosurface/extraction/mesh_contour.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
 #include "isosurface/volume/samples.h"
@@ -32,13 +35,43 @@ ContourOptions SurfaceExtractor<Sample>::contour_options() const {
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Progress& progress) {
-  split_pages_.find(
-      cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / split_pages_.lods()); });
-  // Which diamonds are split is known now, so that bounds are no longer needed.
-  if (!request_.others_follow) pages_.drop_bounds();
+  find_split(cut, progress);
   ExtractedSurface surface = split_pages_.count() > 0 ? contour_of_mesh(progress) : contour_of_root();
   clip(surface.contour);
   return surface;
+}
+
+template <class Sample>
+void SurfaceExtractor<Sample>::find_split(const SurfaceCut& cut, Progress& progress) {
+  // A thread does not pay for a few pages. After other cuts most is known already.
+  constexpr std::int64_t kLeastPages = 24;
+  const LatticePoint blocks = diamonds_.grid().blocks(0);
+  const std::int64_t pages = std::int64_t{blocks.i} * blocks.j * blocks.k;
+  const std::int64_t most = request_.max_triangles ? 1 : static_cast<std::int64_t>(threads_);
+  make_helpers(static_cast<std::size_t>(std::clamp<std::int64_t>(pages / kLeastPages, 1, most)));
+  if (helpers_.empty()) {
+    split_pages_.find(
+        cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / split_pages_.lods()); });
+  } else {
+    std::vector<SplitPages<Sample>*> of_threads{&split_pages_};
+    for (const std::unique_ptr<Helper>& helper : helpers_) of_threads.push_back(&helper->split_pages);
+    split_pages_.find(cut, of_threads, progress);
+  }
+  if (request_.others_follow) return;
+  // Which diamonds are split is known now, so that bounds are no longer needed.
+  pages_.drop_bounds();
+  for (const std::unique_ptr<Helper>& helper : helpers_) helper->diamonds.pages().drop_bounds();
+}
+
+template <class Sample>
+void SurfaceExtractor<Sample>::make_helpers(std::size_t threads) {
+  helpers_.clear();
+  if (threads == 1) return;
+  const std::vector<StoredPages<OrderedWord<Sample>>*> of_threads = pages_.for_threads(threads);
+  for (std::size_t t = 1; t < threads; ++t) {
+    helpers_.push_back(std::make_unique<Helper>(*of_threads[t], limits_));
+    helpers_.back()->diamonds.set_contour(request_.isovalue);
+  }
 }
 
 template <class Sample>
@@ -50,7 +83,7 @@ void SurfaceExtractor<Sample>::clip(Contour& contour) const {
 
 template <class Sample>
 std::optional<ExtractedSurface> SurfaceExtractor<Sample>::full_contour(Progress& progress) {
-  FullContour<Sample> full(diamonds_, request_.isovalue, request_.least_parameter, limits_);
+  FullContour<Sample> full(diamonds_, request_.isovalue, request_.least_parameter, limits_, threads_);
   if (!full.is_worthwhile()) return {};
   std::optional<Contour> contour = full.run(progress);
   if (!contour) return {};
@@ -72,22 +105,17 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
-  ContourBuilder builder(domain(), request_.isovalue, contour_options());
-  // Surfaces have a little less than 1.5 triangles for each split diamond.
-  const std::uint64_t about = std::uint64_t{split_pages_.count()} * 3 / 2;
-  builder.expect(static_cast<std::size_t>(std::min(about, request_.max_triangles.value_or(about))));
-  PageContour<Sample> contour(diamonds_, split_pages_, limits_, builder);
-  split_pages_.for_each_page([&](int lod, const auto& page, double part) {
-    progress.step("extracting", part);
-    contour.add(lod, page);
-  });
+  std::vector<StoredDiamonds<Sample>*> of_threads{&diamonds_};
+  for (const std::unique_ptr<Helper>& helper : helpers_) of_threads.push_back(&helper->diamonds);
+  // Each thread may need pages now that others have decoded to find what is split.
+  pages_.for_threads(of_threads.size());
+  MeshContour<Sample> mesh(of_threads, split_pages_, limits_, request_);
   ExtractedSurface surface;
+  surface.contour = mesh.run(progress);
   surface.diamonds = split_pages_.count();
   surface.tetrahedra =
-      static_cast<std::uint64_t>(diamonds_.root().tetrahedron_count()) + contour.tetrahedra_added();
-  surface.max_error =
-      diamonds_.error(std::max(contour.greatest_class_at_lost(), split_pages_.greatest_left()));
-  surface.contour = builder.finish();
+      static_cast<std::uint64_t>(diamonds_.root().tetrahedron_count()) + mesh.tetrahedra_added();
+  surface.max_error = diamonds_.error(std::max(mesh.greatest_class_at_lost(), split_pages_.greatest_left()));
   return surface;
 }
 
@@ -152,6 +180,7 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
     };
     limits_.region = {in_samples(request.region->min), in_samples(request.region->max)};
   }
+  threads_ = thread_limit();
   std::vector<PageId> lost;
   for (;;) {
     split_pages_.forget(request.max_triangles.has_value());
@@ -160,6 +189,8 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
       surface.lost = lost;
       return surface;
     } catch (const PageLost& missing) {
+      // Which damaged page is met first must not depend on threads.
+      if (std::exchange(threads_, 1) > 1) continue;
       // Where it is not enough to do without the damaged page, the one that is predicted from it is lost too.
       const auto is_known = [&](const PageId& page) {
         return std::find(lost.begin(), lost.end(), page) != lost.end();

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
@@ -45,6 +47,10 @@ class SurfaceExtractor {
   ExtractedSurface decimated(int least_class, Progress& progress);
   ExtractedSurface contour_of(const SurfaceCut& cut, Progress& progress);
   ExtractedSurface contour_of_mesh(Progress& progress);
+  /// Gets ready what each of some threads has for itself.
+  void make_helpers(std::size_t threads);
+  /// Finds the diamonds that a cut splits.
+  void find_split(const SurfaceCut& cut, Progress& progress);
   /// The surface of the mesh in which everything is split; nothing where that is not the way to it.
   std::optional<ExtractedSurface> full_contour(Progress& progress);
   /// Cuts off what is outside the region and beyond the sides.
@@ -53,11 +59,22 @@ class SurfaceExtractor {
   ExtractedSurface contour_of_root();
   [[nodiscard]] ContourOptions contour_options() const;
 
+  /// What a thread besides the first one needs.
+  struct Helper {
+    StoredDiamonds<Sample> diamonds;
+    SplitPages<Sample> split_pages;
+
+    Helper(StoredPages<OrderedWord<Sample>>& pages, const SplitLimits& limits)
+        : diamonds(pages), split_pages(diamonds, limits) {}
+  };
+
   StoredPages<OrderedWord<Sample>>& pages_;
   StoredDiamonds<Sample> diamonds_;
   SurfaceRequest request_;
   SplitLimits limits_;
   SplitPages<Sample> split_pages_;
+  std::vector<std::unique_ptr<Helper>> helpers_;
+  std::size_t threads_ = 1;  ///< that may work on a surface
 };
 
 extern template class SurfaceExtractor<std::uint8_t>;

@@ -159,6 +159,28 @@ bool PageCache<Word>::copy(const PageId& id, Page<Word>& page) {
 }
 
 template <class Word>
+std::vector<typename PageCache<Word>::HeldPage> PageCache<Word>::held_pages() const {
+  std::vector<HeldPage> found;
+  for (const Slot& slot : slots_) {
+    if (slot.samples != nullptr) found.push_back({slot.id, slot.samples});
+  }
+  return found;
+}
+
+template <class Word>
+void PageCache<Word>::copy_samples(std::span<const HeldPage> pages) {
+  for (const HeldPage& page : pages) {
+    if (slot_of(page.id) != kNone) continue;
+    if (!has_room_in(samples_)) return;
+    PageSamples<Word>* const samples = room_in(samples_);
+    *samples = *page.samples;
+    const std::uint32_t fresh = free_slot();
+    slot_of(page.id) = fresh;
+    slots_[fresh] = {page.id, samples, nullptr, false, true};
+  }
+}
+
+template <class Word>
 void PageCache<Word>::drop_bounds(const PageId& id) {
   const std::uint32_t found = slot_of(id);
   if (found == kNone || slots_[found].bounds == nullptr) return;
@@ -226,11 +248,16 @@ void PageCache<Word>::fill_coarser(const PageToLoad<Word>& page) {
 
 template <class Word>
 template <class Part>
-Part* PageCache<Word>::room_in(Pool<Part>& pool) {
+bool PageCache<Word>::has_room_in(const Pool<Part>& pool) const {
   const std::size_t taken =
       samples_.all.size() * sizeof(PageSamples<Word>) + bounds_.all.size() * sizeof(PageBounds<Word>);
-  if (pool.free.empty() && (taken + sizeof(Part) <= memory_ || pool.all.size() < kLeast))
-    return pool.all.add();
+  return !pool.free.empty() || taken + sizeof(Part) <= memory_ || pool.all.size() < kLeast;
+}
+
+template <class Word>
+template <class Part>
+Part* PageCache<Word>::room_in(Pool<Part>& pool) {
+  if (pool.free.empty() && has_room_in(pool)) return pool.all.add();
   while (pool.free.empty()) evict();
   Part* const part = pool.free.back();
   pool.free.pop_back();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/stable_vector.h"
@@ -58,6 +59,15 @@ class PageCache {
     slots_[found].used = true;
     return slots_[found].samples;
   }
+  /// A page whose samples are in memory.
+  struct HeldPage {
+    PageId id;
+    const PageSamples<Word>* samples;
+  };
+  /// Valid until the next page is asked for that is not in memory.
+  [[nodiscard]] std::vector<HeldPage> held_pages() const;
+  /// Copies pages of another cache of the same volume that are not in memory here, as far as there is room.
+  void copy_samples(std::span<const HeldPage> pages);
   /// Copies all of a page. Returns false where it cannot be had.
   bool copy(const PageId& id, Page<Word>& page);
   /// Frees the memory of the page's bounds, which will hardly be asked for again.
@@ -107,6 +117,9 @@ class PageCache {
   const Slot* fetch(const PageId& id, PageParts parts, bool wanted);
   /// Copies the points of coarser LODs into the missing parts of a page.
   static void fill_coarser(const PageToLoad<Word>& page);
+  /// Whether there is memory for which no page has to leave.
+  template <class Part>
+  [[nodiscard]] bool has_room_in(const Pool<Part>& pool) const;
   /// Memory from a pool, for which pages leave if need be.
   template <class Part>
   Part* room_in(Pool<Part>& pool);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "isosurface/gradients/direction_code.h"
 
 namespace adamas {
@@ -77,6 +78,14 @@ std::vector<StoredPages<Word>*> StoredPages<Word>::for_threads(std::size_t count
   for (const OfThread& other : others_) result.push_back(other.pages.get());
   for (StoredPages* pages : result) pages->set_memory(memory_ / result.size());
   result.resize(std::max<std::size_t>(1, count));
+  if (count <= 1) return result;
+  std::vector<std::vector<typename PageCache<Word>::HeldPage>> held;
+  for (const StoredPages* pages : result) held.push_back(pages->held_pages());
+  parallel_for(result.size(), 1, [&](std::size_t to) {
+    for (std::size_t from = 0; from < result.size(); ++from) {
+      if (from != to) result[to]->copy_samples(held[from]);
+    }
+  });
   return result;
 }
 

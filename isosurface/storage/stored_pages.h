@@ -42,7 +42,8 @@ class StoredPages : public PageCache<Word> {
 
   [[nodiscard]] StoreFile& file() { return file_; }
   /// The same step of the same file for each of some threads, the first of which has these pages: they share
-  /// the memory, and the others stay for later calls. Not to be called by several threads at once.
+  /// the memory, and the others stay for later calls. Samples that one of them has decoded the others have
+  /// too, as far as there is room. Not to be called by several threads at once.
   std::vector<StoredPages*> for_threads(std::size_t count);
   [[nodiscard]] std::uint32_t step() const { return step_; }
 

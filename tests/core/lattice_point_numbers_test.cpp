@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <random>
 
@@ -36,6 +37,32 @@ TEST(PointNumbers, AreThoseOfAMap) {
   try_one({0, 0, 0});
   try_one({64 << kRootBits, 64 << kRootBits, 64 << kRootBits});
   EXPECT_GT(expected.size(), 10000u);
+}
+
+/// Points of both tables, and no others.
+TEST(PointNumbers, InTwoTables) {
+  std::mt19937 random(5);
+  std::array<PointNumbers, 2> tables;
+  std::array<std::map<LatticePoint, std::uint32_t>, 2> expected;
+  for (int turn = 0; turn < 4000; ++turn) {
+    const std::size_t which = random() % 2;
+    const auto level = static_cast<int>(random() % 3);
+    const auto coordinate = [&] { return static_cast<std::int32_t>(random() % 20) << level; };
+    const LatticePoint p{coordinate(), coordinate(), coordinate()};
+    const auto number = static_cast<std::uint32_t>(expected[which].size());
+    if (expected[which].try_emplace(p, number).second) *tables[which].insert(p).first = number;
+  }
+  std::map<std::uint32_t, std::uint32_t> common, wanted;
+  tables[0].for_each_common(tables[1], [&](std::uint32_t here, std::uint32_t there) {
+    EXPECT_TRUE(common.emplace(here, there).second);
+  });
+  for (const auto& [p, number] : expected[0]) {
+    const auto found = expected[1].find(p);
+    if (found != expected[1].end()) wanted.emplace(number, found->second);
+  }
+  EXPECT_EQ(common, wanted);
+  EXPECT_GT(common.size(), 100u);
+  EXPECT_LT(common.size(), expected[0].size());
 }
 
 }  // namespace

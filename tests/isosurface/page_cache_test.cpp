@@ -159,6 +159,31 @@ TEST_P(PageCacheOf, PartsThatLeftComeBack) {
   }
 }
 
+/// Copies are as good as pages that were loaded, and push none of them out.
+TEST_P(PageCacheOf, SamplesComeFromAnotherCache) {
+  const PageGrid grid(GetParam());
+  const std::vector<PageId> pages = pages_in_random_order(grid);
+  for (const std::size_t memory : {std::size_t{0}, std::size_t{1} << 40}) {
+    FilledPages from(grid, std::size_t{1} << 40), to(grid, memory);
+    for (std::size_t n = 0; n < pages.size(); n += 2) from.samples(pages[n]);
+    for (std::size_t n = 0; n < pages.size(); n += 3) to.samples(pages[n]);
+    const std::uint64_t loaded = to.loaded();
+    const std::size_t before = to.held_pages().size();
+    const auto others = from.held_pages();
+    to.copy_samples(others);
+    EXPECT_EQ(to.loaded(), loaded);
+    EXPECT_GE(to.held_pages().size(), before);
+    for (const auto& page : others) {
+      const PageSamples<Word>* const found = memory > 0 ? to.samples(page.id) : to.held(page.id);
+      if (found != nullptr) check_samples(grid, page.id, found->samples);
+    }
+    EXPECT_EQ(to.loaded(), loaded);
+    EXPECT_LE(to.loaded_as_predictors(), to.loaded());
+    for (const PageId& id : pages) check(grid, id, to);
+    EXPECT_LE(to.loaded_as_predictors(), to.loaded());
+  }
+}
+
 TEST_P(PageCacheOf, SurroundingsAreThePointsOfTheNextLod) {
   const PageGrid grid(GetParam());
   FilledPages cache(grid, std::size_t{1} << 24);

@@ -1,0 +1,73 @@
+#include "isosurface/extraction/mesh_contour.h"
+
+#include <algorithm>
+
+#include "core/base/parallel.h"
+
+namespace adamas {
+
+template <class Sample>
+MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> of_threads,
+                                 const SplitPages<Sample>& pages, const SplitLimits& limits,
+                                 const SurfaceRequest& request) {
+  pages.for_each_page([&](int lod, const auto& page, double) { pages_.push_back({lod, &page}); });
+  StoredDiamonds<Sample>& first = *of_threads.front();
+  const ContourOptions options = request.contour_options(first.last_sample(), first.spacing());
+  // Surfaces have a little less than 1.5 triangles for each split diamond.
+  const std::uint64_t about = std::uint64_t{pages.count()} * 3 / 2;
+  const std::uint64_t wanted = std::min(about, request.max_triangles.value_or(about));
+  for (StoredDiamonds<Sample>* diamonds : of_threads) {
+    ContourBuilder& builder =
+        *builders_.emplace_back(std::make_unique<ContourBuilder>(first.domain(), request.isovalue, options));
+    // The first one gets what the others have, too.
+    builder.expect(static_cast<std::size_t>(builders_.size() == 1 ? wanted : wanted / of_threads.size()));
+    contours_.push_back(std::make_unique<PageContour<Sample>>(*diamonds, pages, limits, builder));
+  }
+  find_runs();
+}
+
+template <class Sample>
+void MeshContour<Sample>::find_runs() {
+  std::vector<std::size_t> ends;  // by page: how many split diamonds there are up to its last one
+  std::size_t sum = 0;
+  for (const Placed& placed : pages_) ends.push_back(sum += placed.page->split->count());
+  for (std::size_t t = 0; t <= builders_.size(); ++t) {
+    const auto begin = std::lower_bound(ends.begin(), ends.end(), sum * t / builders_.size());
+    runs_.push_back(static_cast<std::size_t>(begin - ends.begin()));
+  }
+  runs_.front() = 0;
+  runs_.back() = pages_.size();
+}
+
+template <class Sample>
+Contour MeshContour<Sample>::run(Progress& progress) {
+  parallel_for(builders_.size(), 1, [&](std::size_t t) {
+    for (std::size_t n = runs_[t]; n < runs_[t + 1]; ++n) {
+      if (t == 0) progress.step("extracting", static_cast<double>(n) / static_cast<double>(runs_[1]));
+      contours_[t]->add(pages_[n].lod, *pages_[n].page);
+    }
+  });
+  builders_.front()->append(std::span(builders_).subspan(1));
+  return builders_.front()->finish();
+}
+
+template <class Sample>
+std::uint64_t MeshContour<Sample>::tetrahedra_added() const {
+  std::uint64_t sum = 0;
+  for (const auto& contour : contours_) sum += contour->tetrahedra_added();
+  return sum;
+}
+
+template <class Sample>
+int MeshContour<Sample>::greatest_class_at_lost() const {
+  int greatest = 0;
+  for (const auto& contour : contours_) greatest = std::max(greatest, contour->greatest_class_at_lost());
+  return greatest;
+}
+
+template class MeshContour<std::uint8_t>;
+template class MeshContour<std::uint16_t>;
+template class MeshContour<std::int16_t>;
+template class MeshContour<float>;
+
+}  // namespace adamas
