@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
+#include "core/base/simd.h"
 #include "isosurface/compression/interpolation_prediction.h"
+#include "isosurface/compression/parity_cells.h"
 #include "isosurface/compression/residual_tokens.h"
 #include "isosurface/volume/page.h"
 
@@ -41,6 +44,33 @@ class InterpolationPage {
 
   void predict(int set) { InterpolationPrediction<Depth>::predict(set, (count_.k + 1) / 2, cells_); }
 
+  /// Adds to the activity round each point of the set, in the bits above it, the class of its prediction by
+  /// the distance from the volume's prevailing sample. Bytes: see with_wide_lanes.
+  template <std::size_t Bytes>
+  void add_prevailing_classes(int set, Word prevailing) {
+    using Lanes = Simd<Value, Bytes>;
+    // The cells of the page's own points, and what lies between.
+    constexpr std::size_t kBegin = kFirstCell;
+    const std::size_t end = static_cast<std::size_t>((count_.k + 1) / 2 * Cells::kPlane + 97);
+    const Value centre = Depth::value(prevailing);
+    for (int n = 0; n < Cells::parities(set); ++n) {
+      const Value* const values = cells_.values[parity(set, n)].data();
+      Value* const activity = cells_.activity[static_cast<std::size_t>(n)].data();
+      std::size_t cell = kBegin;
+      for (; cell + Lanes::kCount <= end; cell += Lanes::kCount) {
+        const auto value = Lanes::load(values + cell), middle = typename Lanes::Numbers{} + centre;
+        const auto distance = Lanes::greater(value, middle) - Lanes::lesser(value, middle);
+        Lanes::store(Lanes::load(activity + cell) + ActivityContext<Depth>::class_of(distance),
+                     activity + cell);
+      }
+      for (; cell < end; ++cell) {
+        const auto distance =
+            static_cast<Value>(std::max(values[cell], centre) - std::min(values[cell], centre));
+        activity[cell] = static_cast<Value>(activity[cell] + ActivityContext<Depth>::class_of(distance));
+      }
+    }
+  }
+
   /// What `of` makes of the activity round each point.
   template <class Of>
   void contexts(int set, Of&& of, std::uint8_t* contexts) const {
@@ -67,6 +97,55 @@ class InterpolationPage {
       });
       folded += box(set, n).size();
     }
+  }
+
+  /// 1 for points whose sample is the prevailing one and was not predicted, 0 for others.
+  void find_prevailing(int set, const Samples& samples, Word prevailing, std::uint8_t* found) const {
+    for (int n = 0; n < Cells::parities(set); ++n) {
+      const Value* const values = cells_.values[parity(set, n)].data();
+      const Word* const first = samples.data() + sample(parity(set, n));
+      box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
+        const Word* const from = first + sample_row(cell);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
+          const bool is_other = Depth::word(values[cell + i]) != prevailing;
+          found[before + i] = from[2 * i] == prevailing && is_other ? 1 : 0;
+        }
+      });
+      found += box(set, n).size();
+    }
+  }
+
+  /// Makes the residuals of these points, which are 0, those that lead to the prevailing sample. False where
+  /// one of them was predicted.
+  [[nodiscard]] bool put_prevailing(int set, Word prevailing, const std::uint8_t* where, Word* folded) const {
+    using Eight [[gnu::vector_size(8)]] = std::uint8_t;
+    using SignedEight [[gnu::vector_size(8)]] = std::int8_t;
+    using Values [[gnu::vector_size(8 * sizeof(Value))]] = Value;
+    RowBytes predicted = 0;
+    for (int n = 0; n < Cells::parities(set); ++n) {
+      const Value* const values = cells_.values[parity(set, n)].data();
+      box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
+        std::array<std::uint8_t, 8> at{}, found{};
+        const auto size = static_cast<std::size_t>(row);
+        std::copy_n(where + before, size, at.begin());
+        const RowBytes here = load_row(at.data()) * 255;
+        if (here == 0) return;
+        std::copy_n(folded + before, size, found.begin());
+        Values predictions;
+        std::memcpy(&predictions, values + cell, sizeof predictions);
+        const Eight residuals = Eight{} + static_cast<std::uint8_t>(prevailing - Depth::kCentre) -
+                                __builtin_convertvector(predictions, Eight);
+        const auto signs = std::bit_cast<Eight>(std::bit_cast<SignedEight>(residuals) < SignedEight{});
+        const auto all = std::bit_cast<std::array<std::uint8_t, 8>>((residuals + residuals) ^ signs);
+        const RowBytes those = load_row(all.data());
+        predicted |= here & ~bytes_not_zero(those);
+        store_row((load_row(found.data()) & ~here) | (those & here), found.data());
+        std::copy_n(found.begin(), size, folded + before);
+      });
+      where += box(set, n).size();
+      folded += box(set, n).size();
+    }
+    return predicted == 0;
   }
 
   /// Makes predictions the samples.

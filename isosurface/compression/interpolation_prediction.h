@@ -221,6 +221,30 @@ struct ActivityContext {
   /// Activities are below 2^(bits + 4).
   static constexpr int kBits = Depth::kBits + 4;
   static constexpr int kContexts = 1 + (kHalves ? 2 : 1) * kBits;
+  /// Of samples of one byte predictions have classes too, where the volume has a prevailing sample: by how
+  /// many bits their distance from it has, up to kClasses - 1.
+  static constexpr int kClasses = Depth::kBits == 8 ? 6 : 1;
+  /// That of a distance, or those of several, in the bits above an activity.
+  template <class Distance>
+  [[gnu::always_inline]] static constexpr Distance class_of(Distance distance) {
+    const auto is_least = [&](int least) {
+      const auto from = static_cast<typename Depth::Value>(least);
+      if constexpr (std::is_integral_v<Distance>) {
+        return static_cast<Distance>(distance >= from ? 1 : 0);
+      } else {
+        return static_cast<Distance>((distance >= from) & 1);
+      }
+    };
+    static_assert(kClasses == 1 || kClasses == 6);
+    const auto number = is_least(1) + is_least(2) + is_least(4) + is_least(8) + is_least(16);
+    return static_cast<Distance>(number << kBits);
+  }
+  /// The context of such an activity.
+  static constexpr std::uint8_t of_both(typename Depth::Value both) {
+    const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(both);
+    const auto activity = static_cast<typename Depth::Value>(number & ((1u << kBits) - 1));
+    return static_cast<std::uint8_t>((number >> kBits) * kContexts + of(activity));
+  }
 
   /// Of 16-bit numbers the highest bit, too, belongs to the activity.
   static constexpr std::uint8_t of(typename Depth::Value activity) {

@@ -24,7 +24,7 @@ template <class Word>
 RangeRounding<Word> find_rounding(std::vector<Word> low, std::vector<Word> high) {
   RangeRounding<Word> rounding;
   if (low.empty() || high.empty()) return rounding;
-  constexpr std::size_t kLevels = 11;
+  constexpr std::size_t kLevels = 7;
   std::sort(low.begin(), low.end());
   std::sort(high.begin(), high.end());
   int bits = 0;

@@ -18,8 +18,8 @@ namespace adamas {
 /// with all bits inverted.
 template <class Word>
 struct RangeRounding {
-  /// With fewer levels than 16 ranges would tell little.
-  static constexpr int kMostBits = 8 * sizeof(Word) - 4;
+  /// With fewer levels than 8 ranges would tell little.
+  static constexpr int kMostBits = 8 * sizeof(Word) - 3;
   /// An end that is not known. Of words of four bytes no finite sample has this one, and it stays; shorter
   /// ones are rounded as any other.
   static constexpr Word kUnknown = static_cast<Word>(~Word{0});
@@ -55,7 +55,7 @@ struct RangeRounding {
   bool operator==(const RangeRounding&) const = default;
 };
 
-/// The coarsest rounding that leaves 11 levels or more for ends of ranges like these, in any order, the least
+/// The coarsest rounding that leaves 7 levels or more for ends of ranges like these, in any order, the least
 /// ends or the greatest ones. Levels of fewer than one end in a thousand do not count.
 template <class Word>
 RangeRounding<Word> find_rounding(std::vector<Word> low, std::vector<Word> high);

@@ -183,26 +183,28 @@ std::vector<std::byte> RankedCodec<Word, Rank>::tables() const {
 }
 
 template <class Word, class Rank>
-void RankedCodec<Word, Rank>::encode(const PageShape& shape, const Around& around, const Samples& samples,
-                                     std::vector<std::byte>& out) const {
+void RankedCodec<Word, Rank>::encode_with(const PageShape& shape, const Around& around,
+                                          const Samples& samples, std::vector<std::byte>& out,
+                                          std::span<const std::byte> along) const {
   RankedPage<Word, Rank> page;
   page.take(*ranks_, shape, samples);
   if (!page.has_all) return write_raw<Word>(shape, samples, out, PageKind::kUnranked);
   page.take_around(*ranks_, shape, around);
-  codec_->encode(shape, page.around, page.samples, out);
+  codec_->encode_with(shape, page.around, page.samples, out, along);
 }
 
 template <class Word, class Rank>
-bool RankedCodec<Word, Rank>::decode(std::span<const std::byte> bytes, const PageShape& shape,
-                                     const Around& around, Samples& samples) const {
+bool RankedCodec<Word, Rank>::decode_with(std::span<const std::byte> bytes, const PageShape& shape,
+                                          const Around& around, Samples& samples, BytesAlong& along) const {
   RankedPage<Word, Rank> page;
   if (!bytes.empty() && static_cast<PageKind>(bytes[0]) == PageKind::kUnranked) {
     if (!read_raw<Word>(bytes.subspan(1), shape, samples)) return false;
     page.take(*ranks_, shape, samples);
     if (page.has_all) return false;
+    along.fill({});
   } else {
     page.take_around(*ranks_, shape, around);
-    if (!codec_->decode(bytes, shape, page.around, page.samples)) return false;
+    if (!codec_->decode_with(bytes, shape, page.around, page.samples, along)) return false;
     if (!are_below(ranks_->values().size(), shape, page.samples)) return false;
     with_wide_lanes([&](auto) {
       const std::uint32_t* const words = words_.data();

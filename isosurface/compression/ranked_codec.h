@@ -80,10 +80,10 @@ class RankedCodec final : public SampleCodec<Word> {
   RankedCodec(std::shared_ptr<const SampleRanks> ranks, std::unique_ptr<SampleCodec<Rank>> codec);
 
   [[nodiscard]] std::vector<std::byte> tables() const override;
-  void encode(const PageShape& shape, const Around& around, const Samples& samples,
-              std::vector<std::byte>& out) const override;
-  [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape, const Around& around,
-                            Samples& samples) const override;
+  void encode_with(const PageShape& shape, const Around& around, const Samples& samples,
+                   std::vector<std::byte>& out, std::span<const std::byte> along) const override;
+  [[nodiscard]] bool decode_with(std::span<const std::byte> bytes, const PageShape& shape,
+                                 const Around& around, Samples& samples, BytesAlong& along) const override;
 
  private:
   std::shared_ptr<const SampleRanks> ranks_;

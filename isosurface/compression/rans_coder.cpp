@@ -197,9 +197,15 @@ void RansEncoder<kStates>::put(std::span<const std::uint8_t> tables, std::span<c
 }
 
 template <std::size_t kStates>
-void RansEncoder<kStates>::finish(std::vector<std::byte>& out) const {
+void RansEncoder<kStates>::finish(std::vector<std::byte>& out, std::span<const std::byte> along) const {
+  ADAMAS_ASSERT(along.size() <= kAlong);
   std::array<std::uint32_t, kStates> states;
   states.fill(RansTables::kLeast);
+  for (std::size_t bit = 0; bit < 8 * along.size(); ++bit) {
+    // The first of them is in the state that would take the next symbol.
+    std::uint32_t& state = states[(places_.size() + bit / kScaleBits) % kStates];
+    state |= (std::to_integer<std::uint32_t>(along[bit / 8]) >> bit % 8 & 1) << bit % kScaleBits;
+  }
   const auto words = std::make_unique_for_overwrite<std::uint16_t[]>(places_.size() + 1);
   std::uint16_t* end = words.get();
   const RansTables::Slots* const all_slots = tables_.slots();
@@ -278,6 +284,22 @@ template <std::size_t kStates>
 bool RansDecoder<kStates>::at_end() const {
   return next_ == bits_.end() &&
          std::ranges::all_of(states_, [](std::uint32_t x) { return x == RansTables::kLeast; });
+}
+
+template <std::size_t kStates>
+bool RansDecoder<kStates>::take_along(std::span<std::byte, RansEncoder<kStates>::kAlong> along) const {
+  std::uint64_t bits = 0;
+  int count = 0;
+  std::size_t at = 0;
+  for (const std::uint32_t x : states_) {
+    if (x >> kScaleBits != 1) return false;
+    bits |= std::uint64_t{x ^ RansTables::kLeast} << count;
+    for (count += kScaleBits; count >= 8; count -= 8) {
+      along[at++] = static_cast<std::byte>(bits);
+      bits >>= 8;
+    }
+  }
+  return next_ == bits_.end();
 }
 
 template class RansEncoder<4>;

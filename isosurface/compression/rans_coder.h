@@ -61,7 +61,8 @@ class RansTables {
 /// Collects symbols and plain bits and codes them all at the end, since the last symbol has to be coded
 /// first.
 ///
-/// kStates states take symbols in turn, so that a processor works at several symbols at once. The bytes are:
+/// kStates states take symbols in turn, so that a processor works at several symbols at once. They begin at
+/// kLeast, or at values below 2 kLeast, whose lowest bits are bytes that are carried along. The bytes are:
 /// each state, as 4 bits with the position of its leading 1 above that of kLeast and the bits below this 1;
 /// the plain bits; zeros up to a whole byte; the words of 16 bits, low byte first, in the reverse of the
 /// order in which a decoder needs them.
@@ -76,8 +77,9 @@ class RansEncoder {
   void put(std::span<const std::uint8_t> tables, std::span<const std::uint8_t> symbols);
   /// Adds plain bits, fewer than 64.
   void put_bits(std::uint64_t bits, int count) { bits_.push_back({bits, count}); }
-  /// Appends the bytes to `out`.
-  void finish(std::vector<std::byte>& out) const;
+  /// Appends the bytes to `out`. `along`: at most kAlong bytes, which RansDecoder::take_along gives back.
+  void finish(std::vector<std::byte>& out, std::span<const std::byte> along = {}) const;
+  static constexpr std::size_t kAlong = kStates * ContextTables::kScaleBits / 8;
 
  private:
   struct Bits {
@@ -102,8 +104,10 @@ class RansDecoder {
   [[nodiscard]] bool take(std::span<const std::uint8_t> tables, std::uint8_t* symbols);
   /// The plain bits from the next one on.
   [[nodiscard]] BitCursor& bits() { return bits_; }
-  /// Whether all has been taken that was coded.
+  /// Whether all has been taken that was coded, and nothing was carried along.
   [[nodiscard]] bool at_end() const;
+  /// Gives what was carried along, with zeros behind it. Returns false where not all has been taken.
+  [[nodiscard]] bool take_along(std::span<std::byte, RansEncoder<kStates>::kAlong> along) const;
 
  private:
   /// How many bytes before the words must be readable: as many as a symbol of each state takes.

@@ -14,15 +14,17 @@
 namespace adamas {
 
 template <class Word>
-void ResidualWriter<Word>::put(std::span<const std::uint8_t> tables, const Word* folded) {
+void ResidualWriter<Word>::put(std::span<const std::uint8_t> tables, const Word* folded,
+                               const std::uint8_t* prevailing) {
   using Token = ResidualToken<Word>;
   ADAMAS_ASSERT(tables.size() <= PageGrid::kPoints);
   std::array<std::uint8_t, PageGrid::kPoints> tokens;
+  const auto is_prevailing = [&](std::size_t n) { return prevailing != nullptr && prevailing[n] != 0; };
   for (std::size_t n = 0; n < tables.size(); ++n)
-    tokens[n] = static_cast<std::uint8_t>(Token::token(folded[n]));
+    tokens[n] = static_cast<std::uint8_t>(is_prevailing(n) ? Token::kPrevailing : Token::token(folded[n]));
   encoder_.put(tables, std::span(tokens).first(tables.size()));
   for (std::size_t n = 0; n < tables.size(); ++n) {
-    if (tokens[n] < Token::kDirect) continue;
+    if (tokens[n] < Token::kDirect || is_prevailing(n)) continue;
     const int open = Token::extra_bits(tokens[n]);
     encoder_.put_bits(folded[n] & ((std::uint64_t{1} << open) - 1), open);
   }
@@ -32,6 +34,7 @@ template <class Word>
 bool ResidualReader<Word>::take(std::span<const std::uint8_t> tables, Word* folded) {
   if constexpr (sizeof(Word) == 1) {
     if (!decoder_.take(tables, folded)) return false;
+    take_out_prevailing(folded, tables.size());
     join(folded, tables.size(), folded);
   } else {
     ADAMAS_ASSERT(tables.size() <= PageGrid::kPoints);
@@ -40,6 +43,30 @@ bool ResidualReader<Word>::take(std::span<const std::uint8_t> tables, Word* fold
     join(tokens.data(), tables.size(), folded);
   }
   return true;
+}
+
+template <class Word>
+void ResidualReader<Word>::take_out_prevailing(Word* tokens, std::size_t count) {
+  if constexpr (Token::kHasPrevailing) {
+    constexpr int kShift = std::countr_zero(unsigned{Token::kPrevailing});
+    constexpr RowBytes kOthers = kEachByte * (Token::kPrevailing - 1);
+    RowBytes any = 0;
+    std::size_t n = 0;
+    for (; n + 8 <= count; n += 8) any |= load_row(tokens + n);
+    for (; n < count; ++n) any |= tokens[n];
+    any_prevailing_ = (any & ~kOthers) != 0;
+    if (!any_prevailing_) return;
+    for (n = 0; n + 8 <= count; n += 8) {
+      const RowBytes row = load_row(tokens + n);
+      store_row(row >> kShift & kEachByte, prevailing_.data() + n);
+      store_row(row & kOthers, tokens + n);
+    }
+    for (; n < count; ++n) {
+      prevailing_[n] = static_cast<std::uint8_t>(tokens[n] >> kShift);
+      tokens[n] &= static_cast<Word>(Token::kPrevailing - 1);
+    }
+    any_ = any_ || any_prevailing_;
+  }
 }
 
 template <class Word>

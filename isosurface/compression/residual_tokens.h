@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +8,7 @@
 #include <vector>
 
 #include "isosurface/compression/rans_coder.h"
-#include "isosurface/volume/page_grid.h"
+#include "isosurface/volume/page.h"
 
 namespace adamas {
 
@@ -20,6 +21,10 @@ struct ResidualToken {
   static constexpr int kBits = 8 * static_cast<int>(sizeof(Word));
   static constexpr int kDirect = 16;
   static constexpr int kTokens = kDirect + 4 * (kBits - 4);
+  /// Of single bytes there is one token more: the sample is the volume's prevailing one. It has a bit that no
+  /// other token has.
+  static constexpr int kPrevailing = kTokens;
+  static constexpr bool kHasPrevailing = kBits == 8 && std::has_single_bit(unsigned{kPrevailing});
 
   static constexpr Word fold(Word residual) {
     const auto sign = static_cast<Word>(0 - (residual >> (kBits - 1)));
@@ -52,9 +57,12 @@ class ResidualWriter {
   ResidualWriter(const RansTables& tables, std::size_t count) : encoder_(tables, count) {}
 
   /// Adds what one call of ResidualReader::take will give: at most PageGrid::kPoints residuals, and the table
-  /// of the token of each.
-  void put(std::span<const std::uint8_t> tables, const Word* folded);
-  void finish(std::vector<std::byte>& out) const { encoder_.finish(out); }
+  /// of the token of each. `prevailing`, if there is one: 1 where that token is coded, else 0.
+  void put(std::span<const std::uint8_t> tables, const Word* folded,
+           const std::uint8_t* prevailing = nullptr);
+  void finish(std::vector<std::byte>& out, std::span<const std::byte> along) const {
+    encoder_.finish(out, along);
+  }
 
  private:
   RansEncoder<kStates> encoder_;
@@ -69,14 +77,22 @@ class ResidualReader {
   /// Takes one residual per table, at most PageGrid::kPoints of them. Returns false, and leaves anything in
   /// `folded`, where the bytes are not what was written.
   [[nodiscard]] bool take(std::span<const std::uint8_t> tables, Word* folded);
-  /// Whether all has been taken that was written, and some residual was not zero.
-  [[nodiscard]] bool at_end() const { return any_ && decoder_.at_end(); }
+  /// Of the residuals that were taken last: 1 for those whose token is kPrevailing, which stand as 0, and 0
+  /// for others. Null where there is none.
+  [[nodiscard]] const std::uint8_t* prevailing() const {
+    return any_prevailing_ ? prevailing_.data() : nullptr;
+  }
+  /// Whether all has been taken that was written, and some residual was not zero. Gives what was carried
+  /// along.
+  [[nodiscard]] bool at_end(BytesAlong& along) const { return any_ && decoder_.take_along(along); }
 
  private:
   using Token = ResidualToken<Word>;
 
   /// Adds what so many tokens leave open.
   void join(const std::uint8_t* tokens, std::size_t count, Word* folded);
+  /// Makes tokens kPrevailing 0 and notes where they are.
+  void take_out_prevailing(Word* tokens, std::size_t count);
   template <bool Wide>
   void join_eight(const std::uint8_t* tokens, Word* folded);
   Word join_one(int token) {
@@ -85,7 +101,10 @@ class ResidualReader {
   void join_open_wide(const std::uint8_t* tokens, Word* folded);
 
   RansDecoder<ResidualWriter<Word>::kStates> decoder_;
-  bool any_ = false;  ///< whether a residual was not zero
+  bool any_ = false;  ///< whether a token was not that of zero
+  /// Room for whole rows behind the last one.
+  std::array<std::uint8_t, Token::kHasPrevailing ? PageGrid::kPoints : 1> prevailing_;
+  bool any_prevailing_ = false;
 };
 
 }  // namespace adamas

@@ -1,11 +1,15 @@
 #include "isosurface/compression/sample_codec.h"
 
+#include <algorithm>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/interpolation_codec.h"
+#include "isosurface/compression/page_order.h"
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/split_edge_codec.h"
 
@@ -20,12 +24,23 @@ auto with_depth_of_ranks(std::size_t count, Make make) {
   return make(Depth16{});
 }
 
+/// Nothing where samples have more than one byte.
 template <class Word>
-std::unique_ptr<SampleSurvey<Word>> ranked_survey(std::shared_ptr<const SampleRanks> ranks) {
+std::optional<Word> prevailing_byte(std::optional<std::uint32_t> prevailing) {
+  if (sizeof(Word) > 1 || !prevailing || *prevailing > std::numeric_limits<Word>::max()) return {};
+  return static_cast<Word>(*prevailing);
+}
+
+template <class Word>
+std::unique_ptr<SampleSurvey<Word>> ranked_survey(std::shared_ptr<const SampleRanks> ranks,
+                                                  std::optional<Word> prevailing) {
   return with_depth_of_ranks(ranks->values().size(), [&](auto depth) -> std::unique_ptr<SampleSurvey<Word>> {
     using Depth = decltype(depth);
-    return std::make_unique<RankedSurvey<Word, typename Depth::Word>>(
-        std::move(ranks), std::make_unique<InterpolationSurvey<Depth>>());
+    using Rank = typename Depth::Word;
+    std::optional<std::uint32_t> rank;
+    if (prevailing) rank = ranks->rank(*prevailing);
+    return std::make_unique<RankedSurvey<Word, Rank>>(
+        std::move(ranks), std::make_unique<InterpolationSurvey<Depth>>(prevailing_byte<Rank>(rank)));
   });
 }
 
@@ -51,16 +66,23 @@ std::unique_ptr<SampleCodec<Word>> parse_ranked(std::span<const std::byte> table
 
 }  // namespace
 
+std::size_t carried_along(SampleCoding coding, std::byte first, std::size_t size) {
+  const bool carries =
+      coding != SampleCoding::kSplitEdge && static_cast<PageKind>(first) == PageKind::kResiduals;
+  return carries ? std::min(size, std::tuple_size_v<BytesAlong>) : 0;
+}
+
 template <class Word>
 std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding,
-                                                  std::shared_ptr<const SampleRanks> ranks) {
+                                                  std::shared_ptr<const SampleRanks> ranks,
+                                                  std::optional<Word> prevailing) {
   ADAMAS_ASSERT((coding == SampleCoding::kRanks) == (ranks != nullptr));
   if (coding == SampleCoding::kSplitEdge) return std::make_unique<SplitEdgeSurvey<Word>>();
   if constexpr (sizeof(Word) > 1) {
-    if (coding == SampleCoding::kRanks) return ranked_survey<Word>(std::move(ranks));
+    if (coding == SampleCoding::kRanks) return ranked_survey<Word>(std::move(ranks), prevailing);
   }
   ADAMAS_ASSERT(coding == SampleCoding::kInterpolation);
-  return std::make_unique<InterpolationSurvey<DepthOf<Word>>>();
+  return std::make_unique<InterpolationSurvey<DepthOf<Word>>>(prevailing_byte<Word>(prevailing));
 }
 
 template <class Word>
@@ -78,11 +100,14 @@ std::unique_ptr<SampleCodec<Word>> parse_sample_codec(SampleCoding coding, std::
 }
 
 template std::unique_ptr<SampleSurvey<std::uint8_t>> sample_survey(SampleCoding,
-                                                                   std::shared_ptr<const SampleRanks>);
+                                                                   std::shared_ptr<const SampleRanks>,
+                                                                   std::optional<std::uint8_t>);
 template std::unique_ptr<SampleSurvey<std::uint16_t>> sample_survey(SampleCoding,
-                                                                    std::shared_ptr<const SampleRanks>);
+                                                                    std::shared_ptr<const SampleRanks>,
+                                                                    std::optional<std::uint16_t>);
 template std::unique_ptr<SampleSurvey<std::uint32_t>> sample_survey(SampleCoding,
-                                                                    std::shared_ptr<const SampleRanks>);
+                                                                    std::shared_ptr<const SampleRanks>,
+                                                                    std::optional<std::uint32_t>);
 template std::unique_ptr<SampleCodec<std::uint8_t>> parse_sample_codec(SampleCoding,
                                                                        std::span<const std::byte>,
                                                                        std::string_view);

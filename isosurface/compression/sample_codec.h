@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -38,14 +39,29 @@ class SampleCodec {
   /// From which `parse_sample_codec` makes the codec again; the same bytes for equal surveys.
   [[nodiscard]] virtual std::vector<std::byte> tables() const = 0;
   /// Appends the page's own points, in whole bytes. `around` is not read where the page is complete; of
-  /// `samples` only places that have points are read.
-  virtual void encode(const PageShape& shape, const Around& around, const Samples& samples,
-                      std::vector<std::byte>& out) const = 0;
-  /// Fills all places of `samples` that have points, those of coarser LODs from `around`. Returns false,
-  /// and leaves anything in `samples`, where the bytes are not what `encode` of some page gives.
-  [[nodiscard]] virtual bool decode(std::span<const std::byte> bytes, const PageShape& shape,
-                                    const Around& around, Samples& samples) const = 0;
+  /// `samples` only places that have points are read. Carries along, in bits that states of the entropy coder
+  /// would leave unused, as many bytes of `along` as carries_along says.
+  virtual void encode_with(const PageShape& shape, const Around& around, const Samples& samples,
+                           std::vector<std::byte>& out, std::span<const std::byte> along) const = 0;
+  void encode(const PageShape& shape, const Around& around, const Samples& samples,
+              std::vector<std::byte>& out) const {
+    encode_with(shape, around, samples, out, {});
+  }
+  /// Fills all places of `samples` that have points, those of coarser LODs from `around`, and gives what was
+  /// carried along, with zeros behind it. Returns false, and leaves anything in `samples` and `along`, where
+  /// the bytes are not what `encode_with` of some page gives.
+  [[nodiscard]] virtual bool decode_with(std::span<const std::byte> bytes, const PageShape& shape,
+                                         const Around& around, Samples& samples, BytesAlong& along) const = 0;
+  /// The same of what `encode` gives.
+  [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape, const Around& around,
+                            Samples& samples) const {
+    BytesAlong along;
+    return decode_with(bytes, shape, around, samples, along) && along == BytesAlong{};
+  }
 };
+
+/// How many of `size` bytes a coded page carries along; `first` is its first byte.
+std::size_t carried_along(SampleCoding coding, std::byte first, std::size_t size);
 
 /// Counts what pages hold, for the tables of the codec that will code them. Codecs code any page, also one
 /// that was not counted, only less well.
@@ -64,10 +80,13 @@ class SampleSurvey {
   [[nodiscard]] virtual std::unique_ptr<SampleCodec<Word>> codec() const = 0;
 };
 
-/// For kRanks with the ranks of the volume's samples, which no other coding has.
+/// For kRanks with the ranks of the volume's samples, which no other coding has. `prevailing`: the word that
+/// so many of the volume's samples have that it pays to look at it apart; it is made use of where words or
+/// ranks have one byte.
 template <class Word>
 std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding,
-                                                  std::shared_ptr<const SampleRanks> ranks = nullptr);
+                                                  std::shared_ptr<const SampleRanks> ranks = nullptr,
+                                                  std::optional<Word> prevailing = {});
 
 /// Throws Error, which begins with `name`, unless some codec's `tables` could have given just these bytes.
 template <class Word>

@@ -71,8 +71,8 @@ bool all_zero(std::span<const std::uint32_t> residuals) {
 }  // namespace
 
 template <class Word>
-void SplitEdgeCodec<Word>::encode(const PageShape& shape, const Around& around, const Samples& samples,
-                                  std::vector<std::byte>& out) const {
+void SplitEdgeCodec<Word>::encode_with(const PageShape& shape, const Around& around, const Samples& samples,
+                                       std::vector<std::byte>& out, std::span<const std::byte>) const {
   Residuals residuals;
   const auto own = residuals_of<Word>(shape, around, samples, residuals);
   const std::size_t begin = out.size();
@@ -90,9 +90,10 @@ void SplitEdgeCodec<Word>::encode(const PageShape& shape, const Around& around, 
 }
 
 template <class Word>
-bool SplitEdgeCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape& shape,
-                                  const Around& around, Samples& samples) const {
+bool SplitEdgeCodec<Word>::decode_with(std::span<const std::byte> bytes, const PageShape& shape,
+                                       const Around& around, Samples& samples, BytesAlong& along) const {
   if (bytes.empty()) return false;
+  along.fill({});
   if (!shape.complete) take_coarser<Word>(around, samples);
   const auto kind = static_cast<PageKind>(bytes[0]);
   const auto code = bytes.subspan(1);

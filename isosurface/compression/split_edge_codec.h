@@ -21,10 +21,10 @@ class SplitEdgeCodec final : public SampleCodec<Word> {
   explicit SplitEdgeCodec(ResidualCode code) : code_(std::move(code)) {}
 
   [[nodiscard]] std::vector<std::byte> tables() const override { return code_.serialise(); }
-  void encode(const PageShape& shape, const Around& around, const Samples& samples,
-              std::vector<std::byte>& out) const override;
-  [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape, const Around& around,
-                            Samples& samples) const override;
+  void encode_with(const PageShape& shape, const Around& around, const Samples& samples,
+                   std::vector<std::byte>& out, std::span<const std::byte> along) const override;
+  [[nodiscard]] bool decode_with(std::span<const std::byte> bytes, const PageShape& shape,
+                                 const Around& around, Samples& samples, BytesAlong& along) const override;
 
  private:
   ResidualCode code_;

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/compression/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/prevailing_sample.h"
 #include "isosurface/compression/range_rounding.h"
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
@@ -31,8 +32,8 @@ constexpr std::size_t kGrain = 16;
 constexpr std::size_t kMemory = std::size_t{256} << 20;
 /// In a volume of more pages than these one of eight finest pages is surveyed for the tables.
 constexpr std::uint64_t kSurveyed = 4096;
-/// How many of the coarsest pages tell how ranges are rounded.
-constexpr std::size_t kPagesForRounding = 256;
+/// How many of the coarsest pages tell how ranges are rounded, and whether a sample prevails.
+constexpr std::size_t kCoarsePages = 256;
 
 /// Numbers of all pages, in the order of the file.
 std::vector<std::uint64_t> page_numbers(const PageGrid& grid) {
@@ -71,10 +72,10 @@ struct Surveys {
   BoundsSurvey<Word> bounds;
   std::optional<GradientSurvey> gradients;
 
-  /// `ranks`: see sample_survey.
-  Surveys(SampleCoding coding, std::shared_ptr<const SampleRanks> ranks, bool with_gradients,
-          const Vec3& spacing, const RangeRounding<Word>& rounding)
-      : samples(sample_survey<Word>(coding, std::move(ranks))), bounds(spacing, rounding) {
+  /// `ranks`, `prevailing`: see sample_survey.
+  Surveys(SampleCoding coding, std::shared_ptr<const SampleRanks> ranks, std::optional<Word> prevailing,
+          bool with_gradients, const Vec3& spacing, const RangeRounding<Word>& rounding)
+      : samples(sample_survey<Word>(coding, std::move(ranks), prevailing)), bounds(spacing, rounding) {
     if (with_gradients) gradients.emplace(coding_of_bytes(coding));
   }
 
@@ -93,16 +94,23 @@ struct Surveys {
 /// The bytes of a page, and what the directory says of it.
 struct CodedPage {
   std::vector<std::byte> samples, bounds, gradients;
+  std::size_t along = 0;  ///< how many of the bounds the samples carry
   PageSummary summary;
+
+  [[nodiscard]] PagePayload payload() const {
+    return {samples, std::span(bounds).subspan(along), gradients, along};
+  }
 };
 
 template <class Word>
 struct Codecs {
+  SampleCoding coding;
   std::unique_ptr<SampleCodec<Word>> samples;
   BoundsCodec<Word> bounds;
   std::optional<GradientCodec> gradients;
 
-  explicit Codecs(const Surveys<Word>& surveys) : samples(surveys.samples->codec()), bounds(surveys.bounds) {
+  Codecs(SampleCoding of_samples, const Surveys<Word>& surveys)
+      : coding(of_samples), samples(surveys.samples->codec()), bounds(surveys.bounds) {
     if (surveys.gradients) gradients.emplace(surveys.gradients->codec());
   }
 
@@ -110,8 +118,9 @@ struct Codecs {
     coded.samples.clear();
     coded.bounds.clear();
     coded.gradients.clear();
-    samples->encode(job.shape, job.around.samples, job.page.samples, coded.samples);
     bounds.encode(job.shape, job.around, job.page, coded.bounds);
+    samples->encode_with(job.shape, job.around.samples, job.page.samples, coded.samples, coded.bounds);
+    coded.along = carried_along(coding, coded.samples[0], coded.bounds.size());
     if (gradients) gradients->encode(job.shape, job.gradients_around, job.gradients, coded.gradients);
     coded.summary = summary(job.shape, job.page);
   }
@@ -150,7 +159,7 @@ class StoreBuilder {
     }
     ranks_ = census_.ranks();
     const std::vector<std::uint64_t> numbers = page_numbers(grid_);
-    rounding_ = rounding_of(std::span(numbers).first(std::min(numbers.size(), kPagesForRounding)));
+    look_at_coarse(std::span(numbers).first(std::min(numbers.size(), kCoarsePages)));
     return write(numbers, survey(numbers), path, shown);
   }
 
@@ -158,20 +167,23 @@ class StoreBuilder {
   [[nodiscard]] SampleCoding coding() const {
     return ranks_ != nullptr ? SampleCoding::kRanks : options_.coding;
   }
-  /// By the ranges of the diamonds of these pages.
-  RangeRounding<Word> rounding_of(std::span<const std::uint64_t> numbers) {
+  /// Finds the rounding of ranges and the prevailing sample, by the diamonds and the samples of these pages.
+  void look_at_coarse(std::span<const std::uint64_t> numbers) {
     std::vector<Word> low, high;
+    PrevailingSample<Word> prevailing(ranks_.get());
     Page<Word> page;
     for (const std::uint64_t number : numbers) {
       const PageId id = grid_.page(number);
       scratch_.copy(id, page);
+      prevailing.add(page_shape(grid_, id), page.samples);
       for_each_own_place(page_shape(grid_, id), [&](std::size_t place) {
         if (page.low[place] > page.high[place]) return;
         low.push_back(page.low[place]);
         high.push_back(page.high[place]);
       });
     }
-    return find_rounding(std::move(low), std::move(high));
+    rounding_ = find_rounding(std::move(low), std::move(high));
+    prevailing_ = prevailing.found();
   }
   /// Calls fn(jobs) for the pages in batches, with their ranges rounded.
   template <class Fn>
@@ -207,8 +219,8 @@ class StoreBuilder {
       return numbers.size() <= kSurveyed || grid_.page(number).lod > 0 || fibonacci_slot(number, 3) == 0;
     });
     const auto empty = [this] {
-      return std::make_unique<Surveys<Word>>(coding(), ranks_, options_.gradients, volume_.spacing,
-                                             rounding_);
+      return std::make_unique<Surveys<Word>>(coding(), ranks_, prevailing_, options_.gradients,
+                                             volume_.spacing, rounding_);
     };
     const auto surveys = empty();
     for_each_batch(some, "surveying", [&](std::span<const Job<Word>> jobs) {
@@ -221,7 +233,7 @@ class StoreBuilder {
       });
       for (const auto& part : parts) surveys->merge(*part);
     });
-    return Codecs<Word>(*surveys);
+    return Codecs<Word>(coding(), *surveys);
   }
 
   StoreFigures write(const std::vector<std::uint64_t>& numbers, const Codecs<Word>& codecs,
@@ -236,11 +248,12 @@ class StoreBuilder {
       parallel_for(jobs.size(), kGrain, [&](std::size_t n) { codecs.encode(jobs[n], coded[n]); });
       for (std::size_t n = 0; n < jobs.size(); ++n) {
         const CodedPage& page = coded[n];
+        const std::vector<std::byte> payload = join_payload(page.payload());
+        writer.add_page(0, jobs[n].number, payload, page.summary);
+        if (is_plain(payload, page.summary)) continue;
         header.bytes.samples += page.samples.size();
-        header.bytes.bounds += page.bounds.size();
+        header.bytes.bounds += page.bounds.size() - page.along;
         header.bytes.gradients += page.gradients.size();
-        writer.add_page(0, jobs[n].number, join_payload({page.samples, page.bounds, page.gradients}),
-                        page.summary);
       }
     });
     header.sample_tables = codecs.samples->tables();
@@ -264,6 +277,7 @@ class StoreBuilder {
   SampleCensus<Word> census_;
   std::shared_ptr<const SampleRanks> ranks_;  ///< null where samples are coded as they are
   RangeRounding<Word> rounding_;
+  std::optional<Word> prevailing_;
 };
 
 }  // namespace

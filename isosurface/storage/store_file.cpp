@@ -117,6 +117,7 @@ std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page
 StoreFile::Payload StoreFile::read(std::uint32_t step, const PageId& page) {
   const std::optional<PageEntry> found = entry(step, page);
   if (!found) return {PageState::kDamaged, {}};
+  if (found->size == 0) return {PageState::kWhole, plain_payload()};
   for (const std::uint64_t offset : {found->offset, found->copy}) {
     // A damaged directory may say that the page lies anywhere.
     if (offset == 0 || offset > size_ || found->size > size_ - offset) continue;
@@ -192,6 +193,11 @@ void StoreFileWriter::add_page(std::uint32_t step, std::uint64_t number, std::sp
     begin_chunk(step, first);
   }
   PageEntry entry{summary};
+  ADAMAS_ASSERT(!payload.empty());
+  if (is_plain(payload, summary)) {
+    entries_.push_back(entry);
+    return;
+  }
   entry.size = static_cast<std::uint32_t>(payload.size());
   entry.checksum = crc32c(payload);
   entries_.push_back(entry);

@@ -197,15 +197,38 @@ std::vector<std::byte> join_payload(const PagePayload& parts) {
   bytes.reserve(parts.samples.size() + parts.bounds.size() + parts.gradients.size() + 8);
   ByteWriter out(bytes);
   out.sized_bytes(parts.samples);
-  out.sized_bytes(parts.bounds);
+  out.varint(parts.along + parts.bounds.size());
+  out.bytes(parts.bounds);
   out.bytes(parts.gradients);
   return bytes;
 }
 
-bool split_payload(std::span<const std::byte> bytes, PagePayload& parts) {
+std::span<const std::byte> plain_payload() {
+  static const std::vector<std::byte> kBytes = [] {
+    const std::array smooth{std::byte{1}}, bounds{std::byte{4}};
+    return join_payload({smooth, bounds, {}, 0});
+  }();
+  return kBytes;
+}
+
+bool is_plain(std::span<const std::byte> payload, const PageSummary& summary) {
+  return summary.error == 0 && std::ranges::equal(payload, plain_payload());
+}
+
+std::optional<std::vector<std::byte>> PagePayload::all_bounds(const BytesAlong& carried) const {
+  const auto end = carried.begin() + static_cast<std::ptrdiff_t>(along);
+  if (std::any_of(end, carried.end(), [](std::byte byte) { return byte != std::byte{0}; })) return {};
+  std::vector<std::byte> all(carried.begin(), end);
+  all.insert(all.end(), bounds.begin(), bounds.end());
+  return all;
+}
+
+bool split_payload(std::span<const std::byte> bytes, SampleCoding coding, PagePayload& parts) {
   ByteReader in(bytes);
   parts.samples = in.sized_bytes();
-  parts.bounds = in.sized_bytes();
+  const std::uint64_t size = in.varint();
+  parts.along = parts.samples.empty() ? 0 : carried_along(coding, parts.samples[0], size);
+  parts.bounds = in.bytes(size - parts.along);
   parts.gradients = in.rest();
   return in.good();
 }
@@ -280,48 +303,103 @@ std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first
 std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std::size_t word_bytes) {
   std::vector<std::byte> bytes;
   ByteWriter out(bytes);
-  for (const PageEntry& entry : entries) {
-    out.varint(entry.size);
-    out.number(entry.checksum);
+  const auto put_range = [&](const PageEntry& entry) {
     for (const std::uint32_t word : {entry.low, entry.high})
       out.bytes(std::as_bytes(std::span(&word, 1)).first(word_bytes));
+  };
+  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+    const PageEntry& entry = entries[begin];
+    const auto is_alike = [&](const PageEntry& other) {
+      return other.size == 0 && other.low == entry.low && other.high == entry.high;
+    };
+    end = begin + 1;
+    out.varint(entry.size);
+    if (entry.size == 0) {
+      while (end < entries.size() && is_alike(entries[end])) ++end;
+      out.varint(end - begin);
+      put_range(entry);
+      continue;
+    }
+    out.number(entry.checksum);
+    put_range(entry);
     out.number(entry.error);
     write_part_errors(out, entry);
   }
   return bytes;
 }
 
+namespace {
+
+/// Takes the entries of pages one after another, without offsets.
+class EntryReader {
+ public:
+  EntryReader(std::span<const std::byte> bytes, std::size_t word_bytes)
+      : in_(bytes), word_bytes_(word_bytes) {}
+
+  /// Nothing where the bytes are not those of an entry, or a stretch of plain pages goes on from another.
+  std::optional<PageEntry> take() {
+    if (plain_left_ == 0) {
+      const std::uint64_t size = in_.varint();
+      if (size > ~std::uint32_t{0}) return {};
+      if (size > 0) return take_page(static_cast<std::uint32_t>(size));
+      const PageEntry before = plain_;
+      plain_left_ = in_.varint();
+      take_range(plain_);
+      const bool goes_on = follows_plain_ && static_cast<const PageSummary&>(plain_) == before;
+      if (plain_left_ == 0 || plain_left_ > DirectoryChunk::kPages || goes_on) return {};
+    }
+    --plain_left_;
+    follows_plain_ = true;
+    return plain_;
+  }
+  [[nodiscard]] bool at_end() const { return plain_left_ == 0 && in_.good() && in_.rest().empty(); }
+
+ private:
+  void take_range(PageSummary& summary) {
+    for (std::uint32_t* const word : {&summary.low, &summary.high}) {
+      *word = 0;
+      const auto from = in_.bytes(word_bytes_);
+      if (!from.empty()) std::memcpy(word, from.data(), word_bytes_);
+    }
+  }
+  std::optional<PageEntry> take_page(std::uint32_t size) {
+    follows_plain_ = false;
+    PageEntry entry;
+    entry.size = size;
+    entry.checksum = in_.number<std::uint32_t>();
+    take_range(entry);
+    entry.error = in_.number<std::uint8_t>();
+    if (entry.error >= ErrorScale::kCodes || !read_part_errors(in_, entry)) return {};
+    return entry;
+  }
+
+  ByteReader in_;
+  std::size_t word_bytes_;
+  PageEntry plain_;  ///< of the stretch of plain pages that was begun last
+  std::uint64_t plain_left_ = 0;
+  bool follows_plain_ = false;
+};
+
+}  // namespace
+
 std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
                                                     std::span<const std::byte> bytes,
                                                     std::size_t word_bytes) {
-  ByteReader in(bytes);
-  const auto word = [&] {
-    std::uint32_t value = 0;
-    const auto from = in.bytes(word_bytes);
-    if (!from.empty()) std::memcpy(&value, from.data(), word_bytes);
-    return value;
-  };
+  EntryReader in(bytes, word_bytes);
   std::vector<PageEntry> entries;
   std::uint64_t offset = chunk.pages, copy = chunk.copies;
   for (const std::uint64_t number : chunk_pages(grid, chunk.first)) {
-    PageEntry entry;
-    const std::uint64_t size = in.varint();
-    if (size > ~std::uint32_t{0}) return {};
-    entry.size = static_cast<std::uint32_t>(size);
-    entry.checksum = in.number<std::uint32_t>();
-    entry.low = word();
-    entry.high = word();
-    entry.error = in.number<std::uint8_t>();
-    if (entry.error >= ErrorScale::kCodes || !read_part_errors(in, entry)) return {};
-    entry.offset = offset;
-    offset += size;
+    std::optional<PageEntry> entry = in.take();
+    if (!entry) return {};
+    entry->offset = offset;
+    offset += entry->size;
     if (grid.page(number).lod >= kCopiedLod) {
-      entry.copy = copy;
-      copy += size;
+      entry->copy = copy;
+      copy += entry->size;
     }
-    entries.push_back(entry);
+    entries.push_back(*entry);
   }
-  if (!in.good() || !in.rest().empty()) return {};
+  if (!in.at_end()) return {};
   return entries;
 }
 

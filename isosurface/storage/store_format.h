@@ -72,20 +72,30 @@ extern template PageSummary summary(const PageShape&, const PageBounds<std::uint
 extern template PageSummary summary(const PageShape&, const PageBounds<std::uint16_t>&);
 extern template PageSummary summary(const PageShape&, const PageBounds<std::uint32_t>&);
 
-/// The parts of a page's bytes in a store.
+/// The parts of a page's bytes in a store. Of the bounds' bytes the samples carry the first ones along.
 struct PagePayload {
   std::span<const std::byte> samples, bounds, gradients;
+  std::size_t along = 0;  ///< how many those are, which come before `bounds`
+
+  /// All bytes of the bounds, by those that the decoded samples carried along; nothing where these are not as
+  /// many.
+  [[nodiscard]] std::optional<std::vector<std::byte>> all_bounds(const BytesAlong& carried) const;
 };
 
 std::vector<std::byte> join_payload(const PagePayload& parts);
 /// The inverse. Returns false where the bytes are not those of three parts.
-[[nodiscard]] bool split_payload(std::span<const std::byte> bytes, PagePayload& parts);
+[[nodiscard]] bool split_payload(std::span<const std::byte> bytes, SampleCoding coding, PagePayload& parts);
+
+/// The bytes of a plain page: its samples are as predicted, its errors 0, its ranges as predicted, and it has
+/// no gradients. They are not in the file.
+std::span<const std::byte> plain_payload();
+bool is_plain(std::span<const std::byte> payload, const PageSummary& summary);
 
 /// What the directory says of a page.
 struct PageEntry : PageSummary {
   std::uint64_t offset = 0;  ///< in the file
   std::uint64_t copy = 0;    ///< of the second copy, 0 where there is none
-  std::uint32_t size = 0;
+  std::uint32_t size = 0;    ///< 0 of a plain page, which has no bytes
   std::uint32_t checksum = 0;
 };
 
@@ -102,13 +112,13 @@ struct DirectoryChunk {
   std::uint64_t copies = 0;            ///< offset of the first copy
 };
 
-/// LODs from this on, the coarsest 1/64 of the samples, are in the file twice.
-inline constexpr int kCopiedLod = 2;
+/// LODs from this on, the coarsest 1/512 of the samples, are in the file twice.
+inline constexpr int kCopiedLod = 3;
 
 /// What a file begins with; everything else is found from here.
 struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
-  static constexpr std::uint32_t kVersion = 3;
+  static constexpr std::uint32_t kVersion = 4;
 
   std::uint64_t root_offset = 0, root_size = 0;
 

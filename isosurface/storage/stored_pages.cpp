@@ -35,16 +35,18 @@ bool StoredPages<Word>::load(const PageToLoad<Word>& page) {
 template <class Word>
 bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageToLoad<Word>& page) {
   PagePayload coded;
-  if (!split_payload(payload, coded)) return false;
+  if (!split_payload(payload, file_.header().coding, coded)) return false;
   if (has_part(page.parts, PageParts::kSamples) &&
-      !sample_codec_->decode(coded.samples, page.shape, page.around.samples, page.samples.samples))
+      !sample_codec_->decode_with(coded.samples, page.shape, page.around.samples, page.samples.samples,
+                                  page.samples.along))
     return false;
   if (page.bounds == nullptr) return true;
   if (!bounds_codec_) {
     const StoreHeader& header = file_.header();
     bounds_codec_ = BoundsCodec<Word>::parse(header.bounds_tables, header.grid.spacing, file_.name());
   }
-  return bounds_codec_->decode(coded.bounds, page.shape, page.around, page.samples, *page.bounds);
+  const auto bounds = coded.all_bounds(page.samples.along);
+  return bounds && bounds_codec_->decode(*bounds, page.shape, page.around, page.samples, *page.bounds);
 }
 
 template <class Word>
@@ -144,7 +146,7 @@ StoredGradients::StoredGradients(StoreFile& file, std::uint32_t step, std::size_
 bool StoredGradients::load(const PageToLoad<std::uint16_t>& page) {
   const StoreFile::Payload payload = file_.read(step_, page.id);
   PagePayload coded;
-  if (payload.state != PageState::kDamaged && split_payload(payload.bytes, coded) &&
+  if (payload.state != PageState::kDamaged && split_payload(payload.bytes, file_.header().coding, coded) &&
       codec_.decode(coded.gradients, page.shape, page.around.samples, page.samples.samples))
     return true;
   last_damaged_ = page.id;

@@ -50,7 +50,8 @@ class Verifier {
     ++result_.pages;
     const StoreFile::Payload payload = file_.read(step_, id);
     PagePayload parts;
-    const bool has_gradients = split_payload(payload.bytes, parts) && !parts.gradients.empty();
+    const bool has_gradients =
+        split_payload(payload.bytes, file_.header().coding, parts) && !parts.gradients.empty();
     const std::optional<PageEntry> entry = file_.entry(step_, id);
     if (payload.state == PageState::kCopied ||
         (payload.state == PageState::kWhole && entry && !file_.copy_is_whole(*entry))) {

@@ -13,10 +13,14 @@ namespace adamas {
 template <class T>
 using PagePoints = std::array<T, PageGrid::kPoints>;
 
+/// What a page's coded samples may carry along: bytes of something else, for which they need no room.
+using BytesAlong = std::array<std::byte, 20>;
+
 /// Word: OrderedWord of the samples' type.
 template <class Word>
 struct PageSamples {
   PagePoints<Word> samples;
+  BytesAlong along;  ///< of a page of a store: the first bytes of its coded bounds
 };
 
 /// The bounds that are known of the points' diamonds.

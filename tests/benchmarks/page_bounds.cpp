@@ -70,8 +70,9 @@ Figures measure(StoreFile& file, int lod, double isovalue, std::size_t most) {
     if (!pages.surroundings(id, coded.around)) throw std::runtime_error("a page is damaged");
     if (!pages.copy(id, coded.page)) throw std::runtime_error("a page is damaged");
     PagePayload parts;
-    if (!split_payload(file.read(0, id).bytes, parts)) throw std::runtime_error("no payload");
-    coded.values.assign(parts.bounds.begin(), parts.bounds.end());
+    if (!split_payload(file.read(0, id).bytes, file.header().coding, parts))
+      throw std::runtime_error("no payload");
+    coded.values = parts.all_bounds(coded.page.along).value();
   }
   Figures figures{all.size(), 0, 1e300, 1e300, 1e300};
   for (const auto& coded : all) figures.bytes += coded.values.size();

@@ -85,13 +85,15 @@ double decode_all(StoreFile& file, const test::VolumePages<Word>& volume) {
   for (std::size_t n = 0; n < contents.size(); ++n) {
     volume.content(volume.pages()[n], contents[n]);
     PagePayload parts;
-    if (!split_payload(file.read(0, volume.pages()[n]).bytes, parts)) throw std::runtime_error("no payload");
+    if (!split_payload(file.read(0, volume.pages()[n]).bytes, file.header().coding, parts))
+      throw std::runtime_error("no payload");
     codes[n].assign(parts.samples.begin(), parts.samples.end());
   }
   typename SampleCodec<Word>::Samples samples;
+  BytesAlong along;
   return least_seconds(3, [&] {
     for (std::size_t n = 0; n < contents.size(); ++n)
-      if (!codec->decode(codes[n], contents[n].shape, contents[n].around, samples))
+      if (!codec->decode_with(codes[n], contents[n].shape, contents[n].around, samples, along))
         throw std::runtime_error("a page was not decoded");
   });
 }

@@ -111,7 +111,8 @@ struct Sequence {
 std::uint64_t plain(std::size_t n) { return n * 0x9e3779b97f4a7c15u >> (64 - n % 57) % 64; }
 
 template <std::size_t kStates>
-std::vector<std::byte> encoded(const RansTables& tables, const Sequence& sequence, std::size_t part) {
+std::vector<std::byte> encoded(const RansTables& tables, const Sequence& sequence, std::size_t part,
+                               std::span<const std::byte> along = {}) {
   RansEncoder<kStates> encoder(tables, sequence.symbols.size());
   for (std::size_t n = 0; n < sequence.symbols.size(); n += part) {
     const std::size_t count = std::min(part, sequence.symbols.size() - n);
@@ -119,8 +120,20 @@ std::vector<std::byte> encoded(const RansTables& tables, const Sequence& sequenc
     if (n % 57 > 0) encoder.put_bits(plain(n), static_cast<int>(n % 57));
   }
   std::vector<std::byte> bytes;
-  encoder.finish(bytes);
+  encoder.finish(bytes, along);
   return bytes;
+}
+
+/// Takes the sequence. Whether all symbols are found.
+template <std::size_t kStates>
+bool takes(RansDecoder<kStates>& decoder, const Sequence& sequence, std::size_t part) {
+  std::vector<std::uint8_t> symbols(sequence.symbols.size());
+  for (std::size_t n = 0; n < symbols.size(); n += part) {
+    const std::size_t count = std::min(part, symbols.size() - n);
+    if (!decoder.take(std::span(sequence.tables).subspan(n, count), symbols.data() + n)) return false;
+    if (decoder.bits().take(static_cast<int>(n % 57)) != (n % 57 > 0 ? plain(n) : 0)) return false;
+  }
+  return symbols == sequence.symbols;
 }
 
 /// Whether all symbols are found, and nothing else.
@@ -128,13 +141,7 @@ template <std::size_t kStates>
 bool finds(const RansTables& tables, const Sequence& sequence, std::size_t part,
            std::span<const std::byte> bytes) {
   RansDecoder<kStates> decoder(tables, bytes);
-  std::vector<std::uint8_t> symbols(sequence.symbols.size());
-  for (std::size_t n = 0; n < symbols.size(); n += part) {
-    const std::size_t count = std::min(part, symbols.size() - n);
-    if (!decoder.take(std::span(sequence.tables).subspan(n, count), symbols.data() + n)) return false;
-    if (decoder.bits().take(static_cast<int>(n % 57)) != (n % 57 > 0 ? plain(n) : 0)) return false;
-  }
-  return decoder.at_end() && symbols == sequence.symbols;
+  return takes(decoder, sequence, part) && decoder.at_end();
 }
 
 template <class States>
@@ -190,6 +197,32 @@ TYPED_TEST(RansCoder, TakesTheEntropyOfTheTable) {
   const auto bytes = encoded<TypeParam::value>(tables, sequence, sequence.symbols.size());
   EXPECT_GT(8.0 * static_cast<double>(bytes.size()), 0.999 * bits);
   EXPECT_LT(8.0 * static_cast<double>(bytes.size()), 1.005 * bits + 32.0 * TypeParam::value);
+}
+
+TYPED_TEST(RansCoder, CarriesBytesAlong) {
+  constexpr std::size_t kStates = TypeParam::value, kAlong = RansEncoder<kStates>::kAlong;
+  std::mt19937 random(19);
+  for (std::size_t count = 0; count < 90; ++count) {
+    const ContextTables contexts(some_counts(random));
+    const RansTables tables(contexts);
+    const Sequence sequence(contexts, count, random);
+    std::vector<std::byte> along(random() % (kAlong + 1));
+    for (std::byte& byte : along) byte = static_cast<std::byte>(random());
+    const auto bytes = encoded<kStates>(tables, sequence, 7, along);
+    RansDecoder<kStates> decoder(tables, bytes);
+    ASSERT_TRUE(takes(decoder, sequence, 7));
+    std::array<std::byte, kAlong> found;
+    ASSERT_TRUE(decoder.take_along(found));
+    along.resize(kAlong);
+    EXPECT_TRUE(std::ranges::equal(found, along));
+    EXPECT_EQ(decoder.at_end(), std::ranges::count(along, std::byte{0}) == kAlong);
+    // Of plain bits a state has four for its length, and less than one more for what it carries.
+    EXPECT_LE(bytes.size(), encoded<kStates>(tables, sequence, 7).size() + 2 * kStates);
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+      RansDecoder<kStates> cut(tables, std::span(bytes).first(length));
+      EXPECT_FALSE(takes(cut, sequence, 7) && cut.take_along(found) && std::ranges::equal(found, along));
+    }
+  }
 }
 
 }  // namespace

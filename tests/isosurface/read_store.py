@@ -23,7 +23,7 @@ class Store:
     def __init__(self, data):
         self.data = data
         prologue = Bytes(data)
-        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 3
+        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 4
         root_offset, root_size = prologue.number("Q"), prologue.number("Q")
         root = Bytes(data[root_offset:root_offset + root_size])
         self.bytes = (1, 2, 2, 4)[root.number("B")]
@@ -57,6 +57,7 @@ class Store:
         return self.top - steps, tuple(sum((z >> 3 * t + axis & 1) << t for t in range(20)) for axis in range(3))
 
     def read_chunk(self, chunk, first, at):
+        plain = 0
         for number in range(max(first, 1), first + 512):
             level, block = self.block(number)
             if level < 0:
@@ -64,7 +65,14 @@ class Store:
             count = [e - 16 * b + 1 for e, b in zip(self.extent(level), block)]
             if min(count) < 1 or (level < self.top and max(count) == 1):
                 continue
-            size = chunk.varint()
+            if plain == 0 and (size := chunk.varint()) == 0:
+                plain = chunk.varint()
+                assert plain > 0
+                chunk.take(2 * self.bytes)
+            if plain > 0:
+                plain -= 1
+                self.pages[level, block] = b"\x01\x01\x01\x04"
+                continue
             chunk.take(4)
             low, high = (int.from_bytes(chunk.take(self.bytes), "little") for _ in range(2))
             error = chunk.take(1)[0]
@@ -75,7 +83,7 @@ class Store:
                 chunk.take(((high - low - 1 >> s) + 2) // 2)
             self.pages[level, block] = self.data[at:at + size]
             at += size
-        assert chunk.at == len(chunk.data)
+        assert plain == 0 and chunk.at == len(chunk.data)
 
     def samples(self):
         """The words of all levels, by coordinates in samples; those of the finest have all."""
@@ -90,12 +98,18 @@ class Store:
                     p = [min(max(8 * b + x // 2, 0), e) << level + 1 for b, x, e in zip(block, q, coarser)]
                     around[q] = known[tuple(p)]
             page = Page(count, level == self.top, around)
-            part = Bytes(Bytes(payload).sized())
+            stream = Bytes(payload)
+            part = Bytes(stream.sized())
             kind = part.number("B")
             if kind == 3 or kind == 0 and self.coding != 2:
                 words = {q: int.from_bytes(part.take(self.bytes), "little") for q in page.own()}
             else:
                 words = self.codec.decode(kind, part.rest(), page)
+            along = self.codec.along if kind == 2 and self.coding != 0 else b""
+            size = stream.varint()
+            carried = min(len(along), size)
+            bounds = along[:carried] + stream.take(size - carried)
+            assert not any(along[carried:]) and bounds[0] < 16
             for q, word in words.items():
                 known[tuple((16 * b + x) << level for b, x in zip(block, q))] = word
         i, j, k = self.size
@@ -129,6 +143,9 @@ def volumes():
         yield "uint16", "H", size, field(size, lambda *p: 100 * int(20 + 9 * wave(*p)))
         yield "float32", "f", size, field(size, lambda *p: struct.unpack("f", struct.pack("f", wave(*p)))[0])
     size = (40, 33, 30)
+    yield "uint8", "B", size, field(size, lambda *p: max(0, int(60 * wave(*p)) + rng.randrange(9) - 40))
+    yield "int16", "h", size, field(size, lambda *p: 9 * max(7, int(20 * wave(*p)) + rng.randrange(3)))
+    yield "uint8", "B", (70, 20, 20), field((70, 20, 20), lambda x, y, z: 255 if x + y < 9 else 200)
     yield "uint16", "H", size, field(size, lambda *p: 7 * int(1000 + 280 * wave(*p)))
     yield "float32", "f", size, field(size, lambda *p: float(int(90 * wave(*p))))
     for values in (200, 1000):

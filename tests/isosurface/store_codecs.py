@@ -123,7 +123,11 @@ class States:
         return [self.bits.take(escaped) if symbol is None else symbol for symbol in symbols]
 
     def check_end(self):
-        assert all(x == 1024 for x in self.states) and (self.bits.taken + 7) // 8 == self.end
+        """The bytes that were carried along."""
+        assert all(1024 <= x < 2048 for x in self.states) and (self.bits.taken + 7) // 8 == self.end
+        states = self.states[self.next:] + self.states[:self.next]
+        bits = sum((x - 1024) << 10 * n for n, x in enumerate(states))
+        return bits.to_bytes(10 * len(states) // 8, "little")
 
 
 def z_order(q):
@@ -216,10 +220,20 @@ class Interpolation:
     def __init__(self, tables, bits, value_bits, centre=0, greatest=None):
         self.bits, self.value_bits, self.centre = bits, value_bits, centre
         self.greatest = (1 << bits) - 1 if greatest is None else greatest
-        self.of_set = 37 if value_bits == 32 else 1 + 2 * (value_bits + 4)
-        self.contexts = Contexts(Bits(tables), 3 * self.of_set + 1, 16 + 4 * (bits - 4))
+        stream = Bits(tables)
+        self.prevailing = stream.take(8) if bits == 8 and stream.take(1) else None
+        self.of_class = 37 if value_bits == 32 else 1 + 2 * (value_bits + 4)
+        self.of_set = self.of_class * (1 if self.prevailing is None else 6)
+        symbols = 16 + 4 * (bits - 4) + (self.prevailing is not None)
+        self.contexts = Contexts(stream, 3 * self.of_set + 1, symbols)
 
-    def context(self, activity):
+    def context(self, activity, prediction):
+        if self.prevailing is not None:
+            distance = abs(prediction + self.centre - self.prevailing)
+            return min(width(distance), 5) * self.of_class + self.context_of_activity(activity)
+        return self.context_of_activity(activity)
+
+    def context_of_activity(self, activity):
         w = width(activity)
         if self.value_bits == 32 or w == 0:
             return w
@@ -255,12 +269,15 @@ class Interpolation:
         return prediction, 2 * (max(f) - min(f) + sum(r.get(p, 0) for p in faces))
 
     def residuals(self, states, contexts):
+        """None where the sample is the prevailing one."""
         folded = states.group(contexts)
         for n, symbol in enumerate(folded):
-            if symbol >= 16:
+            if symbol == 32 and self.prevailing is not None:
+                folded[n] = None
+            elif symbol >= 16:
                 left = (symbol - 16) // 4 + 2
                 folded[n] = (4 | symbol & 3) << left | states.bits.take(left)
-        return [u // 2 if u % 2 == 0 else -(u + 1) // 2 for u in folded]
+        return [None if u is None else u // 2 if u % 2 == 0 else -(u + 1) // 2 for u in folded]
 
     def decode(self, kind, data, page):
         states = States(self.contexts, data, 16) if kind == 2 else None
@@ -272,8 +289,7 @@ class Interpolation:
                 words[q] = (page.mean(q, words) + r) % (1 << self.bits)
         else:
             words = self.decode_sets(states, page)
-        if states:
-            states.check_end()
+        self.along = states.check_end() if states else b""
         return words
 
     def decode_sets(self, states, page):
@@ -293,10 +309,13 @@ class Interpolation:
                     predictions[q] = prediction
                     if page.inside(q):
                         own.append(q)
-                        contexts.append(number * self.of_set + self.context(activity))
+                        contexts.append(number * self.of_set + self.context(activity, prediction))
             found = self.residuals(states, contexts) if states else [0] * len(own)
             v.update(predictions)
             for q, r in zip(own, found):
+                if r is None:
+                    r = (self.prevailing - predictions[q] - self.centre + 128) % 256 - 128
+                    assert r != 0
                 words[q] = (predictions[q] + self.centre + r) % (1 << self.bits)
                 v[q] = words[q] - self.centre
                 magnitudes[q] = abs(r)
@@ -328,6 +347,7 @@ class Ranks:
             return {q: self.values[int.from_bytes(data[size * n:size * n + size], "little")] for n, q in enumerate(page.own())}
         around = {q: self.rank.get(word, 0) for q, word in page.around.items()}
         ranks = self.codec.decode(kind, data, Page(page.count, page.complete, around))
+        self.along = self.codec.along
         return {q: self.values[rank] for q, rank in ranks.items()}
 
 

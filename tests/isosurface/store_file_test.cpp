@@ -80,13 +80,20 @@ class StoreOfRandomPages : public testing::Test {
       for (std::uint64_t number = 0; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
         if (number == 0 || (std::bit_width(number) - 1) % 3 != 0 || !grid.contains(grid.page(number)))
           continue;
-        Written page{step, grid.page(number), random_bytes(random_, random_() % 200), {}};
+        Written page{step, grid.page(number), random_bytes(random_, 1 + random_() % 200), {}};
         page.summary.low = static_cast<std::uint32_t>(random_() & 0xffffu);
         page.summary.high = static_cast<std::uint32_t>(random_() & 0xffffu);
         page.summary.error = static_cast<std::uint8_t>(random_() & 63u);
         for (std::size_t n = 0; n < page.summary.part_count(); ++n) {
           const int error = page.summary.error - static_cast<int>(random_() % (PageSummary::kSpan + 1));
           if (random_() % 4 != 0) page.summary.part_errors[n] = static_cast<std::uint8_t>(std::max(1, error));
+        }
+        if (random_() % 3 != 0 && page.id.lod < kCopiedLod) {
+          // In stretches of the same range, and of others.
+          const auto word = static_cast<std::uint32_t>(random_() % 8 == 0 ? 1 : 0);
+          page.bytes.assign(plain_payload().begin(), plain_payload().end());
+          page.summary = {word, word + 7, 0, {}};
+          ++plain_;
         }
         writer.add_page(step, number, page.bytes, page.summary);
         pages_.push_back(std::move(page));
@@ -107,6 +114,7 @@ class StoreOfRandomPages : public testing::Test {
   std::filesystem::path path_ = folder_ / "store.adm";
   StoreHeader header_;
   std::vector<Written> pages_;
+  std::size_t plain_ = 0;
   std::uint64_t size_ = 0;
 };
 
@@ -127,6 +135,7 @@ TEST_F(StoreOfRandomPages, GivesThemBack) {
     EXPECT_EQ(file.header().bounds_tables, header_.bounds_tables);
     EXPECT_EQ(file.header().bytes.gradients, 30u);
     file.check_directory();
+    std::size_t without_bytes = 0;
     for (const Written& page : pages_) {
       const auto entry = file.entry(page.step, page.id);
       ASSERT_TRUE(entry);
@@ -137,7 +146,39 @@ TEST_F(StoreOfRandomPages, GivesThemBack) {
       EXPECT_EQ(payload.state, PageState::kWhole);
       EXPECT_TRUE(
           std::equal(payload.bytes.begin(), payload.bytes.end(), page.bytes.begin(), page.bytes.end()));
+      without_bytes += entry->size == 0 ? 1 : 0;
     }
+    EXPECT_EQ(without_bytes, plain_);
+    EXPECT_GT(plain_, 9u);
+  }
+}
+
+TEST(Directory, OfPagesInAnyOrderIsReadAsItWasWritten) {
+  const PageGrid grid({700, 300, 200});
+  std::mt19937 random(21);
+  for (int trial = 0; trial < 50; ++trial) {
+    const DirectoryChunk chunk{0, 512, 0, 0, 0, 1000, 5000};
+    std::vector<PageEntry> entries(chunk_pages(grid, chunk.first).size());
+    for (PageEntry& entry : entries) {
+      entry.low = static_cast<std::uint32_t>(random() % 2);
+      entry.high = static_cast<std::uint32_t>(random() % 3);
+      if (static_cast<int>(random() % 50) < trial) continue;
+      entry.size = static_cast<std::uint32_t>(1 + random() % 300);
+      entry.checksum = static_cast<std::uint32_t>(random());
+    }
+    const auto bytes = serialise_entries(entries, 2);
+    const auto found = parse_entries(grid, chunk, bytes, 2);
+    ASSERT_TRUE(found && found->size() == entries.size());
+    std::uint64_t offset = chunk.pages;
+    for (std::size_t n = 0; n < entries.size(); ++n) {
+      EXPECT_EQ(static_cast<const PageSummary&>((*found)[n]), entries[n]);
+      EXPECT_EQ((*found)[n].size, entries[n].size);
+      EXPECT_EQ((*found)[n].checksum, entries[n].checksum);
+      EXPECT_EQ((*found)[n].offset, offset);
+      offset += entries[n].size;
+    }
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+      EXPECT_FALSE(parse_entries(grid, chunk, std::span(bytes).first(length), 2)) << length;
   }
 }
 

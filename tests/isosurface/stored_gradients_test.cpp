@@ -185,10 +185,11 @@ void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
     for (const std::uint64_t number : chunk_pages(file.grid(), first)) {
       const PageId id = file.grid().page(number);
       PagePayload parts;
-      ASSERT_TRUE(split_payload(file.read(0, id).bytes, parts));
+      ASSERT_TRUE(split_payload(file.read(0, id).bytes, header.coding, parts));
       std::vector<std::byte> gradients(parts.gradients.begin(), parts.gradients.end());
       if (id.lod == 0) change(header, gradients);
-      writer.add_page(0, number, join_payload({parts.samples, parts.bounds, gradients}), *file.entry(0, id));
+      writer.add_page(0, number, join_payload({parts.samples, parts.bounds, gradients, parts.along}),
+                      *file.entry(0, id));
     }
   }
   writer.finish(header);

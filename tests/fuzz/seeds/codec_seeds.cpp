@@ -1,9 +1,11 @@
 // Makes the seeds of the fuzz targets of codecs of samples, of bounds and of gradients, and of the store's
 // own bytes: FOLDER is that of all seeds. To be run again where such bytes change.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
@@ -27,8 +29,9 @@ struct Seed {
   SampleCoding coding;
   LatticePoint count;
   bool complete;
-  int noise;                 ///< in parts of the greatest number
-  std::uint32_t values = 1;  ///< for kRanks: of which samples are multiples
+  int noise;                                    ///< in parts of the greatest number
+  std::uint32_t values = 1;                     ///< for kRanks: of which samples are multiples
+  std::optional<std::uint8_t> prevailing = {};  ///< of single bytes: no sample is less
 };
 
 void append(Bytes& to, const Bytes& from) { to.insert(to.end(), from.begin(), from.end()); }
@@ -81,7 +84,12 @@ void make_samples(const std::filesystem::path& folder, const Seed& seed) {
     for (Word& sample : samples) sample = static_cast<Word>(sample / seed.values * seed.values);
     ranks = std::make_shared<const SampleRanks>(different(samples));
   }
-  const auto survey = sample_survey<Word>(seed.coding, ranks);
+  std::optional<Word> prevailing;
+  if (seed.prevailing) {
+    prevailing = static_cast<Word>(*seed.prevailing);
+    for (Word& sample : samples) sample = std::max(sample, *prevailing);
+  }
+  const auto survey = sample_survey<Word>(seed.coding, ranks, prevailing);
   survey->add(shape, around, samples);
   const auto codec = survey->codec();
   Bytes page, bytes;
@@ -177,7 +185,7 @@ void make_bounds(const std::filesystem::path& folder, const std::string& name, c
 
 /// All of a store but its pages, which are of a few bytes each.
 void make_store(const std::filesystem::path& folder, const std::string& name, const VolumeGrid& grid,
-                std::uint32_t steps) {
+                std::uint32_t steps, bool has_plain = false) {
   StoreRoot root;
   root.header.grid = grid;
   root.header.steps = steps;
@@ -194,7 +202,11 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
       entry.low = 3, entry.high = 200, entry.error = 40, entry.size = 20, entry.checksum = 77;
       for (std::size_t n = 1; n < entry.part_count(); ++n)
         entry.part_errors[n] = static_cast<std::uint8_t>(41 - n % 15);
-      const Bytes part = serialise_entries(std::vector(count, entry), sample_bytes(grid.type));
+      std::vector<PageEntry> entries(count, entry);
+      for (std::size_t n = 0; has_plain && n < count; ++n) {
+        if (n % 7 < 4) entries[n] = PageEntry{{3, n % 7 < 2 ? 200u : 201u, 0, {}}};
+      }
+      const Bytes part = serialise_entries(entries, sample_bytes(grid.type));
       root.chunks.push_back({step, first, prologue.root_offset, part.size(), crc32c(part), 32, 33});
       prologue.root_offset += part.size();
       append(directory, part);
@@ -221,6 +233,7 @@ void make(const std::filesystem::path& folder) {
   make_samples<std::uint8_t>(folder, {"bytes", kOurs, {5, 4, 3}, false, 0});
   make_samples<std::uint8_t>(folder, {"complete", kOurs, {4, 4, 3}, true, 0});
   make_samples<std::uint8_t>(folder, {"raw", kOurs, {3, 3, 3}, false, 1});
+  make_samples<std::uint8_t>(folder, {"prevailing", kOurs, {7, 5, 4}, false, 3, 1, std::uint8_t{128}});
   make_samples<std::uint16_t>(folder, {"shorts", kOurs, {6, 4, 3}, false, 9});
   make_samples<std::uint32_t>(folder, {"words", kOurs, {4, 3, 3}, false, 3});
   make_samples<std::uint8_t>(folder, {"split_bytes", kEdge, {5, 4, 3}, false, 0});
@@ -247,6 +260,7 @@ void make(const std::filesystem::path& folder) {
   turned.space = "LPS";
   make_store(folder, "copies", turned, 1);
   make_store(folder, "rod", grid_of(SampleType::kInt16, {300, 1, 2}), 1);
+  make_store(folder, "plain", grid_of(SampleType::kUint8, {90, 40, 20}), 1, true);
 }
 
 }  // namespace
