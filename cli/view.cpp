@@ -54,12 +54,13 @@ Figures figures_of(const OffscreenPictures& pictures) {
   return {{"triangles", report.triangles},
           {"splits", report.splits},
           {"merges", report.merges},
+          {"occluded_diamonds", report.hidden},
+          {"occlusion_queries", report.depth_tests},
           {"largest_error_pixels", report.largest_error_pixels},
           {"rendered_triangles", drawn.triangles},
           {"draw_calls", drawn.draw_calls},
           {"copied_bytes", drawn.copied_bytes},
           {"update_seconds", report.seconds},
-          {"normal_seconds", report.normal_seconds},
           {"draw_seconds", pictures.draw_seconds()}};
 }
 
@@ -80,7 +81,7 @@ Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& vi
     const Raster raster = pictures.draw(path[n]);
     if (folder != nullptr) folder->fill([&] { write_png(folder->file(frame_name(n)), raster); });
     all.push_back(figures_of(pictures));
-    seconds += pictures.report().seconds + pictures.report().normal_seconds + pictures.draw_seconds();
+    seconds += pictures.report().seconds + pictures.draw_seconds();
     largest = std::max(largest, pictures.report().largest_error_pixels);
     most = std::max(most, pictures.report().triangles);
   }

@@ -150,6 +150,8 @@ void add_budget_options(const Command& command, ViewOptions& options) {
           "The greatest isosurface error, an estimate of the distance to the surface of all samples, as it "
           "is seen: in pixels (default 1)")
       .type_name("E");
+  command.add_flag("--occlusion", options.occlusion,
+                   "Surfaces of stores stay coarse where the picture hides them");
   command
       .add_option(
           "--max-triangles", options.max_triangles,
@@ -231,6 +233,7 @@ void apply_view_options(const ViewOptions& options, ViewSession& view) {
     state.shading = options.shading == "sphere" ? Shading::kSphere : Shading::kLit;
   if (!options.colour_map.empty()) state.colour_map = options.colour_map;
   if (options.edges) state.has_edges = true;
+  if (options.occlusion) state.leaves_out_hidden = true;
   if (options.plain) state.has_axes = state.has_box = state.has_colour_bar = false;
   if (const std::optional<Plane> plane = plane_of(options)) {
     state.cut.is_on = true;

@@ -18,6 +18,7 @@ class DepthPyramid {
   /// of them.
   DepthPyramid(const Viewpoint& viewpoint, std::span<const float> depths);
 
+  [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
   /// Whether a picture of that viewpoint shows nothing of a box: it is behind what is seen, or beside the
   /// picture. False for a box that the near plane cuts. What lies in a hidden box is hidden.
   [[nodiscard]] bool hides(const CentredBox& box) const;

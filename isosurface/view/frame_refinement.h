@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
+#include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/viewpoint.h"
 
 namespace adamas {
@@ -11,6 +13,8 @@ namespace adamas {
 /// What a frame is to be like.
 struct FrameRequest {
   Viewpoint viewpoint;
+  /// Of a picture from there: diamonds that it hides are not split (D 4.10). Null: all are as if visible.
+  std::shared_ptr<const DepthPyramid> depths;
   double isovalue = 0;
   /// Diamonds whose isosurface error may take more pixels are split.
   double pixels = 1;
@@ -24,10 +28,13 @@ struct FrameRequest {
 /// What a frame came to.
 struct FrameFigures {
   /// The greatest error of the diamonds that are in sight and not split, in pixels: an estimate, as
-  /// isosurface errors are. 0 where none is left.
+  /// isosurface errors are. 0 where none is left. What depths hide is not in sight.
   double largest_error = 0;
   std::uint64_t triangles = 0;
   std::uint64_t splits = 0, merges = 0;
+  /// Diamonds, and whole pages of them, that were looked up in the depths, and those of them that are hidden.
+  /// QueuedFrames does not count.
+  std::uint64_t depth_tests = 0, hidden = 0;
   bool stopped = false;
 };
 

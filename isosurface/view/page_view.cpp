@@ -37,7 +37,11 @@ PageView::Heights::Heights(const View::Side& side, const LodPlaces& lod, Lattice
 }
 
 PageView::PageView(const View& view, const LodPlaces& lod, LatticePoint block)
-    : near_distance_(view.viewpoint().near), near_(view.sides()[View::kNear], lod, block) {
+    : lod_(lod),
+      block_(block),
+      depths_(view.depths().get()),
+      near_distance_(view.viewpoint().near),
+      near_(view.sides()[View::kNear], lod, block) {
   const auto note = [&](const Heights& heights) {
     // Diamonds of phase 0 reach farthest.
     if (!(heights.greatest - heights.offset >= -heights.reach[0])) hidden_ = true;
@@ -45,6 +49,21 @@ PageView::PageView(const View& view, const LodPlaces& lod, LatticePoint block)
   };
   note(near_);
   for (std::size_t n = 0; n < View::kNear && !hidden_; ++n) note(Heights(view.sides()[n], lod, block));
+  occluded_ = !hidden_ && depths_ != nullptr && depths_->hides(box_of_page());
+}
+
+CentredBox PageView::box_of_page() const {
+  // A little larger, so that rounding leaves the boxes of diamonds within it.
+  constexpr double kLarger = 1 + 0x1p-30;
+  CentredBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<double>& places = lod_.places(axis);
+    const std::size_t begin = kSide * static_cast<std::size_t>(block_[axis]),
+                      last = std::min(begin + kSide, places.size()) - 1;
+    box.centre[axis] = 0.5 * (places[begin] + places[last]);
+    box.half[axis] = kLarger * (0.5 * (places[last] - places[begin]) + lod_.half(0)[axis]);
+  }
+  return box;
 }
 
 }  // namespace adamas

@@ -8,6 +8,7 @@
 
 #include "core/lattice/domain.h"
 #include "isosurface/extraction/split_limits.h"
+#include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/viewpoint.h"
 #include "isosurface/volume/page_grid.h"
 
@@ -44,11 +45,16 @@ class LodPlaces {
 /// nested box, bit by bit.
 class PageView {
  public:
+  /// The view and the LOD must outlive this.
   PageView(const View& view, const LodPlaces& lod, LatticePoint block);
 
-  /// Whether no diamond is in the picture; and whether all are.
-  [[nodiscard]] bool is_hidden() const { return hidden_; }
-  [[nodiscard]] bool is_whole() const { return cut_count_ == 0; }
+  /// Whether no diamond is visible; and whether all are.
+  [[nodiscard]] bool is_hidden() const { return hidden_ || occluded_; }
+  [[nodiscard]] bool is_whole() const { return cut_count_ == 0 && depths_ == nullptr; }
+  /// Whether depths alone tell that no diamond is visible.
+  [[nodiscard]] bool is_occluded() const { return occluded_; }
+  /// Whether there are depths.
+  [[nodiscard]] bool has_depths() const { return depths_ != nullptr; }
   /// View::depth of a diamond, by its place on the page; and the least and the greatest of all places.
   [[nodiscard]] double depth(std::uint16_t place, int phase) const {
     return as_depth(near_.at(place), phase);
@@ -56,6 +62,12 @@ class PageView {
   [[nodiscard]] double least_depth(int phase) const { return as_depth(near_.least, phase); }
   [[nodiscard]] double greatest_depth(int phase) const { return as_depth(near_.greatest, phase); }
   [[nodiscard]] bool is_visible(std::uint16_t place, int phase) const {
+    return is_in_picture(place, phase) && !is_occluded(place, phase);
+  }
+  [[nodiscard]] bool is_occluded(std::uint16_t place, int phase) const {
+    return depths_ != nullptr && depths_->hides(box(place, phase));
+  }
+  [[nodiscard]] bool is_in_picture(std::uint16_t place, int phase) const {
     for (std::size_t n = 0; n < cut_count_; ++n) {
       if (!(cut_[n].at(place) - cut_[n].offset >= -cut_[n].reach[static_cast<std::size_t>(phase)]))
         return false;
@@ -84,9 +96,22 @@ class PageView {
            std::max(0.0, height - near_.offset - near_.reach[static_cast<std::size_t>(phase)]);
   }
 
+  [[nodiscard]] CentredBox box(std::uint16_t place, int phase) const {
+    const auto along = [&](int axis, std::size_t n) {
+      return lod_.places(axis)[kSide * static_cast<std::size_t>(block_[axis]) + n];
+    };
+    return {{along(0, place % kSide), along(1, place / kSide % kSide), along(2, place / (kSide * kSide))},
+            lod_.half(phase)};
+  }
+  /// Round the boxes of all diamonds.
+  [[nodiscard]] CentredBox box_of_page() const;
+
+  const LodPlaces& lod_;
+  LatticePoint block_;
+  const DepthPyramid* depths_;
   double near_distance_;
   Heights near_;
-  bool hidden_ = false;
+  bool hidden_ = false, occluded_ = false;
   std::array<Heights, 5> cut_;  ///< of the sides that some diamonds may lie outside
   std::size_t cut_count_ = 0;
 };

@@ -91,7 +91,7 @@ const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
 template <class Sample>
 FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
   changes_ = {};
-  diamonds_.set_view(View(request.viewpoint));
+  diamonds_.set_view(View(request.viewpoint, request.depths));
   const StoppedByFrame progress(request);
   FrameFigures figures;
   try {
@@ -99,6 +99,8 @@ FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
     const SurfaceCut cut = cut_of(request, progress);
     last_class_ = cut.error_class;
     figures.largest_error = diamonds_.most_pixels(pages_.split(cut, [&] { progress.check(); }));
+    figures.depth_tests = pages_.depth_tests();
+    figures.hidden = pages_.hidden();
     find_changed_cells(figures);
     std::vector<NewChunk> made = make_chunks(progress);
     // Nothing stops the frame from here on.

@@ -28,7 +28,7 @@ std::size_t QueuedFrames<Sample>::bucket(LatticePoint p) {
 
 template <class Sample>
 FrameFigures QueuedFrames<Sample>::refine(const FrameRequest& request) {
-  diamonds_.set_view(View(request.viewpoint));
+  diamonds_.set_view(View(request.viewpoint, request.depths));
   pixels_ = request.pixels;
   constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
   max_triangles_ =

@@ -112,6 +112,7 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
                                                                              std::uint64_t room,
                                                                              const Check& check) {
   ++walk_;
+  depth_tests_ = hidden_ = 0;
   low_ = depths_of(least_class);
   next_ = depths_of(least_class + 1);
   greatest_passed_ = 0;
@@ -125,6 +126,8 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
       check();
       if (page->greatest == 0) continue;
       const PageView view = view_of(*page);
+      depth_tests_ += view.has_depths() ? 1 : 0;
+      hidden_ += view.is_occluded() ? 1 : 0;
       if (view.is_hidden()) continue;
       const double depth = view.least_depth(0);
       if (low_[static_cast<std::size_t>(page->greatest)] < depth) {
@@ -162,6 +165,14 @@ const CrossedPage& ViewedPages<Sample>::crossed(ViewedPage& page, const PageView
 }
 
 template <class Sample>
+bool ViewedPages<Sample>::is_occluded(const PageView& view, std::uint16_t place, int phase) {
+  const bool is_hidden = view.is_occluded(place, phase);
+  ++depth_tests_;
+  hidden_ += is_hidden ? 1 : 0;
+  return is_hidden;
+}
+
+template <class Sample>
 void ViewedPages<Sample>::look_at(ViewedPage& page, const PageView& view, Added& added) {
   const CrossedPage& known = crossed(page, view);
   PageMask &above = page.masks->above, &at_low = page.masks->at_low;
@@ -189,7 +200,8 @@ void ViewedPages<Sample>::look_at(ViewedPage& page, const PageView& view, Added&
       for (std::size_t n = group.begin; n < group.end; ++n) {
         const std::uint16_t place = known.places[n];
         const double depth = view.depth(place, group.phase);
-        if (depth > low || (!whole && !view.is_visible(place, group.phase))) continue;
+        if (depth > low || (!whole && !view.is_in_picture(place, group.phase))) continue;
+        if (view.has_depths() && is_occluded(view, place, group.phase)) continue;
         const std::uint32_t more = known.added[n], lost = known.lost.empty() ? 0u : known.lost[n];
         if (depth <= next) {
           above.add(place);

@@ -101,6 +101,9 @@ class ViewedPages {
     const ViewedPage* const page = find(lod, block);
     return page == nullptr || page->met != walk_ ? nullptr : page->split;
   }
+  /// How many diamonds and pages the last walk looked up in depths, and how many of them are hidden.
+  [[nodiscard]] std::uint64_t depth_tests() const { return depth_tests_; }
+  [[nodiscard]] std::uint64_t hidden() const { return hidden_; }
   /// A number for the last walk, greater than that of all before.
   [[nodiscard]] std::uint64_t walk_number() const { return walk_; }
   /// Forgets crossed diamonds of the pages that were not looked at for longest, until there is room. To be
@@ -123,6 +126,8 @@ class ViewedPages {
   void add_candidate(int lod, LatticePoint block);
   /// Adds the diamonds of a page.
   void look_at(ViewedPage& page, const PageView& view, Added& added);
+  /// Whether depths hide a diamond; counts.
+  bool is_occluded(const PageView& view, std::uint16_t place, int phase);
   const CrossedPage& crossed(ViewedPage& page, const PageView& view);
   [[nodiscard]] PageView view_of(const ViewedPage& page) const {
     return {diamonds_.view(), places_[static_cast<std::size_t>(page.lod)], page.block};
@@ -146,6 +151,7 @@ class ViewedPages {
   std::deque<ViewedPage> pages_;
   std::vector<LatticeMap<ViewedPage*>> index_;  ///< by LOD and block
   std::uint64_t walk_ = 0, frame_ = 1;
+  std::uint64_t depth_tests_ = 0, hidden_ = 0;
   Depths low_, next_;        ///< of the least class of the walk, and the next one
   int greatest_passed_ = 0;  ///< of the pages that the walk met with and did not look at
   std::vector<ViewedPage*> candidates_, shown_;

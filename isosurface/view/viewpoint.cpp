@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "isosurface/view/depth_pyramid.h"
 
 namespace adamas {
 
@@ -36,7 +37,8 @@ double View::reach(const CentredBox& box, const Vec3& direction) {
          std::abs(direction.z) * box.half.z;
 }
 
-View::View(const Viewpoint& viewpoint) : viewpoint_(viewpoint) {
+View::View(const Viewpoint& viewpoint, std::shared_ptr<const DepthPyramid> depths)
+    : viewpoint_(viewpoint), depths_(std::move(depths)) {
   check(viewpoint);
   const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
              right = normalized(cross(forward, viewpoint.up)), up = cross(right, forward);
@@ -64,8 +66,9 @@ View::View(const Viewpoint& viewpoint) : viewpoint_(viewpoint) {
 }
 
 bool View::is_visible(const CentredBox& box) const {
-  return std::ranges::all_of(
+  const bool is_in_picture = std::ranges::all_of(
       sides_, [&](const Side& s) { return dot(s.normal, box.centre) - s.offset >= -reach(box, s.normal); });
+  return is_in_picture && (depths_ == nullptr || !depths_->hides(box));
 }
 
 bool View::shows_all_of(const CentredBox& box) const {

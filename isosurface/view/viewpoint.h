@@ -3,10 +3,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 
 #include "core/geometry/vec3.h"
 
 namespace adamas {
+
+class DepthPyramid;
 
 /// From where a surface is seen, in the frame of the grid.
 struct Viewpoint {
@@ -29,17 +33,20 @@ struct CentredBox {
 };
 
 /// What a camera makes of lengths. Both answers are monotone: a box that contains another one is visible if
-/// that is, and lengths have at least as many pixels in it.
+/// that is, and lengths have at least as many pixels in it. With depths, what they hide is not visible.
 class View {
  public:
   /// Throws Error where a number is not finite, the picture has no pixels, the eye is at the target, or the
   /// angle is not between 0 and pi.
-  explicit View(const Viewpoint& viewpoint);
+  explicit View(const Viewpoint& viewpoint, std::shared_ptr<const DepthPyramid> depths = nullptr);
 
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
-  /// False where all of the box is outside the picture. May be true where it is near the picture's corners.
+  /// Null where there are none.
+  [[nodiscard]] const std::shared_ptr<const DepthPyramid>& depths() const { return depths_; }
+  /// False where all of the box is outside the picture, or hidden. May be true where it is near the picture's
+  /// corners.
   [[nodiscard]] bool is_visible(const CentredBox& box) const;
-  /// Whether all of the box is in the picture. Then so is what lies in it.
+  /// Whether all of the box is in the picture, be it hidden or not. Then so is what lies in it.
   [[nodiscard]] bool shows_all_of(const CentredBox& box) const;
   /// Two points of the box at this distance from each other are no farther apart in the picture, in pixels,
   /// where the one that is nearer to the eye is in the picture.
@@ -66,6 +73,7 @@ class View {
 
  private:
   Viewpoint viewpoint_;
+  std::shared_ptr<const DepthPyramid> depths_;
   std::array<Side, 5> sides_;
   double scale_;  ///< pixels for a length, at the distance 1 in perspective
 };

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <set>
 
+#include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/paged_frames.h"
 #include "isosurface/view/queued_frames.h"
 #include "tests/isosurface/contour_checks.h"
@@ -67,6 +69,22 @@ class Frames : public testing::TestWithParam<unsigned> {
     result.isovalue = 80.5 + path.number(3) * 20;
     result.pixels = 0.5 * (1 + path.number(16));
     return result;
+  }
+  /// What a picture shows that has walls in some squares, and nothing elsewhere.
+  std::shared_ptr<const DepthPyramid> walls(const Viewpoint& viewpoint) {
+    const auto width = static_cast<std::size_t>(viewpoint.width_pixels),
+               height = static_cast<std::size_t>(viewpoint.height_pixels);
+    constexpr std::size_t kSquare = 50;
+    std::vector<float> squares;
+    for (std::size_t n = 0; n < (width / kSquare) * (height / kSquare); ++n)
+      squares.push_back(path.number(3) == 0 ? std::numeric_limits<float>::infinity()
+                                            : 0.1F * static_cast<float>(path.number(400)));
+    std::vector<float> depths;
+    for (std::size_t y = 0; y < height; ++y) {
+      for (std::size_t x = 0; x < width; ++x)
+        depths.push_back(squares[y / kSquare * (width / kSquare) + x / kSquare]);
+    }
+    return std::make_shared<DepthPyramid>(viewpoint, depths);
   }
   Contour contour(const QueuedFrames<std::uint8_t>& of, double isovalue) {
     const int lods = store.pages().grid().depth();
@@ -213,6 +231,44 @@ TEST_P(Frames, ByPagesAreThoseByQueues) {
   }
   EXPECT_GT(splits, 1000u);
   EXPECT_GT(merges, 100u);
+}
+
+TEST_P(Frames, SplitNothingThatAPictureHides) {
+  auto queued = frames();
+  PagedFrames<std::uint8_t> paged(store.pages());
+  const test::DiamondTable table(store);
+  std::uint64_t fewer = 0, hidden = 0;
+  for (int n = 0; n < 15; ++n) {
+    FrameRequest wanted = request();
+    const double least = std::exp2(0.25 * (static_cast<double>(path.number(12)) - 4));
+    wanted.pixels = (1 + 1e-9) * least;
+    const std::uint64_t all = paged.refine(wanted).triangles;
+    wanted.depths = walls(wanted.viewpoint);
+    const FrameFigures found = paged.refine(wanted);
+    EXPECT_LE(found.triangles, all);
+    EXPECT_LE(found.hidden, found.depth_tests);
+    fewer += found.triangles < all ? 1 : 0;
+    hidden += found.hidden;
+    test::expect_sound(paged.contour(), volume.grid.box());
+    // By queues, and by a look at all diamonds there are.
+    wanted.pixels = (1 - 1e-12) * least;
+    const FrameFigures expected = queued.refine(wanted);
+    expect_sound(queued, wanted, expected);
+    EXPECT_EQ(found.triangles, expected.triangles);
+    EXPECT_EQ(edges_of(paged.contour()), edges_of(contour(queued, wanted.isovalue)));
+    ViewedDiamonds<std::uint8_t> diamonds(store.pages());
+    diamonds.set_contour(wanted.isovalue);
+    diamonds.set_view(View(wanted.viewpoint, wanted.depths));
+    IndexedHierarchy direct(diamonds.domain(), diamonds.lods());
+    std::vector<LatticePoint> done;
+    for (const auto& [p, values] : table.diamonds()) {
+      const LatticePoint q = diamonds.lattice_step(0) * p;
+      if (diamonds.pixels(q) > wanted.pixels) direct.split(q, done);
+    }
+    EXPECT_EQ(direct.checksum(), queued.mesh().checksum());
+  }
+  EXPECT_GT(fewer, 5u);
+  EXPECT_GT(hidden, 100u);
 }
 
 TEST_P(Frames, ByPagesAreWithinTheirBudgetWhereverTheWorkIsStopped) {

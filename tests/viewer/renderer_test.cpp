@@ -209,6 +209,26 @@ TEST_F(Pictures, ColoursShowValuesOfTheSideThatIsSeen) {
   EXPECT_EQ(with_values(std::nanf(""), 12).g, 255) << "its own colour where there is no value";
 }
 
+TEST_F(Pictures, DepthsAreDistancesAlongTheLineOfSight) {
+  Renderer renderer;
+  for (const double height : {0.0, 4.0}) {
+    Viewpoint from = viewpoint();
+    from.height = height;
+    from.width_pixels = 101;
+    from.height_pixels = 75;
+    PictureContents contents;
+    contents.viewpoint = from;
+    contents.parts = {part(ball(middle, 100))};
+    const PictureTarget target(101, 75);
+    const DrawFigures figures = renderer.draw(contents, target.framebuffer(), 101, 75);
+    const std::vector<float> depths = target.depths(from, figures.far);
+    ASSERT_EQ(depths.size(), 101u * 75u);
+    EXPECT_NEAR(depths[37 * 101 + 50], distance(from.eye, from.target) - 1, 0.01);
+    EXPECT_TRUE(std::isinf(depths[0]));
+    EXPECT_EQ(contents.parts.size(), 1u);
+  }
+}
+
 TEST_F(Pictures, MeshesComeAndGoAndAreNotCopiedTwice) {
   Renderer renderer;
   const PictureTarget target(60, 60);

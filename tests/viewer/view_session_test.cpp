@@ -17,6 +17,36 @@
 namespace adamas {
 namespace {
 
+/// Parts with chunks that look alike put together, so that each surface is one part.
+std::vector<DrawnPart> together(const std::vector<DrawnPart>& parts) {
+  std::vector<DrawnPart> result;
+  std::shared_ptr<DrawnMesh> mesh;
+  for (const DrawnPart& part : parts) {
+    if (!mesh || part.mesh->is_lines || !(result.back().style == part.style)) {
+      mesh = std::make_shared<DrawnMesh>(*part.mesh);
+      result.push_back({mesh, part.style});
+      continue;
+    }
+    const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
+    const Vec3 offset = part.mesh->origin - mesh->origin;
+    for (DrawnMesh::Vertex vertex : part.mesh->vertices) {
+      for (int axis = 0; axis < 3; ++axis)
+        vertex.place[static_cast<std::size_t>(axis)] += static_cast<float>(offset[axis]);
+      mesh->vertices.push_back(vertex);
+    }
+    for (const std::uint32_t index : part.mesh->indices) mesh->indices.push_back(first + index);
+    mesh->box.extend(part.mesh->box.min);
+    mesh->box.extend(part.mesh->box.max);
+  }
+  return result;
+}
+
+std::vector<SharedMesh> meshes_of(const std::vector<DrawnPart>& parts) {
+  std::vector<SharedMesh> meshes;
+  for (const DrawnPart& part : parts) meshes.push_back(part.mesh);
+  return meshes;
+}
+
 /// A session on a store of a ball, whose surface at 100 has the radius 10 about (16, 16, 16).
 class Sessions : public testing::Test {
  protected:
@@ -29,7 +59,7 @@ class Sessions : public testing::Test {
   }
   std::vector<DrawnPart> finished() {
     session.finish();
-    return session.parts();
+    return together(session.parts());
   }
   static double greatest_radius(const DrawnMesh& mesh) {
     double most = 0;
@@ -50,7 +80,8 @@ TEST_F(Sessions, ShowTheSurfaceOfTheStateOnceItIsFinished) {
   EXPECT_NEAR(greatest_radius(*parts[0].mesh), 10, 0.5);
   EXPECT_TRUE(session.report().is_current);
   EXPECT_EQ(session.report().problem, "");
-  EXPECT_EQ(session.parts()[0].mesh, parts[0].mesh) << "nothing is made anew for the same picture";
+  EXPECT_EQ(meshes_of(session.parts()), meshes_of(session.parts()))
+      << "nothing is made anew for the same picture";
   DocumentState& state = session.state().documents[0];
   state.surfaces[0].isovalue = 150;
   EXPECT_NEAR(greatest_radius(*finished()[0].mesh), 5, 0.5);
@@ -71,7 +102,7 @@ TEST_F(Sessions, ShowTheSurfaceOfTheStateOnceItIsFinished) {
 }
 
 TEST_F(Sessions, NormalsPointOutwardsAsTheTrianglesDo) {
-  const DrawnMesh& mesh = *finished()[0].mesh;
+  const DrawnMesh mesh = *finished()[0].mesh;
   const auto at = [&](std::uint32_t n) {
     const auto& p = mesh.vertices[n].place;
     return mesh.origin + Vec3{p[0], p[1], p[2]};
@@ -91,7 +122,8 @@ TEST_F(Sessions, OtherVolumesColourSurfaces) {
   ASSERT_EQ(state.field, "ball.adm");
   state.surfaces[0].isovalue = 120;
   coloured.finish();
-  for (const auto& vertex : coloured.parts()[0].mesh->vertices) EXPECT_NEAR(vertex.front_value, 120, 3);
+  for (const auto& vertex : together(coloured.parts())[0].mesh->vertices)
+    EXPECT_NEAR(vertex.front_value, 120, 3);
   const auto field = coloured.shown_field();
   ASSERT_TRUE(field);
   EXPECT_EQ(field->range, (std::array<double, 2>{0, 200}));
@@ -123,14 +155,15 @@ TEST_F(Sessions, OpenBadFilesWithoutAnyChange) {
 }
 
 TEST_F(Sessions, StoresThatAreCutOffWhileTheyAreOpenAreAProblemNotACrash) {
-  const auto before = finished();
+  session.finish();
+  const auto before = session.parts();
   std::filesystem::resize_file(path, 200);
   session.state().documents[0].surfaces[0].isovalue = 30;
-  const auto after = finished();
+  session.finish();
+  const auto after = session.parts();
   EXPECT_NE(session.report().problem, "");
   EXPECT_NE(session.report().problem.find("ball.adm"), std::string::npos) << session.report().problem;
-  ASSERT_EQ(after.size(), 1u);
-  EXPECT_EQ(after[0].mesh, before[0].mesh) << "what there was stays to be seen";
+  EXPECT_EQ(meshes_of(after), meshes_of(before)) << "what there was stays to be seen";
 }
 
 TEST_F(Sessions, ObliqueGridsLieInSpace) {
@@ -147,7 +180,7 @@ TEST_F(Sessions, ObliqueGridsLieInSpace) {
     there.state().has_box = false;
     there.finish();
     const Vec3 middle{100 - 16, 16, is_left_handed ? -16.0 : 16.0};
-    const DrawnMesh& mesh = *there.parts()[0].mesh;
+    const DrawnMesh mesh = *together(there.parts())[0].mesh;
     EXPECT_LT(distance(mesh.box.center(), middle), 0.5);
     const auto picked = there.pick(160, 120);
     ASSERT_TRUE(picked);
@@ -159,15 +192,45 @@ TEST_F(Sessions, ObliqueGridsLieInSpace) {
 
 TEST_F(Sessions, KeepTheMeshOfAView) {
   session.act(Action::kCulledFrom);
-  const auto before = finished();
+  session.finish();
+  const std::vector<SharedMesh> before = meshes_of(session.parts());
   session.state().viewpoint.eye = session.state().viewpoint.target + Vec3{0, 0, 11};
   session.state().viewpoint.up = {0, 1, 0};
-  const auto after = finished();
-  ASSERT_EQ(after.size(), 2u) << "the view that is kept is shown as lines";
-  EXPECT_TRUE(after[1].mesh->is_lines);
-  EXPECT_EQ(after[0].mesh, before[0].mesh);
+  session.finish();
+  const std::vector<SharedMesh> after = meshes_of(session.parts());
+  EXPECT_TRUE(after.back()->is_lines) << "the view that is kept is shown as lines";
+  EXPECT_EQ(after, before);
   session.act(Action::kCulledFrom);
-  EXPECT_NE(finished()[0].mesh, before[0].mesh);
+  session.finish();
+  EXPECT_NE(meshes_of(session.parts()), before);
+}
+
+TEST_F(Sessions, LeaveCoarseWhatAPictureHides) {
+  const auto triangles = [&] {
+    std::size_t sum = 0;
+    for (const DrawnPart& each : finished()) sum += each.mesh->indices.size() / 3;
+    return sum;
+  };
+  session.state().pixels = 0.3;
+  const std::size_t all = triangles();
+  session.act(Action::kHidden);
+  EXPECT_TRUE(session.wants_depths());
+  // A wall through the middle of the ball.
+  const Viewpoint& from = session.state().viewpoint;
+  const std::vector<float> wall(640 * 480, static_cast<float>(distance(from.eye, {16, 16, 16})));
+  session.set_depths(std::make_shared<const DepthPyramid>(from, wall));
+  EXPECT_FALSE(session.wants_depths());
+  const std::size_t half = triangles();
+  EXPECT_LT(half, all * 3 / 4);
+  EXPECT_GT(half, all / 4);
+  EXPECT_GT(session.report().hidden, 0u);
+  // Another surface, or another view, is not behind that wall.
+  session.state().documents[0].surfaces[0].isovalue = 101;
+  EXPECT_GT(triangles(), all * 9 / 10);
+  EXPECT_EQ(session.report().hidden, 0u);
+  EXPECT_TRUE(session.wants_depths());
+  session.act(Action::kHidden);
+  EXPECT_FALSE(session.wants_depths());
 }
 
 TEST_F(Sessions, RestoreAStateForTheFilesThatAreOpen) {

@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 
+#include <limits>
 #include <vector>
 
 #include "core/base/error.h"
@@ -25,21 +26,25 @@ PictureTarget::~PictureTarget() { free(); }
 
 void PictureTarget::make() {
   constexpr GLsizei kSamples = 4;
-  for (GLuint* const buffer : {&colour_, &depth_, &resolved_colour_}) glCreateRenderbuffers(1, buffer);
+  for (GLuint* const buffer : {&colour_, &depth_, &resolved_colour_, &resolved_depth_})
+    glCreateRenderbuffers(1, buffer);
   glNamedRenderbufferStorageMultisample(colour_, kSamples, GL_RGBA8, width_, height_);
   glNamedRenderbufferStorageMultisample(depth_, kSamples, GL_DEPTH_COMPONENT32F, width_, height_);
   glNamedRenderbufferStorage(resolved_colour_, GL_RGBA8, width_, height_);
+  glNamedRenderbufferStorage(resolved_depth_, GL_DEPTH_COMPONENT32F, width_, height_);
   glCreateFramebuffers(1, &drawn_);
   glNamedFramebufferRenderbuffer(drawn_, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
   glNamedFramebufferRenderbuffer(drawn_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
   glCreateFramebuffers(1, &resolved_);
   glNamedFramebufferRenderbuffer(resolved_, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolved_colour_);
+  glNamedFramebufferRenderbuffer(resolved_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, resolved_depth_);
 }
 
 void PictureTarget::free() {
   glDeleteFramebuffers(1, &drawn_);
   glDeleteFramebuffers(1, &resolved_);
-  for (const GLuint buffer : {colour_, depth_, resolved_colour_}) glDeleteRenderbuffers(1, &buffer);
+  for (const GLuint buffer : {colour_, depth_, resolved_colour_, resolved_depth_})
+    glDeleteRenderbuffers(1, &buffer);
 }
 
 Raster PictureTarget::read() const {
@@ -61,6 +66,34 @@ Raster PictureTarget::read() const {
     }
   }
   return raster;
+}
+
+std::vector<float> PictureTarget::depths(const Viewpoint& viewpoint, double far) const {
+  glBlitNamedFramebuffer(drawn_, resolved_, 0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT,
+                         GL_NEAREST);
+  const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
+  std::vector<float> stored(width * height), result;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_);
+  glReadPixels(0, 0, width_, height_, GL_DEPTH_COMPONENT, GL_FLOAT, stored.data());
+  result.reserve(stored.size());
+  const double near = viewpoint.near;
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const double depth = stored[(height - 1 - y) * width + x];
+      // Perspective keeps reciprocals.
+      const double distance =
+          viewpoint.height > 0 ? near + depth * (far - near) : near * far / (far - depth * (far - near));
+      result.push_back(depth < 1 ? static_cast<float>(distance) : std::numeric_limits<float>::infinity());
+    }
+  }
+  return result;
+}
+
+void PictureTarget::show() const {
+  glBlitNamedFramebuffer(drawn_, resolved_, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                         GL_NEAREST);
+  glBlitNamedFramebuffer(resolved_, 0, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                         GL_NEAREST);
 }
 
 }  // namespace adamas

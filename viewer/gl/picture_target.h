@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/picture/raster.h"
+#include "isosurface/view/viewpoint.h"
 
 namespace adamas {
 
@@ -22,14 +24,19 @@ class PictureTarget {
   [[nodiscard]] std::uint32_t framebuffer() const { return drawn_; }
   /// What was drawn. Throws Error where that failed.
   [[nodiscard]] Raster read() const;
+  /// How far one sees at each pixel, from the upper row to the lower one: distances along the line of sight,
+  /// infinite where nothing was drawn. `far`: as DrawFigures tells.
+  [[nodiscard]] std::vector<float> depths(const Viewpoint& viewpoint, double far) const;
+  /// Puts what was drawn into the window's framebuffer, which has the same size.
+  void show() const;
 
  private:
   void make();
   void free();
 
   int width_, height_;
-  std::uint32_t drawn_ = 0, colour_ = 0, depth_ = 0;  ///< with several samples a pixel
-  std::uint32_t resolved_ = 0, resolved_colour_ = 0;  ///< with one
+  std::uint32_t drawn_ = 0, colour_ = 0, depth_ = 0;                       ///< with several samples a pixel
+  std::uint32_t resolved_ = 0, resolved_colour_ = 0, resolved_depth_ = 0;  ///< with one
 };
 
 }  // namespace adamas

@@ -230,12 +230,14 @@ struct Renderer::Objects {
     std::vector<Draw> all_draws;
     std::vector<Style> all_styles;
     places.clear();
+    const PartStyle* last = nullptr;
     for (const DrawnPart& part : contents.parts) {
       places.push_back(meshes.place(part.mesh));
+      if (last == nullptr || !(*last == part.style)) all_styles.push_back(style_of(part.style));
+      last = &part.style;
       all_draws.push_back(
           {in_single(part.mesh->origin - contents.viewpoint.target, 0),
-           {static_cast<std::uint32_t>(all_styles.size()), part.style.is_clipped ? 1u : 0u, 0, 0}});
-      all_styles.push_back(style_of(part.style));
+           {static_cast<std::uint32_t>(all_styles.size() - 1), part.style.is_clipped ? 1u : 0u, 0, 0}});
     }
     draws.fill(all_draws);
     styles.fill(all_styles);
@@ -316,8 +318,7 @@ struct Renderer::Objects {
   void set_view(const PictureContents& contents, const Viewpoint& viewpoint) const {
     glUseProgram(program);
     glUniformMatrix4fv(0, 1, GL_FALSE, view_matrix(viewpoint).data());
-    glUniformMatrix4fv(1, 1, GL_FALSE,
-                       picture_matrix(viewpoint, far_plane(viewpoint, contents.parts)).data());
+    glUniformMatrix4fv(1, 1, GL_FALSE, picture_matrix(viewpoint, figures.far).data());
     const Plane plane = contents.clip.value_or(Plane{{}, {}});
     glUniform4fv(2, 1, in_single(plane.normal, dot(plane.normal, viewpoint.target - plane.origin)).data());
     glUniform1i(3, contents.shading == Shading::kSphere ? 1 : 0);
@@ -369,6 +370,7 @@ DrawFigures Renderer::draw(const PictureContents& contents, std::uint32_t frameb
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   o.meshes.begin_picture();
   if (!contents.parts.empty()) {
+    o.figures.far = far_plane(viewpoint, contents.parts);
     o.set_colour_map(contents.colour_map);
     o.take_parts(contents);
     o.set_view(contents, viewpoint);

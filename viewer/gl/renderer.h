@@ -28,6 +28,7 @@ struct PictureContents {
 /// What drawing a picture came to.
 struct DrawFigures {
   std::uint64_t triangles = 0, draw_calls = 0, copied_bytes = 0;
+  double far = 0;  ///< the distance of the far plane
 };
 
 /// Draws parts by the OpenGL context that is current when it is made. Opaque parts of one block of memory are

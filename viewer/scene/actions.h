@@ -23,6 +23,7 @@ enum class Action {
   kShading,
   kCut,
   kCulledFrom,
+  kHidden,
   kPanels,
   kHelp,
   kBookmark,
@@ -40,7 +41,7 @@ struct KeyBinding {
 };
 
 /// All keys, as the help shows them.
-inline constexpr std::array<KeyBinding, 24> kKeyBindings{{
+inline constexpr std::array<KeyBinding, 25> kKeyBindings{{
     {Action::kViewFront, "1", "View from the front, along y"},
     {Action::kViewRight, "3", "View from the right, against x"},
     {Action::kViewTop, "7", "View from above, against z"},
@@ -57,6 +58,7 @@ inline constexpr std::array<KeyBinding, 24> kKeyBindings{{
     {Action::kShading, "L", "Lit, or shaded as a sphere"},
     {Action::kCut, "P", "Plane of a cross section"},
     {Action::kCulledFrom, "O", "Keep the mesh of this view, to look at it from elsewhere"},
+    {Action::kHidden, "V", "Leave coarse what the picture hides"},
     {Action::kPanels, "Tab", "Panels"},
     {Action::kHelp, "H", "This help"},
     {Action::kBookmark, "M", "Keep this view as a bookmark"},

@@ -32,11 +32,11 @@ struct DocumentFacts {
 /// What the last update of a document came to.
 struct UpdateReport {
   std::uint64_t triangles = 0, splits = 0, merges = 0;
-  double largest_error_pixels = 0;  ///< an estimate
-  double seconds = 0;               ///< to work it out, but for the normals of surfaces
-  double normal_seconds = 0;        ///< to work those out
-  bool is_current = true;           ///< it is what the state asks for
-  std::string problem;              ///< why it could not be had; empty: nothing
+  std::uint64_t depth_tests = 0, hidden = 0;  ///< as FrameFigures has them
+  double largest_error_pixels = 0;            ///< an estimate
+  double seconds = 0;                         ///< to work it out
+  bool is_current = true;                     ///< it is what the state asks for
+  std::string problem;                        ///< why it could not be had; empty: nothing
 };
 
 /// What is known of a place.
@@ -54,6 +54,9 @@ class Document {
   [[nodiscard]] virtual const DocumentFacts& facts() const = 0;
   /// What there is to be drawn, and asks for what the state wants where that is something else.
   virtual std::vector<DrawnPart> parts(const ViewState& view, const DocumentState& state) = 0;
+  /// Whether what parts() gives by now is of the surfaces that the state asks for, from wherever they are
+  /// seen.
+  [[nodiscard]] virtual bool shows_surfaces_of(const DocumentState& state) const = 0;
   /// Waits until parts() gives what the state asks for, or there is a problem.
   virtual void finish(const ViewState& view, const DocumentState& state) = 0;
   [[nodiscard]] virtual UpdateReport report() const = 0;

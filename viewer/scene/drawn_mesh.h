@@ -41,6 +41,8 @@ struct PartStyle {
   bool is_flat = false;      ///< not shaded: cross sections and lines
   bool is_clipped = false;   ///< what lies in front of the picture's plane is cut away
   bool has_edges = false;    ///< with the edges of its triangles
+
+  bool operator==(const PartStyle&) const = default;
 };
 
 /// One thing in a picture.

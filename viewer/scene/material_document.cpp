@@ -64,6 +64,8 @@ class MaterialDocument final : public Document {
     return result;
   }
 
+  [[nodiscard]] bool shows_surfaces_of(const DocumentState&) const override { return true; }
+
   void finish(const ViewState& view, const DocumentState& state) override {
     static_cast<void>(parts(view, state));
     while (running_.valid()) {

@@ -1,6 +1,7 @@
 #include "viewer/scene/store_document.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <mutex>
 #include <thread>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "core/base/error.h"
@@ -31,6 +33,7 @@ struct Wanted {
   std::vector<double> isovalues;  ///< of samples
   double pixels = 1;
   std::uint64_t max_triangles = 0;
+  std::shared_ptr<const DepthPyramid> depths;
 
   bool operator==(const Wanted&) const = default;
 };
@@ -38,10 +41,18 @@ struct Wanted {
 /// What was found for that.
 struct Found {
   Wanted wanted;
-  std::vector<SharedMesh> meshes;  ///< one for each isovalue
+  std::vector<std::vector<SharedMesh>> surfaces;  ///< of each isovalue: the chunks
   UpdateReport report;
   PageCounts counts;
 };
+
+void add(const PageCounts& some, PageCounts& all) {
+  all.pages += some.pages;
+  all.predictors += some.predictors;
+  all.bytes += some.bytes;
+  all.copies += some.copies;
+  all.damaged += some.damaged;
+}
 
 Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
   if (grid.is_straight()) return viewpoint;
@@ -121,6 +132,7 @@ class SurfaceWorker {
   void update(const Wanted& wanted, std::uint64_t roughness) {
     auto found = std::make_shared<Found>();
     found->wanted = wanted;
+    const auto before = std::chrono::steady_clock::now();
     try {
       for (std::size_t n = 0; n < wanted.isovalues.size(); ++n) {
         if (!add_surface(*found, n, roughness)) return;
@@ -128,8 +140,9 @@ class SurfaceWorker {
     } catch (const std::exception& error) {
       // What there is stays to be seen.
       found->report.problem = error.what();
-      if (const auto last = this->found()) found->meshes = last->meshes;
+      if (const auto last = this->found()) found->surfaces = last->surfaces;
     }
+    found->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
     found->report.is_current = roughness == 1;
     {
       const std::lock_guard lock(mutex_);
@@ -138,46 +151,75 @@ class SurfaceWorker {
     changed_.notify_all();
   }
 
+  /// The frames of an isovalue, and what is drawn of them: by the ids of chunks, as of a revision.
+  struct Surface {
+    struct Drawn {
+      std::uint64_t revision = 0;
+      SharedMesh mesh;
+    };
+    std::unique_ptr<StoreFrames> frames;
+    std::unordered_map<std::uint64_t, Drawn> drawn;
+  };
+
   /// Returns false where something else is wanted by now.
   bool add_surface(Found& found, std::size_t n, std::uint64_t roughness) {
-    while (frames_.size() <= n) frames_.push_back(StoreFrames::open(file_, memory_));
+    while (surfaces_.size() <= n) surfaces_.push_back({StoreFrames::open(file_, memory_), {}});
     const Wanted& wanted = found.wanted;
     FrameRequest request;
     request.viewpoint = wanted.viewpoint;
+    request.depths = wanted.depths;
     request.isovalue = wanted.isovalues[n];
     request.pixels = wanted.pixels * static_cast<double>(roughness);
     request.max_triangles =
         std::max<std::uint64_t>(1, wanted.max_triangles / wanted.isovalues.size() / roughness);
     request.stop = [&] { return is_overtaken(wanted); };
-    Frame frame = frames_[n]->next(request);
-    if (frame.figures.stopped) return false;
-    place_in_space(file_.header().grid, frame.surface);
-    if (colours_) {
-      for (const Vec3& p : frame.surface.points)
-        frame.surface.values.push_back(static_cast<float>(colours_->at(p)));
-    }
-    found.meshes.push_back(drawn_mesh(frame.surface));
-    const PageCounts counts = frames_[n]->counts();
-    found.counts.pages += counts.pages;
-    found.counts.predictors += counts.predictors;
-    found.counts.bytes += counts.bytes;
-    found.counts.copies += counts.copies;
-    found.counts.damaged += counts.damaged;
+    const FrameFigures figures = surfaces_[n].frames->next(request);
+    if (figures.stopped) return false;
+    found.surfaces.push_back(drawn_chunks(surfaces_[n]));
+    add(surfaces_[n].frames->counts(), found.counts);
     UpdateReport& report = found.report;
-    report.seconds += frame.update_seconds;
-    report.normal_seconds += frame.normal_seconds;
-    report.triangles += frame.figures.triangles;
-    report.splits += frame.figures.splits;
-    report.merges += frame.figures.merges;
-    report.largest_error_pixels = std::max(report.largest_error_pixels, frame.figures.largest_error);
+    report.triangles += figures.triangles;
+    report.splits += figures.splits;
+    report.merges += figures.merges;
+    report.depth_tests += figures.depth_tests;
+    report.hidden += figures.hidden;
+    report.largest_error_pixels = std::max(report.largest_error_pixels, figures.largest_error);
     return true;
+  }
+
+  /// Only chunks that are not as they were are made anew.
+  std::vector<SharedMesh> drawn_chunks(Surface& surface) {
+    std::vector<SharedMesh> meshes;
+    std::unordered_map<std::uint64_t, Surface::Drawn> now;
+    surface.frames->for_each_chunk([&](const SurfaceChunk& chunk) {
+      if (chunk.triangles.empty()) return;
+      Surface::Drawn& drawn = now[chunk.id];
+      if (const auto before = surface.drawn.find(chunk.id); before != surface.drawn.end())
+        drawn = before->second;
+      if (!drawn.mesh || drawn.revision != chunk.revision) drawn = {chunk.revision, drawn_chunk(chunk)};
+      meshes.push_back(drawn.mesh);
+    });
+    surface.drawn = std::move(now);
+    return meshes;
+  }
+
+  [[nodiscard]] SharedMesh drawn_chunk(const SurfaceChunk& chunk) {
+    TriangleSurface surface;
+    surface.points = chunk.points;
+    surface.normals = chunk.normals;
+    surface.triangles = chunk.triangles;
+    place_in_space(file_.header().grid, surface);
+    if (colours_) {
+      for (const Vec3& p : surface.points) surface.values.push_back(static_cast<float>(colours_->at(p)));
+    }
+    return drawn_mesh(surface);
   }
 
   static constexpr std::uint64_t kRough = 8;
 
   StoreFile file_;
   std::size_t memory_;
-  std::vector<std::unique_ptr<StoreFrames>> frames_;  ///< of the thread, like colours_
+  std::vector<Surface> surfaces_;  ///< of the thread, like colours_
   std::unique_ptr<VolumeValues> colours_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
@@ -211,13 +253,17 @@ class StoreDocument final : public Document {
   [[nodiscard]] const DocumentFacts& facts() const override { return facts_; }
 
   std::vector<DrawnPart> parts(const ViewState& view, const DocumentState& state) override {
-    worker_.want(wanted(view, state));
+    // A view of which it is not known yet what it hides is not worth a mesh of its own, but for the first
+    // one.
+    const bool waits =
+        view.leaves_out_hidden && !view.depths && !view.culled_from && shows_surfaces_of(state);
+    if (!waits) worker_.want(wanted(view, state));
     const std::shared_ptr<const Found> found = worker_.found();
     std::vector<DrawnPart> result;
     if (!found) return result;
     const std::vector<const SurfaceState*> shown = shown_surfaces(state);
     // Where fewer or more surfaces are wanted by now, the first ones stand for what comes.
-    for (std::size_t n = 0; n < std::min(shown.size(), found->meshes.size()); ++n) {
+    for (std::size_t n = 0; n < std::min(shown.size(), found->surfaces.size()); ++n) {
       PartStyle style;
       style.front = shown[n]->colour;
       style.back = mix(shown[n]->colour, {0.45, 0.25, 0.22}, 0.6);
@@ -227,9 +273,14 @@ class StoreDocument final : public Document {
         std::tie(style.low, style.high) = std::pair((*range)[0], (*range)[1]);
       style.is_clipped = true;
       style.has_edges = view.has_edges;
-      result.push_back({found->meshes[n], style});
+      for (const SharedMesh& chunk : found->surfaces[n]) result.push_back({chunk, style});
     }
     return result;
+  }
+
+  [[nodiscard]] bool shows_surfaces_of(const DocumentState& state) const override {
+    const std::shared_ptr<const Found> found = worker_.found();
+    return found && found->wanted.isovalues == isovalues_of(state);
   }
 
   void finish(const ViewState& view, const DocumentState& state) override {
@@ -325,9 +376,20 @@ class StoreDocument final : public Document {
     result.viewpoint = in_frame(grid, view.culled_from ? *view.culled_from : view.viewpoint);
     result.pixels = view.pixels;
     result.max_triangles = view.max_triangles;
-    for (const SurfaceState* surface : shown_surfaces(state))
-      result.isovalues.push_back(grid.sample(surface->isovalue));
+    // Boxes of diamonds are in the frame, which is space where axes are straight.
+    if (view.leaves_out_hidden && grid.is_straight() && view.depths &&
+        view.depths->viewpoint() == result.viewpoint)
+      result.depths = view.depths;
+    result.isovalues = isovalues_of(state);
     return result;
+  }
+
+  /// Of samples.
+  [[nodiscard]] std::vector<double> isovalues_of(const DocumentState& state) const {
+    std::vector<double> isovalues;
+    for (const SurfaceState* surface : shown_surfaces(state))
+      isovalues.push_back(worker_.file().header().grid.sample(surface->isovalue));
+    return isovalues;
   }
 
   DocumentFacts facts_;

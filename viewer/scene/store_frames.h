@@ -1,22 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 
-#include "adamas/meshes.h"
+#include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/view/frame_refinement.h"
+#include "isosurface/view/surface_chunk.h"
 
 namespace adamas {
-
-/// What is to be drawn in a frame.
-struct Frame {
-  /// With normals, in the frame of the grid: the chunks of PagedFrames one after the other.
-  TriangleSurface surface;
-  FrameFigures figures;
-  double update_seconds = 0;  ///< to find the mesh and its triangles, with normals, and to put them together
-  double normal_seconds = 0;  ///< none: normals are part of the update
-};
 
 /// The surface of a store, frame after frame.
 class StoreFrames {
@@ -24,7 +17,9 @@ class StoreFrames {
   virtual ~StoreFrames() = default;
 
   /// Throws Error where the store is damaged.
-  virtual Frame next(const FrameRequest& request) = 0;
+  virtual FrameFigures next(const FrameRequest& request) = 0;
+  /// Calls for all parts of the last frame's surface, which are in the frame of the grid.
+  virtual void for_each_chunk(const std::function<void(const SurfaceChunk&)>& visit) const = 0;
   [[nodiscard]] virtual PageCounts counts() const = 0;
   /// From the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;

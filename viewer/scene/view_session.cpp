@@ -121,6 +121,7 @@ void ViewSession::set_size(int width, int height) {
 }
 
 std::vector<DrawnPart> ViewSession::parts() {
+  drop_old_depths();
   std::vector<DrawnPart> result;
   for (std::size_t n = 0; n < documents_.size(); ++n) {
     std::vector<DrawnPart> some = documents_[n]->parts(state_, state_.documents[n]);
@@ -149,7 +150,32 @@ void ViewSession::add_culled_view(std::vector<DrawnPart>& parts) {
 }
 
 void ViewSession::finish() {
+  drop_old_depths();
   for (std::size_t n = 0; n < documents_.size(); ++n) documents_[n]->finish(state_, state_.documents[n]);
+}
+
+void ViewSession::drop_old_depths() {
+  // Depths are of one view of some surfaces: those of others would hide what they should not.
+  const Viewpoint& from = state_.culled_from ? *state_.culled_from : state_.viewpoint;
+  if (!state_.leaves_out_hidden || depths_of_ != state_.documents ||
+      (state_.depths && !(state_.depths->viewpoint() == from)))
+    state_.depths.reset();
+}
+
+bool ViewSession::wants_depths() const {
+  if (!state_.leaves_out_hidden || state_.culled_from || documents_.empty()) return false;
+  const bool has_them =
+      state_.depths && state_.depths->viewpoint() == state_.viewpoint && depths_of_ == state_.documents;
+  if (has_them) return false;
+  for (std::size_t n = 0; n < documents_.size(); ++n) {
+    if (!documents_[n]->shows_surfaces_of(state_.documents[n])) return false;
+  }
+  return true;
+}
+
+void ViewSession::set_depths(std::shared_ptr<const DepthPyramid> depths) {
+  state_.depths = std::move(depths);
+  depths_of_ = state_.documents;
 }
 
 std::optional<Plane> ViewSession::clip() const {
@@ -166,7 +192,8 @@ UpdateReport ViewSession::report() const {
     all.merges += one.merges;
     all.largest_error_pixels = std::max(all.largest_error_pixels, one.largest_error_pixels);
     all.seconds += one.seconds;
-    all.normal_seconds += one.normal_seconds;
+    all.depth_tests += one.depth_tests;
+    all.hidden += one.hidden;
     all.is_current = all.is_current && one.is_current;
     if (all.problem.empty()) all.problem = one.problem;
   }
@@ -265,6 +292,9 @@ void ViewSession::act(Action action) {
       return toggle_cut();
     case Action::kCulledFrom:
       state_.culled_from = state_.culled_from ? std::nullopt : std::optional<Viewpoint>(state_.viewpoint);
+      return;
+    case Action::kHidden:
+      state_.leaves_out_hidden = !state_.leaves_out_hidden;
       return;
     case Action::kPanels:
       has_panels = !has_panels;

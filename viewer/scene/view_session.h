@@ -57,6 +57,10 @@ class ViewSession {
   };
   [[nodiscard]] std::optional<ShownField> shown_field() const;
 
+  /// Whether a picture of now is to tell what it hides, by set_depths(): once for each view.
+  [[nodiscard]] bool wants_depths() const;
+  void set_depths(std::shared_ptr<const DepthPyramid> depths);
+
   void act(Action action);
   /// What lies at a place of the picture, in pixels from the upper left corner.
   [[nodiscard]] std::optional<Picked> pick(double x, double y);
@@ -77,6 +81,7 @@ class ViewSession {
   bool has_panels = true, has_help = false, wants_screenshot = false, wants_end = false;
 
  private:
+  void drop_old_depths();
   void look(const Vec3& direction, const Vec3& up);
   void next_field();
   void next_bookmark();
@@ -89,6 +94,7 @@ class ViewSession {
   SharedMesh box_lines_, view_lines_;  ///< of drawn_box_, drawn_view_
   Box3 drawn_box_;
   std::optional<Viewpoint> drawn_view_;
+  std::vector<DocumentState> depths_of_;  ///< what was shown when depths were set
   std::size_t bookmark_ = 0;
   bool is_playing_ = false, is_recording_ = false;
   std::vector<Viewpoint> path_;

@@ -138,6 +138,7 @@ std::string to_text(const ViewState& state) {
               {"axes", state.has_axes},
               {"colour_bar", state.has_colour_bar},
               {"box", state.has_box},
+              {"leaves_out_hidden", state.leaves_out_hidden},
               {"pixels", state.pixels},
               {"max_triangles", state.max_triangles},
               {"cut",
@@ -169,6 +170,7 @@ ViewState view_state(std::string_view text, const std::string& name) {
   result.has_axes = read.flag(from, "axes");
   result.has_colour_bar = read.flag(from, "colour_bar");
   result.has_box = read.flag(from, "box");
+  result.leaves_out_hidden = read.flag(from, "leaves_out_hidden");
   result.pixels = read.number(from, "pixels", 1e-3, 1e6);
   result.max_triangles = static_cast<std::uint64_t>(read.number(from, "max_triangles", 1, 1e12));
   const Json& cut = read.at(from, "cut");

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "core/geometry/vec3.h"
 #include "core/picture/colour.h"
+#include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/viewpoint.h"
 
 namespace adamas {
@@ -69,6 +71,10 @@ struct ViewState {
   CutState cut;
   /// From where meshes are refined and culled, where that is not from where they are seen (D figure 4.14).
   std::optional<Viewpoint> culled_from;
+  /// Whether what the picture hides is left coarse, and the depths of the last picture, which tell what that
+  /// is.
+  bool leaves_out_hidden = false;
+  std::shared_ptr<const DepthPyramid> depths;
   std::vector<Bookmark> bookmarks;
   std::vector<DocumentState> documents;  ///< in the order of the files
 };

@@ -234,6 +234,7 @@ void show_camera(ViewSession& session, PanelState& panels) {
   ImGui::SameLine();
   bool is_sphere = view.shading == Shading::kSphere;
   if (ImGui::Checkbox("as a sphere", &is_sphere)) session.act(Action::kShading);
+  ImGui::Checkbox("leave out what is hidden", &view.leaves_out_hidden);
   bool is_kept = view.culled_from.has_value();
   if (ImGui::Checkbox("keep this view's mesh", &is_kept)) session.act(Action::kCulledFrom);
   if (ImGui::Button("Bookmark")) session.act(Action::kBookmark);

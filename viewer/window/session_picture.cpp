@@ -14,6 +14,11 @@ PictureContents session_picture(ViewSession& session) {
   return contents;
 }
 
+std::shared_ptr<const DepthPyramid> depths_of(const PictureTarget& target, const Viewpoint& viewpoint,
+                                              const DrawFigures& figures) {
+  return std::make_shared<const DepthPyramid>(viewpoint, target.depths(viewpoint, figures.far));
+}
+
 DrawFigures draw_session(const ViewSession& session, const PictureContents& contents, Renderer& renderer,
                          const PictureTarget& target, PanelContext& panels) {
   const DrawFigures figures = renderer.draw(contents, target.framebuffer(), target.width(), target.height());

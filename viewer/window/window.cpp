@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/base/error.h"
@@ -52,7 +53,6 @@ class GlfwWindow {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
-    glfwWindowHint(GLFW_SAMPLES, 4);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
     if (window_ == nullptr) {
@@ -249,7 +249,17 @@ class Viewer {
     session_.set_size(width, height);
     const PictureContents contents = session_picture(session_);
     const auto before = std::chrono::steady_clock::now();
-    renderer_.draw(contents, 0, width, height);
+    if (!target_ || target_->width() != width || target_->height() != height) {
+      target_.reset();
+      target_.emplace(width, height);
+    }
+    const DrawFigures figures = renderer_.draw(contents, target_->framebuffer(), width, height);
+    if (session_.wants_depths()) {
+      session_.set_depths(depths_of(*target_, session_.state().viewpoint, figures));
+      wake();
+    }
+    target_->show();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glFinish();
     const std::chrono::duration<double, std::milli> drawn = std::chrono::steady_clock::now() - before;
     check_context();
@@ -261,8 +271,7 @@ class Viewer {
     panels_.draw();
     glfwSwapBuffers(window_.get());
     const UpdateReport report = session_.report();
-    panel_state_.add({1000 * (report.seconds + report.normal_seconds), drawn.count(), report.triangles,
-                      report.largest_error_pixels});
+    panel_state_.add({1000 * report.seconds, drawn.count(), report.triangles, report.largest_error_pixels});
     do_what_is_wanted(contents, width, height);
   }
 
@@ -314,6 +323,7 @@ class Viewer {
   const WindowOptions& options_;
   GlfwWindow window_;
   Renderer renderer_;
+  std::optional<PictureTarget> target_;  ///< of the window's size
   PanelContext panels_;
   std::unique_ptr<PanelInput> panel_input_;
   Input input_;
