@@ -120,7 +120,7 @@ void add_triangles(const std::vector<Vec3>& points,
                    std::vector<std::array<Corner, 3>>& all) {
   for (const auto& t : triangles) {
     std::array<Corner, 3> places{corner(points[t[0]]), corner(points[t[1]]), corner(points[t[2]])};
-    std::ranges::rotate(places, std::ranges::min_element(places));
+    std::rotate(places.begin(), std::ranges::min_element(places), places.end());
     all.push_back(places);
   }
 }
