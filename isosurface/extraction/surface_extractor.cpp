@@ -108,7 +108,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
   std::vector<StoredDiamonds<Sample>*> of_threads{&diamonds_};
   for (const std::unique_ptr<Helper>& helper : helpers_) of_threads.push_back(&helper->diamonds);
   // Each thread may need pages now that others have decoded to find what is split.
-  pages_.for_threads(of_threads.size());
+  if (!helpers_.empty()) pages_.for_threads(of_threads.size());
   MeshContour<Sample> mesh(of_threads, split_pages_, limits_, request_);
   ExtractedSurface surface;
   surface.contour = mesh.run(progress);
