@@ -73,11 +73,11 @@ bool DepthPyramid::hides(const CentredBox& box) const {
   return static_cast<double>(farthest) < nearest;
 }
 
-/// From squares of which two by two cover the pixels.
+/// From squares of which five by five at most cover the pixels: larger ones would reach far beyond them.
 float DepthPyramid::farthest_in(std::int32_t left, std::int32_t top, std::int32_t right,
                                 std::int32_t bottom) const {
   const auto side = static_cast<std::uint32_t>(std::max(right - left, bottom - top));
-  const auto n = std::min(static_cast<std::size_t>(std::bit_width(side)), levels_.size() - 1);
+  const auto n = std::min(static_cast<std::size_t>(std::bit_width(side >> 2)), levels_.size() - 1);
   const Level& level = levels_[n];
   float farthest = 0;
   for (std::int32_t y = top >> n; y <= bottom >> n; ++y) {
