@@ -18,8 +18,8 @@ namespace adamas {
 /// with all bits inverted.
 template <class Word>
 struct RangeRounding {
-  /// With fewer levels than 8 ranges would tell little.
-  static constexpr int kMostBits = 8 * sizeof(Word) - 3;
+  /// With fewer levels than 16 ranges would tell little.
+  static constexpr int kMostBits = 8 * sizeof(Word) - 4;
   /// An end that is not known. Of words of four bytes no finite sample has this one, and it stays; shorter
   /// ones are rounded as any other.
   static constexpr Word kUnknown = static_cast<Word>(~Word{0});

@@ -16,6 +16,7 @@
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/preprocessing/preprocess.h"
+#include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/scratch_pages.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/volume/samples.h"
@@ -250,10 +251,7 @@ class StoreBuilder {
         const CodedPage& page = coded[n];
         const std::vector<std::byte> payload = join_payload(page.payload());
         writer.add_page(0, jobs[n].number, payload, page.summary);
-        if (is_plain(payload, page.summary)) continue;
-        header.bytes.samples += page.samples.size();
-        header.bytes.bounds += page.bounds.size() - page.along;
-        header.bytes.gradients += page.gradients.size();
+        add_bytes(page, header.bytes);
       }
     });
     header.sample_tables = codecs.samples->tables();
@@ -264,6 +262,20 @@ class StoreBuilder {
     header.bytes.gradients += header.gradient_tables.size();
     const StoreBytes bytes = header.bytes;
     return {bytes, writer.finish(std::move(header)), numbers.size()};
+  }
+
+  /// Of a page that is in the file for its gradients alone all bytes are theirs.
+  static void add_bytes(const CodedPage& page, StoreBytes& bytes) {
+    PagePayload parts = page.payload();
+    parts.gradients = {};
+    const std::size_t bounds = parts.bounds.size(), gradients = page.gradients.size();
+    if (!is_plain(join_payload(parts), page.summary)) {
+      bytes.samples += page.samples.size();
+      bytes.bounds += bounds;
+      bytes.gradients += gradients;
+    } else if (gradients > 0) {
+      bytes.gradients += page.samples.size() + bounds + gradients;
+    }
   }
 
   VolumeGrid volume_;

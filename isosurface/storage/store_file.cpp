@@ -13,6 +13,7 @@
 #include "core/base/assert.h"
 #include "core/base/checksum.h"
 #include "core/base/error.h"
+#include "isosurface/storage/page_payload.h"
 
 namespace adamas {
 

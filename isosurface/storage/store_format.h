@@ -72,25 +72,6 @@ extern template PageSummary summary(const PageShape&, const PageBounds<std::uint
 extern template PageSummary summary(const PageShape&, const PageBounds<std::uint16_t>&);
 extern template PageSummary summary(const PageShape&, const PageBounds<std::uint32_t>&);
 
-/// The parts of a page's bytes in a store. Of the bounds' bytes the samples carry the first ones along.
-struct PagePayload {
-  std::span<const std::byte> samples, bounds, gradients;
-  std::size_t along = 0;  ///< how many those are, which come before `bounds`
-
-  /// All bytes of the bounds, by those that the decoded samples carried along; nothing where these are not as
-  /// many.
-  [[nodiscard]] std::optional<std::vector<std::byte>> all_bounds(const BytesAlong& carried) const;
-};
-
-std::vector<std::byte> join_payload(const PagePayload& parts);
-/// The inverse. Returns false where the bytes are not those of three parts.
-[[nodiscard]] bool split_payload(std::span<const std::byte> bytes, SampleCoding coding, PagePayload& parts);
-
-/// The bytes of a plain page: its samples are as predicted, its errors 0, its ranges as predicted, and it has
-/// no gradients. They are not in the file.
-std::span<const std::byte> plain_payload();
-bool is_plain(std::span<const std::byte> payload, const PageSummary& summary);
-
 /// What the directory says of a page.
 struct PageEntry : PageSummary {
   std::uint64_t offset = 0;  ///< in the file

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "isosurface/gradients/direction_code.h"
+#include "isosurface/storage/page_payload.h"
 
 namespace adamas {
 

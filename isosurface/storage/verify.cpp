@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/lattice/diamond.h"
+#include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"

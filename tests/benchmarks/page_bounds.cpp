@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "isosurface/extraction/stored_diamonds.h"
+#include "isosurface/storage/page_payload.h"
 #include "isosurface/volume/samples.h"
 #include "tests/benchmarks/support/measurement.h"
 

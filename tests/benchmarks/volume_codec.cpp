@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "core/base/parallel.h"
+#include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
 #include "isosurface/volume/samples.h"

@@ -13,135 +13,17 @@
 #include "core/base/error.h"
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/volume/samples.h"
+#include "tests/isosurface/sample_codec_checks.h"
 #include "tests/support/volume_pages.h"
 
 namespace adamas {
 namespace {
 
-using Bytes = std::vector<std::byte>;
-using Dimensions = std::array<std::uint64_t, 3>;
-
-/// All that there are of words: single bytes have no ranks.
-template <class Word>
-std::vector<SampleCoding> codings() {
-  std::vector<SampleCoding> all{SampleCoding::kSplitEdge, SampleCoding::kInterpolation};
-  if (sizeof(Word) > 1) all.push_back(SampleCoding::kRanks);
-  return all;
-}
-
+using test::Bytes, test::codec_of, test::codings, test::content_of, test::Dimensions, test::encoded,
+    test::expect_there_and_back, test::random_samples, test::ranks_of, test::same_points, test::size_of,
+    test::smooth_samples;
 template <class Word>
 using Content = test::PageContent<Word>;
-
-std::size_t size_of(const Dimensions& dimensions) { return dimensions[0] * dimensions[1] * dimensions[2]; }
-
-template <class Word>
-Content<Word> content_of(const test::VolumePages<Word>& volume, const PageId& page, Word unused = 0) {
-  Content<Word> content;
-  volume.content(page, content, unused);
-  return content;
-}
-
-/// Of the volume's samples, or of the least of them where there are too many; null but for kRanks.
-template <class Word>
-std::shared_ptr<const SampleRanks> ranks_of(SampleCoding coding, const test::VolumePages<Word>& volume) {
-  if (coding != SampleCoding::kRanks) return nullptr;
-  std::set<std::uint32_t> values;
-  for (const PageId& page : volume.pages()) {
-    const Content<Word> content = content_of(volume, page);
-    values.insert(content.samples.begin(), content.samples.end());
-  }
-  std::vector<std::uint32_t> sorted(values.begin(), values.end());
-  sorted.resize(std::min(sorted.size(), SampleRanks::kMost));
-  return std::make_shared<const SampleRanks>(std::move(sorted));
-}
-
-template <class Word>
-std::unique_ptr<SampleCodec<Word>> codec_of(SampleCoding coding, const test::VolumePages<Word>& volume) {
-  const auto survey = sample_survey<Word>(coding, ranks_of(coding, volume));
-  for (const PageId& page : volume.pages()) {
-    const Content<Word> content = content_of(volume, page);
-    survey->add(content.shape, content.around, content.samples);
-  }
-  return survey->codec();
-}
-
-template <class Word>
-Bytes encoded(const SampleCodec<Word>& codec, const Content<Word>& content) {
-  Bytes bytes;
-  codec.encode(content.shape, content.around, content.samples, bytes);
-  return bytes;
-}
-
-/// Whether all points that a page has are these.
-template <class Word>
-bool same_points(const Content<Word>& content, const typename SampleCodec<Word>::Samples& found) {
-  const LatticePoint n = content.shape.count;
-  for (std::int32_t k = 0; k < n.k; ++k)
-    for (std::int32_t j = 0; j < n.j; ++j)
-      for (std::int32_t i = 0; i < n.i; ++i) {
-        const std::size_t place = PageGrid::place({i, j, k}, 0);
-        if (content.samples[place] != found[place]) return false;
-      }
-  return true;
-}
-
-/// Every page comes back, whatever lies where it has no points; returns the bytes of all.
-template <class Word>
-std::size_t expect_there_and_back(const SampleCodec<Word>& codec, const test::VolumePages<Word>& volume) {
-  std::size_t total = 0;
-  typename SampleCodec<Word>::Samples found;
-  for (const PageId& page : volume.pages()) {
-    const Content<Word> content = content_of(volume, page);
-    const Bytes bytes = encoded(codec, content);
-    EXPECT_EQ(encoded(codec, content_of(volume, page, static_cast<Word>(0xa5a5a5a5))), bytes);
-    found.fill(77);
-    const bool taken = codec.decode(bytes, content.shape, content.around, found);
-    EXPECT_TRUE(taken);
-    EXPECT_TRUE(same_points(content, found)) << "level " << page.lod;
-    EXPECT_LE(bytes.size(), 1 + PageGrid::kPoints * sizeof(Word));
-    total += bytes.size();
-  }
-  return total;
-}
-
-/// With a codec of its own, and with that made again from its tables; returns the bytes of all pages.
-template <class Word>
-std::size_t expect_there_and_back(SampleCoding coding, const Dimensions& dimensions,
-                                  std::vector<Word> samples) {
-  const test::VolumePages<Word> volume(dimensions, std::move(samples));
-  const auto codec = codec_of(coding, volume);
-  const std::size_t total = expect_there_and_back(*codec, volume);
-  const Bytes tables = codec->tables();
-  const auto parsed = parse_sample_codec<Word>(coding, tables, "here");
-  EXPECT_EQ(parsed->tables(), tables);
-  EXPECT_EQ(expect_there_and_back(*parsed, volume), total);
-  return total;
-}
-
-template <class Word>
-std::vector<Word> random_samples(std::size_t size, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::vector<Word> samples(size);
-  for (Word& sample : samples) sample = static_cast<Word>(random() >> 17);
-  return samples;
-}
-
-template <class Word>
-std::vector<Word> smooth_samples(const Dimensions& dimensions, double noise = 0) {
-  std::mt19937_64 random(5);
-  std::vector<Word> samples;
-  const double half = static_cast<double>(std::numeric_limits<Word>::max()) / 2;
-  for (std::uint64_t k = 0; k < dimensions[2]; ++k)
-    for (std::uint64_t j = 0; j < dimensions[1]; ++j)
-      for (std::uint64_t i = 0; i < dimensions[0]; ++i) {
-        const double wave =
-            std::sin(0.11 * static_cast<double>(i)) * std::cos(0.07 * static_cast<double>(j)) +
-            std::sin(0.09 * static_cast<double>(k) + 1);
-        const double rough = noise * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5);
-        samples.push_back(static_cast<Word>(std::clamp(half * (1 + wave / 2.1 + rough), 0.0, 2 * half)));
-      }
-  return samples;
-}
 
 template <class Word>
 class SampleCodecOf : public testing::Test {};
@@ -354,107 +236,6 @@ TYPED_TEST(SampleCodecOf, AnswersToFlippedBitsOfTables) {
         if (trial < 40) expect_there_and_back(*codec, volume);
       } catch (const Error& error) {
         ASSERT_EQ(std::string(error.what()).rfind("here: ", 0), 0u) << error.what();
-      }
-    }
-  }
-}
-
-/// A wave with noise that is cut off at `floor`, which most samples have.
-template <class Word>
-std::vector<Word> cut_off_samples(const Dimensions& dimensions, Word floor) {
-  std::vector<Word> samples = smooth_samples<Word>(dimensions, 0.1);
-  std::vector<Word> sorted = samples;
-  std::ranges::sort(sorted);
-  const Word level = sorted[sorted.size() * 2 / 3], step = static_cast<Word>(sorted.back() / 120 + 1);
-  for (Word& sample : samples)
-    sample = sample < level ? floor : static_cast<Word>(floor + (sample - level) / step);
-  return samples;
-}
-
-/// With a codec that knows of the sample that prevails; bytes of all pages.
-template <class Word>
-std::size_t expect_prevailing_there_and_back(const test::VolumePages<Word>& volume,
-                                             std::optional<Word> word) {
-  const auto coding = sizeof(Word) == 1 ? SampleCoding::kInterpolation : SampleCoding::kRanks;
-  const auto survey = sample_survey<Word>(coding, ranks_of(coding, volume), word);
-  for (const PageId& page : volume.pages()) {
-    const Content<Word> content = content_of(volume, page);
-    survey->add(content.shape, content.around, content.samples);
-  }
-  const auto codec = survey->codec();
-  const auto parsed = parse_sample_codec<Word>(coding, codec->tables(), "here");
-  EXPECT_EQ(parsed->tables(), codec->tables());
-  return expect_there_and_back(*parsed, volume);
-}
-
-TYPED_TEST(SampleCodecOf, ASampleThatPrevailsTakesFewerBytes) {
-  using Word = TypeParam;
-  const Dimensions dimensions{40, 37, 35};
-  for (const Word floor : {Word{0}, Word{77}}) {
-    const test::VolumePages<Word> volume(dimensions, cut_off_samples<Word>(dimensions, floor));
-    const std::size_t without = expect_prevailing_there_and_back<Word>(volume, {});
-    EXPECT_LT(expect_prevailing_there_and_back<Word>(volume, floor), without * 97 / 100);
-    // Any other is right too.
-    expect_prevailing_there_and_back<Word>(volume, static_cast<Word>(floor + 5));
-    expect_prevailing_there_and_back<Word>(volume, static_cast<Word>(floor + 140));
-  }
-}
-
-TEST(SampleCodec, PagesWithAPrevailingSampleThatAreCutOrFlippedAreToldOrAreOthers) {
-  const Dimensions dimensions{18, 12, 10};
-  const test::VolumePages<std::uint8_t> volume(dimensions, cut_off_samples<std::uint8_t>(dimensions, 9));
-  const auto survey = sample_survey<std::uint8_t>(SampleCoding::kInterpolation, nullptr, std::uint8_t{9});
-  for (const PageId& page : volume.pages()) {
-    const auto content = content_of(volume, page);
-    survey->add(content.shape, content.around, content.samples);
-  }
-  const auto codec = survey->codec();
-  std::mt19937_64 random(14);
-  std::size_t refused = 0;
-  BytesAlong along, along_again;
-  SampleCodec<std::uint8_t>::Samples again;
-  for (const PageId& page : volume.pages()) {
-    auto content = content_of(volume, page);
-    const Bytes bytes = encoded(*codec, content);
-    for (std::size_t length = 0; length < bytes.size(); ++length)
-      ASSERT_FALSE(codec->decode(std::span(bytes).first(length), content.shape, content.around, again));
-    for (std::size_t at = 0; at < bytes.size(); ++at) {
-      Bytes corrupt = bytes;
-      corrupt[at] ^= static_cast<std::byte>(1 + random() % 255);
-      if (!codec->decode_with(corrupt, content.shape, content.around, content.samples, along)) {
-        ++refused;
-        continue;
-      }
-      Bytes coded;
-      codec->encode_with(content.shape, content.around, content.samples, coded, along);
-      ASSERT_TRUE(codec->decode_with(coded, content.shape, content.around, again, along_again));
-      ASSERT_TRUE(same_points(content, again));
-    }
-  }
-  EXPECT_GT(refused, 0u);
-}
-
-TYPED_TEST(SampleCodecOf, CarriesBytesAlong) {
-  using Word = TypeParam;
-  const Dimensions dimensions{35, 20, 18};
-  std::mt19937_64 random(31);
-  for (const SampleCoding coding : codings<Word>()) {
-    for (const double noise : {0.0, 0.1, 30.0}) {
-      const test::VolumePages<Word> volume(dimensions, smooth_samples<Word>(dimensions, noise));
-      const auto codec = codec_of(coding, volume);
-      for (const PageId& page : volume.pages()) {
-        const Content<Word> content = content_of(volume, page);
-        Bytes along(random() % 40), bytes;
-        for (std::byte& byte : along) byte = static_cast<std::byte>(1 + random() % 255);
-        codec->encode_with(content.shape, content.around, content.samples, bytes, along);
-        typename SampleCodec<Word>::Samples found;
-        BytesAlong carried;
-        ASSERT_TRUE(codec->decode_with(bytes, content.shape, content.around, found, carried));
-        EXPECT_TRUE(same_points(content, found));
-        along.resize(carried_along(coding, bytes[0], along.size()));
-        EXPECT_EQ(codec->decode(bytes, content.shape, content.around, found), along.empty());
-        along.resize(carried.size());
-        EXPECT_TRUE(std::ranges::equal(carried, along));
       }
     }
   }

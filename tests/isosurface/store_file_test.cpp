@@ -8,6 +8,7 @@
 #include "core/base/checksum.h"
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
+#include "isosurface/storage/page_payload.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
