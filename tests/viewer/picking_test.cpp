@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "viewer/scene/store_document.h"
+#include "viewer/scene/surface_worker.h"
 
 namespace adamas {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "viewer/gl/offscreen_context.h"
 #include "viewer/gl/picture_target.h"
-#include "viewer/scene/store_document.h"
+#include "viewer/scene/surface_worker.h"
 
 namespace adamas {
 namespace {

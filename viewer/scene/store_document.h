@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 
-#include "adamas/meshes.h"
 #include "viewer/scene/document.h"
 
 namespace adamas {
@@ -11,8 +10,5 @@ namespace adamas {
 /// A store: the surfaces of its isovalues, refined for the viewpoint in a thread of its own. Throws Error
 /// where the file is no store, or damaged in what says where things lie.
 std::unique_ptr<Document> open_store_document(const std::string& path, const DocumentOptions& options);
-
-/// A surface as a renderer takes it; its values on both sides.
-SharedMesh drawn_mesh(const TriangleSurface& surface);
 
 }  // namespace adamas

@@ -8,6 +8,7 @@
 
 #include "core/picture/colour_map.h"
 #include "viewer/scene/camera_control.h"
+#include "viewer/scene/line_meshes.h"
 #include "viewer/scene/picking.h"
 
 namespace adamas {
@@ -17,46 +18,6 @@ namespace {
 constexpr Colour kBoxColour{0.55, 0.55, 0.58}, kViewColour{0.8, 0.2, 0.1};
 /// A turn by itself takes so many seconds; a recorded path has so many viewpoints in a second.
 constexpr double kSecondsOfTurn = 12, kRecordedPerSecond = 30;
-
-/// Lines between pairs of points.
-SharedMesh lines(const std::vector<Vec3>& ends) {
-  auto mesh = std::make_shared<DrawnMesh>();
-  mesh->is_lines = true;
-  for (const Vec3& p : ends) mesh->box.extend(p);
-  mesh->origin = mesh->box.center();
-  for (const Vec3& p : ends) {
-    const Vec3 q = p - mesh->origin;
-    mesh->indices.push_back(static_cast<std::uint32_t>(mesh->vertices.size()));
-    mesh->vertices.push_back(
-        {{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)}, {0, 0, 0}});
-  }
-  return mesh;
-}
-
-std::vector<Vec3> edges_of_corners(const std::array<Vec3, 8>& corners) {
-  std::vector<Vec3> ends;
-  for (unsigned c = 0; c < 8; ++c) {
-    for (const unsigned bit : {1u, 2u, 4u}) {
-      if ((c & bit) == 0) ends.insert(ends.end(), {corners[c], corners[c | bit]});
-    }
-  }
-  return ends;
-}
-
-/// What a viewpoint shows, from a small distance up to its target: the edges of a pyramid or of a prism.
-std::array<Vec3, 8> corners_of_view(const Viewpoint& viewpoint) {
-  std::array<Vec3, 8> corners;
-  const double far = distance(viewpoint.eye, viewpoint.target);
-  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
-  for (unsigned c = 0; c < 8; ++c) {
-    const Ray ray = ray_through(viewpoint, (c & 1u) != 0 ? viewpoint.width_pixels : 0,
-                                (c & 2u) != 0 ? viewpoint.height_pixels : 0);
-    const double along = (c & 4u) != 0 ? far : 0.05 * far;
-    const double start = dot(ray.origin - viewpoint.eye, forward);
-    corners[c] = ray.origin + ((along - start) / dot(ray.direction, forward)) * ray.direction;
-  }
-  return corners;
-}
 
 PartStyle line_style(const Colour& colour) {
   PartStyle style;
@@ -136,7 +97,7 @@ void ViewSession::add_box(std::vector<DrawnPart>& parts) {
   const Box3 all = box();
   if (!box_lines_ || !(drawn_box_.min == all.min) || !(drawn_box_.max == all.max)) {
     drawn_box_ = all;
-    box_lines_ = lines(edges_of_corners(all.corners()));
+    box_lines_ = lines_of_box(all);
   }
   parts.push_back({box_lines_, line_style(kBoxColour)});
 }
@@ -144,7 +105,7 @@ void ViewSession::add_box(std::vector<DrawnPart>& parts) {
 void ViewSession::add_culled_view(std::vector<DrawnPart>& parts) {
   if (!view_lines_ || drawn_view_ != state_.culled_from) {
     drawn_view_ = state_.culled_from;
-    view_lines_ = lines(edges_of_corners(corners_of_view(*drawn_view_)));
+    view_lines_ = lines_of_view(*drawn_view_);
   }
   parts.push_back({view_lines_, line_style(kViewColour)});
 }

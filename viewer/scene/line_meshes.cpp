@@ -1,0 +1,61 @@
+#include "viewer/scene/line_meshes.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "viewer/scene/picking.h"
+
+namespace adamas {
+
+namespace {
+
+/// Lines between pairs of points.
+SharedMesh lines(const std::vector<Vec3>& ends) {
+  auto mesh = std::make_shared<DrawnMesh>();
+  mesh->is_lines = true;
+  for (const Vec3& p : ends) mesh->box.extend(p);
+  mesh->origin = mesh->box.center();
+  for (const Vec3& p : ends) {
+    const Vec3 q = p - mesh->origin;
+    mesh->indices.push_back(static_cast<std::uint32_t>(mesh->vertices.size()));
+    mesh->vertices.push_back(
+        {{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)}, {0, 0, 0}});
+  }
+  return mesh;
+}
+
+std::vector<Vec3> edges_of_corners(const std::array<Vec3, 8>& corners) {
+  std::vector<Vec3> ends;
+  for (unsigned c = 0; c < 8; ++c) {
+    for (const unsigned bit : {1u, 2u, 4u}) {
+      if ((c & bit) == 0) ends.insert(ends.end(), {corners[c], corners[c | bit]});
+    }
+  }
+  return ends;
+}
+
+/// What a viewpoint shows, from a small distance up to its target: the edges of a pyramid or of a prism.
+std::array<Vec3, 8> corners_of_view(const Viewpoint& viewpoint) {
+  std::array<Vec3, 8> corners;
+  const double far = distance(viewpoint.eye, viewpoint.target);
+  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
+  for (unsigned c = 0; c < 8; ++c) {
+    const Ray ray = ray_through(viewpoint, (c & 1u) != 0 ? viewpoint.width_pixels : 0,
+                                (c & 2u) != 0 ? viewpoint.height_pixels : 0);
+    const double along = (c & 4u) != 0 ? far : 0.05 * far;
+    const double start = dot(ray.origin - viewpoint.eye, forward);
+    corners[c] = ray.origin + ((along - start) / dot(ray.direction, forward)) * ray.direction;
+  }
+  return corners;
+}
+
+}  // namespace
+
+SharedMesh lines_of_box(const Box3& box) { return lines(edges_of_corners(box.corners())); }
+
+SharedMesh lines_of_view(const Viewpoint& viewpoint) {
+  return lines(edges_of_corners(corners_of_view(viewpoint)));
+}
+
+}  // namespace adamas

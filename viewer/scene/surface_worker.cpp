@@ -1,0 +1,174 @@
+#include "viewer/scene/surface_worker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/data/volume_placement.h"
+
+namespace adamas {
+
+namespace {
+
+std::array<float, 3> in_single(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+void add(const PageCounts& some, PageCounts& all) {
+  all.pages += some.pages;
+  all.predictors += some.predictors;
+  all.bytes += some.bytes;
+  all.copies += some.copies;
+  all.damaged += some.damaged;
+}
+
+}  // namespace
+
+SurfaceWorker::SurfaceWorker(const std::string& path, const DocumentOptions& options)
+    : file_(path),
+      memory_(options.memory),
+      colours_(options.colour_by.empty() ? nullptr : VolumeValues::open(options.colour_by, options.memory)),
+      thread_([this] { run(); }) {}
+
+SurfaceWorker::~SurfaceWorker() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ended_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void SurfaceWorker::want(const WantedSurfaces& wanted) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (wanted_ == wanted) return;
+    wanted_ = wanted;
+  }
+  changed_.notify_all();
+}
+
+std::shared_ptr<const FoundSurfaces> SurfaceWorker::found() const {
+  const std::lock_guard lock(mutex_);
+  return found_;
+}
+
+void SurfaceWorker::wait_for(const WantedSurfaces& wanted) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return found_ && found_->report.is_current && found_->wanted == wanted; });
+}
+
+void SurfaceWorker::run() {
+  WantedSurfaces done;
+  while (true) {
+    WantedSurfaces wanted;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return is_ended_ || (wanted_ && *wanted_ != done); });
+      if (is_ended_) return;
+      wanted = *wanted_;
+    }
+    // A rough surface comes at once where there was another one.
+    if (wanted.isovalues != done.isovalues) update(wanted, kRough);
+    if (is_overtaken(wanted)) continue;
+    update(wanted, 1);
+    done = std::move(wanted);
+  }
+}
+
+bool SurfaceWorker::is_overtaken(const WantedSurfaces& wanted) const {
+  const std::lock_guard lock(mutex_);
+  return is_ended_ || wanted_->isovalues != wanted.isovalues;
+}
+
+void SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness) {
+  auto found = std::make_shared<FoundSurfaces>();
+  found->wanted = wanted;
+  const auto before = std::chrono::steady_clock::now();
+  try {
+    for (std::size_t n = 0; n < wanted.isovalues.size(); ++n) {
+      if (!add_surface(*found, n, roughness)) return;
+    }
+  } catch (const std::exception& error) {
+    // What there is stays to be seen.
+    found->report.problem = error.what();
+    if (const auto last = this->found()) found->surfaces = last->surfaces;
+  }
+  found->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  found->report.is_current = roughness == 1;
+  {
+    const std::lock_guard lock(mutex_);
+    found_ = std::move(found);
+  }
+  changed_.notify_all();
+}
+
+bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness) {
+  while (surfaces_.size() <= n) surfaces_.push_back({StoreFrames::open(file_, memory_), {}});
+  const WantedSurfaces& wanted = found.wanted;
+  FrameRequest request;
+  request.viewpoint = wanted.viewpoint;
+  request.depths = wanted.depths;
+  request.isovalue = wanted.isovalues[n];
+  request.pixels = wanted.pixels * static_cast<double>(roughness);
+  request.max_triangles =
+      std::max<std::uint64_t>(1, wanted.max_triangles / wanted.isovalues.size() / roughness);
+  request.stop = [&] { return is_overtaken(wanted); };
+  const FrameFigures figures = surfaces_[n].frames->next(request);
+  if (figures.stopped) return false;
+  found.surfaces.push_back(drawn_chunks(surfaces_[n]));
+  add(surfaces_[n].frames->counts(), found.counts);
+  UpdateReport& report = found.report;
+  report.triangles += figures.triangles;
+  report.splits += figures.splits;
+  report.merges += figures.merges;
+  report.depth_tests += figures.depth_tests;
+  report.hidden += figures.hidden;
+  report.largest_error_pixels = std::max(report.largest_error_pixels, figures.largest_error);
+  return true;
+}
+
+std::vector<SharedMesh> SurfaceWorker::drawn_chunks(Surface& surface) {
+  std::vector<SharedMesh> meshes;
+  std::unordered_map<std::uint64_t, Surface::Drawn> now;
+  surface.frames->for_each_chunk([&](const SurfaceChunk& chunk) {
+    if (chunk.triangles.empty()) return;
+    Surface::Drawn& drawn = now[chunk.id];
+    if (const auto before = surface.drawn.find(chunk.id); before != surface.drawn.end())
+      drawn = before->second;
+    if (!drawn.mesh || drawn.revision != chunk.revision) drawn = {chunk.revision, drawn_chunk(chunk)};
+    meshes.push_back(drawn.mesh);
+  });
+  surface.drawn = std::move(now);
+  return meshes;
+}
+
+SharedMesh SurfaceWorker::drawn_chunk(const SurfaceChunk& chunk) {
+  TriangleSurface surface;
+  surface.points = chunk.points;
+  surface.normals = chunk.normals;
+  surface.triangles = chunk.triangles;
+  place_in_space(file_.header().grid, surface);
+  if (colours_) {
+    for (const Vec3& p : surface.points) surface.values.push_back(static_cast<float>(colours_->at(p)));
+  }
+  return drawn_mesh(surface);
+}
+
+SharedMesh drawn_mesh(const TriangleSurface& surface) {
+  auto mesh = std::make_shared<DrawnMesh>();
+  for (const Vec3& p : surface.points) mesh->box.extend(p);
+  if (!surface.points.empty()) mesh->origin = mesh->box.center();
+  mesh->vertices.resize(surface.points.size());
+  for (std::size_t n = 0; n < surface.points.size(); ++n) {
+    DrawnMesh::Vertex& vertex = mesh->vertices[n];
+    vertex.place = in_single(surface.points[n] - mesh->origin);
+    vertex.normal = in_single(surface.normals.empty() ? Vec3{} : surface.normals[n]);
+    if (!surface.values.empty()) vertex.front_value = vertex.back_value = surface.values[n];
+  }
+  mesh->indices.reserve(3 * surface.triangles.size());
+  for (const auto& t : surface.triangles) mesh->indices.insert(mesh->indices.end(), t.begin(), t.end());
+  return mesh;
+}
+
+}  // namespace adamas

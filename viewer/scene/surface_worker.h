@@ -1,0 +1,94 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include "adamas/meshes.h"
+#include "isosurface/storage/store_file.h"
+#include "viewer/scene/document.h"
+#include "viewer/scene/drawn_mesh.h"
+#include "viewer/scene/store_frames.h"
+#include "viewer/scene/volume_values.h"
+
+namespace adamas {
+
+/// What the surfaces of a store depend on.
+struct WantedSurfaces {
+  Viewpoint viewpoint;            ///< in the frame of the grid
+  std::vector<double> isovalues;  ///< of samples
+  double pixels = 1;
+  std::uint64_t max_triangles = 0;
+  std::shared_ptr<const DepthPyramid> depths;
+
+  bool operator==(const WantedSurfaces&) const = default;
+};
+
+/// What was found for that.
+struct FoundSurfaces {
+  WantedSurfaces wanted;
+  std::vector<std::vector<SharedMesh>> surfaces;  ///< of each isovalue: the chunks
+  UpdateReport report;
+  PageCounts counts;
+};
+
+/// Works out surfaces in a thread of its own, those that were wanted last.
+class SurfaceWorker {
+ public:
+  /// Throws Error where a file is no store.
+  SurfaceWorker(const std::string& path, const DocumentOptions& options);
+  SurfaceWorker(const SurfaceWorker&) = delete;
+  SurfaceWorker& operator=(const SurfaceWorker&) = delete;
+  ~SurfaceWorker();
+
+  [[nodiscard]] const StoreFile& file() const { return file_; }
+  void want(const WantedSurfaces& wanted);
+  /// What was found last, for whatever was wanted then; null before that.
+  [[nodiscard]] std::shared_ptr<const FoundSurfaces> found() const;
+  void wait_for(const WantedSurfaces& wanted);
+
+ private:
+  /// The frames of an isovalue, and what is drawn of them: by the ids of chunks, as of a revision.
+  struct Surface {
+    struct Drawn {
+      std::uint64_t revision = 0;
+      SharedMesh mesh;
+    };
+    std::unique_ptr<StoreFrames> frames;
+    std::unordered_map<std::uint64_t, Drawn> drawn;
+  };
+
+  void run();
+  /// Whether the surfaces that are worked out are not those that are wanted by now.
+  [[nodiscard]] bool is_overtaken(const WantedSurfaces& wanted) const;
+  void update(const WantedSurfaces& wanted, std::uint64_t roughness);
+  /// Returns false where something else is wanted by now.
+  bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
+  /// Only chunks that are not as they were are made anew.
+  std::vector<SharedMesh> drawn_chunks(Surface& surface);
+  [[nodiscard]] SharedMesh drawn_chunk(const SurfaceChunk& chunk);
+
+  static constexpr std::uint64_t kRough = 8;
+
+  StoreFile file_;
+  std::size_t memory_;
+  std::vector<Surface> surfaces_;  ///< of the thread, like colours_
+  std::unique_ptr<VolumeValues> colours_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_ended_ = false;
+  std::optional<WantedSurfaces> wanted_;
+  std::shared_ptr<const FoundSurfaces> found_;
+  std::thread thread_;
+};
+
+/// A surface as a renderer takes it; its values on both sides.
+SharedMesh drawn_mesh(const TriangleSurface& surface);
+
+}  // namespace adamas
