@@ -1,9 +1,10 @@
 """Rows of scripts/bench on frames: flights towards volumes and through them."""
 
+import json
 import os
 import tempfile
 
-from bench_volumes import MEASURED, lines_of, make_buckyball, note, store
+from bench_volumes import MEASURED, lines_of, make_buckyball, note, run_measured, store
 
 
 def flight_rows(build, name, file, isovalue, frames, raw=None):
@@ -21,6 +22,26 @@ def flight_rows(build, name, file, isovalue, frames, raw=None):
            f"{change['adamas'] / peer:.2f}" if raw else "", "<= 0.33", where]
 
 
+def median(values):
+    return sorted(values)[len(values) // 2]
+
+
+def occlusion_rows(build, name, file, isovalue, frames, folder):
+    """What leaving out the hidden saves on a flight round a volume (the dissertation's table 4.5), medians of the frames."""
+    found = []
+    for options in [], ["--occlusion"]:
+        figures = os.path.join(folder, "frames.json")
+        run_measured(os.path.join(build, "cli", "adamas"), "view", file, "--isovalue", str(isovalue), "--offscreen", "--camera-path", f"orbit:{frames}",
+                     "--max-triangles", "2000000", "--threads", "1", "-q", "--json", figures, *options)
+        with open(figures, encoding="utf-8") as stream:
+            # The first frame knows of no picture before it.
+            found.append(json.load(stream)["frames"][1:])
+    all_of, some = ({key: median([frame[key] for frame in of]) for key in of[0]} for of in found)
+    yield [f"occlusion, {name}", f"{some['triangles']:,} triangles", f"{all_of['triangles']:,} without", f"{some['triangles'] / all_of['triangles']:.2f}", "",
+           f"{some['occluded_diamonds']:,} diamonds hidden of {some['occlusion_queries']:,} looked up in a frame; update {1e3 * some['update_seconds']:.0f} ms, "
+           f"{1e3 * all_of['update_seconds']:.0f} without; {frames} frames of 1024x768, error 1 pixel"]
+
+
 def frame_rows(build, quick):
     with tempfile.TemporaryDirectory() as folder:
         side = 256 if quick else 512
@@ -28,11 +49,13 @@ def frame_rows(build, quick):
         ball = make_buckyball(build, folder, side)
         store(build, ball, file)
         yield from flight_rows(build, f"buckyball {side}^3", file, 80.5, 60 if quick else 600, ball.replace(".nhdr", ".raw"))
+        yield from occlusion_rows(build, f"buckyball {side}^3", file, 80.5, 24, folder)
         root = os.path.join(os.environ.get("ADAMAS_DATA", "../shared/data"), "volume")
-        for path, options, isovalue in MEASURED[:2]:
+        for path, options, isovalue in [*MEASURED[:2], MEASURED[4]]:
             data, name = os.path.join(root, path), os.path.basename(path)
             if "*" not in data and not os.path.exists(data):
                 note(f"bench: {data} is not there: no rows for it")
                 continue
             store(build, data, file, *options)
             yield from flight_rows(build, name, file, isovalue, 60 if quick else 600)
+            yield from occlusion_rows(build, name, file, isovalue, 24, folder)

@@ -122,8 +122,8 @@ TEST_F(Sessions, OtherVolumesColourSurfaces) {
   ASSERT_EQ(state.field, "ball.adm");
   state.surfaces[0].isovalue = 120;
   coloured.finish();
-  for (const auto& vertex : together(coloured.parts())[0].mesh->vertices)
-    EXPECT_NEAR(vertex.front_value, 120, 3);
+  const SharedMesh mesh = together(coloured.parts())[0].mesh;
+  for (const auto& vertex : mesh->vertices) EXPECT_NEAR(vertex.front_value, 120, 3);
   const auto field = coloured.shown_field();
   ASSERT_TRUE(field);
   EXPECT_EQ(field->range, (std::array<double, 2>{0, 200}));
@@ -215,14 +215,18 @@ TEST_F(Sessions, LeaveCoarseWhatAPictureHides) {
   const std::size_t all = triangles();
   session.act(Action::kHidden);
   EXPECT_TRUE(session.wants_depths());
-  // A wall through the middle of the ball.
   const Viewpoint& from = session.state().viewpoint;
-  const std::vector<float> wall(640 * 480, static_cast<float>(distance(from.eye, {16, 16, 16})));
-  session.set_depths(std::make_shared<const DepthPyramid>(from, wall));
-  EXPECT_FALSE(session.wants_depths());
-  const std::size_t half = triangles();
-  EXPECT_LT(half, all * 3 / 4);
-  EXPECT_GT(half, all / 4);
+  const double middle = distance(from.eye, {16, 16, 16});
+  const auto wall = [&](double depth) {
+    session.set_depths(
+        std::make_shared<const DepthPyramid>(from, std::vector<float>(640 * 480, static_cast<float>(depth))));
+    EXPECT_FALSE(session.wants_depths());
+    return triangles();
+  };
+  EXPECT_EQ(wall(middle + 30), all) << "behind the ball";
+  EXPECT_EQ(session.report().hidden, 0u);
+  EXPECT_LT(wall(middle), all * 9 / 10) << "through its middle";
+  EXPECT_LT(wall(middle - 60), all / 10) << "in front of it";
   EXPECT_GT(session.report().hidden, 0u);
   // Another surface, or another view, is not behind that wall.
   session.state().documents[0].surfaces[0].isovalue = 101;
