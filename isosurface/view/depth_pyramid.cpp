@@ -19,10 +19,7 @@ double half_along(const Vec3& direction, const Vec3& half) {
 }  // namespace
 
 DepthPyramid::DepthPyramid(const Viewpoint& viewpoint, std::span<const float> depths)
-    : viewpoint_(viewpoint) {
-  forward_ = normalized(viewpoint.target - viewpoint.eye);
-  right_ = normalized(cross(forward_, viewpoint.up));
-  up_ = cross(right_, forward_);
+    : viewpoint_(viewpoint), axes_(viewpoint) {
   const double half = viewpoint.height > 0 ? viewpoint.height / 2 : std::tan(viewpoint.field_of_view / 2);
   scale_ = 0.5 * viewpoint.height_pixels / half;
   levels_.push_back({viewpoint.width_pixels, viewpoint.height_pixels, {depths.begin(), depths.end()}});
@@ -44,7 +41,7 @@ DepthPyramid::DepthPyramid(const Viewpoint& viewpoint, std::span<const float> de
 
 bool DepthPyramid::hides(const CentredBox& box) const {
   const Vec3 from_eye = box.centre - viewpoint_.eye;
-  const double depth = dot(from_eye, forward_), half_depth = half_along(forward_, box.half);
+  const double depth = dot(from_eye, axes_.forward), half_depth = half_along(axes_.forward, box.half);
   const double nearest = depth - half_depth;
   if (!(nearest > viewpoint_.near)) return false;
   // The least and the greatest place of a box along an axis of the picture, in pixels from its middle. Boxes
@@ -57,8 +54,8 @@ bool DepthPyramid::hides(const CentredBox& box) const {
     return std::pair(scale_ * (low < 0 ? low / nearest : low / farthest),
                      scale_ * (high > 0 ? high / nearest : high / farthest));
   };
-  const auto [left, right] = places(right_);
-  const auto [bottom, top] = places(up_);
+  const auto [left, right] = places(axes_.right);
+  const auto [bottom, top] = places(axes_.up);
   const auto pixel = [](double place, std::int32_t count) {
     return static_cast<std::int32_t>(std::clamp(std::floor(place), -1.0, static_cast<double>(count)));
   };

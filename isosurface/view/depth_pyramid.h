@@ -33,7 +33,7 @@ class DepthPyramid {
                                   std::int32_t bottom) const;
 
   Viewpoint viewpoint_;
-  Vec3 right_, up_, forward_;
+  ViewAxes axes_;
   double scale_;  ///< pixels for a length at the distance 1, or in parallel projection
   std::vector<Level> levels_;
 };

@@ -40,8 +40,7 @@ double View::reach(const CentredBox& box, const Vec3& direction) {
 View::View(const Viewpoint& viewpoint, std::shared_ptr<const DepthPyramid> depths)
     : viewpoint_(viewpoint), depths_(std::move(depths)) {
   check(viewpoint);
-  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
-             right = normalized(cross(forward, viewpoint.up)), up = cross(right, forward);
+  const auto [forward, right, up] = ViewAxes(viewpoint);
   const double aspect = static_cast<double>(viewpoint.width_pixels) / viewpoint.height_pixels;
   const auto side = [&](const Vec3& normal, const Vec3& point) { return Side{normal, dot(normal, point)}; };
   if (viewpoint.height > 0) {

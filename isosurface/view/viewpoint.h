@@ -27,6 +27,16 @@ struct Viewpoint {
   bool operator==(const Viewpoint&) const = default;
 };
 
+/// Unit vectors along the line of sight, and to the right and upwards in the picture.
+struct ViewAxes {
+  Vec3 forward, right, up;
+
+  explicit ViewAxes(const Viewpoint& viewpoint)
+      : forward(normalized(viewpoint.target - viewpoint.eye)),
+        right(normalized(cross(forward, viewpoint.up))),
+        up(cross(right, forward)) {}
+};
+
 /// A box of the frame that stands for what lies in it, by its centre and half of its sides.
 struct CentredBox {
   Vec3 centre, half;

@@ -101,6 +101,21 @@ TEST_F(Sessions, ShowTheSurfaceOfTheStateOnceItIsFinished) {
   EXPECT_LE(finished()[0].mesh->indices.size(), 900u);
 }
 
+TEST_F(Sessions, ComeToTheLastWishWhateverWasWishedBefore) {
+  finished();
+  SurfaceState& surface = session.state().documents[0].surfaces[0];
+  for (int n = 0; n < 300; ++n) {
+    // Here and back again, mostly before anything is found.
+    surface.isovalue = n % 2 == 0 ? 60 : 140;
+    session.parts();
+    if (n % 7 != 0) continue;
+    surface.isovalue = n % 3 == 0 ? 60 : 100;
+    const double radius = (200 - surface.isovalue) / 10;
+    EXPECT_NEAR(greatest_radius(*finished()[0].mesh), radius, 0.5);
+    EXPECT_TRUE(session.report().is_current);
+  }
+}
+
 TEST_F(Sessions, NormalsPointOutwardsAsTheTrianglesDo) {
   const DrawnMesh mesh = *finished()[0].mesh;
   const auto at = [&](std::uint32_t n) {

@@ -102,32 +102,29 @@ const MeshBuffers::Place& MeshBuffers::place(const SharedMesh& mesh) {
 }
 
 MeshBuffers::Place MeshBuffers::copied(const DrawnMesh& mesh) {
-  bool is_found = false;
   for (std::size_t n = 0; n < blocks_.size(); ++n) {
-    const Place place = place_in(n, mesh, is_found);
-    if (is_found) return place;
+    if (const std::optional<Place> place = copied_into(n, mesh)) return *place;
   }
   blocks_.push_back(std::make_unique<Block>(std::max(kBlockVertices, mesh.vertices.size()),
                                             std::max(kBlockIndices, mesh.indices.size())));
-  return place_in(blocks_.size() - 1, mesh, is_found);
+  return *copied_into(blocks_.size() - 1, mesh);
 }
 
-MeshBuffers::Place MeshBuffers::place_in(std::size_t block, const DrawnMesh& mesh, bool& is_found) {
+std::optional<MeshBuffers::Place> MeshBuffers::copied_into(std::size_t block, const DrawnMesh& mesh) {
   Block& into = *blocks_[block];
   const auto vertices = into.vertices.take(mesh.vertices.size());
-  if (!vertices) return {};
+  if (!vertices) return std::nullopt;
   const auto indices = into.indices.take(mesh.indices.size());
   if (!indices) {
     into.vertices.give_back(*vertices, mesh.vertices.size());
-    return {};
+    return std::nullopt;
   }
-  is_found = true;
   into.vertex_buffer.write(*vertices * sizeof(DrawnMesh::Vertex), std::as_bytes(std::span(mesh.vertices)));
   into.index_buffer.write(*indices * sizeof(std::uint32_t), std::as_bytes(std::span(mesh.indices)));
   copied_bytes_ +=
       mesh.vertices.size() * sizeof(DrawnMesh::Vertex) + mesh.indices.size() * sizeof(std::uint32_t);
-  return {block, static_cast<std::uint32_t>(*vertices), static_cast<std::uint32_t>(*indices),
-          static_cast<std::uint32_t>(mesh.indices.size())};
+  return Place{block, static_cast<std::uint32_t>(*vertices), static_cast<std::uint32_t>(*indices),
+               static_cast<std::uint32_t>(mesh.indices.size())};
 }
 
 void MeshBuffers::begin_picture() {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -50,7 +51,8 @@ class MeshBuffers {
   };
 
   Place copied(const DrawnMesh& mesh);
-  Place place_in(std::size_t block, const DrawnMesh& mesh, bool& is_found);
+  /// Nothing where the block has no room.
+  std::optional<Place> copied_into(std::size_t block, const DrawnMesh& mesh);
 
   std::vector<std::unique_ptr<Block>> blocks_;
   std::unordered_map<const DrawnMesh*, Known> known_;

@@ -68,8 +68,7 @@ GLuint linked_program() {
 
 /// The directions of the view, and where the target lies in it.
 Matrix view_matrix(const Viewpoint& viewpoint) {
-  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
-             right = normalized(cross(forward, viewpoint.up)), up = cross(right, forward);
+  const auto [forward, right, up] = ViewAxes(viewpoint);
   const Vec3 eye = viewpoint.eye - viewpoint.target;
   const std::array<Vec3, 3> rows{right, up, -forward};
   Matrix m{};

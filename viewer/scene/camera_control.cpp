@@ -13,16 +13,6 @@ constexpr double kLeastTilt = 0.01;
 /// What is nearer to the eye than this part of the distance to the target is not shown.
 constexpr double kNearPart = 1e-3;
 
-struct Axes {
-  Vec3 forward, right, up;
-};
-
-Axes axes_of(const Viewpoint& viewpoint) {
-  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
-             right = normalized(cross(forward, viewpoint.up));
-  return {forward, right, cross(right, forward)};
-}
-
 Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {
   return std::cos(angle) * v + std::sin(angle) * cross(axis, v) + (1 - std::cos(angle)) * dot(axis, v) * axis;
 }
@@ -52,7 +42,7 @@ double allowed_tilt(const Vec3& forward, double wanted_turn) {
 Viewpoint rotated(const Viewpoint& viewpoint, CameraMode mode, double right, double down) {
   const double angle = std::numbers::pi / viewpoint.height_pixels;
   Viewpoint result = viewpoint;
-  const Axes axes = axes_of(viewpoint);
+  const ViewAxes axes(viewpoint);
   const Vec3 offset = viewpoint.eye - viewpoint.target;
   if (mode == CameraMode::kTrackball) {
     const auto turn = [&](const Vec3& v) {
@@ -76,7 +66,7 @@ Viewpoint rotated(const Viewpoint& viewpoint, CameraMode mode, double right, dou
 }
 
 Viewpoint panned(const Viewpoint& viewpoint, double right, double down) {
-  const Axes axes = axes_of(viewpoint);
+  const ViewAxes axes(viewpoint);
   const double length = length_of_pixel(viewpoint);
   const Vec3 way = length * (-right * axes.right + down * axes.up);
   Viewpoint result = viewpoint;
@@ -96,7 +86,7 @@ Viewpoint zoomed(const Viewpoint& viewpoint, double steps) {
 }
 
 Viewpoint flown(const Viewpoint& viewpoint, double forward, double right, double up) {
-  const Axes axes = axes_of(viewpoint);
+  const ViewAxes axes(viewpoint);
   const Vec3 way = distance(viewpoint.eye, viewpoint.target) *
                    (forward * axes.forward + right * axes.right + up * axes.up);
   Viewpoint result = viewpoint;
@@ -157,7 +147,7 @@ Viewpoint between(const Viewpoint& from, const Viewpoint& to, double t) {
   result.up = direction(from.up, to.up);
   const Vec3 forward = normalized(result.target - result.eye);
   if (norm(cross(forward, result.up)) < 1e-3) result.up = t < 0.5 ? from.up : to.up;
-  if (norm(cross(forward, result.up)) < 1e-3) result.up = axes_of(from).right;
+  if (norm(cross(forward, result.up)) < 1e-3) result.up = ViewAxes(from).right;
   result.height = from.height > 0 && to.height > 0 ? (1 - t) * from.height + t * to.height : to.height;
   result.near = kNearPart * apart;
   return result;

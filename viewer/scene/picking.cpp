@@ -52,8 +52,7 @@ std::optional<Meeting> meeting(const Ray& ray, const std::array<Vec3, 3>& corner
 }  // namespace
 
 Ray ray_through(const Viewpoint& viewpoint, double x, double y) {
-  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
-             right = normalized(cross(forward, viewpoint.up)), up = cross(right, forward);
+  const auto [forward, right, up] = ViewAxes(viewpoint);
   const double across = 2 * x / viewpoint.width_pixels - 1, upwards = 1 - 2 * y / viewpoint.height_pixels;
   const double aspect = static_cast<double>(viewpoint.width_pixels) / viewpoint.height_pixels;
   if (viewpoint.height > 0) {
@@ -68,8 +67,7 @@ Ray ray_through(const Viewpoint& viewpoint, double x, double y) {
 }
 
 std::optional<std::array<double, 2>> in_picture(const Viewpoint& viewpoint, const Vec3& place) {
-  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
-             right = normalized(cross(forward, viewpoint.up)), up = cross(right, forward);
+  const auto [forward, right, up] = ViewAxes(viewpoint);
   const Vec3 from_eye = place - viewpoint.eye;
   const double depth = dot(from_eye, forward);
   if (depth <= viewpoint.near) return std::nullopt;

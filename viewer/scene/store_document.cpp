@@ -88,10 +88,9 @@ class StoreDocument final : public Document {
 
   [[nodiscard]] UpdateReport report() const override {
     const std::shared_ptr<const FoundSurfaces> found = worker_.found();
-    if (found) return found->report;
-    UpdateReport none;
-    none.is_current = false;
-    return none;
+    UpdateReport report = found ? found->report : UpdateReport{};
+    report.is_current = worker_.is_current();
+    return report;
   }
 
   [[nodiscard]] PageCounts page_counts() const override {

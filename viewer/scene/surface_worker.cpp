@@ -53,26 +53,32 @@ std::shared_ptr<const FoundSurfaces> SurfaceWorker::found() const {
   return found_;
 }
 
+bool SurfaceWorker::is_current() const {
+  const std::lock_guard lock(mutex_);
+  return found_ && found_->report.is_current && found_->wanted == wanted_;
+}
+
 void SurfaceWorker::wait_for(const WantedSurfaces& wanted) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return found_ && found_->report.is_current && found_->wanted == wanted; });
 }
 
 void SurfaceWorker::run() {
-  WantedSurfaces done;
+  // What was wanted last and found; nothing where that was given up.
+  std::optional<WantedSurfaces> done;
   while (true) {
     WantedSurfaces wanted;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return is_ended_ || (wanted_ && *wanted_ != done); });
+      changed_.wait(lock, [&] { return is_ended_ || (wanted_ && wanted_ != done); });
       if (is_ended_) return;
       wanted = *wanted_;
     }
     // A rough surface comes at once where there was another one.
-    if (wanted.isovalues != done.isovalues) update(wanted, kRough);
-    if (is_overtaken(wanted)) continue;
-    update(wanted, 1);
-    done = std::move(wanted);
+    const bool is_other = !done || wanted.isovalues != done->isovalues;
+    done.reset();
+    if (is_other && !update(wanted, kRough)) continue;
+    if (update(wanted, 1)) done = std::move(wanted);
   }
 }
 
@@ -81,13 +87,13 @@ bool SurfaceWorker::is_overtaken(const WantedSurfaces& wanted) const {
   return is_ended_ || wanted_->isovalues != wanted.isovalues;
 }
 
-void SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness) {
+bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness) {
   auto found = std::make_shared<FoundSurfaces>();
   found->wanted = wanted;
   const auto before = std::chrono::steady_clock::now();
   try {
     for (std::size_t n = 0; n < wanted.isovalues.size(); ++n) {
-      if (!add_surface(*found, n, roughness)) return;
+      if (!add_surface(*found, n, roughness)) return false;
     }
   } catch (const std::exception& error) {
     // What there is stays to be seen.
@@ -101,6 +107,7 @@ void SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
     found_ = std::move(found);
   }
   changed_.notify_all();
+  return true;
 }
 
 bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness) {

@@ -51,6 +51,8 @@ class SurfaceWorker {
   void want(const WantedSurfaces& wanted);
   /// What was found last, for whatever was wanted then; null before that.
   [[nodiscard]] std::shared_ptr<const FoundSurfaces> found() const;
+  /// Whether that is what was wanted last.
+  [[nodiscard]] bool is_current() const;
   void wait_for(const WantedSurfaces& wanted);
 
  private:
@@ -67,8 +69,9 @@ class SurfaceWorker {
   void run();
   /// Whether the surfaces that are worked out are not those that are wanted by now.
   [[nodiscard]] bool is_overtaken(const WantedSurfaces& wanted) const;
-  void update(const WantedSurfaces& wanted, std::uint64_t roughness);
   /// Returns false where something else is wanted by now.
+  bool update(const WantedSurfaces& wanted, std::uint64_t roughness);
+  /// The same.
   bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
   /// Only chunks that are not as they were are made anew.
   std::vector<SharedMesh> drawn_chunks(Surface& surface);

@@ -29,18 +29,18 @@ ImU32 packed(const Colour& colour) {
 float line_height() { return ImGui::GetTextLineHeight(); }
 
 void draw_axes(ImDrawList& list, const Viewpoint& viewpoint, float height) {
-  const Vec3 forward = normalized(viewpoint.target - viewpoint.eye),
-             right = normalized(cross(forward, viewpoint.up)), up = cross(right, forward);
+  const ViewAxes axes(viewpoint);
   const float length = 2.6F * line_height(), x = 1.6F * length, y = height - 1.6F * length;
   constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
   constexpr std::array<ImU32, 3> kColours{IM_COL32(196, 48, 43, 255), IM_COL32(38, 132, 62, 255),
                                           IM_COL32(48, 86, 190, 255)};
   std::array<int, 3> order{0, 1, 2};
   // What points away comes first, so that what is nearer lies upon it.
-  std::ranges::sort(order, std::greater<>{}, [&](int axis) { return forward[axis]; });
+  std::ranges::sort(order, std::greater<>{}, [&](int axis) { return axes.forward[axis]; });
   for (const int axis : order) {
     const auto n = static_cast<std::size_t>(axis);
-    const ImVec2 end{x + length * static_cast<float>(right[axis]), y - length * static_cast<float>(up[axis])};
+    const ImVec2 end{x + length * static_cast<float>(axes.right[axis]),
+                     y - length * static_cast<float>(axes.up[axis])};
     list.AddLine({x, y}, end, kColours[n], 2);
     const ImVec2 size = ImGui::CalcTextSize(kNames[n]);
     const ImVec2 at{x + 1.25F * (end.x - x) - 0.5F * size.x, y + 1.25F * (end.y - y) - 0.5F * size.y};

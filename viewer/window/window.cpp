@@ -131,13 +131,12 @@ class Viewer {
   void run() {
     double before = glfwGetTime();
     while (glfwWindowShouldClose(window_.get()) == GLFW_FALSE && !session_.wants_end) {
-      // Nothing moves by itself: no need to draw again and again.
-      if (session_.is_playing() || session_.is_recording() || !session_.report().is_current ||
-          frames_to_draw_ > 0) {
+      // Where nothing moves by itself there is no need to draw again and again.
+      constexpr double kSecondsOfSleep = 0.5, kSecondsOfWait = 0.01;
+      if (session_.is_playing() || session_.is_recording() || frames_to_draw_ > 0) {
         glfwPollEvents();
       } else {
-        constexpr double kSecondsOfSleep = 0.5;
-        glfwWaitEventsTimeout(kSecondsOfSleep);
+        glfwWaitEventsTimeout(session_.report().is_current ? kSecondsOfSleep : kSecondsOfWait);
       }
       frames_to_draw_ = std::max(0, frames_to_draw_ - 1);
       const double now = glfwGetTime();
