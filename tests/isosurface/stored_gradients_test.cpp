@@ -62,7 +62,7 @@ struct Stored {
 
   /// What PlaneGradients says of all samples.
   [[nodiscard]] std::vector<OctahedralCode> codes() const {
-    const auto [nx, ny, nz] = grid.dimensions;
+    const std::uint64_t nx = grid.dimensions[0], ny = grid.dimensions[1], nz = grid.dimensions[2];
     const PlaneGradients gradients(grid.spacing, nx, ny);
     std::vector<OctahedralCode> codes(grid.samples());
     const auto plane = [&](std::uint64_t k) { return k < nz ? samples.data() + k * nx * ny : nullptr; };

@@ -111,7 +111,8 @@ TEST(ColourMaps, EqualStepsOfOurOwnLookEqual) {
 TEST(ColourMaps, KnownOnesHaveTheirColours) {
   const auto near = [](const std::string& name, double t, const Colour& wanted) {
     const Colour found = ColourMap::by_name(name).at(t);
-    EXPECT_LT(std::abs(found.r - wanted.r) + std::abs(found.g - wanted.g) + std::abs(found.b - wanted.b), 0.08)
+    EXPECT_LT(std::abs(found.r - wanted.r) + std::abs(found.g - wanted.g) + std::abs(found.b - wanted.b),
+              0.08)
         << name << ' ' << t;
   };
   // As matplotlib and ParaView have them.

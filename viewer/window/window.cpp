@@ -65,10 +65,8 @@ class GlfwWindow {
   }
   GlfwWindow(const GlfwWindow&) = delete;
   GlfwWindow& operator=(const GlfwWindow&) = delete;
-  ~GlfwWindow() {
-    glfwDestroyWindow(window_);
-    glfwTerminate();
-  }
+  /// GLFW itself stays: drivers are not made to be unloaded.
+  ~GlfwWindow() { glfwDestroyWindow(window_); }
 
   [[nodiscard]] GLFWwindow* get() const { return window_; }
   [[nodiscard]] float scale() const {
