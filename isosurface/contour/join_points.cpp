@@ -22,7 +22,6 @@ namespace {
 
 using Triangle = TriangleStars::Triangle;
 using Suspect = CoincidingPatches::Suspect;
-constexpr std::uint32_t kNone = TriangleStars::kNone;
 
 template <class T>
 std::vector<T> filled(std::size_t size, T value) {
@@ -68,14 +67,14 @@ class PointJoiner {
       const LatticePoint near_p = vertices_[p], near_q = vertices_[q], near_r = vertices_[r];
       const bool first = is_same(near_p, near_q), second = is_same(near_q, near_r),
                  third = is_same(near_r, near_p);
-      if (!(first | second | third)) {
+      if (!first && !second && !third) {
         across_.push_back(n);
         continue;
       }
-      const std::uint32_t in_patch = first | third ? p : q;
+      const std::uint32_t in_patch = first || third ? p : q;
       --twice_euler[in_patch];
       sets.join(in_patch, first ? q : r);
-      if (first & second) sets.join(q, r);
+      if (first && second) sets.join(q, r);
     }
     vertices_ = {};
     patch_ = std::move(sets).roots();
@@ -117,7 +116,7 @@ class PointJoiner {
   [[nodiscard]] Triangle joined(const Triangle& t) const {
     return {patch_[t[0]], patch_[t[1]], patch_[t[2]]};
   }
-  static bool has_area(const Triangle& t) { return (t[0] != t[1]) & (t[1] != t[2]) & (t[2] != t[0]); }
+  static bool has_area(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
 
   /// Two edges that begin at one patch and end at one, and two triangles at the same three, are kept apart by
   /// taking those patches apart. Returns whether there were any.
