@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "core/base/error.h"
@@ -13,6 +14,8 @@ namespace adamas {
 namespace {
 
 constexpr float kFontSize = 15;
+/// Latin, Greek and Cyrillic letters, and the signs of tidy numbers.
+constexpr std::array<ImWchar, 9> kLetters{0x20, 0x17f, 0x370, 0x52f, 0x2070, 0x209f, 0x2212, 0x2212, 0};
 
 /// A font in which long texts can be read, where the system has it; else the one that ImGui brings.
 void add_font(float size) {
@@ -20,7 +23,7 @@ void add_font(float size) {
        {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf"}) {
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) continue;
-    if (ImGui::GetIO().Fonts->AddFontFromFileTTF(path, size) != nullptr) return;
+    if (ImGui::GetIO().Fonts->AddFontFromFileTTF(path, size, nullptr, kLetters.data()) != nullptr) return;
   }
   ImFontConfig config;
   config.SizePixels = size;
