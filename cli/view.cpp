@@ -154,8 +154,7 @@ void add_view(const Command& app, Session& session) {
   const auto options = std::make_shared<ViewOptions>();
   const Command command =
       add_command(app, session, "view", "Looks at stores, meshes and interfaces, in a window or without one",
-                  "adamas view head.adm --isovalue 1150 --offscreen --camera-path orbit:36 --frames frames",
-                  [options, &session] { run(*options, session); });
+                  "adamas view head.adm --isovalue 1150", [options, &session] { run(*options, session); });
   command
       .add_option(
           "input", options->paths,

@@ -105,8 +105,7 @@ void add_contents_options(const Command& command, ViewOptions& options) {
   command
       .add_option(
           "--isovalue", options.isovalues,
-          "The value of a store's surface; repeatable (default: between the two values of which there is "
-          "most)")
+          "The value of a store's surface; repeatable (default: the one that parts the samples best in two)")
       .one_value_each()
       .type_name("V");
   command.add_option("--opacity", options.opacities, "Of the surface of the same place among --isovalue")
