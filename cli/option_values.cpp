@@ -89,6 +89,18 @@ Plane parse_plane_option(const std::string& option, const std::string& text) {
   }
 }
 
+Plane parse_plane_at(const std::string& origin, const std::string& normal) {
+  const Plane plane{parse_vector("--origin", origin), parse_vector("--normal", normal)};
+  if (!(squared_norm(plane.normal) > 0)) wrong_usage("--normal: expected a vector with a length, found 0");
+  return plane;
+}
+
+std::array<double, 2> parse_range(const std::string& text) {
+  const auto ends = parse_numbers("--range", text, 2);
+  if (!(ends[0] < ends[1])) wrong_usage("--range: expected a < b in a,b, found '{}'", text);
+  return {ends[0], ends[1]};
+}
+
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text) {
   const auto v = parse_numbers(option, text, 6);
   for (std::size_t axis = 0; axis < 3; ++axis) {

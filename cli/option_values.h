@@ -26,6 +26,10 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
 Vec3 parse_vector(const std::string& option, const std::string& text);
 /// "x=0.5": a plane at right angles to an axis.
 Plane parse_plane_option(const std::string& option, const std::string& text);
+/// A plane by the values of --origin and --normal.
+Plane parse_plane_at(const std::string& origin, const std::string& normal);
+/// The values at the ends of a colour map, of --range: "a,b" with a < b.
+std::array<double, 2> parse_range(const std::string& text);
 /// "x0,x1,y0,y1,z0,z1" with x0 < x1 and so on.
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text);
 Box3 to_box(const std::array<double, 6>& bounds);

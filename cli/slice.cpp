@@ -34,9 +34,7 @@ Plane parse_any_plane(const Options& options) {
   if (options.origin.empty() || options.normal.empty()) {
     wrong_usage("expected --origin and --normal together");
   }
-  const Plane plane{parse_vector("--origin", options.origin), parse_vector("--normal", options.normal)};
-  if (!(squared_norm(plane.normal) > 0)) wrong_usage("--normal: expected a vector with a length, found 0");
-  return plane;
+  return parse_plane_at(options.origin, options.normal);
 }
 
 /// The pieces of a section as polygons with points of their own, so that values jump at interfaces: cell
@@ -110,17 +108,16 @@ SliceOptions picture_size(const Options& options) {
   return size;
 }
 
-std::optional<ValueRange> parse_range(const Options& options) {
+std::optional<ValueRange> value_range(const Options& options) {
   if (options.range.empty()) return {};
-  const auto ends = parse_numbers("--range", options.range, 2);
-  if (!(ends[0] < ends[1])) wrong_usage("--range: expected a < b in a,b, found '{}'", options.range);
-  return ValueRange{ends[0], ends[1]};
+  const auto [low, high] = parse_range(options.range);
+  return ValueRange{low, high};
 }
 
 SlicePicture make_picture(const Options& options, const SliceInput& input, const SliceStyle& style,
                           const std::vector<SliceMode>& wanted, const std::vector<CrossSection>& sections) {
   SlicePicture picture = make_slice_picture(input, wanted, style, sections);
-  picture.range = parse_range(options);
+  picture.range = value_range(options);
   if (!options.colour_map.empty()) picture.map = ColourMap::by_name(options.colour_map);
   return picture;
 }
@@ -156,7 +153,7 @@ void check_field_options(const Options& options, const std::string& field) {
 void check_options(const Options& options, OutputSet& outputs) {
   if (options.draw_cells && options.no_draw_cells)
     wrong_usage("--draw-cells and --no-draw-cells: expected one of them");
-  parse_range(options);
+  value_range(options);
   const std::string main = with_main_file(options.input).path;
   protect_inputs(options.input, options.original.empty() ? main : options.original, outputs);
   outputs.declare("-o", options.output, {".png", ".svg", ".pdf", ".vtp"});

@@ -106,14 +106,7 @@ void run_offscreen(const ViewOptions& options, Session& session) {
   apply_view_options(options, view);
   Figures figures = fly(options, size, view, folder ? &*folder : nullptr, session);
   PageCounts counts;
-  for (const auto& document : view.documents()) {
-    const PageCounts some = document->page_counts();
-    counts.pages += some.pages;
-    counts.predictors += some.predictors;
-    counts.bytes += some.bytes;
-    counts.copies += some.copies;
-    counts.damaged += some.damaged;
-  }
+  for (const auto& document : view.documents()) counts += document->page_counts();
   add_page_counts(counts, figures);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });

@@ -19,9 +19,7 @@ std::optional<Plane> plane_of(const ViewOptions& options) {
   if (!options.plane.empty()) return parse_plane_option("--plane", options.plane);
   if (options.origin.empty() && options.normal.empty()) return std::nullopt;
   if (options.origin.empty() || options.normal.empty()) wrong_usage("expected both --origin and --normal");
-  const Plane plane{parse_vector("--origin", options.origin), parse_vector("--normal", options.normal)};
-  if (!(squared_norm(plane.normal) > 0)) wrong_usage("--normal: expected a vector with a length, found 0");
-  return plane;
+  return parse_plane_at(options.origin, options.normal);
 }
 
 /// What options say of surfaces.
@@ -47,9 +45,7 @@ std::vector<SurfaceState> surfaces_of(const ViewOptions& options) {
 
 std::optional<std::array<double, 2>> range_of(const ViewOptions& options) {
   if (options.range.empty()) return std::nullopt;
-  const std::vector<double> ends = parse_numbers("--range", options.range, 2);
-  if (!(ends[0] < ends[1])) wrong_usage("--range: expected a < b, found '{}'", options.range);
-  return std::array{ends[0], ends[1]};
+  return parse_range(options.range);
 }
 
 std::optional<Viewpoint> culled_from(const ViewOptions& options) {

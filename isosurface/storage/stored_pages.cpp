@@ -60,11 +60,7 @@ PageCounts StoredPages<Word>::counts() const {
     for (const PageId& page : other.pages->damaged()) {
       if (std::find(damaged.begin(), damaged.end(), page) == damaged.end()) damaged.push_back(page);
     }
-    const PageCounts of = other.pages->counts();
-    all.pages += of.pages;
-    all.predictors += of.predictors;
-    all.bytes += of.bytes;
-    all.copies += of.copies;
+    all += other.pages->counts();
   }
   all.damaged = damaged.size();
   return all;

@@ -24,6 +24,15 @@ struct PageCounts {
   std::uint64_t bytes = 0;       ///< of both and of the directory
   std::uint64_t copies = 0;      ///< pages that were damaged, of which the second copy was whole
   std::uint64_t damaged = 0;     ///< pages that cannot be had
+
+  PageCounts& operator+=(const PageCounts& other) {
+    pages += other.pages;
+    predictors += other.predictors;
+    bytes += other.bytes;
+    copies += other.copies;
+    damaged += other.damaged;
+    return *this;
+  }
 };
 
 /// A page that is needed cannot be had, since a page is damaged: it itself or one that it is predicted from.

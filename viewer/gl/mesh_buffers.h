@@ -38,9 +38,8 @@ class MeshBuffers {
   /// The buffer of its indices.
   [[nodiscard]] std::uint32_t index_buffer(std::size_t block) const;
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
-  /// Bytes that were copied since this was made, and meshes that are there.
+  /// Bytes that were copied since this was made.
   [[nodiscard]] std::uint64_t copied_bytes() const { return copied_bytes_; }
-  [[nodiscard]] std::size_t meshes() const { return known_.size(); }
 
  private:
   struct Block;

@@ -119,6 +119,13 @@ Viewpoint looking(const Viewpoint& viewpoint, const Vec3& direction, const Vec3&
   return result;
 }
 
+Viewpoint sized_as(const Viewpoint& viewpoint, const Viewpoint& other) {
+  Viewpoint result = viewpoint;
+  result.width_pixels = other.width_pixels;
+  result.height_pixels = other.height_pixels;
+  return result;
+}
+
 Viewpoint with_projection(const Viewpoint& viewpoint, bool is_parallel) {
   Viewpoint result = viewpoint;
   if (is_parallel == (viewpoint.height > 0)) return result;

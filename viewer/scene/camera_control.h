@@ -20,6 +20,8 @@ Viewpoint flown(const Viewpoint& viewpoint, double forward, double right, double
 Viewpoint showing_all(const Viewpoint& viewpoint, const Box3& box);
 /// Looks in a direction with another one upwards, at the same target from the same distance.
 Viewpoint looking(const Viewpoint& viewpoint, const Vec3& direction, const Vec3& up);
+/// With the size of another viewpoint's picture.
+Viewpoint sized_as(const Viewpoint& viewpoint, const Viewpoint& other);
 /// By parallel projection or in perspective, with what is at the target as large as before.
 Viewpoint with_projection(const Viewpoint& viewpoint, bool is_parallel);
 /// Between two viewpoints, 0 <= t <= 1: the eye on an arc round the target, directions turned, distances in

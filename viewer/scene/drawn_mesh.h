@@ -30,6 +30,11 @@ struct DrawnMesh {
   Box3 box;  ///< of all vertices, in the frame of the data
 };
 
+/// As vertices have it.
+inline std::array<float, 3> in_single(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
 using SharedMesh = std::shared_ptr<const DrawnMesh>;
 
 /// How a mesh looks.

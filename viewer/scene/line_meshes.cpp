@@ -1,9 +1,9 @@
 #include "viewer/scene/line_meshes.h"
 
 #include <array>
-#include <memory>
 #include <vector>
 
+#include "viewer/scene/mesh_maker.h"
 #include "viewer/scene/picking.h"
 
 namespace adamas {
@@ -12,17 +12,11 @@ namespace {
 
 /// Lines between pairs of points.
 SharedMesh lines(const std::vector<Vec3>& ends) {
-  auto mesh = std::make_shared<DrawnMesh>();
-  mesh->is_lines = true;
-  for (const Vec3& p : ends) mesh->box.extend(p);
-  mesh->origin = mesh->box.center();
-  for (const Vec3& p : ends) {
-    const Vec3 q = p - mesh->origin;
-    mesh->indices.push_back(static_cast<std::uint32_t>(mesh->vertices.size()));
-    mesh->vertices.push_back(
-        {{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)}, {0, 0, 0}});
-  }
-  return mesh;
+  Box3 box;
+  for (const Vec3& p : ends) box.extend(p);
+  MeshMaker maker(box.center(), MeshMaker::Kind::kLines);
+  for (const Vec3& p : ends) maker.add_index(maker.add_vertex(p, {}, {}));
+  return maker.finish();
 }
 
 std::vector<Vec3> edges_of_corners(const std::array<Vec3, 8>& corners) {

@@ -4,14 +4,6 @@
 
 namespace adamas {
 
-namespace {
-
-std::array<float, 3> in_single(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-}  // namespace
-
 MeshMaker::MeshMaker(const Vec3& origin, Kind kind) {
   mesh_.origin = origin;
   mesh_.is_lines = kind == Kind::kLines;

@@ -8,22 +8,6 @@
 
 namespace adamas {
 
-namespace {
-
-std::array<float, 3> in_single(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-void add(const PageCounts& some, PageCounts& all) {
-  all.pages += some.pages;
-  all.predictors += some.predictors;
-  all.bytes += some.bytes;
-  all.copies += some.copies;
-  all.damaged += some.damaged;
-}
-
-}  // namespace
-
 SurfaceWorker::SurfaceWorker(const std::string& path, const DocumentOptions& options)
     : file_(path),
       memory_(options.memory),
@@ -124,7 +108,7 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
   const FrameFigures figures = surfaces_[n].frames->next(request);
   if (figures.stopped) return false;
   found.surfaces.push_back(drawn_chunks(surfaces_[n]));
-  add(surfaces_[n].frames->counts(), found.counts);
+  found.counts += surfaces_[n].frames->counts();
   UpdateReport& report = found.report;
   report.triangles += figures.triangles;
   report.splits += figures.splits;

@@ -47,8 +47,7 @@ void ViewSession::restore(const ViewState& state) {
   const Viewpoint now = state_.viewpoint;
   const std::vector<DocumentState> first = state_.documents;
   state_ = state;
-  state_.viewpoint.width_pixels = now.width_pixels;
-  state_.viewpoint.height_pixels = now.height_pixels;
+  state_.viewpoint = sized_as(state_.viewpoint, now);
   state_.culled_from.reset();
   state_.documents.resize(documents_.size());
   for (std::size_t n = 0; n < documents_.size(); ++n) {
@@ -194,10 +193,7 @@ void ViewSession::next_field() {
 void ViewSession::next_bookmark() {
   if (state_.bookmarks.empty()) return;
   bookmark_ %= state_.bookmarks.size();
-  const Viewpoint now = state_.viewpoint;
-  state_.viewpoint = state_.bookmarks[bookmark_].viewpoint;
-  state_.viewpoint.width_pixels = now.width_pixels;
-  state_.viewpoint.height_pixels = now.height_pixels;
+  state_.viewpoint = sized_as(state_.bookmarks[bookmark_].viewpoint, state_.viewpoint);
   ++bookmark_;
 }
 
@@ -318,10 +314,8 @@ void ViewSession::advance(double seconds) {
   if (played_ >= last) is_playing_ = false;
   const double at = std::min(played_, last);
   const auto below = std::min(static_cast<std::size_t>(at), path_.size() - 2);
-  const Viewpoint now = state_.viewpoint;
-  state_.viewpoint = between(path_[below], path_[below + 1], at - static_cast<double>(below));
-  state_.viewpoint.width_pixels = now.width_pixels;
-  state_.viewpoint.height_pixels = now.height_pixels;
+  state_.viewpoint =
+      sized_as(between(path_[below], path_[below + 1], at - static_cast<double>(below)), state_.viewpoint);
 }
 
 Vec3 ViewSession::cut_handle() const {
@@ -346,11 +340,6 @@ void ViewSession::drag_cut(double right, double down) {
                            : away * down / std::max(1.0, state_.viewpoint.height_pixels / 100.0);
   const Vec3 moved = handle + (steps * step) * normal;
   if (all.contains(moved)) state_.cut.plane.origin = moved;
-}
-
-void ViewSession::set_path(std::vector<Viewpoint> path) {
-  path_ = std::move(path);
-  played_ = 0;
 }
 
 std::string path_text(const std::vector<Viewpoint>& path) {

@@ -75,7 +75,6 @@ class ViewSession {
   [[nodiscard]] bool is_playing() const { return is_playing_; }
   [[nodiscard]] bool is_recording() const { return is_recording_; }
   [[nodiscard]] const std::vector<Viewpoint>& path() const { return path_; }
-  void set_path(std::vector<Viewpoint> path);
 
   // What the window does when it is asked, and takes back.
   bool has_panels = true, has_help = false, wants_screenshot = false, wants_end = false;

@@ -30,7 +30,6 @@ class Input {
   /// What the last click met; none where it met nothing.
   [[nodiscard]] const std::optional<Picked>& picked() const { return picked_; }
   void forget_picked() { picked_.reset(); }
-  [[nodiscard]] bool is_dragging() const { return drag_ != Drag::kNone; }
 
  private:
   enum class Drag { kNone, kTurn, kPan, kZoom, kCut };

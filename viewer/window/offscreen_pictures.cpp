@@ -33,12 +33,11 @@ Raster OffscreenPictures::draw(const Viewpoint& viewpoint) {
   session_.state().viewpoint = viewpoint;
   session_.set_size(parts_->target.width(), parts_->target.height());
   // The last surface, seen from here, tells what is hidden.
-  if (session_.state().leaves_out_hidden) {
+  if (session_.wants_depths()) {
     const PictureContents last = session_picture(session_);
     const DrawFigures figures = parts_->renderer.draw(last, parts_->target.framebuffer(),
                                                       parts_->target.width(), parts_->target.height());
-    if (session_.wants_depths())
-      session_.set_depths(depths_of(parts_->target, session_.state().viewpoint, figures));
+    session_.set_depths(depths_of(parts_->target, session_.state().viewpoint, figures));
   }
   session_.finish();
   report_ = session_.report();

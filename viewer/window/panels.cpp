@@ -249,12 +249,7 @@ void show_camera(ViewSession& session, PanelState& panels) {
   std::size_t removed = view.bookmarks.size();
   for (std::size_t n = 0; n < view.bookmarks.size(); ++n) {
     ImGui::PushID(static_cast<int>(n));
-    if (ImGui::SmallButton("Go")) {
-      const Viewpoint now = view.viewpoint;
-      view.viewpoint = view.bookmarks[n].viewpoint;
-      view.viewpoint.width_pixels = now.width_pixels;
-      view.viewpoint.height_pixels = now.height_pixels;
-    }
+    if (ImGui::SmallButton("Go")) view.viewpoint = sized_as(view.bookmarks[n].viewpoint, view.viewpoint);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 1.8F * em());
     ImGui::InputText("##name", &view.bookmarks[n].name);

@@ -23,7 +23,7 @@ struct PanelState {
   std::vector<FrameTimes> history;  ///< the last frames, the newest last
   std::string path;                 ///< of a file to be opened
   std::string message;              ///< what was done last, or why it was not
-  bool wants_open = false, wants_path_saved = false, wants_path_read = false;
+  bool wants_open = false, wants_path_saved = false;
 
   void add(const FrameTimes& times);
 };
