@@ -4,19 +4,18 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <memory>
 
 #include "core/base/error.h"
 #include "core/base/simd.h"
 #include "isosurface/compression/bit_stream.h"
+#include "isosurface/compression/bounds_head.h"
 #include "isosurface/compression/bounds_symbols.h"
+#include "isosurface/compression/byte_stream.h"
 
 namespace adamas {
 namespace {
 
-// A page is a byte of modes, errors lowest; the code of all errors where that is their mode; and where
-// something is coded the bytes of a RansEncoder, in which the bits that a stage's symbols leave open come
-// after its escaped symbols.
-constexpr int kRangeModeAt = 2;
 /// The states of the entropy coder: fewer than for samples, since most pages have few coded symbols. Eight
 /// with wide registers are no faster here, as each stage is short and waits for the one before, and would
 /// take seven bytes more of a page, which has 240 on average.
@@ -29,10 +28,6 @@ void find_tables(const ContextTables& all, std::size_t base, std::span<const std
                  std::uint8_t* tables) {
   const std::uint8_t* const of_contexts = all.of_contexts().data() + base;
   for (std::size_t n = 0; n < contexts.size(); ++n) tables[n] = of_contexts[contexts[n]];
-}
-
-std::byte head(ErrorMode errors, RangeMode ranges) {
-  return static_cast<std::byte>(static_cast<int>(errors) | static_cast<int>(ranges) << kRangeModeAt);
 }
 
 /// The decoder's part of walk_bounds.
@@ -49,7 +44,9 @@ class BoundsReader {
         decoder_(tables, bytes) {}
 
   [[nodiscard]] bool needs_errors() const { return is_coded(error_mode_); }
-  [[nodiscard]] bool needs_ranges() const { return range_mode_ != RangeMode::kEmpty; }
+  [[nodiscard]] bool needs_ranges() const {
+    return range_mode_ != RangeMode::kEmpty && range_mode_ != RangeMode::kEqual;
+  }
 
   void errors(const BoundsStage& stage) {
     decode(stage);
@@ -103,7 +100,8 @@ class BoundsReader {
     if (!good_ || (coded && !decoder_.at_end())) return false;
     summary_.add_errors(shape_, fields_);
     if (needs_ranges()) summary_.add_ranges(shape_, fields_);
-    return summary_.error_mode() == error_mode_ && summary_.range_mode() == range_mode_;
+    return summary_.error_mode() == error_mode_ &&
+           (range_mode_ == RangeMode::kEqual || summary_.range_mode() == range_mode_);
   }
 
  private:
@@ -307,8 +305,7 @@ void BoundsCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>&
   const BoundsSymbols<Word> symbols(geometry_, rounding_, shape, around, page);
   const ErrorMode errors = symbols.summary().error_mode();
   const RangeMode ranges = symbols.summary().range_mode();
-  out.push_back(head(errors, ranges));
-  if (errors == ErrorMode::kEqual) out.push_back(static_cast<std::byte>(symbols.summary().any_error));
+  BoundsHead<Word>{errors, ranges, symbols.summary().any_error, symbols.first_range()}.put(out);
   if (!is_coded(errors) && !is_coded(ranges)) return;
   RansEncoder<kStates> encoder(tables_, 0);
   std::array<std::uint8_t, BoundsStage::kMost> tables;
@@ -324,27 +321,19 @@ template <class Word>
 bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape& shape,
                                const Surroundings<Word>& around, const PageSamples<Word>& samples,
                                PageBounds<Word>& bounds) const {
-  if (bytes.empty()) return false;
-  const auto modes = std::to_integer<std::uint8_t>(bytes[0]);
-  const auto errors = static_cast<ErrorMode>(modes & 3);
-  const auto ranges = static_cast<RangeMode>(modes >> kRangeModeAt);
-  if (errors > ErrorMode::kCoded || ranges > RangeMode::kCoded) return false;
-  bytes = bytes.subspan(1);
-  std::uint8_t error = 0;
-  if (errors == ErrorMode::kEqual) {
-    if (bytes.empty()) return false;
-    error = std::to_integer<std::uint8_t>(bytes[0]);
-    const bool any_point = shape.complete || shape.count != LatticePoint{1, 1, 1};
-    if (error == 0 || error >= BoundsContexts<Word>::kErrorSymbols || !any_point) return false;
-    bytes = bytes.subspan(1);
-  }
+  ByteReader in(bytes);
+  const auto head = BoundsHead<Word>::take(in);
+  if (!in.good() || !head.is_possible(shape, rounding_)) return false;
+  const ErrorMode errors = head.errors;
+  const RangeMode ranges = head.ranges;
   const bool coded = is_coded(errors) || is_coded(ranges);
-  if (!coded && !bytes.empty()) return false;
+  if (!coded && !in.rest().empty()) return false;
   BoundsFields<Word> fields;
   fields.rounding = rounding_;
   fields.load(shape, around, samples);
-  if (!is_coded(errors)) fields.fill_errors(shape, error);
-  BoundsReader<Word> reader(contexts_, tables_, bytes, shape, errors, ranges, fields);
+  if (!is_coded(errors)) fields.fill_errors(shape, head.error);
+  if (ranges == RangeMode::kEqual) fields.fill_ranges(shape, head.range);
+  BoundsReader<Word> reader(contexts_, tables_, in.rest(), shape, errors, ranges, fields);
   if (shape.complete) {
     walk_complete_bounds<Word>(fields, shape, reader);
   } else {
@@ -352,7 +341,17 @@ bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape
     walk_bounds<Word>(fields, geometry_, shape, omitted, reader);
   }
   fields.store_bounds(shape, bounds);
-  return reader.finish();
+  return reader.finish() &&
+         (ranges != RangeMode::kEqual || are_equal_ranges_coded(shape, around, samples, bounds));
+}
+
+template <class Word>
+bool BoundsCodec<Word>::are_equal_ranges_coded(const PageShape& shape, const Surroundings<Word>& around,
+                                               const PageSamples<Word>& samples,
+                                               const PageBounds<Word>& bounds) const {
+  const auto page = std::make_unique<Page<Word>>(Page<Word>{samples, bounds});
+  return BoundsSymbols<Word>(geometry_, rounding_, shape, around, *page).summary().range_mode() ==
+         RangeMode::kEqual;
 }
 
 template class BoundsSurvey<std::uint8_t>;

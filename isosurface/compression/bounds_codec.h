@@ -65,6 +65,11 @@ class BoundsCodec {
                             PageBounds<Word>& bounds) const;
 
  private:
+  /// Whether these bounds, of equal ranges, are coded as such.
+  [[nodiscard]] bool are_equal_ranges_coded(const PageShape& shape, const Surroundings<Word>& around,
+                                            const PageSamples<Word>& samples,
+                                            const PageBounds<Word>& bounds) const;
+
   BoundsCodec(const OwnErrorGeometry& geometry, const RangeRounding<Word>& rounding, ContextTables contexts)
       : geometry_(geometry), rounding_(rounding), contexts_(std::move(contexts)), tables_(contexts_) {}
 

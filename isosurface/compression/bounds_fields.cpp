@@ -309,6 +309,18 @@ void BoundsFields<Word>::fill_errors(const PageShape& shape, std::uint8_t code) 
 }
 
 template <class Word>
+void BoundsFields<Word>::fill_ranges(const PageShape& shape, const std::array<Word, 2>& range) {
+  for (int parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
+    for_each_row(shape, parity, [&](std::size_t cell, std::size_t, int count) {
+      for (std::size_t side = 0; side < 2; ++side)
+        std::fill_n(
+            ranges[side][static_cast<std::size_t>(parity)].begin() + static_cast<std::ptrdiff_t>(cell), count,
+            range[side]);
+    });
+  }
+}
+
+template <class Word>
 void BoundsFields<Word>::store_bounds(const PageShape& shape, PageBounds<Word>& page) const {
   with_wide_lanes([&](auto) {
     for (std::int32_t k = 0; k < shape.count.k; ++k) {

@@ -25,6 +25,8 @@ struct BoundsFields {
   void load_bounds(const PageShape& shape, const PageBounds<Word>& page);
   /// Gives all own points the same error.
   void fill_errors(const PageShape& shape, std::uint8_t code);
+  /// Gives all own points the same range, by side.
+  void fill_ranges(const PageShape& shape, const std::array<Word, 2>& range);
   /// Makes `predicted` the own errors that follow from the samples, which are found on the finest LOD alone:
   /// what those of a coarse LOD tell is not worth working out.
   void predict_errors(const PageShape& shape, const OwnErrorGeometry& geometry);

@@ -37,6 +37,26 @@ void BoundsSummary::add_ranges(const PageShape& shape, const BoundsFields<Word>&
     const Word* words = fields.ranges[0][parity].data() + cell;
     for (int n = 0; !any_word && n < count; ++n) any_word = words[n] != BoundsFields<Word>::kUnknown;
   });
+  equal_ranges = any_other;
+  if (!equal_ranges) return;
+  const std::array<Word, 2> first = first_range(shape, fields);
+  for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Word* words = fields.ranges[side][parity].data() + cell;
+      for (int n = 0; equal_ranges && n < count; ++n) equal_ranges = words[n] == first[side];
+    }
+  });
+}
+
+template <class Word>
+std::array<Word, 2> first_range(const PageShape& shape, const BoundsFields<Word>& fields) {
+  std::array<Word, 2> first{BoundsFields<Word>::kUnknown, BoundsFields<Word>::kUnknown};
+  bool found = false;
+  for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int) {
+    if (!found) first = {fields.ranges[0][parity][cell], fields.ranges[1][parity][cell]};
+    found = true;
+  });
+  return first;
 }
 
 template <class Word>
@@ -130,6 +150,9 @@ void BoundsSymbols<Word>::leave_out_what_modes_tell() {
   }
 }
 
+template std::array<std::uint8_t, 2> first_range(const PageShape&, const BoundsFields<std::uint8_t>&);
+template std::array<std::uint16_t, 2> first_range(const PageShape&, const BoundsFields<std::uint16_t>&);
+template std::array<std::uint32_t, 2> first_range(const PageShape&, const BoundsFields<std::uint32_t>&);
 template void BoundsSummary::add_errors(const PageShape&, const BoundsFields<std::uint8_t>&);
 template void BoundsSummary::add_errors(const PageShape&, const BoundsFields<std::uint16_t>&);
 template void BoundsSummary::add_errors(const PageShape&, const BoundsFields<std::uint32_t>&);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -20,11 +21,14 @@ enum class RangeMode : std::uint8_t {
   kEmpty,               ///< all have nothing in them
   kPredicted,           ///< all as predicted
   kCodedButDetermined,  ///< as of errors
-  kCoded
+  kCoded,
+  kEqual  ///< all are the same; taken before those that are coded
 };
 
 constexpr bool is_coded(ErrorMode mode) { return mode >= ErrorMode::kCodedButDetermined; }
-constexpr bool is_coded(RangeMode mode) { return mode >= RangeMode::kCodedButDetermined; }
+constexpr bool is_coded(RangeMode mode) {
+  return mode == RangeMode::kCodedButDetermined || mode == RangeMode::kCoded;
+}
 
 /// What is to be found of a page's errors and ranges to know their modes.
 struct BoundsSummary {
@@ -33,11 +37,12 @@ struct BoundsSummary {
   bool any_word = false;         ///< whether a range is not empty
   bool any_other = false;        ///< whether a range is not as predicted
   bool any_determined_error_other = false, any_determined_range_other = false;  ///< of determined points
+  bool equal_ranges = false;  ///< whether all are the same; looked at where some is not as predicted
 
   /// Takes in the page's own errors.
   template <class Word>
   void add_errors(const PageShape& shape, const BoundsFields<Word>& fields);
-  /// Takes in whether its ranges are empty.
+  /// Takes in whether its ranges are empty, and whether they are the same.
   template <class Word>
   void add_ranges(const PageShape& shape, const BoundsFields<Word>& fields);
 
@@ -49,9 +54,14 @@ struct BoundsSummary {
   [[nodiscard]] RangeMode range_mode() const {
     if (!any_word) return RangeMode::kEmpty;
     if (!any_other) return RangeMode::kPredicted;
+    if (equal_ranges) return RangeMode::kEqual;
     return any_determined_range_other ? RangeMode::kCoded : RangeMode::kCodedButDetermined;
   }
 };
+
+/// The range of a page's first own point, by side.
+template <class Word>
+std::array<Word, 2> first_range(const PageShape& shape, const BoundsFields<Word>& fields);
 
 /// What a page's errors and ranges are coded as.
 template <class Word>
@@ -72,6 +82,8 @@ class BoundsSymbols {
   };
 
   [[nodiscard]] const BoundsSummary& summary() const { return summary_; }
+  /// Of the page's first own point, by side: that of all where they are the same.
+  [[nodiscard]] std::array<Word, 2> first_range() const { return adamas::first_range(shape_, *fields_); }
   /// Those to be coded, by stages.
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
 

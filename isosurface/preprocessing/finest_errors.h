@@ -11,11 +11,16 @@
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/lod_values.h"
 #include "isosurface/preprocessing/own_errors.h"
+#include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
 
 /// Own errors of the diamonds of scale 1, in blocks of 16^3 points.
+///
+/// In blocks of noise (is_noise) all diamonds have one error, the greatest of the LOD, and one range, that of
+/// the block's samples: a surface through noise is refined nearly everywhere whatever they say, and the
+/// bounds of each diamond would take more bytes than all that is stored beside the samples.
 template <class Sample>
 class FinestErrors {
  public:
@@ -31,8 +36,9 @@ class FinestErrors {
       : side_(std::int32_t{1} << depth), last_(last), geometry_(spacing) {}
 
   /// Sets the codes of the LOD's points from `base` on, for which the samples one step round them are there;
-  /// they were 0.
-  void measure(LodValues<Word>& lod, LatticePoint base, Work& work) const {
+  /// they were 0. But returns true where there is noise, and sets none: set_noise is for that. `noise`: from
+  /// least_noise.
+  [[nodiscard]] bool measure(LodValues<Word>& lod, LatticePoint base, double noise, Work& work) const {
     LatticePoint count;
     bool all_count = std::is_integral_v<Sample>;
     for (int axis = 0; axis < 3; ++axis) {
@@ -41,7 +47,8 @@ class FinestErrors {
       all_count = all_count && std::max(end - 1, inside(end)) <= last_[axis];
     }
     load(lod, base, count, all_count, work);
-    if (all_count && count == LatticePoint{16, 16, 16} && is_constant(work.samples)) return;
+    if (all_count && count == LatticePoint{16, 16, 16} && is_constant(work.samples)) return false;
+    if (is_noise(work.samples, base, count, noise)) return true;
     own_errors(work.samples, all_count ? work.samples : work.counted, geometry_, count, work.codes);
     for (std::int32_t k = 0; k < count.k; ++k) {
       for (std::int32_t j = 0; j < count.j; ++j) {
@@ -52,12 +59,63 @@ class FinestErrors {
         std::copy_n(row.begin(), count.i, lod.codes(base.j + j, base.k + k) + base.i);
       }
     }
+    return false;
+  }
+
+  /// By how much samples of noise differ from the mean of two neighbours, in the mean, at least. Evenly
+  /// spread ones do by 0.29 of their range, and a tenth of it where they follow a normal distribution. Whole
+  /// numbers have to use a good part of their words: noise of fewer bits takes fewer bytes than are given,
+  /// bounds and all. `low`, `high`: of the samples round here, as words.
+  static double least_noise(Word low, Word high) {
+    if constexpr (std::is_integral_v<Sample>) {
+      return std::numeric_limits<Word>::max() / 4.0;
+    } else {
+      return low < high ? (real(high) - real(low)) / 12.0 : std::numeric_limits<double>::infinity();
+    }
+  }
+
+  /// Gives all diamonds of a block of noise the greatest error and a range, in which all their samples lie.
+  static void set_noise(LodValues<Word>& lod, LatticePoint base, Word low, Word high) {
+    const LatticePoint size = lod.size();
+    for (std::int32_t k = base.k; k < std::min(base.k + 16, size.k); ++k) {
+      for (std::int32_t j = base.j; j < std::min(base.j + 16, size.j); ++j) {
+        // Points with even coordinates alone are of coarser LODs.
+        const std::int32_t first = ((j | k) & 1) == 0 ? 1 : 0;
+        for (std::int32_t i = base.i + first; i < std::min(base.i + 16, size.i); i += 1 + first) {
+          lod.codes(j, k)[i] = ErrorScale::kCodes - 1;
+          lod.low(j, k)[i] = low;
+          lod.high(j, k)[i] = high;
+        }
+      }
+    }
   }
 
  private:
+  /// Of fewer samples nothing is said.
+  static constexpr std::int32_t kLeastOfNoise = 64;
+
   static bool is_constant(const SampleBlock<Real>& block) {
     const auto& numbers = block.numbers();
     return std::all_of(numbers.begin(), numbers.end(), [&](Real x) { return x == numbers[0]; });
+  }
+
+  /// Whether the block's samples differ from the mean of their neighbours along i by `least` in the mean:
+  /// those with even coordinates that have both neighbours.
+  [[nodiscard]] bool is_noise(const SampleBlock<Real>& block, LatticePoint base, LatticePoint count,
+                              double least) const {
+    const std::int32_t first = base.i == 0 ? 1 : 0;
+    const std::int32_t end = std::min((count.i + 1) / 2, (last_.i - base.i + 1) / 2);
+    const std::int32_t all = (end - first) * count.j * count.k;
+    if (end <= first || all < kLeastOfNoise) return false;
+    double sum = 0;
+    for (std::int32_t k = 0; k < count.k; ++k) {
+      for (std::int32_t j = 0; j < count.j; ++j) {
+        const Real* row = block.at({-1, j, k});  // odd coordinates, then even ones
+        for (std::int32_t n = first; n < end; ++n)
+          sum += std::abs(row[SampleBlock<Real>::kHalf + n] - (row[n] + row[n + 1]) / 2);
+      }
+    }
+    return std::isfinite(sum) && sum >= least * all;
   }
 
   /// A coordinate mirrored into the lattice: at its border diamonds have but half their tetrahedra, and the

@@ -27,7 +27,7 @@ class Preprocessing {
   using Word = OrderedWord<Sample>;
 
   Preprocessing(const VolumeGrid& volume, const PlaneSource& planes, const PageSink<Sample>& sink,
-                Progress& progress)
+                Progress& progress, NoiseBounds noise)
       : grid_(volume.dimensions),
         last_(grid_.last()),
         planes_(planes),
@@ -36,7 +36,7 @@ class Preprocessing {
         words_(volume.plane_samples()),
         coarse_(last_),
         lods_(make_lods(grid_)),
-        errors_(grid_, volume.spacing, coarse_),
+        errors_(grid_, volume.spacing, coarse_, noise == NoiseBounds::kSame),
         sweep_(lods_, last_),
         writer_(grid_, lods_, coarse_, sink) {}
 
@@ -139,18 +139,19 @@ class Preprocessing {
 
 template <class Sample>
 void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSink<Sample>& sink,
-                Progress& progress) {
+                Progress& progress, NoiseBounds noise) {
   grid.check("volume");
   ADAMAS_ASSERT(sample_bytes(grid.type) == sizeof(Sample));
-  Preprocessing<Sample>(grid, planes, sink, progress).run();
+  Preprocessing<Sample>(grid, planes, sink, progress, noise).run();
 }
 
 template void preprocess<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint8_t>&,
-                                       Progress&);
+                                       Progress&, NoiseBounds);
 template void preprocess<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint16_t>&,
-                                        Progress&);
+                                        Progress&, NoiseBounds);
 template void preprocess<std::int16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::int16_t>&,
-                                       Progress&);
-template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&, Progress&);
+                                       Progress&, NoiseBounds);
+template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&, Progress&,
+                                NoiseBounds);
 
 }  // namespace adamas

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "adamas/progress.h"
@@ -10,6 +11,11 @@
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
+
+/// What bounds diamonds of the finest LODs have where there is noise (least_noise): each its own; or all the
+/// same, which cover them: a surface through noise is refined nearly everywhere whatever they say, and each
+/// diamond's own would take many times the bytes of all else that is stored beside the samples.
+enum class NoiseBounds : std::uint8_t { kOwn, kSame };
 
 /// Takes one page. Called for one at a time, in an order that depends on the volume's dimensions alone.
 template <class Sample>
@@ -31,6 +37,6 @@ using PageSink = std::function<void(const PageId&, const Page<OrderedWord<Sample
 /// a grid that cannot be, Cancelled when `progress` says so, and what `planes` and `sink` throw.
 template <class Sample>
 void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSink<Sample>& sink,
-                Progress& progress = SilentProgress::instance());
+                Progress& progress = SilentProgress::instance(), NoiseBounds noise = NoiseBounds::kSame);
 
 }  // namespace adamas

@@ -99,7 +99,7 @@ inline constexpr int kCopiedLod = 3;
 /// What a file begins with; everything else is found from here.
 struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
-  static constexpr std::uint32_t kVersion = 4;
+  static constexpr std::uint32_t kVersion = 5;
 
   std::uint64_t root_offset = 0, root_size = 0;
 

@@ -10,135 +10,14 @@
 #include "core/base/error.h"
 #include "datasets/buckyball.h"
 #include "isosurface/volume/samples.h"
-#include "tests/support/prepared_volume.h"
+#include "tests/isosurface/bounds_codec_checks.h"
 
 namespace adamas {
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-constexpr Vec3 kEven{1, 1, 1};
-
-template <class Word>
-struct Case {
-  PageShape shape{};
-  Surroundings<Word> around{};
-  Page<Word> page{};
-};
-template <class Word>
-using Cases = std::vector<Case<Word>>;
-
-template <class Word>
-BoundsCodec<Word> codec_of(const Cases<Word>& cases, const Vec3& spacing = kEven,
-                           const RangeRounding<Word>& rounding = {}) {
-  BoundsSurvey<Word> survey(spacing, rounding);
-  for (const auto& c : cases) survey.add(c.shape, c.around, c.page);
-  return BoundsCodec<Word>(survey);
-}
-
-template <class Word>
-Bytes encoded(const BoundsCodec<Word>& codec, const Case<Word>& c) {
-  Bytes bytes;
-  codec.encode(c.shape, c.around, c.page, bytes);
-  return bytes;
-}
-
-/// A page of which nothing but the samples is known.
-template <class Word>
-std::unique_ptr<Page<Word>> samples_of(const Case<Word>& c) {
-  auto page = std::make_unique<Page<Word>>();
-  page->samples = c.page.samples;
-  page->low.fill(77);
-  page->high.fill(33);
-  page->errors.fill(5);
-  return page;
-}
-
-template <class Word>
-void expect_there_and_back(const BoundsCodec<Word>& codec, const Case<Word>& c) {
-  const Bytes bytes = encoded(codec, c);
-  const auto found = samples_of(c);
-  ASSERT_TRUE(codec.decode(bytes, c.shape, c.around, *found, *found));
-  for (LatticePoint q{0, 0, 0}; q.k < c.shape.count.k; ++q.k) {
-    for (q.j = 0; q.j < c.shape.count.j; ++q.j) {
-      for (q.i = 0; q.i < c.shape.count.i; ++q.i) {
-        const std::size_t place = PageGrid::place(q, 0), from = surrounding_place(q);
-        const bool own = c.shape.owns(q);
-        ASSERT_EQ(found->errors[place], own ? c.page.errors[place] : c.around.errors[from]);
-        ASSERT_EQ(found->low[place], own ? c.page.low[place] : c.around.low[from]);
-        ASSERT_EQ(found->high[place], own ? c.page.high[place] : c.around.high[from]);
-      }
-    }
-  }
-}
-
-/// With the codec of all, and with that which is made from its tables. Returns the bytes of all pages.
-template <class Word>
-std::size_t expect_all_there_and_back(const Cases<Word>& cases, const Vec3& spacing = kEven,
-                                      const RangeRounding<Word>& rounding = {}) {
-  const BoundsCodec<Word> codec = codec_of(cases, spacing, rounding);
-  const BoundsCodec<Word> parsed = BoundsCodec<Word>::parse(codec.tables(), spacing, "here");
-  EXPECT_EQ(parsed.tables(), codec.tables());
-  std::size_t size = 0;
-  for (const auto& c : cases) {
-    expect_there_and_back(codec, c);
-    EXPECT_EQ(encoded(parsed, c), encoded(codec, c));
-    size += encoded(codec, c).size();
-  }
-  return size;
-}
-
-template <class Sample>
-Cases<OrderedWord<Sample>> cases_of(const test::PreparedVolume<Sample>& reference) {
-  Cases<OrderedWord<Sample>> cases;
-  const PageGrid& grid = reference.grid();
-  for (std::uint64_t number = 1; cases.size() < grid.page_count(); ++number) {
-    const PageId id = grid.page(number);
-    if (!grid.contains(id)) continue;
-    cases.push_back({reference.shape(id), {}, reference.page(id)});
-    if (!cases.back().shape.complete) cases.back().around = reference.around(id);
-  }
-  return cases;
-}
-
-template <class Sample>
-std::vector<Sample> waves(std::array<std::uint64_t, 3> n, double scale) {
-  std::vector<Sample> samples;
-  for (std::uint64_t k = 0; k < n[2]; ++k) {
-    for (std::uint64_t j = 0; j < n[1]; ++j) {
-      for (std::uint64_t i = 0; i < n[0]; ++i) {
-        const auto x = static_cast<double>(i), y = static_cast<double>(j), z = static_cast<double>(k);
-        samples.push_back(static_cast<Sample>(scale * (1 + std::sin(0.3 * x) * std::cos(0.2 * y + 0.1 * z))));
-      }
-    }
-  }
-  return samples;
-}
-
-constexpr std::array<std::uint64_t, 3> kDimensions{41, 35, 30};
-
-template <class Word>
-Word any_word(std::mt19937_64& random) {
-  // Often alike, often extremes.
-  const std::uint64_t word = random();
-  if (word % 4 == 0) return static_cast<Word>(word >> 62);
-  if (word % 4 == 1) return static_cast<Word>(~(word >> 62));
-  return static_cast<Word>(word >> 20);
-}
-
-template <class Word>
-Case<Word> any_case(std::mt19937_64& random, const PageShape& shape) {
-  Case<Word> c{shape, {}, {}};
-  const auto fill = [&random](auto& words) {
-    for (auto& word : words) word = any_word<std::remove_reference_t<decltype(word)>>(random);
-  };
-  const auto fill_codes = [&random](auto& codes) {
-    for (auto& code : codes) code = static_cast<std::uint8_t>(random() & 63);
-  };
-  fill(c.around.samples), fill(c.around.low), fill(c.around.high), fill_codes(c.around.errors);
-  fill(c.page.samples), fill(c.page.low), fill(c.page.high), fill_codes(c.page.errors);
-  return c;
-}
+using test::any_case, test::Bytes, test::Case, test::Cases, test::cases_of, test::codec_of, test::encoded,
+    test::expect_all_there_and_back, test::expect_there_and_back, test::kDimensions, test::kEven,
+    test::PreparedVolume, test::samples_of, test::waves;
 
 template <class Word>
 class BoundsCodecOf : public testing::Test {};
@@ -147,7 +26,7 @@ TYPED_TEST_SUITE(BoundsCodecOf, Words);
 
 template <class Sample>
 void expect_less_than(double bits, double scale, Vec3 spacing = {1, 1, 1}) {
-  const test::PreparedVolume<Sample> reference(kDimensions, waves<Sample>(kDimensions, scale), spacing);
+  const PreparedVolume<Sample> reference(kDimensions, waves<Sample>(kDimensions, scale), spacing);
   const auto cases = cases_of(reference);
   const std::size_t size = expect_all_there_and_back(cases, spacing);
   const auto points = static_cast<double>(kDimensions[0] * kDimensions[1] * kDimensions[2]);
@@ -185,8 +64,7 @@ TYPED_TEST(BoundsCodecOf, KnowsNothingOfValuesBeforeAndFarBehindThePage) {
 }
 
 TEST(BoundsCodec, CodesAConstantInAByte) {
-  const test::PreparedVolume<std::uint16_t> reference(kDimensions,
-                                                      std::vector<std::uint16_t>(41 * 35 * 30, 9));
+  const PreparedVolume<std::uint16_t> reference(kDimensions, std::vector<std::uint16_t>(41 * 35 * 30, 9));
   const auto cases = cases_of(reference);
   const auto codec = codec_of(cases);
   for (const auto& c : cases) {
@@ -207,18 +85,18 @@ TEST(BoundsCodec, CodesWhereNumbersAreNotFinite) {
                              -0.0f,    3e38f,     -3e38f,        1e-42f};
     samples[random() % samples.size()] = special[random() % 8];
   }
-  expect_all_there_and_back(cases_of(test::PreparedVolume<float>(kDimensions, samples)));
+  expect_all_there_and_back(cases_of(PreparedVolume<float>(kDimensions, samples)));
 }
 
 TEST(BoundsCodec, CodesOneVolumeWithTheTablesOfAnother) {
   const auto cases =
-      cases_of(test::PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
+      cases_of(PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
   const Buckyball ball({33, 33, 33}, SampleType::kUint8);
   std::vector<std::uint8_t> samples(33 * 33 * 33);
   for (std::uint64_t k = 0; k < 33; ++k) {
     ball.plane(k, std::as_writable_bytes(std::span(samples)).subspan(33 * 33 * k, 33 * 33));
   }
-  const auto others = cases_of(test::PreparedVolume<std::uint8_t>({33, 33, 33}, samples));
+  const auto others = cases_of(PreparedVolume<std::uint8_t>({33, 33, 33}, samples));
   const auto codec = codec_of(cases);
   for (const auto& c : others) expect_there_and_back(codec, c);
 }
@@ -274,7 +152,7 @@ TYPED_TEST(BoundsCodecOf, CodesRoundedRanges) {
 /// With rounded ranges a volume takes fewer bytes.
 template <class Sample>
 void expect_fewer_bytes(const std::vector<Sample>& samples, int bits) {
-  auto cases = cases_of(test::PreparedVolume<Sample>(kDimensions, samples));
+  auto cases = cases_of(PreparedVolume<Sample>(kDimensions, samples));
   const std::size_t exact = expect_all_there_and_back(cases);
   const auto rounding = round_all(cases, bits);
   EXPECT_LT(expect_all_there_and_back(cases, kEven, rounding), exact);
@@ -315,9 +193,42 @@ TYPED_TEST(BoundsCodecOf, CodesPagesThatAreAllAlike) {
   EXPECT_EQ(expect_all_there_and_back(cases), 6u);
 }
 
+/// Two bytes, of modes and of the error, and two words; an error that differs has the others coded with it.
+/// What is not rounded, or would be coded in another way, is refused.
+TYPED_TEST(BoundsCodecOf, CodesEqualRangesInTwoWords) {
+  constexpr std::size_t kBytes = 2 + 2 * sizeof(TypeParam);
+  std::mt19937_64 random(14);
+  Cases<TypeParam> cases;
+  for (const PageShape& shape :
+       {PageShape{{16, 16, 16}, false, 0}, PageShape{{7, 16, 3}, false, 2}, PageShape{{9, 9, 9}, true, 2}}) {
+    Case<TypeParam> c = any_case<TypeParam>(random, shape);
+    c.page.low.fill(32);
+    c.page.high.fill(127);
+    c.page.errors.fill(63);
+    cases.push_back(c);
+  }
+  EXPECT_EQ(expect_all_there_and_back(cases), 3 * kBytes);
+  const RangeRounding<TypeParam> rounding{4, {16, 64}};
+  EXPECT_EQ(expect_all_there_and_back(cases, kEven, rounding), 3 * kBytes);
+  for (Case<TypeParam>& c : cases) {
+    const auto codec = codec_of<TypeParam>({c}, kEven, rounding);
+    const auto page = samples_of(c);
+    for (std::size_t at = 0; at < kBytes; ++at) {
+      for (unsigned byte = 0; byte < 256; ++byte) {
+        Bytes corrupt = encoded(codec, c);
+        corrupt[at] = static_cast<std::byte>(byte);
+        if (!codec.decode(corrupt, c.shape, c.around, *page, *page)) continue;
+        ASSERT_EQ(encoded(codec, {c.shape, c.around, *page}), corrupt) << at;
+      }
+    }
+    c.page.errors[PageGrid::place({1, 0, 0}, 0)] = 62;
+  }
+  EXPECT_GT(expect_all_there_and_back(cases), 3 * kBytes);
+}
+
 TEST(BoundsCodec, IsTheSameForSurveysInAnyOrder) {
   const auto cases =
-      cases_of(test::PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
+      cases_of(PreparedVolume<std::uint8_t>(kDimensions, waves<std::uint8_t>(kDimensions, 100)));
   BoundsSurvey<std::uint8_t> forth(kEven), back(kEven), parts(kEven);
   for (std::size_t n = 0; n < cases.size(); ++n) {
     const auto& a = cases[n];
@@ -363,7 +274,7 @@ TYPED_TEST(BoundsCodecOf, AnswersToFlippedBits) {
 
 TEST(BoundsCodec, AnswersToTablesThatAreCutOrCorrupt) {
   const auto cases =
-      cases_of(test::PreparedVolume<std::uint8_t>({20, 20, 20}, waves<std::uint8_t>({20, 20, 20}, 100)));
+      cases_of(PreparedVolume<std::uint8_t>({20, 20, 20}, waves<std::uint8_t>({20, 20, 20}, 100)));
   const auto codec = codec_of(cases);
   const Bytes tables = codec.tables();
   for (std::size_t length = 0; length < tables.size(); ++length) {

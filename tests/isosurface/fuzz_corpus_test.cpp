@@ -11,7 +11,7 @@ namespace {
 TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::residual_code), 4u); }
 
 TEST(FuzzCorpus, SampleCodec) { EXPECT_EQ(fuzz::replay("sample_codec", fuzz::sample_codec), 12u); }
-TEST(FuzzCorpus, BoundsCodec) { EXPECT_EQ(fuzz::replay("bounds_codec", fuzz::bounds_codec), 6u); }
+TEST(FuzzCorpus, BoundsCodec) { EXPECT_EQ(fuzz::replay("bounds_codec", fuzz::bounds_codec), 7u); }
 TEST(FuzzCorpus, GradientCodec) { EXPECT_EQ(fuzz::replay("gradient_codec", fuzz::gradient_codec), 5u); }
 TEST(FuzzCorpus, StoreFormat) { EXPECT_EQ(fuzz::replay("store_format", fuzz::store_format), 5u); }
 

@@ -64,7 +64,8 @@ void expect_contents(const GoldenStore& store, const test::MemoryVolume<Sample>&
   StoreFile file(store.path());
   ASSERT_EQ(verify_store(file, 0, SilentProgress::instance()).bad_pages, 0u);
   ASSERT_EQ(test::restored<Sample>(file), test::bits_of(volume.samples));
-  const test::PreparedVolume<Sample> prepared(store.dimensions, volume.samples, store.spacing);
+  const test::PreparedVolume<Sample> prepared(store.dimensions, volume.samples, store.spacing,
+                                              NoiseBounds::kSame);
   StoredPages<Word> pages(file, 0, std::size_t{1} << 24);
   StoredRange<Word> stored{std::to_integer<int>(file.header().bounds_tables[0]) & 31};
   const PageId coarsest{file.grid().top(), {0, 0, 0}};

@@ -33,6 +33,7 @@ inline std::vector<GoldenStore> golden_stores() {
     return result;
   };
   return {{"uint8", SampleType::kUint8, {37, 18, 17}, {1, 1, 1}, options(kOurs, false)},
+          {"uint8_noise", SampleType::kUint8, {18, 17, 33}, {1, 1, 1}, options(kOurs, false)},
           {"uint8_split_edge", SampleType::kUint8, {20, 33, 12}, {1, 1, 2.5}, options(kEdge, true)},
           {"uint16", SampleType::kUint16, {19, 21, 34}, {0.957, 0.957, 1.5}, options(kOurs, true)},
           {"int16", SampleType::kInt16, {33, 18, 19}, {0.1, 0.3, 0.2}, options(kOurs, false)},
@@ -41,7 +42,7 @@ inline std::vector<GoldenStore> golden_stores() {
 }
 
 /// The volume of a golden store: waves and some noise, in whole numbers, so that it is the same everywhere;
-/// of floats a few are not finite.
+/// of floats a few are not finite. One has noise alone in its second half.
 template <class Sample>
 MemoryVolume<Sample> golden_volume(const GoldenStore& store) {
   std::uint32_t random = 1;
@@ -59,6 +60,7 @@ MemoryVolume<Sample> golden_volume(const GoldenStore& store) {
       return static_cast<Sample>(std::is_signed_v<Sample> ? number * number / 2 - 9000 + p.i * p.k
                                                           : 100 * number);
     } else {
+      if (store.name == "uint8_noise" && p.k >= 16) return static_cast<Sample>(random >> 20);
       return static_cast<Sample>(p.i > 30 ? 0 : number);
     }
   };

@@ -20,7 +20,7 @@ class PreparedVolume {
 
   /// `samples`: i running fastest.
   PreparedVolume(const std::array<std::uint64_t, 3>& dimensions, const std::vector<Sample>& samples,
-                 Vec3 spacing = {1, 1, 1})
+                 Vec3 spacing = {1, 1, 1}, NoiseBounds noise = NoiseBounds::kOwn)
       : pages_(dimensions) {
     VolumeGrid grid;
     grid.dimensions = dimensions;
@@ -31,7 +31,8 @@ class PreparedVolume {
         [&](std::uint64_t k, std::span<std::byte> plane) {
           std::memcpy(plane.data(), samples.data() + k * grid.plane_samples(), plane.size());
         },
-        [this](const PageId& id, const Page<Word>& page) { pages_.own[pages_.grid().number(id)] = page; });
+        [this](const PageId& id, const Page<Word>& page) { pages_.own[pages_.grid().number(id)] = page; },
+        SilentProgress::instance(), noise);
   }
 
   [[nodiscard]] const PageGrid& grid() const { return pages_.grid(); }

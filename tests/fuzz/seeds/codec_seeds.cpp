@@ -153,10 +153,10 @@ struct Expectations {
 };
 
 /// `seed`: of the samples and of what is round the page. Without omitted points no bound is as expected but
-/// by chance.
+/// by chance. `equal`: whether all bounds are the same instead.
 template <class Word>
 void make_bounds(const std::filesystem::path& folder, const std::string& name, const PageShape& shape,
-                 std::uint8_t seed, bool omitted) {
+                 std::uint8_t seed, bool omitted, bool equal = false) {
   const OwnErrorGeometry geometry({1, 1, 1});
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
@@ -170,6 +170,11 @@ void make_bounds(const std::filesystem::path& folder, const std::string& name, c
     walk_bounds<Word>(*fields, geometry, shape, {omitted, omitted}, expected);
   }
   fields->store_bounds(shape, *page);
+  if (equal) {
+    page->low.fill(3);
+    page->high.fill(200);
+    page->errors.fill(63);
+  }
   BoundsSurvey<Word> survey({1, 1, 1});
   survey.add(shape, *around, *page);
   const BoundsCodec<Word> codec(survey);
@@ -245,6 +250,7 @@ void make(const std::filesystem::path& folder) {
   make_bounds<std::uint8_t>(folder, "bytes", {{9, 5, 7}, false, 1}, 5, false);
   make_bounds<std::uint8_t>(folder, "sure", {{16, 5, 4}, false, 0}, 12, true);
   make_bounds<std::uint8_t>(folder, "empty", {{16, 16, 16}, false, 0}, 0, true);
+  make_bounds<std::uint8_t>(folder, "equal", {{7, 9, 5}, false, 0}, 40, false, true);
   make_bounds<std::uint16_t>(folder, "shorts", {{6, 3, 5}, false, 0}, 20, true);
   make_bounds<std::uint32_t>(folder, "words", {{4, 3, 3}, true, 2}, 60, false);
   make_bounds<std::uint32_t>(folder, "floats", {{5, 4, 3}, false, 0}, 60, false);
