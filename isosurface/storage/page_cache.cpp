@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "core/base/assert.h"
@@ -118,6 +119,7 @@ const typename PageCache<Word>::Slot* PageCache<Word>::get(const PageId& id, Pag
 
 template <class Word>
 const typename PageCache<Word>::Slot* PageCache<Word>::fetch(const PageId& id, PageParts parts, bool wanted) {
+  if (!loads_) return nullptr;
   Surroundings<Word> around;
   if (!surroundings(id, around, parts)) return nullptr;
   // The pages that predict this one may have pushed others out, and so may its bounds: even its own samples,
@@ -145,7 +147,7 @@ const typename PageCache<Word>::Slot* PageCache<Word>::fetch(const PageId& id, P
   }
   const std::uint32_t fresh = free_slot();
   slot_of(id) = fresh;
-  slots_[fresh] = {id, samples, bounds, true, wanted || !is_stored};
+  slots_[fresh] = {id, samples, bounds, true, wanted || !is_stored, 0};
   return &slots_[fresh];
 }
 
@@ -176,8 +178,43 @@ void PageCache<Word>::copy_samples(std::span<const HeldPage> pages) {
     *samples = *page.samples;
     const std::uint32_t fresh = free_slot();
     slot_of(page.id) = fresh;
-    slots_[fresh] = {page.id, samples, nullptr, false, true};
+    slots_[fresh] = {page.id, samples, nullptr, false, true, 0};
   }
+}
+
+template <class Word>
+bool PageCache<Word>::has(const PageId& id, PageParts parts) {
+  const std::uint32_t found = slot_of(id);
+  if (found == kNone) return false;
+  Slot& slot = slots_[found];
+  if (slot.bounds == nullptr && has_part(parts, PageParts::kBounds)) return false;
+  if (!slot.wanted) --predictors_;
+  slot.used = slot.wanted = true;
+  slot.needed = needs_;
+  return true;
+}
+
+template <class Word>
+bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples,
+                          const PageBounds<Word>* bounds) {
+  if (slot_of(id) == kNone) {
+    PageSamples<Word>* const room = spare_room_in(samples_);
+    if (room == nullptr) return false;
+    *room = samples;
+    const std::uint32_t fresh = free_slot();
+    slot_of(id) = fresh;
+    slots_[fresh] = {id, room, nullptr, true, true, 0};
+    ++loaded_;
+  }
+  // Somebody wanted it, and room for the bounds is not made by the page itself.
+  Slot& slot = slots_[slot_of(id)];
+  slot.needed = needs_;
+  if (bounds == nullptr || slot.bounds != nullptr) return true;
+  PageBounds<Word>* const room = spare_room_in(bounds_);
+  if (room == nullptr) return false;
+  *room = *bounds;
+  slots_[slot_of(id)].bounds = room;
+  return true;
 }
 
 template <class Word>
@@ -265,18 +302,32 @@ Part* PageCache<Word>::room_in(Pool<Part>& pool) {
 }
 
 template <class Word>
-void PageCache<Word>::evict() {
-  for (;; turn_ = turn_ + 1 == slots_.size() ? 0 : turn_ + 1) {
+template <class Part>
+Part* PageCache<Word>::spare_room_in(Pool<Part>& pool) {
+  while (!has_room_in(pool)) {
+    if (!evict(true)) return nullptr;
+  }
+  return room_in(pool);
+}
+
+template <class Word>
+bool PageCache<Word>::evict(bool spares_needed) {
+  // In the second round no page counts as used.
+  std::size_t looks = spares_needed ? 2 * slots_.size() + 1 : std::numeric_limits<std::size_t>::max();
+  for (; looks > 0; --looks, turn_ = turn_ + 1 >= slots_.size() ? 0 : turn_ + 1) {
     Slot& slot = slots_[turn_];
     if (slot.samples == nullptr) continue;
+    if (spares_needed && (slot.needed == needs_ || slot.id.lod == grid_.top())) continue;
     if (std::exchange(slot.used, false)) continue;
     samples_.free.push_back(slot.samples);
     if (slot.bounds != nullptr) bounds_.free.push_back(slot.bounds);
     slot_of(slot.id) = kNone;
     free_slots_.push_back(static_cast<std::uint32_t>(turn_));
     slot = {};
-    return;
+    ++left_;
+    return true;
   }
+  return false;
 }
 
 template <class Word>

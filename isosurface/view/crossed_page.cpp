@@ -33,7 +33,26 @@ void for_each_code(const Codes& codes, Visit&& visit) {
   }
 }
 
+/// The pages round one that have members of its diamond.
+std::uint32_t pages_of_members(LatticePoint q) {
+  const auto along = [](std::int32_t x) { return 2u | (x == 0 ? 1u : 0u) | (x == kSide - 1 ? 4u : 0u); };
+  std::uint32_t pages = 0;
+  for (unsigned n = 0; n < 9; ++n) {
+    if ((along(q.j) >> n % 3 & along(q.k) >> n / 3 & 1) != 0) pages |= along(q.i) << 3 * n;
+  }
+  return pages;
+}
+
 }  // namespace
+
+void CrossedPage::find_members(std::size_t wanted) {
+  while (members.size() < wanted) {
+    const Group& group = groups[members.size()];
+    std::uint32_t pages = 0;
+    for (std::size_t n = group.begin; n < group.end; ++n) pages |= pages_of_members(point(places[n]));
+    members.push_back(pages);
+  }
+}
 
 template <class Sample>
 void CrossedPageReader<Sample>::find_codes(int lod, LatticePoint block) {
