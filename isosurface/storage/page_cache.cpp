@@ -147,7 +147,7 @@ const typename PageCache<Word>::Slot* PageCache<Word>::fetch(const PageId& id, P
   }
   const std::uint32_t fresh = free_slot();
   slot_of(id) = fresh;
-  slots_[fresh] = {id, samples, bounds, true, wanted || !is_stored, 0};
+  slots_[fresh] = {id, samples, bounds, true, wanted || !is_stored};
   return &slots_[fresh];
 }
 
@@ -178,7 +178,7 @@ void PageCache<Word>::copy_samples(std::span<const HeldPage> pages) {
     *samples = *page.samples;
     const std::uint32_t fresh = free_slot();
     slot_of(page.id) = fresh;
-    slots_[fresh] = {page.id, samples, nullptr, false, true, 0};
+    slots_[fresh] = {page.id, samples, nullptr, false, true};
   }
 }
 
@@ -190,27 +190,34 @@ bool PageCache<Word>::has(const PageId& id, PageParts parts) {
   if (slot.bounds == nullptr && has_part(parts, PageParts::kBounds)) return false;
   if (!slot.wanted) --predictors_;
   slot.used = slot.wanted = true;
-  slot.needed = needs_;
   return true;
 }
 
 template <class Word>
-bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples,
-                          const PageBounds<Word>* bounds) {
+void PageCache<Word>::need(const PageId& id, int importance) {
+  const std::uint32_t found = slot_of(id);
+  if (found == kNone) return;
+  Slot& slot = slots_[found];
+  const bool is_known = std::exchange(slot.needed, needs_) == needs_;
+  slot.importance = is_known ? std::max(slot.importance, importance) : importance;
+}
+
+template <class Word>
+bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, const PageBounds<Word>* bounds,
+                          int importance) {
   if (slot_of(id) == kNone) {
-    PageSamples<Word>* const room = spare_room_in(samples_);
+    PageSamples<Word>* const room = room_in(samples_, importance);
     if (room == nullptr) return false;
     *room = samples;
     const std::uint32_t fresh = free_slot();
     slot_of(id) = fresh;
-    slots_[fresh] = {id, room, nullptr, true, true, 0};
+    slots_[fresh] = {id, room, nullptr, true, true};
     ++loaded_;
   }
-  // Somebody wanted it, and room for the bounds is not made by the page itself.
-  Slot& slot = slots_[slot_of(id)];
-  slot.needed = needs_;
-  if (bounds == nullptr || slot.bounds != nullptr) return true;
-  PageBounds<Word>* const room = spare_room_in(bounds_);
+  // Room for the bounds is not made by the page itself.
+  need(id, importance);
+  if (bounds == nullptr || slots_[slot_of(id)].bounds != nullptr) return true;
+  PageBounds<Word>* const room = room_in(bounds_, importance);
   if (room == nullptr) return false;
   *room = *bounds;
   slots_[slot_of(id)].bounds = room;
@@ -303,31 +310,46 @@ Part* PageCache<Word>::room_in(Pool<Part>& pool) {
 
 template <class Word>
 template <class Part>
-Part* PageCache<Word>::spare_room_in(Pool<Part>& pool) {
+Part* PageCache<Word>::room_in(Pool<Part>& pool, int importance) {
   while (!has_room_in(pool)) {
-    if (!evict(true)) return nullptr;
+    if (!evict_less_than(std::numeric_limits<int>::min()) && !evict_less_than(importance)) return nullptr;
   }
   return room_in(pool);
 }
 
 template <class Word>
-bool PageCache<Word>::evict(bool spares_needed) {
+bool PageCache<Word>::evict_less_than(int importance) {
   // In the second round no page counts as used.
-  std::size_t looks = spares_needed ? 2 * slots_.size() + 1 : std::numeric_limits<std::size_t>::max();
-  for (; looks > 0; --looks, turn_ = turn_ + 1 >= slots_.size() ? 0 : turn_ + 1) {
+  for (std::size_t looks = 2 * slots_.size() + 1; looks > 0; --looks, next_turn()) {
     Slot& slot = slots_[turn_];
-    if (slot.samples == nullptr) continue;
-    if (spares_needed && (slot.needed == needs_ || slot.id.lod == grid_.top())) continue;
+    // Nothing can be had without the coarsest page.
+    if (slot.samples == nullptr || slot.id.lod == grid_.top()) continue;
+    if (slot.needed == needs_ && slot.importance >= importance) continue;
     if (std::exchange(slot.used, false)) continue;
-    samples_.free.push_back(slot.samples);
-    if (slot.bounds != nullptr) bounds_.free.push_back(slot.bounds);
-    slot_of(slot.id) = kNone;
-    free_slots_.push_back(static_cast<std::uint32_t>(turn_));
-    slot = {};
-    ++left_;
+    remove(slot);
     return true;
   }
   return false;
+}
+
+template <class Word>
+void PageCache<Word>::evict() {
+  for (;; next_turn()) {
+    Slot& slot = slots_[turn_];
+    if (slot.samples == nullptr) continue;
+    if (std::exchange(slot.used, false)) continue;
+    return remove(slot);
+  }
+}
+
+template <class Word>
+void PageCache<Word>::remove(Slot& slot) {
+  samples_.free.push_back(slot.samples);
+  if (slot.bounds != nullptr) bounds_.free.push_back(slot.bounds);
+  slot_of(slot.id) = kNone;
+  free_slots_.push_back(static_cast<std::uint32_t>(&slot - slots_.data()));
+  slot = {};
+  ++left_;
 }
 
 template <class Word>

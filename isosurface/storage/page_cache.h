@@ -79,12 +79,15 @@ class PageCache {
   /// Frees the memory of all bounds.
   void drop_bounds();
 
-  /// Whether parts of a page are in memory. Then the page counts as needed, until forget_needs().
+  /// Whether parts of a page are in memory.
   bool has(const PageId& id, PageParts parts);
+  /// Notes that a page, if it is in memory, is needed, and how much; until forget_needs().
+  void need(const PageId& id, int importance);
   void forget_needs() { ++needs_; }
   /// Puts a page into memory that another cache of the same volume has: its bounds too, where they are given.
-  /// Returns false where there is no room unless a page leaves that is needed, or the coarsest one.
-  bool put(const PageId& id, const PageSamples<Word>& samples, const PageBounds<Word>* bounds);
+  /// Pages leave for it that nobody needs or that are less important. Returns false where that makes no room.
+  bool put(const PageId& id, const PageSamples<Word>& samples, const PageBounds<Word>* bounds,
+           int importance);
   /// How many pages have left.
   [[nodiscard]] std::uint64_t left() const { return left_; }
   /// Notes that a page cannot be had at all.
@@ -112,7 +115,8 @@ class PageCache {
     PageBounds<Word>* bounds = nullptr;    ///< null where they are not in memory
     bool used = false;                     ///< since the slot's turn came last
     bool wanted = false;                   ///< for its own sake, not only to predict another
-    std::uint64_t needed = 0;              ///< needs_ when it was found to be needed last
+    std::uint64_t needed = 0;              ///< needs_ when it was noted as needed last
+    int importance = 0;                    ///< and how much it was then
   };
   /// The slots of an LOD's pages, i running fastest; the sizes of its rows and planes of pages.
   struct Lod {
@@ -142,11 +146,15 @@ class PageCache {
   /// Memory from a pool, for which pages leave if need be.
   template <class Part>
   Part* room_in(Pool<Part>& pool);
-  /// The same, or null where pages would have to leave that are needed.
+  /// The same, for something so important; null where no page leaves for that.
   template <class Part>
-  Part* spare_room_in(Pool<Part>& pool);
-  /// Makes one page leave. Returns false where all are to be spared.
-  bool evict(bool spares_needed = false);
+  Part* room_in(Pool<Part>& pool, int importance);
+  /// Makes one page leave that is not needed, or less than something else. Returns false where there is none.
+  bool evict_less_than(int importance);
+  /// Makes one page leave.
+  void evict();
+  void remove(Slot& slot);
+  void next_turn() { turn_ = turn_ + 1 >= slots_.size() ? 0 : turn_ + 1; }
   std::uint32_t free_slot();
 
   PageGrid grid_;

@@ -152,17 +152,18 @@ typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages
 template <class Word>
 bool PageLoader<Word>::put(const Arrived& arrived, StoredPages<Word>& pages, StoredGradients* gradients) {
   const PageId& id = arrived.what.id;
+  const int importance = arrived.what.view_class;
   switch (arrived.what.part) {
     case MissingPage::Part::kDirectory:
       return true;
     case MissingPage::Part::kGradients:
-      return gradients == nullptr || gradients->put(id, *arrived.gradients, nullptr);
+      return gradients == nullptr || gradients->put(id, *arrived.gradients, nullptr, importance);
     case MissingPage::Part::kSamples:
-      return pages.put(id, *arrived.page, nullptr);
+      return pages.put(id, *arrived.page, nullptr, importance);
     case MissingPage::Part::kAll:
       break;
   }
-  return pages.put(id, *arrived.page, arrived.page.get());
+  return pages.put(id, *arrived.page, arrived.page.get(), importance);
 }
 
 template <class Word>

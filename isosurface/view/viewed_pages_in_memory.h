@@ -241,9 +241,11 @@ void ViewedPages<Sample>::spare_needed() {
   pages.forget_needs();
   for (const auto& of_lod : active_) {
     for (const ViewedPage* const page : of_lod) {
+      const double depth = view_of(*page).least_depth(0);
       for (std::size_t g = 0; g < page->groups_wanted; ++g) {
+        const int importance = class_at(error_class(page->crossed->groups[g].code, page->lod), depth);
         for_each_member_page(*page, g, [&](const PageId& id) {
-          pages.has(id, PageParts::kSamples);
+          pages.need(id, importance);
           return true;
         });
       }

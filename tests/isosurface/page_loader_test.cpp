@@ -118,7 +118,7 @@ TEST(PageLoader, LeavesFramesWithinTheirMemory) {
   for (int n = 0; n < 24; ++n) {
     // From afar, and near at one end and the other.
     const double away = n % 3 == 0 ? 260 : 20;
-    wanted.pixels = n % 3 == 0 ? 12 : 1;
+    wanted.pixels = n % 3 == 0 ? 30 : 1;
     wanted.viewpoint.target = {n % 3 == 1 ? 20.0 : n % 3 == 2 ? 180.0 : 100.0, 30, 30};
     wanted.viewpoint.eye = wanted.viewpoint.target + Vec3{1, -away, 2};
     wanted.viewpoint.field_of_view = 0.6;

@@ -77,7 +77,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
     EXPECT_TRUE(whole.pages().copy(id, page));
     if (with_bounds) in_memory.insert(grid.number(id));
     static_cast<void>(some.file().entry(0, id));
-    return some.pages().put(id, page, with_bounds ? &page : nullptr);
+    return some.pages().put(id, page, with_bounds ? &page : nullptr, 0);
   }
   void put_some(unsigned of) {
     for (std::uint64_t n = 1; n <= kPages; ++n) {
@@ -244,7 +244,7 @@ TEST_P(ResidentFrames, AreThoseFromScratchWithTheSamePages) {
     for (const auto& held : some.pages().held_pages()) {
       Page<Sample> page;
       ASSERT_TRUE(whole.pages().copy(held.id, page));
-      other.pages().put(held.id, page, in_memory.contains(grid.number(held.id)) ? &page : nullptr);
+      other.pages().put(held.id, page, in_memory.contains(grid.number(held.id)) ? &page : nullptr, 0);
     }
     PagedFrames<Sample> fresh(other.pages());
     const FrameFigures of_fresh = fresh.refine(wanted);
