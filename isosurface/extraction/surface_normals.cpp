@@ -41,9 +41,9 @@ class VertexGradients {
     KnownGradient& known = known_[hash_value(p) >> (64 - kKnownBits)];
     // Vertices of a finer mesh than this one have a gradient of their own.
     if (known.point != p || known.step != step) {
-      is_provisional_ = false;
       known = {p, step, stored_ ? stored(p, step) : estimate(p, step)};
-      if (is_provisional_) known.point = kNoKey<LatticePoint>;
+      // What may yet come is asked for again.
+      if (is_provisional_) forget(known);
     }
     return known.gradient;
   }
@@ -67,8 +67,18 @@ class VertexGradients {
     return -downwards(estimate(p, step));
   }
 
+  struct KnownGradient {
+    LatticePoint point = kNoKey<LatticePoint>;
+    std::int32_t step = 0;  ///< from neighbours so far away
+    Vec3 gradient;
+  };
+  [[gnu::cold]] void forget(KnownGradient& known) {
+    known.point = kNoKey<LatticePoint>;
+    is_provisional_ = false;
+  }
+
   template <class Pages>
-  void note_missing(const Pages& pages, const MissingNormals& missing) {
+  [[gnu::cold]] void note_missing(const Pages& pages, const MissingNormals& missing) {
     // What cannot be had at all does not count.
     if (pages.is_lost(missing.page)) return;
     is_provisional_ = true;
@@ -130,11 +140,6 @@ class VertexGradients {
     return *found;
   }
 
-  struct KnownGradient {
-    LatticePoint point = kNoKey<LatticePoint>;
-    std::int32_t step = 0;  ///< from neighbours so far away
-    Vec3 gradient;
-  };
   static constexpr int kKnownBits = 12;
 
   LatticeSamples<Sample> samples_;

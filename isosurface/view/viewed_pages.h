@@ -156,21 +156,21 @@ class ViewedPages {
   [[nodiscard]] std::size_t groups_within(const CrossedPage& known, int lod, double depth) const;
   /// Asks the directory, if that may be done.
   bool tell(ViewedPage& page);
-  [[nodiscard]] int greatest_of_parents(const ViewedPage& page);
+  [[nodiscard, gnu::cold]] int greatest_of_parents(const ViewedPage& page);
   /// Finds what of a page is in memory, and notes what is missing. Returns false where nothing can be split.
   bool find_in_memory(ViewedPage& page, const PageView& view);
   [[nodiscard]] std::size_t groups_in_memory(const ViewedPage& page);
   /// Calls visit(id) for the pages that have members of a group; until it returns false.
   template <class Visit>
   bool for_each_member_page(const ViewedPage& page, std::size_t group, Visit&& visit);
-  void note_missing(const PageId& id, MissingPage::Part part, int view_class, double depth);
-  void note_missing_groups(const ViewedPage& page, const PageView& view);
+  [[gnu::cold]] void note_missing(const PageId& id, MissingPage::Part part, int view_class, double depth);
+  [[gnu::cold]] void note_missing_groups(const ViewedPage& page, const PageView& view);
   /// Takes diamonds out of the masks of an LOD whose parents are not in those of their pages.
   void drop_without_parents(int lod, Added& added);
-  bool drop_without_parents(ViewedPage& page, int phase, Added& added);
-  [[nodiscard]] bool has_parents(LatticePoint p);
-  void suspect_round(const ViewedPage& page);
-  void suspect_children(const ViewedPage& page);
+  [[gnu::cold]] bool drop_without_parents(ViewedPage& page, int phase, Added& added);
+  [[nodiscard, gnu::cold]] bool has_parents(LatticePoint p);
+  [[gnu::cold]] void suspect_round(const ViewedPage& page);
+  [[gnu::cold]] void suspect_children(const ViewedPage& page);
   [[nodiscard]] PageView view_of(const ViewedPage& page) const {
     return {diamonds_.view(), places_[static_cast<std::size_t>(page.lod)], page.block};
   }

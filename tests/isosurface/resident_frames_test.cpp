@@ -130,8 +130,9 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
   /// The diamonds whose samples and errors are in memory, with all of greater errors on their pages.
   std::set<LatticePoint> usable() {
     std::set<LatticePoint> result;
-    for (const auto& [page, of] : crossed()) {
-      const auto& [lod, block] = page;
+    for (const auto& each : crossed()) {
+      const auto& [lod, block] = each.first;
+      const OfPage& of = each.second;
       if (lod < grid.top() && !in_memory.contains(grid.number({lod, block}))) continue;
       for (std::size_t begin = 0, end = 0; begin < of.crossed.size(); begin = end) {
         const auto group = [&](std::size_t n) {
