@@ -23,6 +23,7 @@ PageLoader<Word>::PageLoader(StoredPages<Word>& pages, std::size_t memory, std::
                      ? std::make_unique<StoredGradients>(*file_, pages.step(), memory / 2)
                      : nullptr),
       notify_(std::move(arrived)),
+      most_arrived_(std::clamp<std::size_t>(memory / (4 * sizeof(Page<Word>)), 16, 256)),
       thread_([this] { run(); }) {}
 
 template <class Word>

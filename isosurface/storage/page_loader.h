@@ -61,16 +61,15 @@ class PageLoader {
   void run();
   Arrived load(const MissingPage& wanted);
   void load_part(Arrived& arrived);
-  [[nodiscard]] bool has_work() const { return next_ < wanted_.size() && arrived_.size() < kMostArrived; }
+  [[nodiscard]] bool has_work() const { return next_ < wanted_.size() && arrived_.size() < most_arrived_; }
   static bool put(const Arrived& arrived, StoredPages<Word>& pages, StoredGradients* gradients);
   static void note_lost(const Arrived& arrived, StoredPages<Word>& pages, StoredGradients* gradients);
-
-  static constexpr std::size_t kMostArrived = 256;
 
   std::unique_ptr<StoreFile> file_;
   StoredPages<Word> pages_;  ///< of the thread, like gradients_
   std::unique_ptr<StoredGradients> gradients_;
   std::function<void()> notify_;
+  std::size_t most_arrived_;  ///< so many pages wait to be taken at most
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   bool is_ended_ = false, is_loading_ = false;

@@ -62,8 +62,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
     result.resident_only = true;
     return result;
   }
-  /// What was found for one isovalue is forgotten for another one, and the bounds of the finest pages have
-  /// left by then.
+  /// What was found for one isovalue is forgotten for another one, and bounds have left by then.
   void change_isovalue() {
     const double before = std::exchange(isovalue, 80.5 + 20 * path.number(3));
     if (isovalue == before) return;
