@@ -65,7 +65,7 @@ void fly(const StoreOptions& options) {
   PageLoader<Sample> loader(store.pages(), 1 << 20);
   CameraPath path(volume.grid.box(), 3);
   std::size_t most = 0;
-  for (int n = 0; n < 12; ++n) {
+  for (int n = 0; n < 6; ++n) {
     FrameRequest wanted = request(path);
     FrameFigures figures;
     most = std::max(most, sharpen(frames, loader, wanted, figures));
@@ -115,7 +115,7 @@ TEST(PageLoader, LeavesFramesWithinTheirMemory) {
   wanted.resident_only = true;
   wanted.viewpoint.up = {0, 0, 1};
   std::size_t lacking = 0, whole = 0;
-  for (int n = 0; n < 24; ++n) {
+  for (int n = 0; n < 12; ++n) {
     // From afar, and near at one end and the other.
     const double away = n % 3 == 0 ? 260 : 20;
     wanted.pixels = n % 3 == 0 ? 30 : 1;
