@@ -20,9 +20,15 @@ namespace adamas {
 
 namespace {
 
-void open_files(const ViewOptions& options, ViewSession& view, Session& session) {
+DocumentOptions document_options(const ViewOptions& options) {
   DocumentOptions documents;
   documents.memory = parse_size("--memory", options.memory);
+  documents.waits_for_pages = waits_for_pages(options);
+  return documents;
+}
+
+void open_files(const ViewOptions& options, ViewSession& view, Session& session) {
+  DocumentOptions documents = document_options(options);
   documents.colour_by = options.colour_by;
   for (const std::string& path : options.paths) {
     session.outputs.protect(path);
@@ -57,6 +63,8 @@ Figures figures_of(const OffscreenPictures& pictures) {
           {"occluded_diamonds", report.hidden},
           {"occlusion_queries", report.depth_tests},
           {"largest_error_pixels", report.largest_error_pixels},
+          {"pages_missing", report.pages_missing},
+          {"pages_lost", report.pages_lost},
           {"rendered_triangles", drawn.triangles},
           {"draw_calls", drawn.draw_calls},
           {"copied_bytes", drawn.copied_bytes},
@@ -119,7 +127,7 @@ void run_window(const ViewOptions& options, Session& session) {
   const PictureSize size = picture_size(options, {window.width, window.height});
   window.width = size.width;
   window.height = size.height;
-  window.documents.memory = parse_size("--memory", options.memory);
+  window.documents = document_options(options);
   ViewSession view(size.width, size.height);
   open_files(options, view, session);
   restore_state(options, view);

@@ -48,6 +48,15 @@ std::optional<std::array<double, 2>> range_of(const ViewOptions& options) {
   return parse_range(options.range);
 }
 
+std::optional<double> frame_milliseconds(const ViewOptions& options) {
+  if (options.frame_time.empty()) return std::nullopt;
+  constexpr double kMost = 1e6;
+  const double time = parse_numbers("--frame-time", options.frame_time, 1)[0];
+  if (!(time >= 0 && time <= kMost))
+    wrong_usage("--frame-time: expected milliseconds from 0 to {}, found '{}'", kMost, options.frame_time);
+  return time;
+}
+
 std::optional<Viewpoint> culled_from(const ViewOptions& options) {
   if (options.culled_from.empty()) return std::nullopt;
   std::istringstream text(options.culled_from);
@@ -153,6 +162,16 @@ void add_budget_options(const Command& command, ViewOptions& options) {
           "Never more triangles of a store's surfaces in a frame, whatever the error (default 500000)")
       .type_name("N");
   command
+      .add_option("--frame-time", options.frame_time,
+                  "For the mesh of a frame while the view moves: fewer triangles where there is no time for "
+                  "all (default 0: any time)")
+      .type_name("MS");
+  command
+      .add_option("--paging", options.paging,
+                  "Whether surfaces wait for the pages of stores that they need, or are coarser at first and "
+                  "sharpen as these are loaded (default async in a window, wait offscreen)")
+      .one_of({"wait", "async"});
+  command
       .add_option("--memory", options.memory,
                   "What decoded pages may take, for each surface: bytes, or with K, M or G")
       .type_name("SIZE")
@@ -199,6 +218,10 @@ PictureSize picture_size(const ViewOptions& options, const PictureSize& otherwis
   return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
 }
 
+bool waits_for_pages(const ViewOptions& options) {
+  return options.paging.empty() ? options.offscreen : options.paging == "wait";
+}
+
 void check_view_options(const ViewOptions& options, const Session& session) {
   static_cast<void>(picture_size(options, {1, 1}));
   static_cast<void>(plane_of(options));
@@ -209,6 +232,7 @@ void check_view_options(const ViewOptions& options, const Session& session) {
   if (!options.pixels.empty()) static_cast<void>(parse_positive("--pixels", options.pixels));
   if (!options.max_triangles.empty())
     static_cast<void>(parse_count("--max-triangles", options.max_triangles));
+  static_cast<void>(frame_milliseconds(options));
   if (options.offscreen && options.frames.empty() && session.json.empty())
     wrong_usage("expected --frames or --json, found no output");
   if (options.offscreen) return;
@@ -224,6 +248,7 @@ void apply_view_options(const ViewOptions& options, ViewSession& view) {
   if (!options.pixels.empty()) state.pixels = parse_positive("--pixels", options.pixels);
   if (!options.max_triangles.empty())
     state.max_triangles = parse_count("--max-triangles", options.max_triangles);
+  if (const std::optional<double> time = frame_milliseconds(options)) state.frame_milliseconds = *time;
   if (!options.shading.empty())
     state.shading = options.shading == "sphere" ? Shading::kSphere : Shading::kLit;
   if (!options.colour_map.empty()) state.colour_map = options.colour_map;

@@ -11,8 +11,8 @@ namespace adamas {
 /// The options of `adamas view` as they were given; empty where they were not.
 struct ViewOptions {
   std::vector<std::string> paths, isovalues, opacities, hidden;
-  std::string memory = "256M", colour_by, pixels, max_triangles, path, frames, size, shading, field, range,
-              colour_map, plane, origin, normal, state, culled_from;
+  std::string memory = "256M", colour_by, pixels, max_triangles, frame_time, paging, path, frames, size,
+              shading, field, range, colour_map, plane, origin, normal, state, culled_from;
   bool offscreen = false, overwrite = false, edges = false, plain = false, no_cut = false, occlusion = false,
        fresh = false;
 };
@@ -27,6 +27,8 @@ void add_view_options(const Command& command, ViewOptions& options);
 PictureSize picture_size(const ViewOptions& options, const PictureSize& otherwise);
 /// Looks at all that can be wrong with options, before long work.
 void check_view_options(const ViewOptions& options, const Session& session);
+/// Whether surfaces wait for the pages that they need.
+bool waits_for_pages(const ViewOptions& options);
 /// Brings what the options say into the state. Throws Error too where no file has such a field or material.
 void apply_view_options(const ViewOptions& options, ViewSession& view);
 

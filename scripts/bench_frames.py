@@ -22,6 +22,17 @@ def flight_rows(build, name, file, isovalue, frames, raw=None):
            f"{change['adamas'] / peer:.2f}" if raw else "", "<= 0.33", where]
 
 
+def cold_rows(build, name, file, isovalue, frames):
+    """The same flight with no page in memory at first, and room for few: frames that wait for pages, and such that do without."""
+    memory = 32 << 20
+    waiting, paging = lines_of(build, "bench_frames", file, str(isovalue), str(frames), "500000", "cold", str(memory))
+    for part, what in ("first", "the first"), ("median", "median"), ("percentile_99", "99%"):
+        yield [f"frames of {name}, pages loaded by a thread: {what}", f"{1e3 * paging[part]:.1f} ms", f"{1e3 * waiting[part]:.1f} ms waiting",
+               f"{paging[part] / waiting[part]:.2f}", "",
+               f"32 MiB of pages, none in memory at first; the first view is whole after {paging['frames_until_whole']} frames; "
+               f"{paging['missing_median']} pages missing in the median"]
+
+
 def median(values):
     return sorted(values)[len(values) // 2]
 
@@ -49,6 +60,7 @@ def frame_rows(build, quick):
         ball = make_buckyball(build, folder, side)
         store(build, ball, file)
         yield from flight_rows(build, f"buckyball {side}^3", file, 80.5, 60 if quick else 600, ball.replace(".nhdr", ".raw"))
+        yield from cold_rows(build, f"buckyball {side}^3", file, 80.5, 60 if quick else 200)
         yield from occlusion_rows(build, f"buckyball {side}^3", file, 80.5, 24, folder)
         root = os.path.join(os.environ.get("ADAMAS_DATA", "../shared/data"), "volume")
         for path, options, isovalue in [*MEASURED[:2], MEASURED[4]]:

@@ -39,6 +39,20 @@ LatticeSamples<Sample>::LatticeSamples(StoredPages<Word>& pages)
 }
 
 template <class Sample>
+typename LatticeSamples<Sample>::Word LatticeSamples<Sample>::word_in_memory(LatticePoint at,
+                                                                             const PageId& own) {
+  // Pages have the points of coarser LODs too. What lies beyond an LOD's last points has their samples.
+  for (int lod = own.lod; lod >= 0; --lod) {
+    const LatticePoint end = grid_.extent(lod);
+    LatticePoint u{at.i >> lod, at.j >> lod, at.k >> lod};
+    for (int axis = 0; axis < 3; ++axis) u[axis] = std::min(u[axis], end[axis]);
+    const PageSamples<Word>* const page = pages_.held({lod, {u.i / kSide, u.j / kSide, u.k / kSide}});
+    if (page != nullptr) return page->samples[PageGrid::place(u, 0)];
+  }
+  throw PageLost{own, own};
+}
+
+template <class Sample>
 bool LatticeSamples<Sample>::samples_round(LatticePoint p, std::int32_t step, Block& samples) {
   const int lod = std::countr_zero(static_cast<std::uint32_t>(step)) - shift_;
   if (lod < 0 || lod > grid_.top()) return false;

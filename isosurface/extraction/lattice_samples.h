@@ -58,6 +58,7 @@ class LatticeSamples {
     const LatticePoint end = ends_[static_cast<std::size_t>(l)];
     for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], end[axis]);
     const PageId id = grid_.page(at);
+    if (!pages_.loads()) return word_in_memory(at, id);
     return pages_.needed_samples(id).samples[PageGrid::place(at, id.lod)];
   }
   /// A sample and its 26 neighbours, i running fastest.
@@ -69,6 +70,9 @@ class LatticeSamples {
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
 
  private:
+  /// The same where nothing is loaded: of any page in memory that has the point. Throws PageLost where there
+  /// is none, for the point's own page.
+  Word word_in_memory(LatticePoint at, const PageId& own);
   bool block_of_page(const PageId& id, LatticePoint first, Block& samples);
   bool block_of_pages(const PageId& id, LatticePoint first, Block& samples);
 

@@ -35,6 +35,10 @@ struct PageMask {
     std::uint16_t& row = rows[place / PageGrid::kSide];
     row = static_cast<std::uint16_t>(row | 1u << place % PageGrid::kSide);
   }
+  void remove(std::uint16_t place) {
+    std::uint16_t& row = rows[place / PageGrid::kSide];
+    row = static_cast<std::uint16_t>(row & ~(1u << place % PageGrid::kSide));
+  }
   [[nodiscard]] bool any() const {
     return std::any_of(rows.begin(), rows.end(), [](std::uint16_t row) { return row != 0; });
   }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "core/base/large_pages.h"
 #include "core/base/parallel.h"
@@ -39,20 +40,49 @@ class VertexGradients {
   Vec3 at(LatticePoint p, std::int32_t step) {
     KnownGradient& known = known_[hash_value(p) >> (64 - kKnownBits)];
     // Vertices of a finer mesh than this one have a gradient of their own.
-    if (known.point != p || known.step != step)
+    if (known.point != p || known.step != step) {
       known = {p, step, stored_ ? stored(p, step) : estimate(p, step)};
+      // What may yet come is asked for again.
+      if (is_provisional_) forget(known);
+    }
     return known.gradient;
   }
 
   /// Damaged pages that some gradient was worked out without.
   [[nodiscard]] const std::vector<PageId>& lost() const { return lost_; }
+  std::vector<MissingNormals> take_missing() { return std::exchange(missing_, {}); }
+  StoredGradients* stored() { return stored_ ? &*stored_ : nullptr; }
 
  private:
   Vec3 stored(LatticePoint p, std::int32_t step) {
-    const std::optional<Vec3> direction = stored_->direction(samples_.in_samples(p));
+    stored_->set_loading(samples_.pages().loads());
+    const LatticePoint at = samples_.in_samples(p);
+    const std::optional<Vec3> direction = stored_->direction(at);
     if (direction) return *direction;
-    note_lost(stored_->last_damaged());
+    if (stored_->loads()) {
+      note_lost(stored_->last_damaged());
+    } else {
+      note_missing(*stored_, {stored_->page_of(at), true});
+    }
     return -downwards(estimate(p, step));
+  }
+
+  struct KnownGradient {
+    LatticePoint point = kNoKey<LatticePoint>;
+    std::int32_t step = 0;  ///< from neighbours so far away
+    Vec3 gradient;
+  };
+  [[gnu::cold]] void forget(KnownGradient& known) {
+    known.point = kNoKey<LatticePoint>;
+    is_provisional_ = false;
+  }
+
+  template <class Pages>
+  [[gnu::cold]] void note_missing(const Pages& pages, const MissingNormals& missing) {
+    // What cannot be had at all does not count.
+    if (pages.is_lost(missing.page)) return;
+    is_provisional_ = true;
+    if (std::find(missing_.begin(), missing_.end(), missing) == missing_.end()) missing_.push_back(missing);
   }
 
   void note_lost(const PageId& page) {
@@ -95,7 +125,11 @@ class VertexGradients {
     try {
       return samples_.sample(p);
     } catch (const PageLost& missing) {
-      note_lost(missing.damaged);
+      if (samples_.pages().loads()) {
+        note_lost(missing.damaged);
+      } else {
+        note_missing(samples_.pages(), {missing.page, false});
+      }
       return kNone;
     }
   }
@@ -106,17 +140,14 @@ class VertexGradients {
     return *found;
   }
 
-  struct KnownGradient {
-    LatticePoint point = kNoKey<LatticePoint>;
-    std::int32_t step = 0;  ///< from neighbours so far away
-    Vec3 gradient;
-  };
   static constexpr int kKnownBits = 12;
 
   LatticeSamples<Sample> samples_;
   std::optional<StoredGradients> stored_;
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
   std::vector<PageId> lost_;
+  std::vector<MissingNormals> missing_;
+  bool is_provisional_ = false;  ///< the gradient that was worked out last lacks something that may come
   std::vector<KnownGradient> known_ = std::vector<KnownGradient>(std::size_t{1} << kKnownBits);
 };
 
@@ -219,6 +250,15 @@ Vec3 PointNormals<Sample>::of(const EdgePoint& point) {
 template <class Sample>
 Vec3 PointNormals<Sample>::of(const MeanPoint& point) {
   return normal_of<Sample>(point, *gradients_);
+}
+
+template <class Sample>
+std::vector<MissingNormals> PointNormals<Sample>::take_missing() {
+  return gradients_->take_missing();
+}
+template <class Sample>
+StoredGradients* PointNormals<Sample>::stored() {
+  return gradients_->stored();
 }
 
 template class PointNormals<std::uint8_t>;

@@ -28,6 +28,14 @@ template <class Sample>
 SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
                                Progress& progress = SilentProgress::instance());
 
+/// A page that normals were worked out without, since pages are not loaded (PageCache::set_loading) and it is
+/// not in memory.
+struct MissingNormals {
+  PageId page;
+  bool is_of_gradients = false;  ///< of those that the store keeps, not of samples
+  bool operator==(const MissingNormals&) const = default;
+};
+
 /// The same, one point at a time and in any order, with the same result to the last bit.
 template <class Sample>
 class PointNormals {
@@ -39,6 +47,11 @@ class PointNormals {
 
   Vec3 of(const EdgePoint& point);
   Vec3 of(const MeanPoint& point);
+
+  /// What the normals lack that were worked out since this was called last, each page once.
+  std::vector<MissingNormals> take_missing();
+  /// The directions that the store keeps; null where it has none.
+  [[nodiscard]] StoredGradients* stored();
 
  private:
   class Gradients;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "core/base/assert.h"
@@ -118,6 +119,7 @@ const typename PageCache<Word>::Slot* PageCache<Word>::get(const PageId& id, Pag
 
 template <class Word>
 const typename PageCache<Word>::Slot* PageCache<Word>::fetch(const PageId& id, PageParts parts, bool wanted) {
+  if (!loads_) return nullptr;
   Surroundings<Word> around;
   if (!surroundings(id, around, parts)) return nullptr;
   // The pages that predict this one may have pushed others out, and so may its bounds: even its own samples,
@@ -178,6 +180,48 @@ void PageCache<Word>::copy_samples(std::span<const HeldPage> pages) {
     slot_of(page.id) = fresh;
     slots_[fresh] = {page.id, samples, nullptr, false, true};
   }
+}
+
+template <class Word>
+bool PageCache<Word>::has(const PageId& id, PageParts parts) {
+  const std::uint32_t found = slot_of(id);
+  if (found == kNone) return false;
+  Slot& slot = slots_[found];
+  if (slot.bounds == nullptr && has_part(parts, PageParts::kBounds)) return false;
+  if (!slot.wanted) --predictors_;
+  slot.used = slot.wanted = true;
+  return true;
+}
+
+template <class Word>
+void PageCache<Word>::need(const PageId& id, int importance) {
+  const std::uint32_t found = slot_of(id);
+  if (found == kNone) return;
+  Slot& slot = slots_[found];
+  const bool is_known = std::exchange(slot.needed, needs_) == needs_;
+  slot.importance = is_known ? std::max(slot.importance, importance) : importance;
+}
+
+template <class Word>
+bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, const PageBounds<Word>* bounds,
+                          int importance) {
+  if (slot_of(id) == kNone) {
+    PageSamples<Word>* const room = room_in(samples_, importance);
+    if (room == nullptr) return false;
+    *room = samples;
+    const std::uint32_t fresh = free_slot();
+    slot_of(id) = fresh;
+    slots_[fresh] = {id, room, nullptr, true, true};
+    ++loaded_;
+  }
+  // Room for the bounds is not made by the page itself.
+  need(id, importance);
+  if (bounds == nullptr || slots_[slot_of(id)].bounds != nullptr) return true;
+  PageBounds<Word>* const room = room_in(bounds_, importance);
+  if (room == nullptr) return false;
+  *room = *bounds;
+  slots_[slot_of(id)].bounds = room;
+  return true;
 }
 
 template <class Word>
@@ -265,18 +309,47 @@ Part* PageCache<Word>::room_in(Pool<Part>& pool) {
 }
 
 template <class Word>
+template <class Part>
+Part* PageCache<Word>::room_in(Pool<Part>& pool, int importance) {
+  while (!has_room_in(pool)) {
+    if (!evict_less_than(std::numeric_limits<int>::min()) && !evict_less_than(importance)) return nullptr;
+  }
+  return room_in(pool);
+}
+
+template <class Word>
+bool PageCache<Word>::evict_less_than(int importance) {
+  // In the second round no page counts as used.
+  for (std::size_t looks = 2 * slots_.size() + 1; looks > 0; --looks, next_turn()) {
+    Slot& slot = slots_[turn_];
+    // Nothing can be had without the coarsest page.
+    if (slot.samples == nullptr || slot.id.lod == grid_.top()) continue;
+    if (slot.needed == needs_ && slot.importance >= importance) continue;
+    if (std::exchange(slot.used, false)) continue;
+    remove(slot);
+    return true;
+  }
+  return false;
+}
+
+template <class Word>
 void PageCache<Word>::evict() {
-  for (;; turn_ = turn_ + 1 == slots_.size() ? 0 : turn_ + 1) {
+  for (;; next_turn()) {
     Slot& slot = slots_[turn_];
     if (slot.samples == nullptr) continue;
     if (std::exchange(slot.used, false)) continue;
-    samples_.free.push_back(slot.samples);
-    if (slot.bounds != nullptr) bounds_.free.push_back(slot.bounds);
-    slot_of(slot.id) = kNone;
-    free_slots_.push_back(static_cast<std::uint32_t>(turn_));
-    slot = {};
-    return;
+    return remove(slot);
   }
+}
+
+template <class Word>
+void PageCache<Word>::remove(Slot& slot) {
+  samples_.free.push_back(slot.samples);
+  if (slot.bounds != nullptr) bounds_.free.push_back(slot.bounds);
+  slot_of(slot.id) = kNone;
+  free_slots_.push_back(static_cast<std::uint32_t>(&slot - slots_.data()));
+  slot = {};
+  ++left_;
 }
 
 template <class Word>

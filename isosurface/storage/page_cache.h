@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "core/base/stable_vector.h"
@@ -40,6 +41,9 @@ class PageCache {
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   /// Pages that are in memory stay there until others need room.
   void set_memory(std::size_t bytes) { memory_ = bytes; }
+  /// Whether pages that are not in memory are loaded. Otherwise they cannot be had, and none leaves.
+  void set_loading(bool loads) { loads_ = loads; }
+  [[nodiscard]] bool loads() const { return loads_; }
 
   /// A part of a page, or null where it or one that it is predicted from cannot be had. Valid until the next
   /// call.
@@ -75,6 +79,23 @@ class PageCache {
   /// Frees the memory of all bounds.
   void drop_bounds();
 
+  /// Whether parts of a page are in memory.
+  bool has(const PageId& id, PageParts parts);
+  /// Notes that a page, if it is in memory, is needed, and how much; until forget_needs().
+  void need(const PageId& id, int importance);
+  void forget_needs() { ++needs_; }
+  /// Puts a page into memory that another cache of the same volume has: its bounds too, where they are given.
+  /// Pages leave for it that nobody needs or that are less important. Returns false where that makes no room.
+  bool put(const PageId& id, const PageSamples<Word>& samples, const PageBounds<Word>* bounds,
+           int importance);
+  /// How many pages have left.
+  [[nodiscard]] std::uint64_t left() const { return left_; }
+  /// Notes that a page cannot be had at all.
+  void note_lost(const PageId& id) { lost_.insert(grid_.number(id)); }
+  [[nodiscard]] bool is_lost(const PageId& id) const {
+    return !lost_.empty() && lost_.contains(grid_.number(id));
+  }
+
   /// What is known round a page of the next coarser LOD, or parts of it. Returns false where something
   /// cannot be had. Does nothing for a complete page.
   bool surroundings(const PageId& id, Surroundings<Word>& around, PageParts parts = PageParts::kAll);
@@ -94,6 +115,8 @@ class PageCache {
     PageBounds<Word>* bounds = nullptr;    ///< null where they are not in memory
     bool used = false;                     ///< since the slot's turn came last
     bool wanted = false;                   ///< for its own sake, not only to predict another
+    std::uint64_t needed = 0;              ///< needs_ when it was noted as needed last
+    int importance = 0;                    ///< and how much it was then
   };
   /// The slots of an LOD's pages, i running fastest; the sizes of its rows and planes of pages.
   struct Lod {
@@ -123,8 +146,15 @@ class PageCache {
   /// Memory from a pool, for which pages leave if need be.
   template <class Part>
   Part* room_in(Pool<Part>& pool);
+  /// The same, for something so important; null where no page leaves for that.
+  template <class Part>
+  Part* room_in(Pool<Part>& pool, int importance);
+  /// Makes one page leave that is not needed, or less than something else. Returns false where there is none.
+  bool evict_less_than(int importance);
   /// Makes one page leave.
   void evict();
+  void remove(Slot& slot);
+  void next_turn() { turn_ = turn_ + 1 >= slots_.size() ? 0 : turn_ + 1; }
   std::uint32_t free_slot();
 
   PageGrid grid_;
@@ -136,6 +166,9 @@ class PageCache {
   std::vector<std::uint32_t> free_slots_;
   std::size_t turn_ = 0;  ///< the slot whose page is the next that may leave
   std::uint64_t loaded_ = 0, predictors_ = 0;
+  bool loads_ = true;
+  std::uint64_t needs_ = 1, left_ = 0;
+  std::unordered_set<std::uint64_t> lost_;  ///< numbers of pages
 };
 
 extern template class PageCache<std::uint8_t>;

@@ -78,30 +78,47 @@ std::span<const std::byte> StoreFile::bytes_at(std::uint64_t offset, std::uint64
   for (std::size_t done = 0; done < count;) {
     const ssize_t got = pread(file_, buffer_.data() + done, count - done, static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) fail("{}: cannot be read at {}: {}", name_, offset + done, std::strerror(errno));
+    if (got < 0) fail("{}: cannot be read at {}: {}", name_, offset + done, std::strerror(errno));
+    if (got == 0) fail("{}: expected {} bytes, found {}: it was cut off", name_, size_, offset + done);
     done += static_cast<std::size_t>(got);
   }
   return std::span<const std::byte>(buffer_).first(count);
 }
 
-const StoreFile::Chunk& StoreFile::chunk(const DirectoryChunk& from) {
-  const auto [at, fresh] = chunks_.try_emplace({from.step, from.first});
-  if (fresh) {
-    at->second.numbers = chunk_pages(grid_, from.first);
-    const auto bytes = bytes_at(from.offset, from.size);
-    if (crc32c(bytes) == from.checksum) {
-      if (auto entries = parse_entries(grid_, from, bytes, sample_bytes(root_.header.grid.type)))
-        at->second.entries = std::move(*entries);
-    }
+StoreFile::ChunkKey StoreFile::key_of(std::uint32_t step, const PageId& page) const {
+  return {step, grid_.number(page) / DirectoryChunk::kPages * DirectoryChunk::kPages};
+}
+
+const StoreFile::DirectoryPart& StoreFile::chunk(const DirectoryChunk& from) {
+  const auto known = chunks_.find({from.step, from.first});
+  if (known != chunks_.end()) return *known->second;
+  auto part = std::make_shared<DirectoryPart>();
+  part->key = {from.step, from.first};
+  part->numbers = chunk_pages(grid_, from.first);
+  const auto bytes = bytes_at(from.offset, from.size);
+  if (crc32c(bytes) == from.checksum) {
+    if (auto entries = parse_entries(grid_, from, bytes, sample_bytes(root_.header.grid.type)))
+      part->entries = std::move(*entries);
   }
-  return at->second;
+  return *chunks_.emplace(part->key, part).first->second;
+}
+
+std::shared_ptr<const StoreFile::DirectoryPart> StoreFile::directory_part(std::uint32_t step,
+                                                                          const PageId& page) {
+  static_cast<void>(entry(step, page));
+  const auto found = chunks_.find(key_of(step, page));
+  return found == chunks_.end() ? nullptr : found->second;
+}
+
+void StoreFile::take_over(std::shared_ptr<const DirectoryPart> part) {
+  chunks_.emplace(part->key, std::move(part));
 }
 
 std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page) {
   const std::uint64_t number = grid_.number(page);
-  const ChunkKey key{step, number / DirectoryChunk::kPages * DirectoryChunk::kPages};
+  const ChunkKey key = key_of(step, page);
   const auto known = chunks_.find(key);
-  const Chunk* found = known != chunks_.end() ? &known->second : nullptr;
+  const DirectoryPart* found = known != chunks_.end() ? known->second.get() : nullptr;
   if (found == nullptr) {
     const auto from = std::lower_bound(root_.chunks.begin(), root_.chunks.end(), key,
                                        [](const DirectoryChunk& c, const ChunkKey& k) {
@@ -138,7 +155,7 @@ bool StoreFile::copy_is_whole(const PageEntry& entry) {
 void StoreFile::check_directory() {
   std::uint64_t pages = 0, copies = 0, entries = 0, chunks = 0;
   for (const DirectoryChunk& from : root_.chunks) {
-    const Chunk& found = chunk(from);
+    const DirectoryPart& found = chunk(from);
     if (found.entries.empty() && !found.numbers.empty())
       fail("{}: the part of the directory at {} is damaged", name_, from.offset);
     for (const PageEntry& entry : found.entries) {

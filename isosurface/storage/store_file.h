@@ -45,6 +45,16 @@ class StoreFile {
   /// What the directory says of a page that the grid contains; nothing where that part of it is damaged.
   std::optional<PageEntry> entry(std::uint32_t step, const PageId& page);
 
+  /// Whether the part of the directory that tells of a page is in memory, so that entry() reads nothing.
+  [[nodiscard]] bool has_entry(std::uint32_t step, const PageId& page) const {
+    return chunks_.contains(key_of(step, page));
+  }
+  /// A part of the directory, which files of the same store in several threads may share.
+  class DirectoryPart;
+  /// The part that tells of a page; null where there is none.
+  std::shared_ptr<const DirectoryPart> directory_part(std::uint32_t step, const PageId& page);
+  void take_over(std::shared_ptr<const DirectoryPart> part);
+
   /// The page's bytes, valid until the next call; empty where both copies are damaged.
   struct Payload {
     PageState state;
@@ -66,14 +76,11 @@ class StoreFile {
   void map();
 
   using ChunkKey = std::pair<std::uint32_t, std::uint64_t>;
-  struct Chunk {
-    std::vector<std::uint64_t> numbers;
-    std::vector<PageEntry> entries;  ///< none where the chunk is damaged
-  };
 
   /// `size` bytes from `offset`, in the mapping or in buffer_. Bytes beyond the file's end are an Error.
   std::span<const std::byte> bytes_at(std::uint64_t offset, std::uint64_t size);
-  const Chunk& chunk(const DirectoryChunk& chunk);
+  [[nodiscard]] ChunkKey key_of(std::uint32_t step, const PageId& page) const;
+  const DirectoryPart& chunk(const DirectoryChunk& chunk);
 
   std::string name_;
   int file_ = -1;
@@ -82,8 +89,15 @@ class StoreFile {
   std::vector<std::byte> buffer_;
   StoreRoot root_;
   PageGrid grid_{{1, 1, 1}};
-  std::map<ChunkKey, Chunk> chunks_;
+  std::map<ChunkKey, std::shared_ptr<const DirectoryPart>> chunks_;
   std::uint64_t bytes_read_ = 0;
+};
+
+class StoreFile::DirectoryPart {
+  friend class StoreFile;
+  ChunkKey key;
+  std::vector<std::uint64_t> numbers;
+  std::vector<PageEntry> entries;  ///< none where the part is damaged
 };
 
 /// Writes a store, page after page. The file is no store before finish().

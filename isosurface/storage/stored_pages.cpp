@@ -150,9 +150,14 @@ bool StoredGradients::load(const PageToLoad<std::uint16_t>& page) {
   return false;
 }
 
-std::optional<Vec3> StoredGradients::direction(LatticePoint p) {
-  // Not all points beyond the data are among those that pages have.
+LatticePoint StoredGradients::in_data(LatticePoint p) const {
   for (int axis = 0; axis < 3; ++axis) p[axis] = std::min(p[axis], grid().last()[axis]);
+  return p;
+}
+
+std::optional<Vec3> StoredGradients::direction(LatticePoint beyond) {
+  // Not all points beyond the data are among those that pages have.
+  const LatticePoint p = in_data(beyond);
   const PageId id = grid().page(p);
   const PageSamples<std::uint16_t>* found = samples(id);
   if (found == nullptr) return {};

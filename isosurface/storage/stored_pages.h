@@ -73,7 +73,7 @@ class StoredPages : public PageCache<Word> {
   bool decode(std::span<const std::byte> payload, const PageToLoad<Word>& page);
   template <class Part>
   const Part& needed(const PageId& id, const Part* part) const {
-    if (part == nullptr) throw PageLost{id, last_damaged_};
+    if (part == nullptr) throw PageLost{id, this->loads() ? last_damaged_ : id};
     return *part;
   }
 
@@ -114,10 +114,13 @@ class StoredGradients : public PageCache<std::uint16_t> {
   /// where nothing changes. Beyond the data it is that of the nearest sample. Nothing where the page cannot
   /// be had.
   std::optional<Vec3> direction(LatticePoint p);
+  /// The page that tells of it.
+  [[nodiscard]] PageId page_of(LatticePoint p) const { return grid().page(in_data(p)); }
   /// The damaged page for which a page could not be had, when that was last so.
   [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }
 
  private:
+  [[nodiscard]] LatticePoint in_data(LatticePoint p) const;
   bool load(const PageToLoad<std::uint16_t>& page) override;
 
   StoreFile& file_;

@@ -33,15 +33,34 @@ void for_each_code(const Codes& codes, Visit&& visit) {
   }
 }
 
+/// The pages round one that have members of its diamond.
+std::uint32_t pages_of_members(LatticePoint q) {
+  const auto along = [](std::int32_t x) { return 2u | (x == 0 ? 1u : 0u) | (x == kSide - 1 ? 4u : 0u); };
+  std::uint32_t pages = 0;
+  for (unsigned n = 0; n < 9; ++n) {
+    if ((along(q.j) >> n % 3 & along(q.k) >> n / 3 & 1) != 0) pages |= along(q.i) << 3 * n;
+  }
+  return pages;
+}
+
 }  // namespace
+
+void CrossedPage::find_members(std::size_t wanted) {
+  while (members.size() < wanted) {
+    const Group& group = groups[members.size()];
+    std::uint32_t pages = 0;
+    for (std::size_t n = group.begin; n < group.end; ++n) pages |= pages_of_members(point(places[n]));
+    members.push_back(pages);
+  }
+}
 
 template <class Sample>
 void CrossedPageReader<Sample>::find_codes(int lod, LatticePoint block) {
   const PageGrid& grid = diamonds_.grid();
   const PageId id{std::min(lod, grid.top()), block};
   diamonds_.find_crossed(id, codes_);
-  // Bounds of the finest LOD predict nothing.
-  if (lod == 0 && grid.top() > 0) diamonds_.pages().drop_bounds(id);
+  // Bounds of the finest LOD predict nothing, and others predict none here where pages are not loaded.
+  if (id.lod < grid.top() && (lod == 0 || !diamonds_.pages().loads())) diamonds_.pages().drop_bounds(id);
   const auto all = codes_;
   codes_.fill(0);
   const std::int32_t step = 1 << (lod - id.lod);

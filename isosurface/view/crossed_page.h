@@ -30,10 +30,15 @@ struct CrossedPage {
   /// less than nothing: then `added` is 0, and `lost`, which is empty where there is no such split, tells by
   /// how many there are less.
   std::vector<std::uint8_t> added, lost;
+  /// The pages of the LOD round this one that have members of the diamonds of each of the first groups, as
+  /// bits: for each step from -1 to 1 along each axis, i running fastest. As far as find_members() was asked.
+  std::vector<std::uint32_t> members;
 
+  /// Finds these of so many groups.
+  void find_members(std::size_t groups);
   [[nodiscard]] std::size_t bytes() const {
     return sizeof(*this) + groups.capacity() * sizeof(Group) + places.capacity() * sizeof(std::uint16_t) +
-           added.capacity() + lost.capacity();
+           added.capacity() + lost.capacity() + members.capacity() * sizeof(std::uint32_t);
   }
   static LatticePoint point(std::uint16_t place) {
     constexpr std::int32_t kSide = PageGrid::kSide;

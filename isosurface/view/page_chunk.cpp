@@ -103,6 +103,7 @@ std::unique_ptr<PageChunk> ChunkMaker<Sample>::make(int lod, LatticePoint block,
   show(before, first_cell, *chunk);
   number(*chunk, before == nullptr ? nullptr : &before->border, first_cell, chunk->border,
          [](std::size_t, const std::array<std::uint32_t, 3>&) {});
+  chunk->missing = normals_.take_missing();
   return chunk;
 }
 

@@ -48,6 +48,8 @@ struct PageChunk {
   Part inside;  ///< the triangles that are shown
   Part border;  ///< those in tetrahedra that reach beyond the data, which are to be cut
   SurfaceChunk shown;
+  /// Pages that normals were worked out without, since they are not in memory: these are provisional.
+  std::vector<MissingNormals> missing;
 };
 
 /// Makes the chunks of pages. That a half of a split diamond is in the mesh follows from the masks of split

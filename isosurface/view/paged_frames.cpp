@@ -6,10 +6,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/lattice/point_numbers.h"
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
+#include "isosurface/view/joined_edges.h"
 
 namespace adamas {
 
@@ -36,29 +36,6 @@ int classes_further(std::uint64_t triangles, std::uint64_t most) {
   const double ratio = static_cast<double>(most) / static_cast<double>(std::max<std::uint64_t>(triangles, 1));
   return static_cast<int>(std::clamp(4 * std::log2(ratio), 1.0, kMost));
 }
-
-/// Joins the points of edges: an edge has one number, whichever triangles name it.
-class JoinedEdges {
- public:
-  explicit JoinedEdges(Contour& contour) : contour_(contour) {}
-
-  std::uint32_t number(const EdgePoint& point, const Vec3& position) {
-    // No two edges of a mesh have the same middle.
-    const LatticePoint way = point.second - point.first;
-    const auto [number, is_new] =
-        numbers_.insert(point.first + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
-    if (is_new) {
-      *number = static_cast<std::uint32_t>(contour_.points.size());
-      contour_.edge_points.push_back(point);
-      contour_.points.push_back(position);
-    }
-    return *number;
-  }
-
- private:
-  Contour& contour_;
-  PointNumbers numbers_;
-};
 
 std::array<std::uint32_t, 3> renumbered(const std::array<std::uint32_t, 3>& triangle,
                                         const std::vector<std::uint32_t>& numbers) {
@@ -95,31 +72,80 @@ FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
   const StoppedByFrame progress(request);
   FrameFigures figures;
   try {
-    if (isovalue_ != request.isovalue) start(request.isovalue);
-    const SurfaceCut cut = cut_of(request, progress);
-    last_class_ = cut.error_class;
-    figures.largest_error = diamonds_.most_pixels(pages_.split(cut, [&] { progress.check(); }));
-    figures.depth_tests = pages_.depth_tests();
-    figures.hidden = pages_.hidden();
-    find_changed_cells(figures);
-    std::vector<NewChunk> made = make_chunks(progress);
-    // Nothing stops the frame from here on.
-    take(std::move(made));
-    figures.triangles = 0;
-    for_each_chunk([&](const SurfaceChunk& chunk) { figures.triangles += chunk.triangles.size(); });
-    figures_ = figures;
+    choose_pages(request.resident_only);
+    figures = find_frame(request, progress);
   } catch (const Cancelled&) {
     if (request.max_triangles && figures_.triangles > *request.max_triangles) merge_all();
     figures = figures_;
     figures.splits = figures.merges = 0;
     figures.stopped = true;
   } catch (...) {
+    diamonds_.pages().set_loading(true);
     isovalue_.reset();
     throw;
   }
+  diamonds_.pages().set_loading(true);
   pages_.forget_old();
   find_changes();
   return figures;
+}
+
+template <class Sample>
+FrameFigures PagedFrames<Sample>::find_frame(const FrameRequest& request, const Progress& progress) {
+  FrameFigures figures;
+  if (isovalue_ != request.isovalue) start(request.isovalue);
+  const SurfaceCut cut = cut_of(request, progress);
+  last_class_ = cut.error_class;
+  figures.largest_error = diamonds_.most_pixels(pages_.split(cut, [&] { progress.check(); }));
+  figures.depth_tests = pages_.depth_tests();
+  figures.hidden = pages_.hidden();
+  find_changed_cells(figures);
+  std::vector<NewChunk> made = make_chunks(progress);
+  // Nothing stops the frame from here on.
+  take(std::move(made));
+  for_each_chunk([&](const SurfaceChunk& chunk) { figures.triangles += chunk.triangles.size(); });
+  find_missing(figures);
+  figures_ = figures;
+  return figures;
+}
+
+template <class Sample>
+void PagedFrames<Sample>::choose_pages(bool resident_only) {
+  StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
+  const PageId coarsest{pages.grid().top(), {0, 0, 0}};
+  pages.needed_bounds(coarsest);
+  pages.set_loading(!resident_only);
+  pages_.set_loading(!resident_only);
+}
+
+template <class Sample>
+bool PagedFrames<Sample>::has_come(const std::vector<MissingNormals>& missing) {
+  StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
+  return std::ranges::any_of(missing, [&](const MissingNormals& of) {
+    return pages.loads() || (of.is_of_gradients ? gradients()->has(of.page, PageParts::kSamples)
+                                                : pages.has(of.page, PageParts::kSamples));
+  });
+}
+
+template <class Sample>
+void PagedFrames<Sample>::add_missing(const std::vector<MissingNormals>& missing) {
+  using Part = MissingPage::Part;
+  for (const MissingNormals& of : missing) {
+    const bool is_lost =
+        of.is_of_gradients ? gradients()->is_lost(of.page) : diamonds_.pages().is_lost(of.page);
+    if (!is_lost) missing_.push_back({of.page, of.is_of_gradients ? Part::kGradients : Part::kSamples, 0, 0});
+  }
+}
+
+template <class Sample>
+void PagedFrames<Sample>::find_missing(FrameFigures& figures) {
+  missing_ = pages_.missing();
+  for (const ViewedPage* const page : chunks_) add_missing(page->chunk->missing);
+  if (apart_) add_missing(apart_->missing);
+  sort_by_importance(diamonds_.grid(), missing_);
+  figures.pages_missing = missing_.size();
+  figures.pages_lost = pages_.lost();
+  if (!missing_.empty()) pages_.spare_needed();
 }
 
 template <class Sample>
@@ -142,6 +168,7 @@ void PagedFrames<Sample>::merge_all() {
     page->chunk.reset();
   }
   chunks_.clear();
+  missing_.clear();
   set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
   figures_ = {};
   figures_.triangles = apart_ ? apart_->shown.triangles.size() : 0;
@@ -233,9 +260,14 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
     const Progress& progress) {
   std::vector<NewChunk> made;
   for (ViewedPage* const page : pages_.shown()) {
-    if (page->chunk != nullptr && page->changed_in != pages_.walk_number()) continue;
+    // Provisional normals are worked out anew, all together.
+    const bool is_provisional = page->chunk != nullptr && !page->chunk->missing.empty();
+    if (page->chunk != nullptr && page->changed_in != pages_.walk_number() &&
+        !(is_provisional && has_come(page->chunk->missing)))
+      continue;
     progress.check();
-    made.push_back({page, maker_.make(page->lod, page->block, page->chunk.get(), page->changed)});
+    const PageChunk* const before = is_provisional ? nullptr : page->chunk.get();
+    made.push_back({page, maker_.make(page->lod, page->block, before, page->changed)});
     made.back().chunk->shown.id = id_of(page->lod, page->block);
   }
   return made;
@@ -244,7 +276,7 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
 template <class Sample>
 void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   ++revision_;
-  bool border_changed = apart_ && apart_->shown.id == kRoot;
+  bool border_changed = apart_ && (apart_->shown.id == kRoot || has_come(apart_->missing));
   const auto note_border = [&](const PageChunk& chunk) {
     border_changed = border_changed || !chunk.border.triangles.empty();
   };
@@ -263,7 +295,7 @@ void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   }
   chunks_ = pages_.shown();
   if (chunks_.empty()) {
-    if (!apart_ || apart_->shown.id != kRoot)
+    if (!apart_ || apart_->shown.id != kRoot || has_come(apart_->missing))
       set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
   } else if (border_changed) {
     set_apart(kBorder, border());
@@ -291,6 +323,7 @@ void PagedFrames<Sample>::set_apart(std::uint64_t id, Contour contour) {
   shown.normals.reserve(contour.points.size());
   for (const EdgePoint& point : contour.edge_points) shown.normals.push_back(maker_.normals().of(point));
   for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(maker_.normals().of(point));
+  apart.missing = maker_.normals().take_missing();
   apart.contour = std::move(contour);
 }
 

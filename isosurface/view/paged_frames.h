@@ -46,6 +46,14 @@ class PagedFrames {
   /// A chunk of the last frame; null where there is none of this id.
   [[nodiscard]] const SurfaceChunk* chunk(std::uint64_t id);
 
+  /// The pages that the last frame did without, since they are not in memory, and that a surface in sight
+  /// needs: what is worth most first. Once they are there (PageCache::put), the next frame sharpens. Those of
+  /// a frame that was stopped are of the frame before.
+  [[nodiscard]] const std::vector<MissingPage>& missing_pages() const { return missing_; }
+  [[nodiscard]] StoredPages<OrderedWord<Sample>>& pages() { return diamonds_.pages(); }
+  /// The directions of gradients that the store keeps; null where it has none.
+  [[nodiscard]] StoredGradients* gradients() { return maker_.normals().stored(); }
+
   /// The surface of the last frame as one: clipped to the data's box, with one point for each edge.
   [[nodiscard]] Contour contour() const;
   [[nodiscard]] const ViewedDiamonds<Sample>& diamonds() const { return diamonds_; }
@@ -62,12 +70,22 @@ class PagedFrames {
   struct Apart {
     Contour contour;
     SurfaceChunk shown;
+    std::vector<MissingNormals> missing;
   };
   struct NewChunk {
     ViewedPage* page;
     std::unique_ptr<PageChunk> chunk;
   };
 
+  /// The frame itself; throws Cancelled where it is stopped.
+  FrameFigures find_frame(const FrameRequest& request, const Progress& progress);
+  /// Gets the coarsest page, without which there is no surface, and lets no other page be loaded where only
+  /// those in memory are wanted.
+  void choose_pages(bool resident_only);
+  /// Whether something has come since that provisional normals lack.
+  [[nodiscard]] bool has_come(const std::vector<MissingNormals>& missing);
+  void find_missing(FrameFigures& figures);
+  void add_missing(const std::vector<MissingNormals>& missing);
   /// Forgets all of another contour, and leaves the mesh in which nothing is split.
   void start(double isovalue);
   /// Leaves the surface of the mesh in which nothing is split.
@@ -103,6 +121,7 @@ class PagedFrames {
   std::uint64_t revision_ = 0;
   std::vector<ViewedPage*> chunks_;  ///< the pages that have one, from the coarsest LOD on, in z-order
   std::optional<Apart> apart_;
+  std::vector<MissingPage> missing_;
   std::vector<std::pair<std::uint64_t, bool>> touched_;
   ChunkChanges changes_;
 };

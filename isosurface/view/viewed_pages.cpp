@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "isosurface/view/viewed_pages_in_memory.h"
 #include "isosurface/volume/z_order.h"
 
 namespace adamas {
@@ -23,6 +24,7 @@ ViewedPages<Sample>::ViewedPages(ViewedDiamonds<Sample>& diamonds, const Surface
       reader_(diamonds, surface),
       memory_(memory),
       index_(static_cast<std::size_t>(diamonds.lods())),
+      incomplete_(index_.size()),
       active_(index_.size()) {
   for (int lod = 0; lod < diamonds.lods(); ++lod)
     places_.emplace_back(diamonds.domain(), diamonds.lattice_step(lod), diamonds.grid().reach(lod));
@@ -32,6 +34,7 @@ template <class Sample>
 void ViewedPages<Sample>::clear() {
   shown_.clear();
   for (auto& of_lod : active_) of_lod.clear();
+  for (auto& of_lod : incomplete_) of_lod.clear();
   for (auto& of_lod : index_) of_lod.clear();
   pages_.clear();
   bytes_ = 0;
@@ -55,14 +58,10 @@ ViewedPage* ViewedPages<Sample>::find(int lod, LatticePoint block) {
 template <class Sample>
 ViewedPage& ViewedPages<Sample>::page(int lod, LatticePoint block) {
   if (ViewedPage* const known = find(lod, block)) return *known;
-  // The coarsest page has diamonds of several LODs, and the directory does not tell of each.
-  const int greatest = lod < diamonds_.grid().top() ? diamonds_.greatest_class({lod, block})
-                                                    : error_class(ErrorScale::kCodes - 1, lod);
   ViewedPage& added = pages_.emplace_back();
   added.lod = lod;
   added.block = block;
   added.order = ZOrder::interleave(block);
-  added.greatest = greatest;
   *index_[static_cast<std::size_t>(lod)].insert(block).first = &added;
   return added;
 }
@@ -113,6 +112,9 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
                                                                              const Check& check) {
   ++walk_;
   depth_tests_ = hidden_ = 0;
+  missing_.clear();
+  lost_ = 0;
+  greatest_missing_ = 0;
   low_ = depths_of(least_class);
   next_ = depths_of(least_class + 1);
   greatest_passed_ = 0;
@@ -122,8 +124,10 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
     find_candidates(lod);
     std::vector<ViewedPage*>& active = active_[static_cast<std::size_t>(lod)];
     active.clear();
+    incomplete_[static_cast<std::size_t>(lod)].clear();
     for (ViewedPage* const page : candidates_) {
       check();
+      if (!page->is_told && !tell(*page)) page->greatest = greatest_of_parents(*page);
       if (page->greatest == 0) continue;
       const PageView view = view_of(*page);
       depth_tests_ += view.has_depths() ? 1 : 0;
@@ -134,10 +138,14 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
         greatest_passed_ = std::max(greatest_passed_, class_at(page->greatest, depth));
         continue;
       }
+      if (!loads_ && !find_in_memory(*page, view)) continue;
       look_at(*page, view, added);
       active.push_back(page);
-      if (added.above.added > room) return {};
+      if (loads_ && added.above.added > room) return {};
     }
+    if (loads_) continue;
+    drop_without_parents(lod, added);
+    if (added.above.added > room) return {};
   }
   return added;
 }
@@ -145,23 +153,32 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
 template <class Sample>
 const CrossedPage& ViewedPages<Sample>::crossed(ViewedPage& page, const PageView& view) {
   page.used = frame_;
-  if (page.crossed == nullptr) {
-    page.crossed = std::make_unique<CrossedPage>(reader_.read(page.lod, page.block));
-    page.masks = std::make_unique<ViewedMasks>();
-    bytes_ += bytes_of(page);
-  }
+  if (page.crossed == nullptr) read(page);
   CrossedPage& known = *page.crossed;
-  std::size_t needed = known.counted;
-  while (needed < known.groups.size() &&
-         low_[static_cast<std::size_t>(error_class(known.groups[needed].code, page.lod))] >=
-             view.least_depth(0))
-    ++needed;
+  const std::size_t needed =
+      loads_ ? groups_within(known, page.lod, view.least_depth(0)) : page.groups_in_memory;
   if (needed > known.counted) {
     bytes_ -= known.bytes();
     reader_.count(page.lod, page.block, needed, known);
     bytes_ += known.bytes();
   }
   return known;
+}
+
+template <class Sample>
+void ViewedPages<Sample>::read(ViewedPage& page) {
+  page.crossed = std::make_unique<CrossedPage>(reader_.read(page.lod, page.block));
+  page.masks = std::make_unique<ViewedMasks>();
+  bytes_ += bytes_of(page);
+}
+
+template <class Sample>
+std::size_t ViewedPages<Sample>::groups_within(const CrossedPage& known, int lod, double depth) const {
+  std::size_t groups = loads_ ? known.counted : 0;
+  while (groups < known.groups.size() &&
+         low_[static_cast<std::size_t>(error_class(known.groups[groups].code, lod))] >= depth)
+    ++groups;
+  return groups;
 }
 
 template <class Sample>
@@ -177,8 +194,10 @@ void ViewedPages<Sample>::look_at(ViewedPage& page, const PageView& view, Added&
   const CrossedPage& known = crossed(page, view);
   PageMask &above = page.masks->above, &at_low = page.masks->at_low;
   above = at_low = {};
+  page.looked_at = walk_;
   const bool whole = view.is_whole();
-  for (std::size_t g = 0; g < known.counted; ++g) {
+  const std::size_t groups = loads_ ? known.counted : page.groups_in_memory;
+  for (std::size_t g = 0; g < groups; ++g) {
     const CrossedPage::Group& group = known.groups[g];
     const auto of_error = static_cast<std::size_t>(error_class(group.code, page.lod));
     const double low = low_[of_error], next = next_[of_error], least = view.least_depth(group.phase),
@@ -314,7 +333,7 @@ int ViewedPages<Sample>::left_on(const ViewedPage& page, const PageView& view, i
 template <class Sample>
 int ViewedPages<Sample>::split(const SurfaceCut& cut, const Check& check) {
   shown_.clear();
-  int left = greatest_passed_;
+  int left = std::max(greatest_passed_, greatest_missing_);
   for (int lod = lods() - 1; lod >= 0; --lod) {
     // No diamond that is left has a greater class than this, and mostly one has just this class.
     const int most = cut.generation < generation_of(lod) + 3 ? cut.error_class : cut.error_class - 1;

@@ -11,6 +11,7 @@
 
 #include "core/lattice/lattice_map.h"
 #include "isosurface/extraction/surface_cut.h"
+#include "isosurface/storage/missing_page.h"
 #include "isosurface/view/crossed_page.h"
 #include "isosurface/view/page_chunk.h"
 #include "isosurface/view/page_view.h"
@@ -32,10 +33,17 @@ struct ViewedPage {
   std::uint64_t order = 0;  ///< the place of its cube in z-order
   /// An error class that none of its diamonds exceeds; the greatest one where the directory does not tell.
   int greatest = 0;
+  bool is_told = false;                  ///< the directory was asked for that
   std::unique_ptr<CrossedPage> crossed;  ///< null where it is not known
   std::unique_ptr<ViewedMasks> masks;    ///< null where `crossed` is
   std::uint64_t used = 0;                ///< when that was last looked at
   std::uint64_t met = 0;                 ///< the walk that met with it last
+  std::uint64_t looked_at = 0;           ///< the walk that looked at it last
+  std::uint64_t suspect = 0;             ///< the walk in which pages with parents of its diamonds lack some
+  /// Of a walk that loads no pages: for how many groups all members are in memory, and how many are wanted;
+  /// after how many pages had left the memory that was so.
+  std::size_t groups_in_memory = 0, groups_wanted = 0;
+  std::uint64_t left_then = 0;
   /// In that walk: where the children of its diamonds of the walk's classes are, as CrossedPage has them.
   std::uint32_t children = 0;
   /// In that walk: what its diamonds of the least class add and take away, by phase.
@@ -59,6 +67,15 @@ class ViewedPages {
 
   /// Forgets all pages, for another contour.
   void clear();
+  /// Whether walks load pages. Otherwise diamonds are not split whose pages are not in memory, and what comes
+  /// from splitting them neither.
+  void set_loading(bool loads) { loads_ = loads; }
+  /// The pages for want of which the last walk does not split diamonds in sight, in no order.
+  [[nodiscard]] const std::vector<MissingPage>& missing() const { return missing_; }
+  /// How many pages that it wants cannot be had at all.
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  /// Has the memory of pages spare those that the last walk needs.
+  void spare_needed();
   /// Called for each page that is looked at; may throw.
   using Check = std::function<void()>;
 
@@ -69,6 +86,11 @@ class ViewedPages {
     Sum& operator+=(const Sum& other) {
       added += other.added;
       lost += other.lost;
+      return *this;
+    }
+    Sum& operator-=(const Sum& other) {
+      added -= other.added;
+      lost -= other.lost;
       return *this;
     }
   };
@@ -129,6 +151,26 @@ class ViewedPages {
   /// Whether depths hide a diamond; counts.
   bool is_occluded(const PageView& view, std::uint16_t place, int phase);
   const CrossedPage& crossed(ViewedPage& page, const PageView& view);
+  void read(ViewedPage& page);
+  /// How many groups of a page may have diamonds of the walk's classes.
+  [[nodiscard]] std::size_t groups_within(const CrossedPage& known, int lod, double depth) const;
+  /// Asks the directory, if that may be done.
+  bool tell(ViewedPage& page);
+  [[nodiscard, gnu::cold]] int greatest_of_parents(const ViewedPage& page);
+  /// Finds what of a page is in memory, and notes what is missing. Returns false where nothing can be split.
+  bool find_in_memory(ViewedPage& page, const PageView& view);
+  [[nodiscard]] std::size_t groups_in_memory(const ViewedPage& page);
+  /// Calls visit(id) for the pages that have members of a group; until it returns false.
+  template <class Visit>
+  bool for_each_member_page(const ViewedPage& page, std::size_t group, Visit&& visit);
+  [[gnu::cold]] void note_missing(const PageId& id, MissingPage::Part part, int view_class, double depth);
+  [[gnu::cold]] void note_missing_groups(const ViewedPage& page, const PageView& view);
+  /// Takes diamonds out of the masks of an LOD whose parents are not in those of their pages.
+  void drop_without_parents(int lod, Added& added);
+  [[gnu::cold]] bool drop_without_parents(ViewedPage& page, int phase, Added& added);
+  [[nodiscard, gnu::cold]] bool has_parents(LatticePoint p);
+  [[gnu::cold]] void suspect_round(const ViewedPage& page);
+  [[gnu::cold]] void suspect_children(const ViewedPage& page);
   [[nodiscard]] PageView view_of(const ViewedPage& page) const {
     return {diamonds_.view(), places_[static_cast<std::size_t>(page.lod)], page.block};
   }
@@ -154,6 +196,11 @@ class ViewedPages {
   std::uint64_t depth_tests_ = 0, hidden_ = 0;
   Depths low_, next_;        ///< of the least class of the walk, and the next one
   int greatest_passed_ = 0;  ///< of the pages that the walk met with and did not look at
+  bool loads_ = true;
+  std::vector<MissingPage> missing_;
+  std::uint64_t lost_ = 0;
+  int greatest_missing_ = 0;                          ///< of the diamonds for whose split pages are missing
+  std::vector<std::vector<ViewedPage*>> incomplete_;  ///< by LOD: those that lack diamonds
   std::vector<ViewedPage*> candidates_, shown_;
   std::vector<std::vector<ViewedPage*>> active_;  ///< by LOD, in z-order: those that the walk looked at
 };

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "isosurface/storage/page_loader.h"
 #include "isosurface/view/paged_frames.h"
 #include "tests/benchmarks/peers/flying_edges.h"
 #include "tests/benchmarks/support/measurement.h"
@@ -66,6 +69,41 @@ void fly(StoreFile& file, const Flight& flight) {
       quantile(seconds, 0.99), quantile(seconds, 1), quantile(changed, 0.5));
 }
 
+/// The same flight with no page in memory at first and room for some only: where frames wait for pages, or go
+/// without those that a thread loads meanwhile. Of that, how many frames the first view takes until nothing
+/// is missing, and how much is missing on the way.
+template <class Sample>
+void fly_cold(StoreFile& file, const Flight& flight, std::size_t memory, bool is_async) {
+  using Word = OrderedWord<Sample>;
+  StoredPages<Word> pages(file, 0, is_async ? memory - memory / 4 : memory);
+  PagedFrames<Sample> frames(pages);
+  std::unique_ptr<PageLoader<Word>> loader;
+  if (is_async) loader = std::make_unique<PageLoader<Word>>(pages, memory / 4);
+  const Box3 box = frames.diamonds().data_box();
+  std::vector<double> seconds, missing;
+  const auto next = [&](int n) {
+    FrameRequest request = frame(box, flight, n);
+    request.resident_only = is_async;
+    const double before = thread_seconds();
+    bool is_full = false;
+    if (loader) is_full = loader->take(pages, frames.gradients()).is_full;
+    const FrameFigures figures = frames.refine(request);
+    if (loader) loader->want(frames.missing_pages());
+    seconds.push_back(thread_seconds() - before);
+    missing.push_back(static_cast<double>(figures.pages_missing));
+    return figures.pages_missing == 0 || is_full;
+  };
+  int until_whole = 1;
+  for (; !next(0); ++until_whole) loader->wait();
+  for (int n = 1; n < flight.frames; ++n) next(n);
+  std::printf(
+      "{\"row\": \"cold\", \"async\": %s, \"memory\": %zu, \"first\": %.5f, \"median\": %.5f, "
+      "\"percentile_99\": %.5f, \"greatest\": %.5f, \"frames_until_whole\": %d, \"missing_median\": %.0f, "
+      "\"missing_greatest\": %.0f}\n",
+      is_async ? "true" : "false", memory, seconds.front(), quantile(seconds, 0.5), quantile(seconds, 0.99),
+      quantile(seconds, 1), until_whole, quantile(missing, 0.5), quantile(missing, 1));
+}
+
 /// From a frame at one isovalue to the same view at another, a few times there and back.
 template <class Sample>
 void change_isovalue(StoreFile& file, const Flight& flight, const FlyingEdges& peer) {
@@ -92,7 +130,8 @@ void change_isovalue(StoreFile& file, const Flight& flight, const FlyingEdges& p
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE ISOVALUE [FRAMES [TRIANGLES [RAW]]]
+/// STORE ISOVALUE [FRAMES [TRIANGLES [RAW]]], or STORE ISOVALUE FRAMES TRIANGLES cold MEMORY for the rows of
+/// flights with so many bytes of pages.
 int main(int argc, char** argv) {
   if (argc < 3) return 2;
   adamas::set_thread_limit(1);
@@ -108,7 +147,12 @@ int main(int argc, char** argv) {
   peer.type = grid.type;
   peer.isovalue = flight.isovalue;
   peer.normals = true;
+  const bool is_cold = argc > 6 && std::string(argv[5]) == "cold";
   adamas::with_sample_type(grid.type, [&](auto sample) {
+    for (const bool is_async : {false, true}) {
+      if (is_cold) adamas::bench::fly_cold<decltype(sample)>(file, flight, std::stoull(argv[6]), is_async);
+    }
+    if (is_cold) return;
     adamas::bench::fly<decltype(sample)>(file, flight);
     adamas::bench::change_isovalue<decltype(sample)>(file, flight, peer);
   });

@@ -85,6 +85,29 @@ TEST_F(ViewCommand, KeepsToItsLimits) {
   EXPECT_LE(read_json("g.json")["frames"][0]["largest_error_pixels"], 20);
 }
 
+TEST_F(ViewCommand, WaitsForPagesOrTellsHowManyAreMissing) {
+  ASSERT_EQ(view({"--camera-path", "orbit:3", "--frames", "frames", "--json", "f.json"}).status, 0);
+  const auto waiting = read_json("f.json")["frames"];
+  for (const auto& frame : waiting) {
+    EXPECT_EQ(frame["pages_missing"], 0);
+    EXPECT_EQ(frame["pages_lost"], 0);
+  }
+  ASSERT_EQ(view({"--camera-path", "orbit:3", "--paging", "async", "--json", "g.json"}).status, 0);
+  const auto frames = read_json("g.json")["frames"];
+  ASSERT_EQ(frames.size(), 3u);
+  for (std::size_t n = 0; n < frames.size(); ++n) {
+    EXPECT_EQ(frames[n]["pages_lost"], 0);
+    if (frames[n]["pages_missing"] == 0) {
+      EXPECT_EQ(frames[n]["triangles"], waiting[n]["triangles"]);
+      EXPECT_EQ(frames[n]["largest_error_pixels"], waiting[n]["largest_error_pixels"]);
+    }
+  }
+  // However short the time of a frame is, a picture is of what is found in the end.
+  ASSERT_EQ(view({"--camera-path", "orbit:3", "--frames", "short", "--frame-time", "0.001"}).status, 0);
+  for (const char* name : {"frame0001.png", "frame0002.png", "frame0003.png"})
+    EXPECT_EQ(read(std::string("short/") + name), read(std::string("frames/") + name));
+}
+
 TEST_F(ViewCommand, ShowsSeveralSurfacesColoursAndStates) {
   const auto picture = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all{"--camera-path", "orbit:1", "--frames", "frames",
@@ -165,6 +188,8 @@ TEST_F(ViewCommand, TellsWhatIsWrong) {
   expect({"view", "b.adm", "--isovalue", "80.5", "--offscreen"}, 2, "expected --frames or --json");
   expect(with({"--size", "4,4"}), 2, "from 16 to 8192");
   expect(with({"--pixels", "0"}), 2, "--pixels");
+  expect(with({"--frame-time", "-1"}), 2, "--frame-time: expected milliseconds from 0");
+  expect(with({"--paging", "perhaps"}), 2, "--paging");
   expect(with({"--opacity", "2"}), 2, "--opacity: expected a number above 0");
   expect(with({"--opacity", "1", "--opacity", "1"}), 2, "--opacity: expected one for each --isovalue");
   expect(with({"--range", "3,1"}), 2, "--range: expected a < b");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <memory>
 #include <random>
 #include <utility>
@@ -254,6 +255,51 @@ TEST(PageCache, BoundsThatCannotBeHadLeaveSamples) {
   EXPECT_EQ(cache.bounds({0, {2, 2, 2}}), nullptr);
   EXPECT_NE(cache.samples({0, {2, 2, 2}}), nullptr);
   EXPECT_NE(cache.bounds({0, {0, 0, 0}}), nullptr);
+}
+
+TEST(PageCache, PagesLeaveForMoreImportantOnesAlone) {
+  const PageGrid grid({100, 100, 100});
+  const PageId coarsest{grid.top(), {0, 0, 0}};
+  FilledPages source(grid, std::size_t{1} << 26), cache(grid, 0);
+  ASSERT_NE(cache.bounds(coarsest), nullptr);
+  cache.set_loading(false);
+  std::mt19937 random(8);
+  std::map<std::uint64_t, int> needed;  // how much, of pages in memory by their numbers
+  std::size_t refused = 0, left = 0;
+  const auto page = std::make_unique<Page<Word>>();
+  for (int n = 0; n < 3000; ++n) {
+    if (random() % 100 == 0) {
+      cache.forget_needs();
+      needed.clear();
+    }
+    const PageId id{0,
+                    {static_cast<std::int32_t>(random() % 7), static_cast<std::int32_t>(random() % 7),
+                     static_cast<std::int32_t>(random() % 7)}};
+    const int importance = static_cast<int>(random() % 10);
+    ASSERT_TRUE(source.copy(id, *page));
+    const bool was_there = cache.has(id, PageParts::kSamples), with_bounds = random() % 2 == 0;
+    const std::uint64_t left_before = cache.left();
+    const bool is_put = cache.put(id, *page, with_bounds ? page.get() : nullptr, importance);
+    left += cache.left() - left_before;
+    refused += is_put ? 0 : 1;
+    EXPECT_TRUE(is_put || !was_there || with_bounds);
+    if (is_put) {
+      EXPECT_TRUE(cache.has(id, with_bounds ? PageParts::kAll : PageParts::kSamples));
+      ASSERT_NE(cache.held(id), nullptr);
+      EXPECT_EQ(cache.held(id)->samples, page->samples);
+      needed[grid.number(id)] = std::max(importance, needed[grid.number(id)]);
+    }
+    EXPECT_TRUE(cache.has(coarsest, PageParts::kAll));
+    EXPECT_LE(cache.held_pages().size(), PageCache<Word>::kLeast);
+    std::erase_if(needed, [&](const auto& of) {
+      const bool is_there = cache.has(grid.page(of.first), PageParts::kSamples);
+      EXPECT_TRUE(is_there || of.second < importance);
+      return !is_there;
+    });
+  }
+  EXPECT_GT(refused, 50u);
+  EXPECT_GT(left, 100u);
+  EXPECT_EQ(cache.samples({0, {6, 6, 6}}) == nullptr, !cache.has({0, {6, 6, 6}}, PageParts::kSamples));
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ ViewState some_state() {
   state.has_axes = false;
   state.pixels = 0.75;
   state.max_triangles = 123'456;
+  state.frame_milliseconds = 16.5;
   state.cut = {true, {{1, 2, 3}, {0, 1, -1}}, false, true};
   state.bookmarks = {{"from \"above\"", state.viewpoint}, {"", Viewpoint{}}};
   DocumentState store, mesh;
@@ -38,6 +39,7 @@ ViewState some_state() {
 TEST(ViewState, IsTheSameAfterItsText) {
   const ViewState state = some_state(), again = view_state(to_text(state), "state");
   EXPECT_EQ(to_text(again), to_text(state));
+  EXPECT_EQ(again.frame_milliseconds, 16.5);
   EXPECT_EQ(again.documents, state.documents);
   EXPECT_EQ(again.viewpoint.eye, state.viewpoint.eye);
   EXPECT_EQ(again.bookmarks[0].name, state.bookmarks[0].name);
@@ -66,6 +68,7 @@ TEST(ViewState, OtherTextsAreRefusedInALine) {
   EXPECT_NE(with("\"fly\"", "\"swim\"").find("unknown word 'swim'"), std::string::npos);
   EXPECT_NE(with("\"cool-warm\"", "\"rainbow\"").find("rainbow"), std::string::npos);
   EXPECT_NE(with("123456", "-4").find("max_triangles"), std::string::npos);
+  EXPECT_NE(with("16.5", "-1").find("frame_milliseconds"), std::string::npos);
   EXPECT_NE(with("0.75", "1e999").find("s.json"), std::string::npos);
   EXPECT_NE(with("\"edges\": true", "\"edges\": 1").find("expected true or false"), std::string::npos);
   // Cut off, or changed anywhere: an error or another state, never a crash.

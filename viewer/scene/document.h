@@ -34,9 +34,12 @@ struct UpdateReport {
   std::uint64_t triangles = 0, splits = 0, merges = 0;
   std::uint64_t depth_tests = 0, hidden = 0;  ///< as FrameFigures has them
   double largest_error_pixels = 0;            ///< an estimate
-  double seconds = 0;                         ///< to work it out
-  bool is_current = true;                     ///< it is what the state asks for
-  std::string problem;                        ///< why it could not be had; empty: nothing
+  /// Pages that the surface does without for now, so that it is coarser there; and those that it wants and
+  /// that cannot be had.
+  std::uint64_t pages_missing = 0, pages_lost = 0;
+  double seconds = 0;      ///< to work it out
+  bool is_current = true;  ///< it is what the state asks for
+  std::string problem;     ///< why it could not be had; empty: nothing
 };
 
 /// What is known of a place.
@@ -73,6 +76,9 @@ class Document {
 struct DocumentOptions {
   std::size_t memory = std::size_t{256} << 20;  ///< bytes that decoded pages may take
   std::string colour_by;                        ///< another store, whose values colour surfaces; empty: none
+  /// Whether surfaces wait for the pages that they need. Otherwise they are coarser at first, and sharpen as
+  /// pages come.
+  bool waits_for_pages = true;
 };
 
 /// Opens a store, a resampled mesh, a saved hierarchy or interfaces. Throws Error for another file.

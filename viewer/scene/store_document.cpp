@@ -172,6 +172,7 @@ class StoreDocument final : public Document {
     result.viewpoint = in_frame(grid, view.culled_from ? *view.culled_from : view.viewpoint);
     result.pixels = view.pixels;
     result.max_triangles = view.max_triangles;
+    result.seconds = 1e-3 * view.frame_milliseconds;
     // Boxes of diamonds are in the frame, which is space where axes are straight.
     if (view.leaves_out_hidden && grid.is_straight() && view.depths &&
         view.depths->viewpoint() == result.viewpoint)

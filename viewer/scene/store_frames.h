@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
@@ -16,16 +17,24 @@ class StoreFrames {
  public:
   virtual ~StoreFrames() = default;
 
-  /// Throws Error where the store is damaged.
+  /// Throws Error where the store is damaged. With `resident_only` the pages that the frame lacks are loaded
+  /// in a thread; what has come by then, the next frame has.
   virtual FrameFigures next(const FrameRequest& request) = 0;
+  /// Whether pages are on their way that the last frame lacks. Each comes once at most for a view: where the
+  /// memory has no room for what a view needs, some stay missing.
+  [[nodiscard]] virtual bool is_paging() const = 0;
+  /// Why pages cannot be had that were to be loaded, of the first one; empty: nothing.
+  [[nodiscard]] virtual std::string paging_problem() const = 0;
   /// Calls for all parts of the last frame's surface, which are in the frame of the grid.
   virtual void for_each_chunk(const std::function<void(const SurfaceChunk&)>& visit) const = 0;
   [[nodiscard]] virtual PageCounts counts() const = 0;
   /// From the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;
 
-  /// `memory`: bytes that decoded pages may take. The file must outlive the frames.
-  static std::unique_ptr<StoreFrames> open(StoreFile& file, std::size_t memory);
+  /// `memory`: bytes that decoded pages may take. The file must outlive the frames. `arrived` is called in
+  /// the thread that loads pages when some have come.
+  static std::unique_ptr<StoreFrames> open(
+      StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {});
 };
 
 }  // namespace adamas

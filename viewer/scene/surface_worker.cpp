@@ -11,6 +11,7 @@ namespace adamas {
 SurfaceWorker::SurfaceWorker(const std::string& path, const DocumentOptions& options)
     : file_(path),
       memory_(options.memory),
+      waits_for_pages_(options.waits_for_pages),
       colours_(options.colour_by.empty() ? nullptr : VolumeValues::open(options.colour_by, options.memory)),
       thread_([this] { run(); }) {}
 
@@ -21,6 +22,8 @@ SurfaceWorker::~SurfaceWorker() {
   }
   changed_.notify_all();
   thread_.join();
+  // Their threads call back until then.
+  surfaces_.clear();
 }
 
 void SurfaceWorker::want(const WantedSurfaces& wanted) {
@@ -44,26 +47,50 @@ bool SurfaceWorker::is_current() const {
 
 void SurfaceWorker::wait_for(const WantedSurfaces& wanted) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return found_ && found_->report.is_current && found_->wanted == wanted; });
+  changed_.wait(lock, [&] {
+    const bool is_here = found_ && found_->wanted == wanted && found_->roughness == 1;
+    return is_here && (found_->report.is_current || !waits_for_pages_);
+  });
+}
+
+bool SurfaceWorker::wait_for_work(const std::optional<WantedSurfaces>& done) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] {
+    return is_ended_ ||
+           (wanted_ && (wanted_ != done || (has_arrived_ && found_ && !found_->report.is_current)));
+  });
+  has_arrived_ = false;
+  return !is_ended_;
 }
 
 void SurfaceWorker::run() {
-  // What was wanted last and found; nothing where that was given up.
-  std::optional<WantedSurfaces> done;
-  while (true) {
+  // What was wanted last and found, be it that pages are missing; nothing where that was given up.
+  std::optional<WantedSurfaces> done, last;
+  while (wait_for_work(done)) {
     WantedSurfaces wanted;
     {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return is_ended_ || (wanted_ && wanted_ != done); });
-      if (is_ended_) return;
+      const std::lock_guard lock(mutex_);
       wanted = *wanted_;
     }
     // A rough surface comes at once where there was another one.
-    const bool is_other = !done || wanted.isovalues != done->isovalues;
+    const bool is_other = !last || wanted.isovalues != last->isovalues;
+    budget_.begin(wanted.seconds, wanted.max_triangles, last == wanted);
     done.reset();
     if (is_other && !update(wanted, kRough)) continue;
-    if (update(wanted, 1)) done = std::move(wanted);
+    last = wanted;
+    if (update(wanted, 1) && (budget_.is_whole() || is_current())) done = std::move(wanted);
   }
+}
+
+bool SurfaceWorker::is_paging() const {
+  return std::ranges::any_of(surfaces_, [](const Surface& surface) { return surface.frames->is_paging(); });
+}
+
+std::string SurfaceWorker::paging_problem() const {
+  for (const Surface& surface : surfaces_) {
+    if (std::string problem = surface.frames->paging_problem(); !problem.empty()) return problem;
+  }
+  return {};
 }
 
 bool SurfaceWorker::is_overtaken(const WantedSurfaces& wanted) const {
@@ -74,18 +101,30 @@ bool SurfaceWorker::is_overtaken(const WantedSurfaces& wanted) const {
 bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness) {
   auto found = std::make_shared<FoundSurfaces>();
   found->wanted = wanted;
-  const auto before = std::chrono::steady_clock::now();
+  found->roughness = roughness;
+  using Clock = std::chrono::steady_clock;
+  const auto before = Clock::now();
+  const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - before).count(); };
+  const std::chrono::duration<double> allowed(roughness == 1 ? budget_.seconds() : 0);
+  frame_end_ = allowed.count() > 0 ? before + std::chrono::duration_cast<Clock::duration>(allowed)
+                                   : Clock::time_point::max();
+  bool is_stopped = false, has_failed = false;
   try {
-    for (std::size_t n = 0; n < wanted.isovalues.size(); ++n) {
-      if (!add_surface(*found, n, roughness)) return false;
-    }
+    for (std::size_t n = 0; n < wanted.isovalues.size() && !is_stopped; ++n)
+      is_stopped = !add_surface(*found, n, roughness);
+    found->report.problem = paging_problem();
   } catch (const std::exception& error) {
     // What there is stays to be seen.
+    has_failed = true;
     found->report.problem = error.what();
     if (const auto last = this->found()) found->surfaces = last->surfaces;
   }
-  found->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  found->report.is_current = roughness == 1;
+  found->report.seconds = passed();
+  if (roughness == 1) budget_.note(found->report.seconds, is_stopped);
+  if (is_stopped) return false;
+  // Where there is a problem it is not tried again.
+  const bool is_done = has_failed || (budget_.is_whole() && !is_paging());
+  found->report.is_current = roughness == 1 && is_done;
   {
     const std::lock_guard lock(mutex_);
     found_ = std::move(found);
@@ -95,7 +134,14 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
 }
 
 bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness) {
-  while (surfaces_.size() <= n) surfaces_.push_back({StoreFrames::open(file_, memory_), {}});
+  const auto arrived = [this] {
+    {
+      const std::lock_guard lock(mutex_);
+      has_arrived_ = true;
+    }
+    changed_.notify_all();
+  };
+  while (surfaces_.size() <= n) surfaces_.push_back({StoreFrames::open(file_, memory_, arrived), {}});
   const WantedSurfaces& wanted = found.wanted;
   FrameRequest request;
   request.viewpoint = wanted.viewpoint;
@@ -103,8 +149,9 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
   request.isovalue = wanted.isovalues[n];
   request.pixels = wanted.pixels * static_cast<double>(roughness);
   request.max_triangles =
-      std::max<std::uint64_t>(1, wanted.max_triangles / wanted.isovalues.size() / roughness);
-  request.stop = [&] { return is_overtaken(wanted); };
+      std::max<std::uint64_t>(1, budget_.triangles() / wanted.isovalues.size() / roughness);
+  request.resident_only = !waits_for_pages_;
+  request.stop = [&] { return is_overtaken(wanted) || std::chrono::steady_clock::now() > frame_end_; };
   const FrameFigures figures = surfaces_[n].frames->next(request);
   if (figures.stopped) return false;
   found.surfaces.push_back(drawn_chunks(surfaces_[n]));
@@ -115,6 +162,8 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
   report.merges += figures.merges;
   report.depth_tests += figures.depth_tests;
   report.hidden += figures.hidden;
+  report.pages_missing += figures.pages_missing;
+  report.pages_lost += figures.pages_lost;
   report.largest_error_pixels = std::max(report.largest_error_pixels, figures.largest_error);
   return true;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "isosurface/storage/store_file.h"
 #include "viewer/scene/document.h"
 #include "viewer/scene/drawn_mesh.h"
+#include "viewer/scene/frame_budget.h"
 #include "viewer/scene/store_frames.h"
 #include "viewer/scene/volume_values.h"
 
@@ -25,6 +27,7 @@ struct WantedSurfaces {
   std::vector<double> isovalues;  ///< of samples
   double pixels = 1;
   std::uint64_t max_triangles = 0;
+  double seconds = 0;  ///< for a frame; 0: any
   std::shared_ptr<const DepthPyramid> depths;
 
   bool operator==(const WantedSurfaces&) const = default;
@@ -33,12 +36,14 @@ struct WantedSurfaces {
 /// What was found for that.
 struct FoundSurfaces {
   WantedSurfaces wanted;
+  std::uint64_t roughness = 1;                    ///< by how much it is coarser than that on purpose
   std::vector<std::vector<SharedMesh>> surfaces;  ///< of each isovalue: the chunks
   UpdateReport report;
   PageCounts counts;
 };
 
-/// Works out surfaces in a thread of its own, those that were wanted last.
+/// Works out surfaces in a thread of its own, those that were wanted last. Where it does not wait for pages
+/// surfaces are coarser at first, and go on to be worked out as pages come, until nothing is missing.
 class SurfaceWorker {
  public:
   /// Throws Error where a file is no store.
@@ -53,6 +58,8 @@ class SurfaceWorker {
   [[nodiscard]] std::shared_ptr<const FoundSurfaces> found() const;
   /// Whether that is what was wanted last.
   [[nodiscard]] bool is_current() const;
+  /// Waits until that is what was found, or there is a problem. Where surfaces do not wait for pages, some
+  /// may be missing.
   void wait_for(const WantedSurfaces& wanted);
 
  private:
@@ -67,12 +74,16 @@ class SurfaceWorker {
   };
 
   void run();
+  /// Waits for another wish, or for pages that are missing. Returns false at the end.
+  bool wait_for_work(const std::optional<WantedSurfaces>& done);
   /// Whether the surfaces that are worked out are not those that are wanted by now.
   [[nodiscard]] bool is_overtaken(const WantedSurfaces& wanted) const;
-  /// Returns false where something else is wanted by now.
+  /// Works out a frame. Returns false where it was stopped: something else is wanted, or its time is over.
   bool update(const WantedSurfaces& wanted, std::uint64_t roughness);
   /// The same.
   bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
+  [[nodiscard]] bool is_paging() const;
+  [[nodiscard]] std::string paging_problem() const;
   /// Only chunks that are not as they were are made anew.
   std::vector<SharedMesh> drawn_chunks(Surface& surface);
   [[nodiscard]] SharedMesh drawn_chunk(const SurfaceChunk& chunk);
@@ -81,11 +92,14 @@ class SurfaceWorker {
 
   StoreFile file_;
   std::size_t memory_;
+  bool waits_for_pages_;
   std::vector<Surface> surfaces_;  ///< of the thread, like colours_
   std::unique_ptr<VolumeValues> colours_;
+  FrameBudget budget_;
+  std::chrono::steady_clock::time_point frame_end_;  ///< when the frame's time is over
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  bool is_ended_ = false;
+  bool is_ended_ = false, has_arrived_ = false;
   std::optional<WantedSurfaces> wanted_;
   std::shared_ptr<const FoundSurfaces> found_;
   std::thread thread_;

@@ -154,6 +154,8 @@ UpdateReport ViewSession::report() const {
     all.seconds += one.seconds;
     all.depth_tests += one.depth_tests;
     all.hidden += one.hidden;
+    all.pages_missing += one.pages_missing;
+    all.pages_lost += one.pages_lost;
     all.is_current = all.is_current && one.is_current;
     if (all.problem.empty()) all.problem = one.problem;
   }

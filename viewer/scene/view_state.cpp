@@ -141,6 +141,7 @@ std::string to_text(const ViewState& state) {
               {"leaves_out_hidden", state.leaves_out_hidden},
               {"pixels", state.pixels},
               {"max_triangles", state.max_triangles},
+              {"frame_milliseconds", state.frame_milliseconds},
               {"cut",
                {{"on", state.cut.is_on},
                 {"origin", json(state.cut.plane.origin)},
@@ -173,6 +174,9 @@ ViewState view_state(std::string_view text, const std::string& name) {
   result.leaves_out_hidden = read.flag(from, "leaves_out_hidden");
   result.pixels = read.number(from, "pixels", 1e-3, 1e6);
   result.max_triangles = static_cast<std::uint64_t>(read.number(from, "max_triangles", 1, 1e12));
+  // Older states have none.
+  if (from.contains("frame_milliseconds"))
+    result.frame_milliseconds = read.number(from, "frame_milliseconds", 0, 1e6);
   const Json& cut = read.at(from, "cut");
   result.cut = {read.flag(cut, "on"),
                 {read.vector(cut, "origin"), read.vector(cut, "normal")},

@@ -68,6 +68,7 @@ struct ViewState {
   bool has_edges = false, has_axes = true, has_colour_bar = true, has_box = true;
   double pixels = 1;                      ///< the greatest isosurface error in the picture
   std::uint64_t max_triangles = 500'000;  ///< of all surfaces of a store
+  double frame_milliseconds = 0;          ///< that a mesh of a store may take while the view moves; 0: any
   CutState cut;
   /// From where meshes are refined and culled, where that is not from where they are seen (D figure 4.14).
   std::optional<Viewpoint> culled_from;

@@ -184,6 +184,10 @@ void show_detail(ViewState& view) {
   ImGui::SliderScalar("triangles", ImGuiDataType_U64, &view.max_triangles, &least, &most, "%llu",
                       ImGuiSliderFlags_Logarithmic);
   help_mark("Never more triangles than these, whatever the error.");
+  slider("time", view.frame_milliseconds, 0, 200, view.frame_milliseconds > 0 ? "%.0f ms" : "any");
+  help_mark(
+      "For the mesh of a frame while the view moves: it has as many triangles as there is time for, and "
+      "all of them once the view stands still.");
 }
 
 void show_cut(ViewSession& session) {
@@ -276,6 +280,9 @@ void show_statistics(const ViewSession& session, const PanelState& panels) {
   const UpdateReport report = session.report();
   ImGui::Text("%s triangles, %s splits, %s merges", fmt::format("{}", report.triangles).c_str(),
               fmt::format("{}", report.splits).c_str(), fmt::format("{}", report.merges).c_str());
+  if (report.pages_missing > 0)
+    ImGui::Text("%s pages missing", fmt::format("{}", report.pages_missing).c_str());
+  if (report.pages_lost > 0) ImGui::Text("%s pages lost", fmt::format("{}", report.pages_lost).c_str());
   show_plot(panels, "update", "{:.1f} ms", &FrameTimes::update_milliseconds);
   show_plot(panels, "drawing", "{:.1f} ms", &FrameTimes::draw_milliseconds);
   show_plot(panels, "error", "{:.2f} pixels", &FrameTimes::largest_error_pixels);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "isosurface/volume/page_grid.h"
+
+namespace adamas {
+
+/// A page that a frame does without, since it is not in memory, and what for.
+struct MissingPage {
+  /// What is missing: the part of the directory that tells of the page; its samples; its bounds too; or its
+  /// directions of gradients, without which normals are provisional.
+  enum class Part : std::uint8_t { kDirectory, kSamples, kAll, kGradients };
+
+  PageId id;
+  Part part = Part::kAll;
+  /// The greatest error in the picture of what is not split for want of the page, in classes of the frame; 0
+  /// where only normals need it.
+  int view_class = 0;
+  double depth = 0;  ///< the least of that
+
+  bool operator==(const MissingPage&) const = default;
+};
+
+/// Puts missing pages in the order in which they are worth most: greater errors first, then what is nearer to
+/// the eye, then coarser LODs. Each part of a page stays once.
+void sort_by_importance(const PageGrid& grid, std::vector<MissingPage>& pages);
+
+}  // namespace adamas

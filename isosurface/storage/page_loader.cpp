@@ -1,0 +1,208 @@
+#include "isosurface/storage/page_loader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <utility>
+
+namespace adamas {
+
+namespace {
+
+bool is_of_same_page(const MissingPage& a, const MissingPage& b) { return a.id == b.id && a.part == b.part; }
+
+}  // namespace
+
+template <class Word>
+PageLoader<Word>::PageLoader(StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived)
+    : file_(pages.file().for_another_thread()),
+      pages_(*file_, pages.step(), memory),
+      gradients_(file_->header().gradients
+                     ? std::make_unique<StoredGradients>(*file_, pages.step(), memory / 2)
+                     : nullptr),
+      notify_(std::move(arrived)),
+      most_arrived_(std::clamp<std::size_t>(memory / (4 * sizeof(Page<Word>)), 16, 256)),
+      thread_([this] { run(); }) {}
+
+template <class Word>
+PageLoader<Word>::~PageLoader() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ended_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+template <class Word>
+void PageLoader<Word>::want(std::vector<MissingPage> pages) {
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = std::move(pages);
+    next_ = 0;
+  }
+  changed_.notify_all();
+}
+
+template <class Word>
+void PageLoader<Word>::run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return is_ended_ || has_work(); });
+    if (is_ended_) return;
+    const MissingPage wanted = wanted_[next_++];
+    const auto has_come = [&](const Arrived& arrived) { return is_of_same_page(arrived.what, wanted); };
+    if (!std::ranges::any_of(arrived_, has_come)) {
+      is_loading_ = true;
+      lock.unlock();
+      Arrived arrived = load(wanted);
+      const PageCounts counts = pages_.counts();
+      lock.lock();
+      is_loading_ = false;
+      counts_ = counts;
+      if (problem_.empty()) problem_ = arrived.problem;
+      arrived_.push_back(std::move(arrived));
+    }
+    lock.unlock();
+    changed_.notify_all();
+    notify_();
+    lock.lock();
+  }
+}
+
+template <class Word>
+typename PageLoader<Word>::Arrived PageLoader<Word>::load(const MissingPage& wanted) {
+  Arrived arrived;
+  arrived.what = wanted;
+  try {
+    load_part(arrived);
+  } catch (const std::exception& error) {
+    // A disk that cannot be read, or tables that are damaged.
+    arrived.problem = error.what();
+  }
+  return arrived;
+}
+
+template <class Word>
+void PageLoader<Word>::load_part(Arrived& arrived) {
+  const PageId& id = arrived.what.id;
+  const auto note_damaged = [&](const PageId& damaged) {
+    arrived.problem = fmt::format("{}: {} is damaged", file_->name(), page_name(damaged));
+  };
+  switch (arrived.what.part) {
+    case MissingPage::Part::kDirectory:
+      arrived.directory = file_->directory_part(pages_.step(), id);
+      if (!file_->entry(pages_.step(), id)) note_damaged(id);
+      return;
+    case MissingPage::Part::kGradients: {
+      const PageSamples<std::uint16_t>* const found = gradients_->samples(id);
+      if (found == nullptr) return note_damaged(gradients_->last_damaged());
+      arrived.gradients = std::make_unique<PageSamples<std::uint16_t>>(*found);
+      return;
+    }
+    case MissingPage::Part::kSamples:
+    case MissingPage::Part::kAll:
+      arrived.page = std::make_unique<Page<Word>>();
+      if (arrived.what.part == MissingPage::Part::kAll) {
+        if (!pages_.copy(id, *arrived.page)) note_damaged(pages_.last_damaged());
+        return;
+      }
+      const PageSamples<Word>* const found = pages_.samples(id);
+      if (found == nullptr) return note_damaged(pages_.last_damaged());
+      static_cast<PageSamples<Word>&>(*arrived.page) = *found;
+  }
+}
+
+template <class Word>
+typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages,
+                                                        StoredGradients* gradients) {
+  std::vector<Arrived> arrived;
+  std::vector<MissingPage> wanted;
+  {
+    const std::lock_guard lock(mutex_);
+    arrived = std::exchange(arrived_, {});
+    wanted = wanted_;
+  }
+  changed_.notify_all();
+  const auto key = [&](const MissingPage& page) {
+    return std::pair(pages.grid().number(page.id), page.part);
+  };
+  std::vector<std::pair<std::uint64_t, MissingPage::Part>> keys;
+  if (!arrived.empty()) std::ranges::transform(wanted, std::back_inserter(keys), key);
+  std::ranges::sort(keys);
+  Taken taken;
+  for (const Arrived& one : arrived) {
+    if (one.directory) pages.file().take_over(one.directory);
+    if (!one.problem.empty()) {
+      note_lost(one, pages, gradients);
+      taken.pages.push_back(one.what);
+      continue;
+    }
+    if (!std::ranges::binary_search(keys, key(one.what))) continue;
+    if (put(one, pages, gradients)) {
+      taken.pages.push_back(one.what);
+    } else {
+      taken.is_full = true;
+    }
+  }
+  return taken;
+}
+
+template <class Word>
+bool PageLoader<Word>::put(const Arrived& arrived, StoredPages<Word>& pages, StoredGradients* gradients) {
+  const PageId& id = arrived.what.id;
+  const int importance = arrived.what.view_class;
+  switch (arrived.what.part) {
+    case MissingPage::Part::kDirectory:
+      return true;
+    case MissingPage::Part::kGradients:
+      return gradients == nullptr || gradients->put(id, *arrived.gradients, nullptr, importance);
+    case MissingPage::Part::kSamples:
+      return pages.put(id, *arrived.page, nullptr, importance);
+    case MissingPage::Part::kAll:
+      break;
+  }
+  return pages.put(id, *arrived.page, arrived.page.get(), importance);
+}
+
+template <class Word>
+void PageLoader<Word>::note_lost(const Arrived& arrived, StoredPages<Word>& pages,
+                                 StoredGradients* gradients) {
+  if (arrived.what.part != MissingPage::Part::kGradients) {
+    pages.note_lost(arrived.what.id);
+  } else if (gradients != nullptr) {
+    gradients->note_lost(arrived.what.id);
+  }
+}
+
+template <class Word>
+bool PageLoader<Word>::is_idle() const {
+  const std::lock_guard lock(mutex_);
+  return next_ >= wanted_.size() && !is_loading_ && arrived_.empty();
+}
+
+template <class Word>
+void PageLoader<Word>::wait() const {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !arrived_.empty() || (next_ >= wanted_.size() && !is_loading_); });
+}
+
+template <class Word>
+std::string PageLoader<Word>::problem() const {
+  const std::lock_guard lock(mutex_);
+  return problem_;
+}
+
+template <class Word>
+PageCounts PageLoader<Word>::counts() const {
+  const std::lock_guard lock(mutex_);
+  return counts_;
+}
+
+template class PageLoader<std::uint8_t>;
+template class PageLoader<std::uint16_t>;
+template class PageLoader<std::uint32_t>;
+
+}  // namespace adamas

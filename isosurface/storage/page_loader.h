@@ -1,0 +1,88 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "isosurface/storage/missing_page.h"
+#include "isosurface/storage/stored_pages.h"
+
+namespace adamas {
+
+/// Reads and decodes pages in a thread of its own, the most important ones of those that are missing first.
+/// It has its own memory of pages, since pages predict others; what it has decoded waits until it is taken.
+/// Each page is tried once: one that cannot be had is told of, and not tried again.
+template <class Word>
+class PageLoader {
+ public:
+  /// A loader for pages of a memory that other frames use. `memory`: bytes that its own pages may take.
+  /// `arrived` is called in the loader's thread when there is something to take. Throws Error where the file
+  /// cannot be opened again.
+  PageLoader(
+      StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived = [] {});
+  PageLoader(const PageLoader&) = delete;
+  PageLoader& operator=(const PageLoader&) = delete;
+  /// Waits for the page that is being loaded.
+  ~PageLoader();
+
+  /// What is to be loaded, in this order; in place of what was wanted before.
+  void want(std::vector<MissingPage> pages);
+  struct Taken {
+    std::vector<MissingPage> pages;  ///< those that are there now, and those that cannot be had
+    bool is_full = false;            ///< there was no room for some
+  };
+  /// Puts what has come into the memory of pages, and of gradients if that is not null; pages that have come
+  /// and are not wanted any more are dropped. Not to be called while a frame is being worked out.
+  Taken take(StoredPages<Word>& pages, StoredGradients* gradients);
+  /// Whether there is nothing to load or to take.
+  [[nodiscard]] bool is_idle() const;
+  /// Waits until there is something to take or nothing to load.
+  void wait() const;
+  /// Why a page cannot be had: of the first one. Empty: nothing.
+  [[nodiscard]] std::string problem() const;
+  /// What was read; pages that others were predicted from too.
+  [[nodiscard]] PageCounts counts() const;
+
+ private:
+  struct Arrived {
+    MissingPage what;
+    std::string problem;  ///< why it cannot be had; empty: here it is
+    std::unique_ptr<Page<Word>> page;
+    std::unique_ptr<PageSamples<std::uint16_t>> gradients;
+    std::shared_ptr<const StoreFile::DirectoryPart> directory;
+  };
+
+  void run();
+  Arrived load(const MissingPage& wanted);
+  void load_part(Arrived& arrived);
+  [[nodiscard]] bool has_work() const { return next_ < wanted_.size() && arrived_.size() < most_arrived_; }
+  static bool put(const Arrived& arrived, StoredPages<Word>& pages, StoredGradients* gradients);
+  static void note_lost(const Arrived& arrived, StoredPages<Word>& pages, StoredGradients* gradients);
+
+  std::unique_ptr<StoreFile> file_;
+  StoredPages<Word> pages_;  ///< of the thread, like gradients_
+  std::unique_ptr<StoredGradients> gradients_;
+  std::function<void()> notify_;
+  std::size_t most_arrived_;  ///< so many pages wait to be taken at most
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  bool is_ended_ = false, is_loading_ = false;
+  std::vector<MissingPage> wanted_;
+  std::size_t next_ = 0;  ///< of wanted_
+  std::vector<Arrived> arrived_;
+  std::string problem_;
+  PageCounts counts_;
+  std::thread thread_;
+};
+
+extern template class PageLoader<std::uint8_t>;
+extern template class PageLoader<std::uint16_t>;
+extern template class PageLoader<std::uint32_t>;
+
+}  // namespace adamas

@@ -1,0 +1,166 @@
+#include "viewer/scene/surface_worker.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "ball_store.h"
+#include "tests/support/scratch.h"
+#include "viewer/scene/frame_budget.h"
+
+namespace adamas {
+namespace {
+
+class SurfaceWorkers : public testing::Test {
+ protected:
+  void SetUp() override {
+    path = (folder / "ball.adm").string();
+    test::make_ball_store(path);
+  }
+  static WantedSurfaces wanted(double isovalue = 100) {
+    WantedSurfaces result;
+    result.viewpoint.eye = {16, -60, 18};
+    result.viewpoint.target = {16, 16, 16};
+    result.viewpoint.up = {0, 0, 1};
+    result.isovalues = {isovalue, isovalue + 40};
+    result.pixels = 0.5;
+    result.max_triangles = 100'000;
+    return result;
+  }
+  [[nodiscard]] std::unique_ptr<SurfaceWorker> worker(bool waits) const {
+    DocumentOptions options;
+    options.waits_for_pages = waits;
+    return std::make_unique<SurfaceWorker>(path, options);
+  }
+  /// What is found in the end, when nothing more comes.
+  static std::shared_ptr<const FoundSurfaces> finished(SurfaceWorker& worker, const WantedSurfaces& wanted) {
+    worker.want(wanted);
+    worker.wait_for(wanted);
+    while (!worker.is_current()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return worker.found();
+  }
+  static void expect_same(const FoundSurfaces& found, const FoundSurfaces& expected) {
+    EXPECT_EQ(found.report.problem, "");
+    EXPECT_EQ(found.report.pages_missing, 0u);
+    EXPECT_EQ(found.report.triangles, expected.report.triangles);
+    EXPECT_EQ(found.report.largest_error_pixels, expected.report.largest_error_pixels);
+    ASSERT_EQ(found.surfaces.size(), expected.surfaces.size());
+    for (std::size_t s = 0; s < found.surfaces.size(); ++s) {
+      ASSERT_EQ(found.surfaces[s].size(), expected.surfaces[s].size());
+      for (std::size_t n = 0; n < found.surfaces[s].size(); ++n) {
+        const DrawnMesh &mesh = *found.surfaces[s][n], &other = *expected.surfaces[s][n];
+        EXPECT_EQ(mesh.indices, other.indices);
+        ASSERT_EQ(mesh.vertices.size(), other.vertices.size());
+        for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+          EXPECT_EQ(mesh.vertices[v].place, other.vertices[v].place);
+          EXPECT_EQ(mesh.vertices[v].normal, other.vertices[v].normal);
+        }
+      }
+    }
+  }
+
+  test::Scratch folder;
+  std::string path;
+};
+
+TEST_F(SurfaceWorkers, SharpenUntilTheirSurfacesAreThoseThatWait) {
+  const auto waiting = worker(true), sharpening = worker(false);
+  for (const double isovalue : {100.0, 60.0, 100.0}) {
+    WantedSurfaces all = wanted(isovalue);
+    expect_same(*finished(*sharpening, all), *finished(*waiting, all));
+    all.viewpoint.eye = {70, 20, 5};
+    expect_same(*finished(*sharpening, all), *finished(*waiting, all));
+  }
+}
+
+TEST_F(SurfaceWorkers, ComeToAnEndHoweverShortTheTimeOfAFrameIs) {
+  const auto any = worker(true);
+  for (const bool waits : {true, false}) {
+    const auto short_of_time = worker(waits);
+    WantedSurfaces all = wanted();
+    const auto expected = finished(*any, all);
+    all.seconds = 1e-6;
+    expect_same(*finished(*short_of_time, all), *expected);
+  }
+}
+
+TEST_F(SurfaceWorkers, CanBeDestroyedWhilePagesCome) {
+  for (int n = 0; n < 10; ++n) {
+    const auto some = worker(false);
+    some->want(wanted());
+    if (n % 2 == 0) some->wait_for(wanted());
+  }
+}
+
+TEST_F(SurfaceWorkers, TellOfAStoreThatIsCutOffAndKeepWhatThereIs) {
+  const auto some = worker(false);
+  WantedSurfaces all = wanted();
+  // The coarsest pages are there by then.
+  all.pixels = 300;
+  const auto before = finished(*some, all);
+  EXPECT_EQ(before->report.problem, "");
+  std::filesystem::resize_file(path, 600);
+  all.pixels = 0.5;
+  const auto found = finished(*some, all);
+  EXPECT_NE(found->report.problem.find("ball.adm"), std::string::npos) << found->report.problem;
+  EXPECT_EQ(found->report.problem.find('\n'), std::string::npos);
+  EXPECT_GT(found->report.pages_lost, 0u);
+  EXPECT_EQ(found->surfaces.size(), 2u);
+  EXPECT_GT(found->report.largest_error_pixels, all.pixels);
+}
+
+TEST(FrameBudgets, GiveAMovingViewWhatThereIsTimeFor) {
+  // So many triangles take a second each.
+  for (const double cost : {1e-7, 1e-6, 1e-5}) {
+    FrameBudget budget;
+    const double time = 0.02;
+    const std::uint64_t most = 500'000;
+    int late = 0;
+    for (int n = 0; n < 60; ++n) {
+      budget.begin(time, most, false);
+      const std::uint64_t triangles = budget.triangles();
+      EXPECT_LE(triangles, most);
+      const double seconds = cost * static_cast<double>(triangles);
+      const bool is_stopped = seconds > budget.seconds();
+      budget.note(is_stopped ? budget.seconds() : seconds, is_stopped);
+      late += n > 20 && is_stopped ? 1 : 0;
+    }
+    EXPECT_EQ(late, 0);
+    budget.begin(time, most, false);
+    EXPECT_GE(static_cast<double>(budget.triangles()), 0.5 * std::min(500'000.0, time / cost));
+  }
+}
+
+TEST(FrameBudgets, GiveAViewThatStandsStillAllInTheEnd) {
+  for (const double cost : {1e-6, 1e-4, 1.0}) {
+    FrameBudget budget;
+    budget.begin(0.01, 1'000'000, false);
+    budget.note(0.01, true);
+    int frames = 0;
+    for (; !budget.is_whole() && frames < 200; ++frames) {
+      budget.begin(0.01, 1'000'000, true);
+      const double seconds = cost * static_cast<double>(budget.triangles());
+      const bool is_stopped = seconds > budget.seconds();
+      budget.note(is_stopped ? budget.seconds() : seconds, is_stopped);
+    }
+    EXPECT_LT(frames, 100);
+  }
+}
+
+TEST(FrameBudgets, AreNoneWithoutATime) {
+  FrameBudget budget;
+  budget.begin(0, 77, false);
+  EXPECT_EQ(budget.triangles(), 77u);
+  EXPECT_EQ(budget.seconds(), 0);
+  budget.note(1000, false);
+  EXPECT_TRUE(budget.is_whole());
+}
+
+}  // namespace
+}  // namespace adamas
