@@ -7,6 +7,7 @@
 #include "cli/data_summary.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
+#include "cli/usage_error.h"
 #include "cli/volume_options.h"
 #include "isosurface/storage/store_builder.h"
 
@@ -17,7 +18,7 @@ namespace {
 struct Options {
   VolumeInput input;
   std::string coding = "interpolation", output;
-  bool gradients = false;
+  bool gradients = false, no_smoothing = false;
 };
 
 /// Reads planes for the builder, which asks for some of them twice, and counts the samples that are no finite
@@ -82,7 +83,10 @@ void run(const Options& options, Session& session) {
   PlaneReader planes(reader);
   StoreOptions store;
   store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
+  if (options.no_smoothing && !options.gradients)
+    wrong_usage("--no-smoothing: expected with --gradients, whose gradients it leaves as they are");
   store.gradients = options.gradients;
+  store.smooth_gradients = !options.no_smoothing;
   if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
   StoreFigures figures;
   session.outputs.write(options.output, [&](const auto& path) {
@@ -114,8 +118,11 @@ void add_store(const Command& app, Session& session) {
                   "of the edge whose middle they are")
       .one_of({"interpolation", "split-edge"})
       .show_default();
-  command.add_flag("--gradients", options->gradients,
-                   "Keep the directions of the samples' gradients too, for the normals of surfaces");
+  command.add_flag(
+      "--gradients", options->gradients,
+      "Keep the directions of the samples' gradients too, smoothed, for the normals of surfaces");
+  command.add_flag("--no-smoothing", options->no_smoothing,
+                   "With --gradients: as they are, from each sample's neighbours alone");
   command.add_option("-o,--output", options->output, "The store (.adm)").required().type_name("FILE");
 }
 

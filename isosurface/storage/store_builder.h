@@ -17,9 +17,11 @@ namespace adamas {
 
 struct StoreOptions {
   SampleCoding coding = SampleCoding::kInterpolation;
-  /// Where scratch data of up to four times the input may lie, and two bytes more for each sample's gradient.
+  /// Where scratch data of up to four times the input may lie, and four bytes more for each sample's
+  /// gradient.
   std::filesystem::path scratch = std::filesystem::temp_directory_path();
-  bool gradients = false;  ///< whether the directions of samples' gradients are kept
+  bool gradients = false;        ///< whether the directions of samples' gradients are kept
+  bool smooth_gradients = true;  ///< whether these are smoothed first (smooth_gradients)
 };
 
 /// What became of a volume.

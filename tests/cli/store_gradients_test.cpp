@@ -33,6 +33,13 @@ TEST_F(StoreGradients, AreStoredToldAndUsed) {
   EXPECT_EQ(read("plain0.ply"), read("g0.ply"));
   EXPECT_EQ(read("plain.ply").size(), read("g.ply").size());
   EXPECT_NE(read("plain.ply"), read("g.ply"));
+  run_well({"store", "b.vti", "-o", "raw.adm", "--gradients", "--no-smoothing"});
+  EXPECT_NE(read("raw.adm"), read("g.adm"));
+  run_well({"isosurface", "raw.adm", "--isovalue", "120", "--no-normals", "-o", "raw0.ply"});
+  EXPECT_EQ(read("raw0.ply"), read("g0.ply"));
+  const auto wrong = run({"store", "b.vti", "-o", "none.adm", "--no-smoothing"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("--no-smoothing: expected with --gradients"), std::string::npos) << wrong.err;
 }
 
 }  // namespace
