@@ -46,6 +46,10 @@ class PagedFrames {
   /// A chunk of the last frame; null where there is none of this id.
   [[nodiscard]] const SurfaceChunk* chunk(std::uint64_t id);
 
+  /// The isosurface error of the cell of the last frame's mesh at a place, in the frame of the grid: an
+  /// estimate of how far its surface is from that of all samples there. 0 where the contour does not cross
+  /// the cell's diamond. None before the first frame, and where that cannot be read.
+  [[nodiscard]] std::optional<double> error_at(const Vec3& place);
   /// The surface of the last frame as one: clipped to the data's box, with one point for each edge.
   [[nodiscard]] Contour contour() const;
   [[nodiscard]] const ViewedDiamonds<Sample>& diamonds() const { return diamonds_; }

@@ -233,6 +233,53 @@ TEST_P(Frames, ByPagesAreThoseByQueues) {
   EXPECT_GT(merges, 100u);
 }
 
+/// The error of the diamond whose tetrahedron in the mesh holds a place, by looking at all of them; none on
+/// borders between two.
+std::optional<double> error_by_all_cells(QueuedFrames<std::uint8_t>& frames, const Vec3& place) {
+  std::optional<LatticePoint> found;
+  const Domain& domain = frames.mesh().domain();
+  frames.mesh().for_each_tetrahedron([&](const Diamond& diamond, int slot) {
+    std::array<Vec3, 4> corners;
+    for (std::size_t n = 0; n < 4; ++n) corners[n] = domain.position(diamond.tetrahedron(slot)[n]);
+    for (std::size_t n = 0; n < 4; ++n) {
+      const Vec3 &a = corners[(n + 1) % 4], &b = corners[(n + 2) % 4], &c = corners[(n + 3) % 4];
+      const Vec3 normal = cross(b - a, c - a);
+      if (dot(normal, place - a) * dot(normal, corners[n] - a) <= 0) return;
+    }
+    found = diamond.point();
+  });
+  if (!found) return std::nullopt;
+  auto& diamonds = frames.diamonds();
+  return diamonds.is_stored(*found) ? diamonds.error(diamonds.class_if_crossed(*found)) : 0;
+}
+
+TEST_P(Frames, TellTheErrorOfTheCellAtAPlace) {
+  PagedFrames<std::uint8_t> paged(store.pages());
+  EXPECT_FALSE(paged.error_at(volume.grid.box().center()));
+  std::mt19937 random(GetParam());
+  std::size_t large = 0;
+  for (int frame = 0; frame < 4; ++frame) {
+    QueuedFrames<std::uint8_t> queued = frames();
+    FrameRequest wanted = request();
+    // The least error of a class.
+    wanted.pixels = (1 - 1e-12) * (4 << frame);
+    queued.refine(wanted);
+    wanted.pixels = (1 + 1e-9) * (4 << frame);
+    paged.refine(wanted);
+    const Box3 box = volume.grid.box();
+    for (int n = 0; n < 40; ++n) {
+      std::uniform_real_distribution<double> part(0, 1);
+      const Vec3 size = box.size(),
+                 place = box.min + Vec3{part(random) * size.x, part(random) * size.y, part(random) * size.z};
+      const auto expected = error_by_all_cells(queued, place);
+      if (!expected) continue;
+      ASSERT_EQ(paged.error_at(place), expected);
+      large += *expected > 0.5 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(large, 10u);
+}
+
 TEST_P(Frames, SplitNothingThatAPictureHides) {
   auto queued = frames();
   PagedFrames<std::uint8_t> paged(store.pages());

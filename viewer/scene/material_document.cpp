@@ -94,7 +94,7 @@ class MaterialDocument final : public Document {
     return std::array{low, high};
   }
 
-  [[nodiscard]] Reading at(const Vec3& place, const DocumentState& state) override {
+  [[nodiscard]] Reading at(const Vec3& place, const DocumentState& state, std::size_t) override {
     const MaterialScene::Reading found = scene_->at(place, field_number(state));
     Reading result;
     if (found.material) result.material = facts_.materials[*found.material];

@@ -70,7 +70,7 @@ class StoreDocument final : public Document {
         std::tie(style.low, style.high) = std::pair((*range)[0], (*range)[1]);
       style.is_clipped = true;
       style.has_edges = view.has_edges;
-      for (const SharedMesh& chunk : found->surfaces[n]) result.push_back({chunk, style});
+      for (const SharedMesh& chunk : found->surfaces[n]) result.push_back({chunk, style, n});
     }
     return result;
   }
@@ -103,10 +103,13 @@ class StoreDocument final : public Document {
     return state.range ? *state.range : colour_range_;
   }
 
-  [[nodiscard]] Reading at(const Vec3& place, const DocumentState&) override {
+  [[nodiscard]] Reading at(const Vec3& place, const DocumentState&, std::size_t surface) override {
     Reading reading;
     const double value = values_->at(place);
     if (!std::isnan(value)) reading.value = value;
+    const auto there = worker_.error_at({surface, worker_.file().header().grid.in_frame(place)});
+    reading.is_pending = !there.is_known;
+    reading.error = there.error;
     return reading;
   }
 

@@ -23,6 +23,7 @@ class StoreFramesOf final : public StoreFrames {
   void for_each_chunk(const std::function<void(const SurfaceChunk&)>& visit) const override {
     frames_.for_each_chunk(visit);
   }
+  std::optional<double> error_at(const Vec3& place) override { return frames_.error_at(place); }
   [[nodiscard]] PageCounts counts() const override { return pages_.counts(); }
   [[nodiscard]] Box3 data_box() const override { return frames_.diamonds().data_box(); }
 

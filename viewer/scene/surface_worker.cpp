@@ -47,16 +47,42 @@ void SurfaceWorker::wait_for(const WantedSurfaces& wanted) {
   changed_.wait(lock, [&] { return found_ && found_->report.is_current && found_->wanted == wanted; });
 }
 
+SurfaceWorker::ErrorThere SurfaceWorker::error_at(const SurfacePlace& place) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (answered_ && answered_->first == place) return {true, answered_->second};
+    asked_ = place;
+  }
+  changed_.notify_all();
+  return {};
+}
+
+void SurfaceWorker::answer(const SurfacePlace& place) {
+  std::optional<double> error;
+  if (place.surface < surfaces_.size()) error = surfaces_[place.surface].frames->error_at(place.place);
+  // Lengths in space are so many times those in the frame of an oblique grid at most.
+  if (error) *error *= file_.header().grid.greatest_stretch();
+  const std::lock_guard lock(mutex_);
+  answered_ = {place, error};
+  if (asked_ == place) asked_.reset();
+}
+
 void SurfaceWorker::run() {
   // What was wanted last and found; nothing where that was given up.
   std::optional<WantedSurfaces> done;
   while (true) {
     WantedSurfaces wanted;
+    std::optional<SurfacePlace> asked;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return is_ended_ || (wanted_ && wanted_ != done); });
+      changed_.wait(lock, [&] { return is_ended_ || asked_ || (wanted_ && wanted_ != done); });
       if (is_ended_) return;
-      wanted = *wanted_;
+      asked = asked_;
+      if (!asked) wanted = *wanted_;
+    }
+    if (asked) {
+      answer(*asked);
+      continue;
     }
     // A rough surface comes at once where there was another one.
     const bool is_other = !done || wanted.isovalues != done->isovalues;

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "adamas/meshes.h"
@@ -38,6 +39,14 @@ struct FoundSurfaces {
   PageCounts counts;
 };
 
+/// A place on one of the surfaces that were found last, in the frame of the grid.
+struct SurfacePlace {
+  std::size_t surface = 0;
+  Vec3 place;
+
+  bool operator==(const SurfacePlace&) const = default;
+};
+
 /// Works out surfaces in a thread of its own, those that were wanted last.
 class SurfaceWorker {
  public:
@@ -54,6 +63,13 @@ class SurfaceWorker {
   /// Whether that is what was wanted last.
   [[nodiscard]] bool is_current() const;
   void wait_for(const WantedSurfaces& wanted);
+  /// The isosurface error of the mesh's cell at a place. Never waits: asks for it where it is not known, to
+  /// be worked out between two surfaces.
+  struct ErrorThere {
+    bool is_known = false;
+    std::optional<double> error;  ///< in units of length; an estimate
+  };
+  ErrorThere error_at(const SurfacePlace& place);
 
  private:
   /// The frames of an isovalue, and what is drawn of them: by the ids of chunks, as of a revision.
@@ -67,6 +83,7 @@ class SurfaceWorker {
   };
 
   void run();
+  void answer(const SurfacePlace& place);
   /// Whether the surfaces that are worked out are not those that are wanted by now.
   [[nodiscard]] bool is_overtaken(const WantedSurfaces& wanted) const;
   /// Returns false where something else is wanted by now.
@@ -88,6 +105,8 @@ class SurfaceWorker {
   bool is_ended_ = false;
   std::optional<WantedSurfaces> wanted_;
   std::shared_ptr<const FoundSurfaces> found_;
+  std::optional<SurfacePlace> asked_;  ///< not answered yet
+  std::optional<std::pair<SurfacePlace, std::optional<double>>> answered_;
   std::thread thread_;
 };
 
