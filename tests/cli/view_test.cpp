@@ -101,6 +101,7 @@ TEST_F(ViewCommand, ShowsSeveralSurfacesColoursAndStates) {
   EXPECT_TRUE(
       pictures.insert(picture({"--colour-by", "b.adm", "--range", "0,100", "--field", "b.adm"})).second);
   EXPECT_TRUE(pictures.insert(picture({"--plane", "x=19"})).second);
+  EXPECT_TRUE(pictures.insert(picture({"--plane", "x=19", "--no-section"})).second);
   EXPECT_TRUE(pictures.insert(picture({"--edges"})).second);
   EXPECT_TRUE(pictures.insert(picture({"--plain"})).second);
   EXPECT_TRUE(pictures.insert(picture({"--shading", "sphere"})).second);

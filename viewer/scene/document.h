@@ -63,9 +63,9 @@ class Document {
   [[nodiscard]] virtual UpdateReport report() const = 0;
   /// What reading a store has met with until the last update.
   [[nodiscard]] virtual PageCounts page_counts() const { return {}; }
-  /// The values at the ends of the colour map, where a field is chosen.
+  /// The values at the ends of the colour map, where a field is chosen, or a section shows a store's samples.
   [[nodiscard]] virtual std::optional<std::array<double, 2>> colour_range(
-      const DocumentState& state) const = 0;
+      const ViewState& view, const DocumentState& state) const = 0;
   /// `surface`: which of a store's surfaces the place is on, as DrawnPart has it.
   [[nodiscard]] virtual Reading at(const Vec3& place, const DocumentState& state, std::size_t surface) = 0;
   /// What is shown of it at first.

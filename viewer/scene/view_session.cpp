@@ -163,7 +163,8 @@ UpdateReport ViewSession::report() const {
 std::optional<ViewSession::ShownField> ViewSession::shown_field() const {
   for (std::size_t n = 0; n < documents_.size(); ++n) {
     const DocumentState& document = state_.documents[n];
-    if (const auto range = documents_[n]->colour_range(document)) return ShownField{document.field, *range};
+    if (const auto range = documents_[n]->colour_range(state_, document))
+      return ShownField{document.field.empty() ? "value" : document.field, *range};
   }
   return std::nullopt;
 }

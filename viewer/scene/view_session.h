@@ -51,7 +51,8 @@ class ViewSession {
   [[nodiscard]] std::optional<Plane> clip() const;
   /// Of all documents together; the first problem.
   [[nodiscard]] UpdateReport report() const;
-  /// The field that colours show, with the values at the ends of the colour map; none where no file has one.
+  /// The field that colours show, "value" where it is a store's samples, with the values at the ends of the
+  /// colour map; none where nothing is coloured by values.
   struct ShownField {
     std::string name;
     std::array<double, 2> range;
