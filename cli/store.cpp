@@ -17,8 +17,8 @@ namespace {
 
 struct Options {
   VolumeInput input;
-  std::string coding = "interpolation", output;
-  bool gradients = false, no_smoothing = false;
+  std::string coding = "interpolation", smoothing, output;
+  bool gradients = false;
 };
 
 /// Reads planes for the builder, which asks for some of them twice, and counts the samples that are no finite
@@ -83,10 +83,11 @@ void run(const Options& options, Session& session) {
   PlaneReader planes(reader);
   StoreOptions store;
   store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
-  if (options.no_smoothing && !options.gradients)
-    wrong_usage("--no-smoothing: expected with --gradients, whose gradients it leaves as they are");
+  if (!options.smoothing.empty() && !options.gradients)
+    wrong_usage("--smoothing: expected with --gradients, which are what is smoothed");
   store.gradients = options.gradients;
-  store.smooth_gradients = !options.no_smoothing;
+  if (options.smoothing == "none") store.smoothing.reset();
+  if (options.smoothing == "first") store.smoothing->constrained_rounds = 0;
   if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
   StoreFigures figures;
   session.outputs.write(options.output, [&](const auto& path) {
@@ -121,8 +122,12 @@ void add_store(const Command& app, Session& session) {
   command.add_flag(
       "--gradients", options->gradients,
       "Keep the directions of the samples' gradients too, smoothed, for the normals of surfaces");
-  command.add_flag("--no-smoothing", options->no_smoothing,
-                   "With --gradients: as they are, from each sample's neighbours alone");
+  command
+      .add_option(
+          "--smoothing", options->smoothing,
+          "How gradients are smoothed: not at all; by the first phase, which also fills regions where "
+          "nothing changes; or by both (default)")
+      .one_of({"none", "first", "both"});
   command.add_option("-o,--output", options->output, "The store (.adm)").required().type_name("FILE");
 }
 

@@ -99,7 +99,7 @@ void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const Gra
     for (LodCodes& lod : lods) lod.add(k, codes, *page, sink);
     ++k;
   };
-  if (options.smooth) {
+  if (options.smoothing) {
     smoothed_codes<Sample>(grid, planes, options, take, progress);
     return;
   }

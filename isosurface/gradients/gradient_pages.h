@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "adamas/progress.h"
 #include "adamas/volume.h"
@@ -21,8 +22,8 @@ using GradientPageSink = std::function<void(const PageId&, const Page<std::uint1
 
 /// How gradients are made into pages.
 struct GradientPageOptions {
-  bool smooth = true;  ///< otherwise they are the least squares' own
-  GradientSmoothingOptions smoothing;
+  /// None: they are the least squares' own.
+  std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
   /// Where directions lie meanwhile, two bytes for each sample, if a plane takes more memory than this.
   std::filesystem::path scratch = std::filesystem::temp_directory_path();
   std::size_t memory = std::size_t{384} << 20;  ///< bytes for smoothing, at least some rows of all planes

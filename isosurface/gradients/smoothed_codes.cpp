@@ -59,8 +59,8 @@ class CodeSmoother {
  private:
   /// How many rows are smoothed at a time.
   [[nodiscard]] std::size_t strip_rows() const {
-    const std::size_t fit = options_.memory / (GradientSmoother::bytes(options_.smoothing) * nx_);
-    const std::size_t beside = options_.smoothing.rounds();
+    const std::size_t fit = options_.memory / (GradientSmoother::bytes(*options_.smoothing) * nx_);
+    const std::size_t beside = options_.smoothing->rounds();
     if (fit >= ny_) return ny_;
     return fit > 3 * beside ? fit - 2 * beside : std::max<std::size_t>(beside, 1);
   }
@@ -84,12 +84,12 @@ class CodeSmoother {
   /// Calls done(k) when `codes` are those of a strip's rows of plane k.
   template <class Fn>
   void smooth(const Strip& strip, std::span<OctahedralCode> codes, Fn&& done) {
-    const std::size_t beside = options_.smoothing.rounds();
+    const std::size_t beside = options_.smoothing->rounds();
     const std::size_t first = strip.begin - std::min(strip.begin, beside),
                       last = std::min(ny_, strip.end + beside);
     std::uint64_t k = 0;
     GradientSmoother smoother(
-        scale_, nx_, last - first, options_.smoothing, [&](std::span<const Gradient> plane) {
+        scale_, nx_, last - first, *options_.smoothing, [&](std::span<const Gradient> plane) {
           const std::span own = plane.subspan((strip.begin - first) * nx_, codes.size());
           parallel_chunks(own.size(), std::size_t{1} << 14, [&](std::size_t begin, std::size_t end) {
             encode_octahedral(own.subspan(begin, end - begin), codes.subspan(begin, end - begin));

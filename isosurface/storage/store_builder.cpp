@@ -162,7 +162,7 @@ class StoreBuilder {
  private:
   void make_gradients(const PlaneSource& planes) {
     GradientPageOptions options;
-    options.smooth = options_.smooth_gradients;
+    options.smoothing = options_.smoothing;
     options.scratch = options_.scratch;
     gradient_pages<Sample>(
         volume_, planes,

@@ -162,7 +162,7 @@ double mean_angle(const Volume& volume, const Vec3& centre, bool smooth) {
   const test::Scratch folder;
   StoreOptions options;
   options.gradients = true;
-  options.smooth_gradients = smooth;
+  if (!smooth) options.smoothing.reset();
   options.scratch = folder / "";
   build_store(folder / "s.adm", "s.adm", volume.grid, volume.planes(), options);
   StoreFile file(folder / "s.adm");
