@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "core/geometry/plane.h"
 #include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/paged_frames.h"
 #include "isosurface/view/queued_frames.h"
@@ -278,6 +279,41 @@ TEST_P(Frames, TellTheErrorOfTheCellAtAPlace) {
     }
   }
   EXPECT_GT(large, 10u);
+}
+
+TEST_P(Frames, ShowTheCellsThatAPlaneCuts) {
+  PagedFrames<std::uint8_t> paged(store.pages());
+  const Box3 box = volume.grid.box();
+  EXPECT_TRUE(paged.cells_in({box.center(), {1, 0, 0}}).empty());
+  for (const Vec3& normal : {Vec3{1, 0, 0}, {0.3, -1, 0.7}}) {
+    const Plane plane{box.center() + Vec3{0.13, 0.21, 0.17}, normal};
+    QueuedFrames<std::uint8_t> queued = frames();
+    FrameRequest wanted = request();
+    wanted.pixels = (1 - 1e-12) * 4;
+    queued.refine(wanted);
+    wanted.pixels = (1 + 1e-9) * 4;
+    paged.refine(wanted);
+    // Every cell that reaches over the plane within the data has a polygon, and they fill the plane once.
+    std::size_t cells = 0;
+    queued.mesh().for_each_tetrahedron([&](const Diamond& diamond, int slot) {
+      int above = 0;
+      std::array<Vec3, 4> corners;
+      for (std::size_t n = 0; n < 4; ++n) {
+        corners[n] = queued.mesh().domain().position(diamond.tetrahedron(slot)[n]);
+        above += dot(normal, corners[n] - plane.origin) > 0 ? 1 : 0;
+      }
+      if (above == 0 || above == 4) return;
+      int within = 0;
+      for (const Vec3& corner : corners) within += box.contains(corner) ? 1 : 0;
+      cells += within == 4 ? 1 : 0;
+    });
+    const auto polygons = paged.cells_in(plane);
+    EXPECT_GE(polygons.size(), cells);
+    EXPECT_GT(cells, 100u);
+    double area = 0;
+    for (const auto& polygon : polygons) area += polygon_area(polygon);
+    EXPECT_NEAR(area, polygon_area(clip_plane(plane, box)), 1e-6 * area);
+  }
 }
 
 TEST_P(Frames, SplitNothingThatAPictureHides) {

@@ -154,6 +154,26 @@ TEST_F(StoreSections, ComeToTheLastPlaneAndNothingIsMadeAnewForIt) {
   }
 }
 
+TEST_F(StoreSections, ShowTheEdgesOfTheMeshsCells) {
+  session.state().cut.plane = {{16, 16, 16}, {0, 1, 0}};
+  const auto lines = [&]() -> SharedMesh {
+    session.finish();
+    for (const DrawnPart& part : session.parts()) {
+      if (part.mesh->is_lines) return part.mesh;
+    }
+    return nullptr;
+  };
+  EXPECT_FALSE(lines());
+  session.state().has_edges = true;
+  const SharedMesh fine = lines();
+  ASSERT_TRUE(fine);
+  for (std::size_t n = 0; n < fine->vertices.size(); ++n) EXPECT_NEAR(place_of(*fine, n).y, 16, 1e-5);
+  session.state().pixels = 30;
+  EXPECT_LT(lines()->indices.size(), fine->indices.size() / 2);
+  session.state().cut.shows_section = false;
+  EXPECT_FALSE(lines());
+}
+
 TEST_F(StoreSections, OfObliqueGridsLieInSpace) {
   VolumeGrid grid;
   grid.origin = {100, 0, 0};

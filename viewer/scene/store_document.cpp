@@ -21,6 +21,7 @@ constexpr std::size_t kHistogramParts = 256;
 constexpr std::size_t kNoSurface = std::numeric_limits<std::size_t>::max();
 /// Of places of a section without a value.
 constexpr Colour kNoValue{0.75, 0.75, 0.75};
+constexpr Colour kCellEdges{0.25, 0.25, 0.28};
 
 Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
   if (grid.is_straight()) return viewpoint;
@@ -64,6 +65,12 @@ class StoreDocument final : public Document {
     std::vector<DrawnPart> result;
     if (wants_section(view)) add_section(view, state, result);
     if (!found) return result;
+    if (view.has_edges && wants_section(view) && found->cell_edges) {
+      PartStyle style;
+      style.front = style.back = kCellEdges;
+      style.is_flat = true;
+      result.push_back({found->cell_edges, style, kNoSurface});
+    }
     const std::vector<const SurfaceState*> shown = shown_surfaces(state);
     // Where fewer or more surfaces are wanted by now, the first ones stand for what comes.
     for (std::size_t n = 0; n < std::min(shown.size(), found->surfaces.size()); ++n) {
@@ -213,6 +220,8 @@ class StoreDocument final : public Document {
         view.depths->viewpoint() == result.viewpoint)
       result.depths = view.depths;
     result.isovalues = isovalues_of(state);
+    if (view.has_edges && wants_section(view))
+      result.cells_in = {view.cut.plane.origin, view.cut.plane.normal};
     return result;
   }
 

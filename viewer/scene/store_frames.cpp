@@ -24,6 +24,7 @@ class StoreFramesOf final : public StoreFrames {
     frames_.for_each_chunk(visit);
   }
   std::optional<double> error_at(const Vec3& place) override { return frames_.error_at(place); }
+  std::vector<std::vector<Vec3>> cells_in(const Plane& plane) override { return frames_.cells_in(plane); }
   [[nodiscard]] PageCounts counts() const override { return pages_.counts(); }
   [[nodiscard]] Box3 data_box() const override { return frames_.diamonds().data_box(); }
 

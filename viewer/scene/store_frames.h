@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
@@ -24,6 +25,8 @@ class StoreFrames {
   /// The isosurface error of the cell of the last frame's mesh at a place, in the frame of the grid; an
   /// estimate. None where it is not known.
   [[nodiscard]] virtual std::optional<double> error_at(const Vec3& place) = 0;
+  /// The cells of the last frame's mesh in a plane, as polygons; in the frame of the grid.
+  [[nodiscard]] virtual std::vector<std::vector<Vec3>> cells_in(const Plane& plane) = 0;
   [[nodiscard]] virtual PageCounts counts() const = 0;
   /// From the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;

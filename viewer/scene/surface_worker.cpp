@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/data/volume_placement.h"
+#include "viewer/scene/mesh_maker.h"
 
 namespace adamas {
 
@@ -105,6 +106,8 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
     for (std::size_t n = 0; n < wanted.isovalues.size(); ++n) {
       if (!add_surface(*found, n, roughness)) return false;
     }
+    if (wanted.cells_in && !wanted.isovalues.empty())
+      found->cell_edges = cell_edges({(*wanted.cells_in)[0], (*wanted.cells_in)[1]});
   } catch (const std::exception& error) {
     // What there is stays to be seen.
     found->report.problem = error.what();
@@ -158,6 +161,18 @@ std::vector<SharedMesh> SurfaceWorker::drawn_chunks(Surface& surface) {
   });
   surface.drawn = std::move(now);
   return meshes;
+}
+
+SharedMesh SurfaceWorker::cell_edges(const Plane& plane) {
+  const VolumeGrid& grid = file_.header().grid;
+  MeshMaker maker(plane.origin, MeshMaker::Kind::kLines);
+  for (const std::vector<Vec3>& polygon : surfaces_[0].frames->cells_in(plane_in_frame(grid, plane))) {
+    for (std::size_t n = 0; n < polygon.size(); ++n) {
+      for (const Vec3& end : {polygon[n], polygon[(n + 1) % polygon.size()]})
+        maker.add_index(maker.add_vertex(grid.in_space(end), plane.normal, {}));
+    }
+  }
+  return maker.finish();
 }
 
 SharedMesh SurfaceWorker::drawn_chunk(const SurfaceChunk& chunk) {

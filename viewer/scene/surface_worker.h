@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -27,6 +28,8 @@ struct WantedSurfaces {
   double pixels = 1;
   std::uint64_t max_triangles = 0;
   std::shared_ptr<const DepthPyramid> depths;
+  /// The plane, in space, in which the cells of the first surface's mesh are wanted: origin and normal.
+  std::optional<std::array<Vec3, 2>> cells_in;
 
   bool operator==(const WantedSurfaces&) const = default;
 };
@@ -35,6 +38,7 @@ struct WantedSurfaces {
 struct FoundSurfaces {
   WantedSurfaces wanted;
   std::vector<std::vector<SharedMesh>> surfaces;  ///< of each isovalue: the chunks
+  SharedMesh cell_edges;                          ///< in the plane; null where none are wanted
   UpdateReport report;
   PageCounts counts;
 };
@@ -92,6 +96,8 @@ class SurfaceWorker {
   bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
   /// Only chunks that are not as they were are made anew.
   std::vector<SharedMesh> drawn_chunks(Surface& surface);
+  /// Of the first surface's mesh.
+  [[nodiscard]] SharedMesh cell_edges(const Plane& plane);
   [[nodiscard]] SharedMesh drawn_chunk(const SurfaceChunk& chunk);
 
   static constexpr std::uint64_t kRough = 8;
