@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/gradient_picture.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
 #include "cli/slice_panels.h"
@@ -23,7 +24,7 @@ struct Options {
   InputOptions input;
   VolumeInput volume;
   std::string plane, origin, normal, original, mode, range, colour_map, size, output;
-  bool draw_cells = false, no_draw_cells = false, no_interfaces = false;
+  bool gradients = false, draw_cells = false, no_draw_cells = false, no_interfaces = false;
 };
 
 Plane parse_any_plane(const Options& options) {
@@ -189,6 +190,10 @@ void run(const Options& options, Session& session) {
   SliceStyle style;
   style.plane = parse_any_plane(options);
   const SliceOptions size = picture_size(options);
+  if (options.gradients) {
+    check_options(options, session.outputs);
+    return draw_gradients({options.input.path, style.plane, options.output, size.width}, session);
+  }
   InputOptions from = options.input;
   style.field = split_fields(from);
   // Data without materials are enough unless an option is about materials.
@@ -248,6 +253,11 @@ void add_drawing_options(const Command& command, Options& options) {
       .group("Picture");
   command.add_flag("--no-draw-cells", options.no_draw_cells, "Do not draw the cells").group("Picture");
   command.add_flag("--no-interfaces", options.no_interfaces, "Do not draw the interfaces").group("Picture");
+  command
+      .add_flag("--gradients", options.gradients,
+                "Of a store with gradients: their directions as colours, -1 to 1 of x, y and z as red, green "
+                "and blue; grey where there is none")
+      .group("Picture");
   command.add_option("--range", options.range, "Values at the ends of the colour map")
       .type_name("a,b")
       .group("Picture");

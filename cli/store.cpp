@@ -7,6 +7,7 @@
 #include "cli/data_summary.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
+#include "cli/usage_error.h"
 #include "cli/volume_options.h"
 #include "isosurface/storage/store_builder.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 struct Options {
   VolumeInput input;
-  std::string coding = "interpolation", output;
+  std::string coding = "interpolation", smoothing, output;
   bool gradients = false;
 };
 
@@ -82,7 +83,11 @@ void run(const Options& options, Session& session) {
   PlaneReader planes(reader);
   StoreOptions store;
   store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
+  if (!options.smoothing.empty() && !options.gradients)
+    wrong_usage("--smoothing: expected with --gradients, which are what is smoothed");
   store.gradients = options.gradients;
+  if (options.smoothing == "none") store.smoothing.reset();
+  if (options.smoothing == "first") store.smoothing->constrained_rounds = 0;
   if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
   StoreFigures figures;
   session.outputs.write(options.output, [&](const auto& path) {
@@ -114,8 +119,15 @@ void add_store(const Command& app, Session& session) {
                   "of the edge whose middle they are")
       .one_of({"interpolation", "split-edge"})
       .show_default();
-  command.add_flag("--gradients", options->gradients,
-                   "Keep the directions of the samples' gradients too, for the normals of surfaces");
+  command.add_flag(
+      "--gradients", options->gradients,
+      "Keep the directions of the samples' gradients too, smoothed, for the normals of surfaces");
+  command
+      .add_option(
+          "--smoothing", options->smoothing,
+          "How gradients are smoothed: not at all; by the first phase, which also fills regions where "
+          "nothing changes; or by both (default)")
+      .one_of({"none", "first", "both"});
   command.add_option("-o,--output", options->output, "The store (.adm)").required().type_name("FILE");
 }
 

@@ -121,7 +121,9 @@ void add_contents_options(const Command& command, ViewOptions& options) {
       .type_name("FILE");
   command.add_option("--field", options.field, "The field that colours show, NAME or NAME:x of a vector")
       .type_name("NAME");
-  command.add_option("--range", options.range, "The field's values at the ends of the colour map")
+  command
+      .add_option("--range", options.range,
+                  "The values at the ends of the colour map, of the field or of a store's section")
       .type_name("a,b");
   command.add_option("--colour-map,--color-map", options.colour_map, "The colour map (default sequential)")
       .one_of(ColourMap::names());
@@ -133,6 +135,7 @@ void add_contents_options(const Command& command, ViewOptions& options) {
   command.add_option("--origin", options.origin, "A point of the plane").type_name("x,y,z");
   command.add_option("--normal", options.normal, "Where it points to, all is cut away").type_name("x,y,z");
   command.add_flag("--no-cut", options.no_cut, "The plane shows its section and cuts nothing away");
+  command.add_flag("--no-section", options.no_section, "The plane cuts and shows no section");
   command
       .add_option(
           "--culled-from", options.culled_from,
@@ -173,7 +176,7 @@ void add_budget_options(const Command& command, ViewOptions& options) {
       .one_of({"wait", "async"});
   command
       .add_option("--memory", options.memory,
-                  "What decoded pages may take, for each surface: bytes, or with K, M or G")
+                  "What decoded pages may take, for each surface and the section: bytes, or with K, M or G")
       .type_name("SIZE")
       .show_default();
 }
@@ -259,12 +262,14 @@ void apply_view_options(const ViewOptions& options, ViewSession& view) {
     state.cut.is_on = true;
     state.cut.plane = *plane;
     state.cut.cuts_away = !options.no_cut;
+    state.cut.shows_section = !options.no_section;
   }
   if (const std::optional<Viewpoint> viewpoint = culled_from(options)) state.culled_from = viewpoint;
   const std::vector<SurfaceState> surfaces = surfaces_of(options);
   for (std::size_t n = 0; n < state.documents.size(); ++n) {
-    if (view.documents()[n]->facts().has_isovalues && !surfaces.empty())
-      state.documents[n].surfaces = surfaces;
+    if (!view.documents()[n]->facts().has_isovalues) continue;
+    if (!surfaces.empty()) state.documents[n].surfaces = surfaces;
+    if (!options.range.empty()) state.documents[n].range = range_of(options);
   }
   choose_field(options, view, state.documents);
   hide_materials(options, view, state.documents);

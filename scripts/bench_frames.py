@@ -53,6 +53,17 @@ def occlusion_rows(build, name, file, isovalue, frames, folder):
            f"{1e3 * all_of['update_seconds']:.0f} without; {frames} frames of 1024x768, error 1 pixel"]
 
 
+def drawing_rows(build, name, file, isovalue):
+    """Drawing a surface from its chunks, beside one plain indexed draw of the same triangles."""
+    found = [lines_of(build, "bench_drawing", file, str(isovalue), "500000")[0] for _ in range(3)]
+    ratios = sorted(line["plain"] / line["adamas"] for line in found)
+    line = found[0]
+    ours, plain = (median([each[key] for each in found]) for key in ("adamas", "plain"))
+    yield [f"drawing, {name}", f"{1e3 * ours:.1f} ms", f"{1e3 * plain:.1f} ms (one plain indexed draw)", f"{ratios[1]:.2f}", ">= 0.9",
+           f"{line['triangles']:,} triangles in {line['chunks']:,} chunks, {line['draw_calls']} commands; 1024x768, without updates; processor seconds of all "
+           f"threads, medians of 15 pictures; ratios of three runs {ratios[0]:.2f} to {ratios[2]:.2f}; {line['drawn_by']}"]
+
+
 def frame_rows(build, quick):
     with tempfile.TemporaryDirectory() as folder:
         side = 256 if quick else 512
@@ -61,6 +72,7 @@ def frame_rows(build, quick):
         store(build, ball, file)
         yield from flight_rows(build, f"buckyball {side}^3", file, 80.5, 60 if quick else 600, ball.replace(".nhdr", ".raw"))
         yield from cold_rows(build, f"buckyball {side}^3", file, 80.5, 60 if quick else 200)
+        yield from drawing_rows(build, f"buckyball {side}^3", file, 80.5)
         yield from occlusion_rows(build, f"buckyball {side}^3", file, 80.5, 24, folder)
         root = os.path.join(os.environ.get("ADAMAS_DATA", "../shared/data"), "volume")
         for path, options, isovalue in [*MEASURED[:2], MEASURED[4]]:
@@ -70,4 +82,5 @@ def frame_rows(build, quick):
                 continue
             store(build, data, file, *options)
             yield from flight_rows(build, name, file, isovalue, 60 if quick else 600)
+            yield from drawing_rows(build, name, file, isovalue)
             yield from occlusion_rows(build, name, file, isovalue, 24, folder)

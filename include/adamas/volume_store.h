@@ -21,8 +21,10 @@ struct BuildOptions {
   /// Samples are predicted from all neighbours that are known, or only from the two ends of the edge whose
   /// middle they are: larger files.
   bool by_split_edges = false;
-  bool gradients = false;  ///< keep the directions of gradients too, for the normals of surfaces
-  /// A folder for up to four times the bytes of the samples; empty: the system's for temporary files.
+  bool gradients = false;        ///< keep the directions of gradients too, for the normals of surfaces
+  bool smooth_gradients = true;  ///< smooth these first, and fill regions without any from their borders
+  /// A folder for up to four times the bytes of the samples, and four for each gradient; empty: the system's
+  /// for temporary files.
   std::filesystem::path scratch{};
 };
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "isosurface/gradients/plane_gradients.h"
+#include "isosurface/gradients/smoothed_codes.h"
+#include "isosurface/gradients/three_planes.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -87,36 +89,38 @@ class LodCodes {
 
 template <class Sample>
 void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageSink& sink,
-                    Progress& progress) {
+                    const GradientPageOptions& options, Progress& progress) {
   const PageGrid pages(grid.dimensions);
-  const auto [nx, ny, nz] = grid.dimensions;
-  const PlaneGradients gradients(grid.spacing, nx, ny);
   std::vector<LodCodes> lods;
   for (int lod = 0; lod <= pages.top(); ++lod) lods.emplace_back(pages, lod);
-  // Plane k lies at k % 3.
-  std::array<std::vector<Sample>, 3> samples;
-  for (auto& plane : samples) plane.resize(grid.plane_samples());
-  const auto read = [&](std::uint64_t k) { planes(k, std::as_writable_bytes(std::span(samples[k % 3]))); };
-  std::vector<OctahedralCode> codes(grid.plane_samples());
   const auto page = std::make_unique<Page<std::uint16_t>>();
-  read(0);
-  for (std::uint64_t k = 0; k < nz; ++k) {
-    progress.step("gradients", static_cast<double>(k) / static_cast<double>(nz));
-    if (k + 1 < nz) read(k + 1);
-    const Sample* below = k > 0 ? samples[(k + 2) % 3].data() : nullptr;
-    const Sample* above = k + 1 < nz ? samples[(k + 1) % 3].data() : nullptr;
-    gradients(std::array<const Sample*, 3>{below, samples[k % 3].data(), above}, std::span(codes));
-    for (LodCodes& lod : lods) lod.add(static_cast<std::int32_t>(k), codes, *page, sink);
+  std::int32_t k = 0;
+  const auto take = [&](const std::vector<OctahedralCode>& codes) {
+    for (LodCodes& lod : lods) lod.add(k, codes, *page, sink);
+    ++k;
+  };
+  if (options.smoothing) {
+    smoothed_codes<Sample>(grid, planes, options, take, progress);
+    return;
   }
+  std::vector<OctahedralCode> codes(grid.plane_samples());
+  const PlaneGradients gradients(grid.spacing, grid.dimensions[0], grid.dimensions[1]);
+  for_each_three_planes<Sample>(
+      grid, planes, "gradients",
+      [&](const std::array<const Sample*, 3>& three) {
+        gradients(three, std::span(codes));
+        take(codes);
+      },
+      progress);
 }
 
 template void gradient_pages<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
-                                           Progress&);
+                                           const GradientPageOptions&, Progress&);
 template void gradient_pages<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
-                                            Progress&);
+                                            const GradientPageOptions&, Progress&);
 template void gradient_pages<std::int16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
-                                           Progress&);
+                                           const GradientPageOptions&, Progress&);
 template void gradient_pages<float>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
-                                    Progress&);
+                                    const GradientPageOptions&, Progress&);
 
 }  // namespace adamas

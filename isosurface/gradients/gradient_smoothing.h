@@ -2,11 +2,15 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <span>
+#include <vector>
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "isosurface/gradients/gradient_estimator.h"
+#include "isosurface/gradients/smoothing_round.h"
 
 namespace adamas {
 
@@ -16,6 +20,54 @@ struct GradientSmoothingOptions {
   /// How far the second phase may take a gradient whose length is the root mean square: K of the paper, as a
   /// part of the mean square. Longer ones may go less far, in inverse proportion.
   double freedom = 0.25;
+
+  /// A gradient depends on none that is farther away than this along an axis.
+  [[nodiscard]] std::size_t rounds() const {
+    return static_cast<std::size_t>(free_rounds) + static_cast<std::size_t>(constrained_rounds);
+  }
+};
+
+/// Smooths a block of gradients that comes plane by plane, as smooth_gradients does, to the bit: every round
+/// is one plane behind the one before, so that no more than some planes are held.
+class GradientSmoother {
+ public:
+  /// Takes smoothed planes, in ascending order.
+  using Sink = std::function<void(std::span<const Gradient>)>;
+
+  /// `scale`: of the whole volume. Planes have ni x nj gradients, i running fastest.
+  GradientSmoother(const GradientScale& scale, std::size_t ni, std::size_t nj,
+                   const GradientSmoothingOptions& options, Sink sink);
+
+  /// Takes the next plane, of finite gradients.
+  void add(std::span<const Gradient> plane);
+  /// Hands over the planes that are left.
+  void finish();
+
+  /// Bytes that it takes for each gradient of a plane.
+  static std::size_t bytes(const GradientSmoothingOptions& options);
+
+ private:
+  class Anchored;
+
+  /// Takes a plane through the rounds from `first` on, as far as it gets.
+  void run(std::size_t first, std::span<const Gradient> plane);
+  /// Calls fn(update) with what round n makes of averages.
+  template <class Fn>
+  void with_update(std::size_t n, Fn&& fn);
+  /// Keeps what the first phase has made of the next plane, for the second.
+  void keep_anchors(std::span<const Gradient> plane);
+
+  GradientSmoothingOptions options_;
+  double least_square_, most_;  ///< `most_`: what |g| |a - g| may be in the second phase
+  Sink sink_;
+  std::vector<SmoothingRound> rounds_;
+  std::vector<std::size_t> finished_;             ///< how many planes each round has handed over
+  std::array<std::vector<Gradient>, 2> results_;  ///< of rounds of even and of odd number
+  std::size_t added_ = 0, anchored_ = 0;          ///< planes
+  /// Whether gradients were degenerate at first, and what holds them in the second phase: zero where they
+  /// were, and nothing does. Plane k is at k modulo the number of planes.
+  std::vector<std::vector<std::uint8_t>> degenerate_;
+  std::vector<std::vector<Gradient>> anchors_;
 };
 
 /// Smooths the gradients of a block of samples, i running fastest, in place (D 4.3.3). A gradient is

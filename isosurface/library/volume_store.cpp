@@ -142,6 +142,7 @@ void VolumeStore::build(const std::filesystem::path& path, const VolumeGrid& gri
   StoreOptions how;
   how.coding = options.by_split_edges ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
   how.gradients = options.gradients;
+  if (!options.smooth_gradients) how.smoothing.reset();
   if (!options.scratch.empty()) how.scratch = options.scratch;
   OutputFile file(path);
   build_store(file.temporary(), path.string(), grid, planes, how, progress);

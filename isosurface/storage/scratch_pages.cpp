@@ -1,12 +1,6 @@
 #include "isosurface/storage/scratch_pages.h"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstring>
-
-#include "core/base/error.h"
-#include "core/base/unnamed_file.h"
 
 namespace adamas {
 
@@ -29,29 +23,17 @@ void for_each_own_row(const PageShape& shape, Fn&& fn) {
   }
 }
 
-int scratch_file(const std::filesystem::path& folder) {
-  const int file = open_unnamed_file(folder);
-  if (file < 0)
-    fail("{}: expected a folder for scratch data, found: {}", folder.string(), std::strerror(errno));
-  return file;
-}
-
 }  // namespace
 
 template <class Word>
 ScratchPages<Word>::ScratchPages(const std::filesystem::path& folder, const PageGrid& grid,
                                  std::size_t memory, PageParts parts)
-    : PageCache<Word>(grid, memory), parts_(parts), folder_(folder), file_(scratch_file(folder)) {
+    : PageCache<Word>(grid, memory), parts_(parts), file_(folder) {
   for (int lod = 0; lod <= grid.top(); ++lod) {
     const LatticePoint n = grid.blocks(lod);
     offsets_.emplace_back(static_cast<std::size_t>(n.i) * static_cast<std::size_t>(n.j) *
                           static_cast<std::size_t>(n.k));
   }
-}
-
-template <class Word>
-ScratchPages<Word>::~ScratchPages() {
-  close(file_);
 }
 
 template <class Word>
@@ -81,16 +63,8 @@ void ScratchPages<Word>::put(const PageId& id, const Page<Word>& page) {
     append(page.errors);
   }
   offset(id) = size_;
-  for (std::size_t done = 0; done < buffer_.size();) {
-    const ssize_t put =
-        pwrite(file_, buffer_.data() + done, buffer_.size() - done, static_cast<off_t>(size_));
-    if (put < 0 && errno == EINTR) continue;
-    if (put <= 0)
-      fail("{}: cannot hold {} bytes of scratch data: {}", folder_.string(), size_ + buffer_.size(),
-           std::strerror(errno));
-    done += static_cast<std::size_t>(put);
-    size_ += static_cast<std::uint64_t>(put);
-  }
+  file_.write(size_, buffer_);
+  size_ += buffer_.size();
 }
 
 template <class Word>
@@ -102,13 +76,7 @@ bool ScratchPages<Word>::load(const PageToLoad<Word>& page) {
   const std::size_t begin = has_part(page.parts, PageParts::kSamples) ? 0 : sample_bytes;
   const std::size_t end = page.bounds == nullptr ? sample_bytes : points * point_bytes();
   buffer_.resize(end - begin);
-  for (std::size_t done = 0; done < buffer_.size();) {
-    const ssize_t got = pread(file_, buffer_.data() + done, buffer_.size() - done,
-                              static_cast<off_t>(offset(page.id) + begin + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) fail("{}: scratch data cannot be read: {}", folder_.string(), std::strerror(errno));
-    done += static_cast<std::size_t>(got);
-  }
+  file_.read(offset(page.id) + begin, buffer_);
   const std::byte* from = buffer_.data();
   const auto take = [&](auto& numbers) {
     for_each_own_row(page.shape, [&](std::size_t first, std::size_t count, std::size_t step) {

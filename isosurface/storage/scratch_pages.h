@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "core/base/scratch_file.h"
 #include "isosurface/storage/page_cache.h"
 
 namespace adamas {
@@ -18,7 +19,6 @@ class ScratchPages : public PageCache<Word> {
   /// hold a file.
   ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, std::size_t memory,
                PageParts parts = PageParts::kAll);
-  ~ScratchPages() override;
 
   /// Takes each page once, before pages are asked for. Throws Error where the disk is full.
   void put(const PageId& id, const Page<Word>& page);
@@ -33,8 +33,7 @@ class ScratchPages : public PageCache<Word> {
   }
 
   PageParts parts_;
-  std::filesystem::path folder_;
-  int file_ = -1;
+  ScratchFile file_;
   std::uint64_t size_ = 0;
   std::vector<std::vector<std::uint64_t>> offsets_;  ///< by LOD and block
   std::vector<std::byte> buffer_;

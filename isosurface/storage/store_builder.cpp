@@ -152,12 +152,7 @@ class StoreBuilder {
           scratch_.put(id, page);
         },
         progress_);
-    if (gradients_ != nullptr) {
-      gradient_pages<Sample>(
-          volume_, planes,
-          [this](const PageId& id, const Page<std::uint16_t>& page) { gradients_->put(id, page); },
-          progress_);
-    }
+    if (gradients_ != nullptr) make_gradients(planes);
     ranks_ = census_.ranks();
     const std::vector<std::uint64_t> numbers = page_numbers(grid_);
     look_at_coarse(std::span(numbers).first(std::min(numbers.size(), kCoarsePages)));
@@ -165,6 +160,15 @@ class StoreBuilder {
   }
 
  private:
+  void make_gradients(const PlaneSource& planes) {
+    GradientPageOptions options;
+    options.smoothing = options_.smoothing;
+    options.scratch = options_.scratch;
+    gradient_pages<Sample>(
+        volume_, planes,
+        [this](const PageId& id, const Page<std::uint16_t>& page) { gradients_->put(id, page); }, options,
+        progress_);
+  }
   [[nodiscard]] SampleCoding coding() const {
     return ranks_ != nullptr ? SampleCoding::kRanks : options_.coding;
   }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "adamas/volume.h"
 #include "core/base/error.h"
 #include "core/geometry/vec3.h"
+#include "isosurface/gradients/gradient_smoothing.h"
 #include "isosurface/storage/store_format.h"
 #include "isosurface/volume/samples.h"
 
@@ -17,9 +19,12 @@ namespace adamas {
 
 struct StoreOptions {
   SampleCoding coding = SampleCoding::kInterpolation;
-  /// Where scratch data of up to four times the input may lie, and two bytes more for each sample's gradient.
+  /// Where scratch data of up to four times the input may lie, and four bytes more for each sample's
+  /// gradient.
   std::filesystem::path scratch = std::filesystem::temp_directory_path();
   bool gradients = false;  ///< whether the directions of samples' gradients are kept
+  /// How these are smoothed first; none: not at all.
+  std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
 };
 
 /// What became of a volume.

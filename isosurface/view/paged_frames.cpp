@@ -10,6 +10,7 @@
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
 #include "isosurface/view/joined_edges.h"
+#include "isosurface/view/mesh_cells.h"
 
 namespace adamas {
 
@@ -345,6 +346,35 @@ Contour PagedFrames<Sample>::border() const {
   }
   clip_contour(contour, diamonds_.data_box(), diamonds_.spacing());
   return contour;
+}
+
+template <class Sample>
+bool PagedFrames<Sample>::is_split(LatticePoint p) {
+  const int lod = diamonds_.lod(p);
+  if (lod < 0 || lod >= diamonds_.lods()) return false;
+  const LatticePoint s = diamonds_.in_samples(p), u{s.i >> lod, s.j >> lod, s.k >> lod};
+  const ViewedPage* const page = pages_.find(lod, {u.i / kSide, u.j / kSide, u.k / kSide});
+  return page != nullptr && page->chunk != nullptr &&
+         page->chunk->split.has({u.i % kSide, u.j % kSide, u.k % kSide});
+}
+
+template <class Sample>
+std::vector<std::vector<Vec3>> PagedFrames<Sample>::cells_in(const Plane& plane) {
+  if (!isovalue_) return {};
+  return adamas::cells_in(diamonds_.root(), diamonds_.domain(), plane, diamonds_.data_box(),
+                          [this](LatticePoint p) { return is_split(p); });
+}
+
+template <class Sample>
+std::optional<double> PagedFrames<Sample>::error_at(const Vec3& place) {
+  if (!isovalue_) return std::nullopt;
+  const LatticePoint p =
+      diamond_at(diamonds_.root(), diamonds_.domain(), place, [this](LatticePoint q) { return is_split(q); });
+  try {
+    return diamonds_.is_stored(p) ? diamonds_.error(diamonds_.class_if_crossed(p)) : 0;
+  } catch (const PageLost&) {
+    return std::nullopt;
+  }
 }
 
 template <class Sample>

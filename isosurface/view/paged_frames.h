@@ -54,6 +54,13 @@ class PagedFrames {
   /// The directions of gradients that the store keeps; null where it has none.
   [[nodiscard]] StoredGradients* gradients() { return maker_.normals().stored(); }
 
+  /// The isosurface error of the cell of the last frame's mesh at a place, in the frame of the grid: an
+  /// estimate of how far its surface is from that of all samples there. 0 where the contour does not cross
+  /// the cell's diamond. None before the first frame, and where that cannot be read.
+  [[nodiscard]] std::optional<double> error_at(const Vec3& place);
+  /// What the cells of the last frame's mesh are in a plane, in the frame of the grid: polygons, within the
+  /// data. None before the first frame.
+  [[nodiscard]] std::vector<std::vector<Vec3>> cells_in(const Plane& plane);
   /// The surface of the last frame as one: clipped to the data's box, with one point for each edge.
   [[nodiscard]] Contour contour() const;
   [[nodiscard]] const ViewedDiamonds<Sample>& diamonds() const { return diamonds_; }
@@ -101,6 +108,8 @@ class PagedFrames {
   void take(std::vector<NewChunk> made);
   void set_apart(std::uint64_t id, Contour contour);
   void drop_apart();
+  /// Whether the last frame's mesh has the diamond of a point split.
+  [[nodiscard]] bool is_split(LatticePoint p);
   /// All triangles that the border cuts.
   [[nodiscard]] Contour border() const;
   /// Notes that a chunk is changed, and whether it was there before.

@@ -11,6 +11,9 @@ namespace {
 
 class Help : public ProgramTest {};
 
+/// Whether this build has a command.
+bool is_built(const std::string& command) { return command != "view" || ADAMAS_WITH_VIEWER != 0; }
+
 TEST_F(Help, HelpAndCompletion) {
   const std::string all = run_well({"--help"}).out;
   EXPECT_EQ(run_well({"--version"}).out.rfind("adamas ", 0), 0u);
@@ -20,7 +23,8 @@ TEST_F(Help, HelpAndCompletion) {
   EXPECT_EQ(std::system(check.c_str()), 0);
   for (const std::string command : {"info", "reconstruct", "resample", "select", "slice", "probe", "store",
                                     "restore", "verify", "isosurface", "view"}) {
-    EXPECT_NE(all.find("  " + command), std::string::npos);
+    EXPECT_EQ(all.find("  " + command) != std::string::npos, is_built(command)) << command;
+    if (!is_built(command)) continue;
     const std::string help = run_well({command, "--help"}).out;
     EXPECT_NE(help.find("Example:\n  adamas " + command), std::string::npos);
     // Every option of the help is completed.
@@ -65,7 +69,8 @@ TEST_F(Help, TheManualKnowsEveryOption) {
   for (const std::string command : {"info", "reconstruct", "resample", "select", "compare", "slice", "probe",
                                     "experiment", "store", "restore", "verify", "isosurface", "view"}) {
     const std::size_t section = plain.find(".SS " + command + "\n");
-    ASSERT_NE(section, std::string::npos) << command;
+    ASSERT_EQ(section != std::string::npos, is_built(command)) << command;
+    if (!is_built(command)) continue;
     std::istringstream lines(run_well({command, "--help"}).out);
     for (std::string line; std::getline(lines, line);) {
       const std::size_t at = line.find("--");
@@ -90,6 +95,7 @@ TEST_F(Help, TheManualKnowsEveryOption) {
 TEST_F(Help, HelpFitsTheScreen) {
   for (const std::string command : {"generate", "info", "reconstruct", "resample", "select", "slice", "probe",
                                     "store", "restore", "verify", "isosurface", "view"}) {
+    if (!is_built(command)) continue;
     const std::string help = run_well({command, "--help"}).out;
     std::istringstream lines(help);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;

@@ -33,6 +33,42 @@ TEST_F(StoreGradients, AreStoredToldAndUsed) {
   EXPECT_EQ(read("plain0.ply"), read("g0.ply"));
   EXPECT_EQ(read("plain.ply").size(), read("g.ply").size());
   EXPECT_NE(read("plain.ply"), read("g.ply"));
+  run_well({"store", "b.vti", "-o", "raw.adm", "--gradients", "--smoothing", "none"});
+  EXPECT_NE(read("raw.adm"), read("g.adm"));
+  run_well({"store", "b.vti", "-o", "first.adm", "--gradients", "--smoothing", "first"});
+  EXPECT_NE(read("first.adm"), read("g.adm"));
+  EXPECT_NE(read("first.adm"), read("raw.adm"));
+  run_well({"isosurface", "raw.adm", "--isovalue", "120", "--no-normals", "-o", "raw0.ply"});
+  EXPECT_EQ(read("raw0.ply"), read("g0.ply"));
+  const auto wrong = run({"store", "b.vti", "-o", "none.adm", "--smoothing", "both"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("--smoothing: expected with --gradients"), std::string::npos) << wrong.err;
+}
+
+TEST_F(StoreGradients, AreSeenInAPlane) {
+  run_well({"generate", "buckyball", "--dimensions", "40,36,33", "-o", "b.vti"});
+  std::vector<double> without;
+  for (const std::string smoothing : {"none", "first", "both"}) {
+    run_well({"store", "b.vti", "-o", "g.adm", "--gradients", "--smoothing", smoothing});
+    run_well({"slice", "g.adm", "--plane", "z=16", "--gradients", "--size", "200,200", "-o",
+              smoothing + ".png", "--json", "f.json"});
+    EXPECT_EQ(read(smoothing + ".png").substr(1, 3), "PNG");
+    without.push_back(read_json("f.json")["part_without_gradient"]);
+  }
+  EXPECT_GT(without[0], without[1]) << "regions are filled from their borders";
+  EXPECT_GE(without[1], without[2]);
+  run_well({"store", "b.vti", "-o", "plain.adm"});
+  const auto expect = [this](const std::vector<std::string>& options, int status, const std::string& part) {
+    std::vector<std::string> all{"slice", "--gradients"};
+    all.insert(all.end(), options.begin(), options.end());
+    const RunResult result = run(all);
+    EXPECT_EQ(result.status, status);
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+  };
+  expect({"plain.adm", "--plane", "z=16", "-o", "p.png"}, 1, "plain.adm");
+  expect({"b.vti", "--plane", "z=16", "-o", "p.png"}, 2, "--gradients: expected a store");
+  expect({"g.adm", "--plane", "z=16", "-o", "p.svg"}, 2, "--gradients: expected a .png");
+  expect({"g.adm", "--plane", "z=160", "-o", "p.png"}, 1, "expected a plane that cuts");
 }
 
 }  // namespace

@@ -124,12 +124,35 @@ TEST_F(ViewCommand, ShowsSeveralSurfacesColoursAndStates) {
   EXPECT_TRUE(
       pictures.insert(picture({"--colour-by", "b.adm", "--range", "0,100", "--field", "b.adm"})).second);
   EXPECT_TRUE(pictures.insert(picture({"--plane", "x=19"})).second);
+  EXPECT_TRUE(pictures.insert(picture({"--plane", "x=19", "--no-section"})).second);
   EXPECT_TRUE(pictures.insert(picture({"--edges"})).second);
   EXPECT_TRUE(pictures.insert(picture({"--plain"})).second);
   EXPECT_TRUE(pictures.insert(picture({"--shading", "sphere"})).second);
   write("state.json", "{}");
   EXPECT_NE(view({"--state", "state.json", "--json", "f.json"}).err.find("state.json: expected 'viewpoint'"),
             std::string::npos);
+}
+
+TEST_F(ViewCommand, LeavesOutWhatIsHiddenFromWhereTheMeshIsFor) {
+  ASSERT_EQ(run({"generate", "buckyball", "--dimensions", "64", "-o", "c.vti"}).status, 0);
+  ASSERT_EQ(run({"store", "c.vti", "-o", "c.adm"}).status, 0);
+  const auto frame = [&](const std::vector<std::string>& more) {
+    // Balls that have grown together, seen from the front and from behind.
+    std::vector<std::string> all{"view",        "c.adm",         "--isovalue",    "8",
+                                 "--pixels",    "0.5",           "--size",        "400,300",
+                                 "--json",      "f.json",        "--culled-from", "32,-90,32,32,32,32,0,0,1",
+                                 "--offscreen", "--camera-path", "orbit:2"};
+    all.insert(all.end(), more.begin(), more.end());
+    const RunResult result = run(all);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto frames = read_json("f.json")["frames"];
+    EXPECT_EQ(frames[0]["triangles"], frames[1]["triangles"]) << "the mesh is of one view";
+    return frames[1];
+  };
+  const auto all = frame({}), some = frame({"--occlusion"});
+  EXPECT_EQ(all["occluded_diamonds"], 0);
+  EXPECT_GT(some["occluded_diamonds"], 0);
+  EXPECT_LT(some["triangles"], all["triangles"]);
 }
 
 TEST_F(ViewCommand, ShowsMeshesWithTheirFields) {

@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "core/geometry/plane.h"
 #include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/paged_frames.h"
 #include "isosurface/view/queued_frames.h"
@@ -231,6 +232,88 @@ TEST_P(Frames, ByPagesAreThoseByQueues) {
   }
   EXPECT_GT(splits, 1000u);
   EXPECT_GT(merges, 100u);
+}
+
+/// The error of the diamond whose tetrahedron in the mesh holds a place, by looking at all of them; none on
+/// borders between two.
+std::optional<double> error_by_all_cells(QueuedFrames<std::uint8_t>& frames, const Vec3& place) {
+  std::optional<LatticePoint> found;
+  const Domain& domain = frames.mesh().domain();
+  frames.mesh().for_each_tetrahedron([&](const Diamond& diamond, int slot) {
+    std::array<Vec3, 4> corners;
+    for (std::size_t n = 0; n < 4; ++n) corners[n] = domain.position(diamond.tetrahedron(slot)[n]);
+    for (std::size_t n = 0; n < 4; ++n) {
+      const Vec3 &a = corners[(n + 1) % 4], &b = corners[(n + 2) % 4], &c = corners[(n + 3) % 4];
+      const Vec3 normal = cross(b - a, c - a);
+      if (dot(normal, place - a) * dot(normal, corners[n] - a) <= 0) return;
+    }
+    found = diamond.point();
+  });
+  if (!found) return std::nullopt;
+  auto& diamonds = frames.diamonds();
+  return diamonds.is_stored(*found) ? diamonds.error(diamonds.class_if_crossed(*found)) : 0;
+}
+
+TEST_P(Frames, TellTheErrorOfTheCellAtAPlace) {
+  PagedFrames<std::uint8_t> paged(store.pages());
+  EXPECT_FALSE(paged.error_at(volume.grid.box().center()));
+  std::mt19937 random(GetParam());
+  std::size_t large = 0;
+  for (int frame = 0; frame < 4; ++frame) {
+    QueuedFrames<std::uint8_t> queued = frames();
+    FrameRequest wanted = request();
+    // The least error of a class.
+    wanted.pixels = (1 - 1e-12) * (4 << frame);
+    queued.refine(wanted);
+    wanted.pixels = (1 + 1e-9) * (4 << frame);
+    paged.refine(wanted);
+    const Box3 box = volume.grid.box();
+    for (int n = 0; n < 40; ++n) {
+      std::uniform_real_distribution<double> part(0, 1);
+      const Vec3 size = box.size(),
+                 place = box.min + Vec3{part(random) * size.x, part(random) * size.y, part(random) * size.z};
+      const auto expected = error_by_all_cells(queued, place);
+      if (!expected) continue;
+      ASSERT_EQ(paged.error_at(place), expected);
+      large += *expected > 0.5 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(large, 10u);
+}
+
+TEST_P(Frames, ShowTheCellsThatAPlaneCuts) {
+  PagedFrames<std::uint8_t> paged(store.pages());
+  const Box3 box = volume.grid.box();
+  EXPECT_TRUE(paged.cells_in({box.center(), {1, 0, 0}}).empty());
+  for (const Vec3& normal : {Vec3{1, 0, 0}, {0.3, -1, 0.7}}) {
+    const Plane plane{box.center() + Vec3{0.13, 0.21, 0.17}, normal};
+    QueuedFrames<std::uint8_t> queued = frames();
+    FrameRequest wanted = request();
+    wanted.pixels = (1 - 1e-12) * 4;
+    queued.refine(wanted);
+    wanted.pixels = (1 + 1e-9) * 4;
+    paged.refine(wanted);
+    // Every cell that reaches over the plane within the data has a polygon, and they fill the plane once.
+    std::size_t cells = 0;
+    queued.mesh().for_each_tetrahedron([&](const Diamond& diamond, int slot) {
+      int above = 0;
+      std::array<Vec3, 4> corners;
+      for (std::size_t n = 0; n < 4; ++n) {
+        corners[n] = queued.mesh().domain().position(diamond.tetrahedron(slot)[n]);
+        above += dot(normal, corners[n] - plane.origin) > 0 ? 1 : 0;
+      }
+      if (above == 0 || above == 4) return;
+      int within = 0;
+      for (const Vec3& corner : corners) within += box.contains(corner) ? 1 : 0;
+      cells += within == 4 ? 1 : 0;
+    });
+    const auto polygons = paged.cells_in(plane);
+    EXPECT_GE(polygons.size(), cells);
+    EXPECT_GT(cells, 100u);
+    double area = 0;
+    for (const auto& polygon : polygons) area += polygon_area(polygon);
+    EXPECT_NEAR(area, polygon_area(clip_plane(plane, box)), 1e-6 * area);
+  }
 }
 
 TEST_P(Frames, SplitNothingThatAPictureHides) {

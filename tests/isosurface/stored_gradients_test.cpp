@@ -53,6 +53,7 @@ struct Stored {
     StoreOptions options;
     options.coding = coding;
     options.gradients = gradients;
+    options.smoothing.reset();
     options.scratch = folder / "";
     const auto planes = [this](std::uint64_t k, std::span<std::byte> to) {
       std::memcpy(to.data(), samples.data() + k * grid.plane_samples(), to.size());

@@ -30,6 +30,7 @@ inline std::vector<GoldenStore> golden_stores() {
     StoreOptions result;
     result.coding = coding;
     result.gradients = gradients;
+    result.smoothing.reset();
     return result;
   };
   return {{"uint8", SampleType::kUint8, {37, 18, 17}, {1, 1, 1}, options(kOurs, false)},

@@ -107,8 +107,14 @@ TEST_F(ReferencePictures, TransparentAroundOpaque) {
 
 TEST_F(ReferencePictures, CutWithEdges) {
   session.state().has_edges = true;
-  session.state().cut = {true, {{16, 16, 16}, {1, -0.5, 0.3}}, true, true};
+  session.state().cut = {true, {{16, 16, 16}, {1, -0.5, 0.3}}, true, false};
   expect_reference("cut");
+}
+
+TEST_F(ReferencePictures, WithASection) {
+  session.state().colour_map = "viridis";
+  session.state().cut = {true, {{16, 18, 16}, {0.6, -1, 0.3}}, false, true};
+  expect_reference("section");
 }
 
 TEST_F(ReferencePictures, ADifferenceThatCanBeSeenIsOne) {

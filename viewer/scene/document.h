@@ -47,6 +47,7 @@ struct Reading {
   std::string material;         ///< empty: none
   std::optional<double> value;  ///< of the chosen field, or of the samples
   std::optional<double> error;  ///< of the interface or the isosurface there, an estimate, in units of length
+  bool is_pending = false;      ///< more of it is being worked out: it may be asked for again
 };
 
 /// An open file, as parts of pictures. What takes long goes on in a thread of its own: parts() never waits.
@@ -65,10 +66,11 @@ class Document {
   [[nodiscard]] virtual UpdateReport report() const = 0;
   /// What reading a store has met with until the last update.
   [[nodiscard]] virtual PageCounts page_counts() const { return {}; }
-  /// The values at the ends of the colour map, where a field is chosen.
+  /// The values at the ends of the colour map, where a field is chosen, or a section shows a store's samples.
   [[nodiscard]] virtual std::optional<std::array<double, 2>> colour_range(
-      const DocumentState& state) const = 0;
-  [[nodiscard]] virtual Reading at(const Vec3& place, const DocumentState& state) = 0;
+      const ViewState& view, const DocumentState& state) const = 0;
+  /// `surface`: which of a store's surfaces the place is on, as DrawnPart has it.
+  [[nodiscard]] virtual Reading at(const Vec3& place, const DocumentState& state, std::size_t surface) = 0;
   /// What is shown of it at first.
   [[nodiscard]] virtual DocumentState first_state() const = 0;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -54,6 +55,7 @@ struct PartStyle {
 struct DrawnPart {
   SharedMesh mesh;
   PartStyle style;
+  std::size_t surface = 0;  ///< of a store: to which of those that are shown it belongs
 };
 
 }  // namespace adamas

@@ -86,15 +86,12 @@ class MaterialDocument final : public Document {
     return result;
   }
 
-  [[nodiscard]] std::optional<std::array<double, 2>> colour_range(const DocumentState& state) const override {
-    const std::optional<std::size_t> field = field_number(state);
-    if (!field) return std::nullopt;
-    if (state.range) return state.range;
-    const auto [low, high] = scene_->field_range(*field);
-    return std::array{low, high};
+  [[nodiscard]] std::optional<std::array<double, 2>> colour_range(const ViewState&,
+                                                                  const DocumentState& state) const override {
+    return range_of(state);
   }
 
-  [[nodiscard]] Reading at(const Vec3& place, const DocumentState& state) override {
+  [[nodiscard]] Reading at(const Vec3& place, const DocumentState& state, std::size_t) override {
     const MaterialScene::Reading found = scene_->at(place, field_number(state));
     Reading result;
     if (found.material) result.material = facts_.materials[*found.material];
@@ -115,6 +112,15 @@ class MaterialDocument final : public Document {
   void set_field(std::optional<std::size_t> field) {
     field_ = field;
     interfaces_ = scene_->interfaces(field);
+  }
+
+  /// The values at the ends of the colour map, where a field is chosen.
+  [[nodiscard]] std::optional<std::array<double, 2>> range_of(const DocumentState& state) const {
+    const std::optional<std::size_t> field = field_number(state);
+    if (!field) return std::nullopt;
+    if (state.range) return state.range;
+    const auto [low, high] = scene_->field_range(*field);
+    return std::array{low, high};
   }
 
   static bool wants_section(const ViewState& view) { return view.cut.is_on && view.cut.shows_section; }
@@ -140,7 +146,7 @@ class MaterialDocument final : public Document {
   }
 
   void colour_by_field(const DocumentState& state, PartStyle& style) const {
-    const auto range = colour_range(state);
+    const auto range = range_of(state);
     style.is_coloured_by_value = range.has_value();
     if (range) std::tie(style.low, style.high) = std::pair((*range)[0], (*range)[1]);
   }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
+#include "viewer/scene/store_section.h"
 #include "viewer/scene/surface_worker.h"
 #include "viewer/scene/volume_values.h"
 
@@ -16,6 +18,10 @@ namespace adamas {
 namespace {
 
 constexpr std::size_t kHistogramParts = 256;
+constexpr std::size_t kNoSurface = std::numeric_limits<std::size_t>::max();
+/// Of places of a section without a value.
+constexpr Colour kNoValue{0.75, 0.75, 0.75};
+constexpr Colour kCellEdges{0.25, 0.25, 0.28};
 
 Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
   if (grid.is_straight()) return viewpoint;
@@ -29,7 +35,7 @@ Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
 class StoreDocument final : public Document {
  public:
   StoreDocument(const std::string& path, const DocumentOptions& options)
-      : values_(VolumeValues::open(path, options.memory)), worker_(path, options) {
+      : values_(VolumeValues::open(path, options.memory)), worker_(path, options), section_(path, options) {
     const VolumeGrid& grid = worker_.file().header().grid;
     check_two_samples(path, grid);
     facts_.name = path;
@@ -57,7 +63,14 @@ class StoreDocument final : public Document {
     if (!waits) worker_.want(wanted(view, state));
     const std::shared_ptr<const FoundSurfaces> found = worker_.found();
     std::vector<DrawnPart> result;
+    if (wants_section(view)) add_section(view, state, result);
     if (!found) return result;
+    if (view.has_edges && wants_section(view) && found->cell_edges) {
+      PartStyle style;
+      style.front = style.back = kCellEdges;
+      style.is_flat = true;
+      result.push_back({found->cell_edges, style, kNoSurface});
+    }
     const std::vector<const SurfaceState*> shown = shown_surfaces(state);
     // Where fewer or more surfaces are wanted by now, the first ones stand for what comes.
     for (std::size_t n = 0; n < std::min(shown.size(), found->surfaces.size()); ++n) {
@@ -66,11 +79,11 @@ class StoreDocument final : public Document {
       style.back = mix(shown[n]->colour, {0.45, 0.25, 0.22}, 0.6);
       style.opacity = shown[n]->opacity;
       style.is_coloured_by_value = !state.field.empty();
-      if (const auto range = colour_range(state))
+      if (const auto range = colour_range(view, state))
         std::tie(style.low, style.high) = std::pair((*range)[0], (*range)[1]);
       style.is_clipped = true;
       style.has_edges = view.has_edges;
-      for (const SharedMesh& chunk : found->surfaces[n]) result.push_back({chunk, style});
+      for (const SharedMesh& chunk : found->surfaces[n]) result.push_back({chunk, style, n});
     }
     return result;
   }
@@ -83,13 +96,19 @@ class StoreDocument final : public Document {
   void finish(const ViewState& view, const DocumentState& state) override {
     const WantedSurfaces all = wanted(view, state);
     worker_.want(all);
+    if (wants_section(view)) {
+      section_.want(wanted_section(view, state));
+      section_.wait_for(wanted_section(view, state));
+    }
     worker_.wait_for(all);
   }
 
   [[nodiscard]] UpdateReport report() const override {
     const std::shared_ptr<const FoundSurfaces> found = worker_.found();
     UpdateReport report = found ? found->report : UpdateReport{};
-    report.is_current = worker_.is_current();
+    report.is_current = worker_.is_current() && section_.is_current();
+    if (const auto section = section_.found(); section && report.problem.empty())
+      report.problem = section->problem;
     return report;
   }
 
@@ -98,15 +117,21 @@ class StoreDocument final : public Document {
     return found ? found->counts : PageCounts{};
   }
 
-  [[nodiscard]] std::optional<std::array<double, 2>> colour_range(const DocumentState& state) const override {
-    if (state.field.empty() || facts_.fields.empty()) return std::nullopt;
-    return state.range ? *state.range : colour_range_;
+  [[nodiscard]] std::optional<std::array<double, 2>> colour_range(const ViewState& view,
+                                                                  const DocumentState& state) const override {
+    const bool has_field = !state.field.empty() && !facts_.fields.empty();
+    if (!has_field && !wants_section(view)) return std::nullopt;
+    if (state.range) return state.range;
+    return has_field ? colour_range_ : facts_.value_range;
   }
 
-  [[nodiscard]] Reading at(const Vec3& place, const DocumentState&) override {
+  [[nodiscard]] Reading at(const Vec3& place, const DocumentState&, std::size_t surface) override {
     Reading reading;
     const double value = values_->at(place);
     if (!std::isnan(value)) reading.value = value;
+    const auto there = worker_.error_at({surface, worker_.file().header().grid.in_frame(place)});
+    reading.is_pending = !there.is_known;
+    reading.error = there.error;
     return reading;
   }
 
@@ -120,6 +145,24 @@ class StoreDocument final : public Document {
   }
 
  private:
+  static bool wants_section(const ViewState& view) { return view.cut.is_on && view.cut.shows_section; }
+  [[nodiscard]] StoreSection::Wanted wanted_section(const ViewState& view, const DocumentState& state) const {
+    return section_.wanted(view.cut.plane, view.viewpoint, !state.field.empty());
+  }
+  /// Asks for the section, and adds the one that there is.
+  void add_section(const ViewState& view, const DocumentState& state, std::vector<DrawnPart>& parts) {
+    section_.want(wanted_section(view, state));
+    const auto found = section_.found();
+    if (!found || !found->mesh) return;
+    PartStyle style;
+    style.front = style.back = kNoValue;
+    style.is_flat = true;
+    style.is_coloured_by_value = true;
+    if (const auto range = colour_range(view, state))
+      std::tie(style.low, style.high) = std::pair((*range)[0], (*range)[1]);
+    parts.push_back({found->mesh, style, kNoSurface});
+  }
+
   void fill_histogram() {
     const std::vector<double> some = values_->some();
     facts_.histogram.assign(kHistogramParts, 0);
@@ -178,6 +221,8 @@ class StoreDocument final : public Document {
         view.depths->viewpoint() == result.viewpoint)
       result.depths = view.depths;
     result.isovalues = isovalues_of(state);
+    if (view.has_edges && wants_section(view))
+      result.cells_in = {view.cut.plane.origin, view.cut.plane.normal};
     return result;
   }
 
@@ -193,6 +238,7 @@ class StoreDocument final : public Document {
   std::unique_ptr<VolumeValues> values_;
   std::array<double, 2> colour_range_{};
   SurfaceWorker worker_;
+  StoreSection section_;
 };
 
 }  // namespace

@@ -35,6 +35,8 @@ class StoreFramesOf final : public StoreFrames {
   void for_each_chunk(const std::function<void(const SurfaceChunk&)>& visit) const override {
     frames_.for_each_chunk(visit);
   }
+  std::optional<double> error_at(const Vec3& place) override { return frames_.error_at(place); }
+  std::vector<std::vector<Vec3>> cells_in(const Plane& plane) override { return frames_.cells_in(plane); }
   [[nodiscard]] PageCounts counts() const override {
     PageCounts counts = pages_.counts();
     // What the loader has read is there once more in the memory of the frames.

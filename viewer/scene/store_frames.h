@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
@@ -27,6 +29,11 @@ class StoreFrames {
   [[nodiscard]] virtual std::string paging_problem() const = 0;
   /// Calls for all parts of the last frame's surface, which are in the frame of the grid.
   virtual void for_each_chunk(const std::function<void(const SurfaceChunk&)>& visit) const = 0;
+  /// The isosurface error of the cell of the last frame's mesh at a place, in the frame of the grid; an
+  /// estimate. None where it is not known.
+  [[nodiscard]] virtual std::optional<double> error_at(const Vec3& place) = 0;
+  /// The cells of the last frame's mesh in a plane, as polygons; in the frame of the grid.
+  [[nodiscard]] virtual std::vector<std::vector<Vec3>> cells_in(const Plane& plane) = 0;
   [[nodiscard]] virtual PageCounts counts() const = 0;
   /// From the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;

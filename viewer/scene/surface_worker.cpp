@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/data/volume_placement.h"
+#include "viewer/scene/mesh_maker.h"
 
 namespace adamas {
 
@@ -56,11 +57,32 @@ void SurfaceWorker::wait_for(const WantedSurfaces& wanted) {
 bool SurfaceWorker::wait_for_work(const std::optional<WantedSurfaces>& done) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] {
-    return is_ended_ ||
+    return is_ended_ || asked_ ||
            (wanted_ && (wanted_ != done || (has_arrived_ && found_ && !found_->report.is_current)));
   });
-  has_arrived_ = false;
+  // A place that is asked about comes first; pages have still arrived then.
+  if (!asked_) has_arrived_ = false;
   return !is_ended_;
+}
+
+SurfaceWorker::ErrorThere SurfaceWorker::error_at(const SurfacePlace& place) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (answered_ && answered_->first == place) return {true, answered_->second};
+    asked_ = place;
+  }
+  changed_.notify_all();
+  return {};
+}
+
+void SurfaceWorker::answer(const SurfacePlace& place) {
+  std::optional<double> error;
+  if (place.surface < surfaces_.size()) error = surfaces_[place.surface].frames->error_at(place.place);
+  // Lengths in space are so many times those in the frame of an oblique grid at most.
+  if (error) *error *= file_.header().grid.greatest_stretch();
+  const std::lock_guard lock(mutex_);
+  answered_ = {place, error};
+  if (asked_ == place) asked_.reset();
 }
 
 void SurfaceWorker::run() {
@@ -68,9 +90,15 @@ void SurfaceWorker::run() {
   std::optional<WantedSurfaces> done, last;
   while (wait_for_work(done)) {
     WantedSurfaces wanted;
+    std::optional<SurfacePlace> asked;
     {
       const std::lock_guard lock(mutex_);
-      wanted = *wanted_;
+      asked = asked_;
+      if (!asked) wanted = *wanted_;
+    }
+    if (asked) {
+      answer(*asked);
+      continue;
     }
     // A rough surface comes at once where there was another one.
     const bool is_other = !last || wanted.isovalues != last->isovalues;
@@ -112,6 +140,8 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
   try {
     for (std::size_t n = 0; n < wanted.isovalues.size() && !is_stopped; ++n)
       is_stopped = !add_surface(*found, n, roughness);
+    if (!is_stopped && wanted.cells_in && !wanted.isovalues.empty())
+      found->cell_edges = cell_edges({(*wanted.cells_in)[0], (*wanted.cells_in)[1]});
     found->report.problem = paging_problem();
   } catch (const std::exception& error) {
     // What there is stays to be seen.
@@ -181,6 +211,18 @@ std::vector<SharedMesh> SurfaceWorker::drawn_chunks(Surface& surface) {
   });
   surface.drawn = std::move(now);
   return meshes;
+}
+
+SharedMesh SurfaceWorker::cell_edges(const Plane& plane) {
+  const VolumeGrid& grid = file_.header().grid;
+  MeshMaker maker(plane.origin, MeshMaker::Kind::kLines);
+  for (const std::vector<Vec3>& polygon : surfaces_[0].frames->cells_in(plane_in_frame(grid, plane))) {
+    for (std::size_t n = 0; n < polygon.size(); ++n) {
+      for (const Vec3& end : {polygon[n], polygon[(n + 1) % polygon.size()]})
+        maker.add_index(maker.add_vertex(grid.in_space(end), plane.normal, {}));
+    }
+  }
+  return maker.finish();
 }
 
 SharedMesh SurfaceWorker::drawn_chunk(const SurfaceChunk& chunk) {

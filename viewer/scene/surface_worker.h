@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <string>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "adamas/meshes.h"
@@ -29,6 +31,8 @@ struct WantedSurfaces {
   std::uint64_t max_triangles = 0;
   double seconds = 0;  ///< for a frame; 0: any
   std::shared_ptr<const DepthPyramid> depths;
+  /// The plane, in space, in which the cells of the first surface's mesh are wanted: origin and normal.
+  std::optional<std::array<Vec3, 2>> cells_in;
 
   bool operator==(const WantedSurfaces&) const = default;
 };
@@ -38,8 +42,17 @@ struct FoundSurfaces {
   WantedSurfaces wanted;
   std::uint64_t roughness = 1;                    ///< by how much it is coarser than that on purpose
   std::vector<std::vector<SharedMesh>> surfaces;  ///< of each isovalue: the chunks
+  SharedMesh cell_edges;                          ///< in the plane; null where none are wanted
   UpdateReport report;
   PageCounts counts;
+};
+
+/// A place on one of the surfaces that were found last, in the frame of the grid.
+struct SurfacePlace {
+  std::size_t surface = 0;
+  Vec3 place;
+
+  bool operator==(const SurfacePlace&) const = default;
 };
 
 /// Works out surfaces in a thread of its own, those that were wanted last. Where it does not wait for pages
@@ -61,6 +74,13 @@ class SurfaceWorker {
   /// Waits until that is what was found, or there is a problem. Where surfaces do not wait for pages, some
   /// may be missing.
   void wait_for(const WantedSurfaces& wanted);
+  /// The isosurface error of the mesh's cell at a place. Never waits: asks for it where it is not known, to
+  /// be worked out between two surfaces.
+  struct ErrorThere {
+    bool is_known = false;
+    std::optional<double> error;  ///< in units of length; an estimate
+  };
+  ErrorThere error_at(const SurfacePlace& place);
 
  private:
   /// The frames of an isovalue, and what is drawn of them: by the ids of chunks, as of a revision.
@@ -74,8 +94,10 @@ class SurfaceWorker {
   };
 
   void run();
-  /// Waits for another wish, or for pages that are missing. Returns false at the end.
+  /// Waits for another wish, for a place that is asked about, or for pages that are missing. Returns false at the
+  /// end.
   bool wait_for_work(const std::optional<WantedSurfaces>& done);
+  void answer(const SurfacePlace& place);
   /// Whether the surfaces that are worked out are not those that are wanted by now.
   [[nodiscard]] bool is_overtaken(const WantedSurfaces& wanted) const;
   /// Works out a frame. Returns false where it was stopped: something else is wanted, or its time is over.
@@ -86,6 +108,8 @@ class SurfaceWorker {
   [[nodiscard]] std::string paging_problem() const;
   /// Only chunks that are not as they were are made anew.
   std::vector<SharedMesh> drawn_chunks(Surface& surface);
+  /// Of the first surface's mesh.
+  [[nodiscard]] SharedMesh cell_edges(const Plane& plane);
   [[nodiscard]] SharedMesh drawn_chunk(const SurfaceChunk& chunk);
 
   static constexpr std::uint64_t kRough = 8;
@@ -102,6 +126,8 @@ class SurfaceWorker {
   bool is_ended_ = false, has_arrived_ = false;
   std::optional<WantedSurfaces> wanted_;
   std::shared_ptr<const FoundSurfaces> found_;
+  std::optional<SurfacePlace> asked_;  ///< not answered yet
+  std::optional<std::pair<SurfacePlace, std::optional<double>>> answered_;
   std::thread thread_;
 };
 

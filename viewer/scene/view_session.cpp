@@ -165,7 +165,8 @@ UpdateReport ViewSession::report() const {
 std::optional<ViewSession::ShownField> ViewSession::shown_field() const {
   for (std::size_t n = 0; n < documents_.size(); ++n) {
     const DocumentState& document = state_.documents[n];
-    if (const auto range = documents_[n]->colour_range(document)) return ShownField{document.field, *range};
+    if (const auto range = documents_[n]->colour_range(state_, document))
+      return ShownField{document.field.empty() ? "value" : document.field, *range};
   }
   return std::nullopt;
 }
@@ -293,13 +294,22 @@ std::optional<Picked> ViewSession::pick(double x, double y) {
     const std::vector<DrawnPart> parts = documents_[n]->parts(state_, state_.documents[n]);
     const std::optional<Hit> hit = adamas::pick(parts, ray, clip());
     if (!hit || (nearest && hit->distance >= nearest_distance)) continue;
-    Reading reading = documents_[n]->at(hit->place, state_.documents[n]);
+    const std::size_t surface = parts[hit->part].surface;
+    Reading reading = documents_[n]->at(hit->place, state_.documents[n], surface);
     // Of the side that is seen, where an interface has values on both.
     if (std::isfinite(hit->value)) reading.value = hit->value;
-    nearest = Picked{documents_[n]->facts().name, hit->place, std::move(reading)};
+    nearest = Picked{documents_[n]->facts().name, hit->place, std::move(reading), n, surface};
     nearest_distance = hit->distance;
   }
   return nearest;
+}
+
+void ViewSession::complete(Picked& picked) {
+  if (!picked.reading.is_pending) return;
+  const Reading now =
+      documents_[picked.number]->at(picked.place, state_.documents[picked.number], picked.surface);
+  picked.reading.error = now.error;
+  picked.reading.is_pending = now.is_pending;
 }
 
 void ViewSession::advance(double seconds) {

@@ -19,6 +19,7 @@ struct Picked {
   std::string document;
   Vec3 place;
   Reading reading;
+  std::size_t number = 0, surface = 0;  ///< of the document, and of its surfaces
 };
 
 /// Files that are looked at together, and how: all of a viewer that needs neither a window nor OpenGL. What
@@ -50,7 +51,8 @@ class ViewSession {
   [[nodiscard]] std::optional<Plane> clip() const;
   /// Of all documents together; the first problem.
   [[nodiscard]] UpdateReport report() const;
-  /// The field that colours show, with the values at the ends of the colour map; none where no file has one.
+  /// The field that colours show, "value" where it is a store's samples, with the values at the ends of the
+  /// colour map; none where nothing is coloured by values.
   struct ShownField {
     std::string name;
     std::array<double, 2> range;
@@ -64,6 +66,8 @@ class ViewSession {
   void act(Action action);
   /// What lies at a place of the picture, in pixels from the upper left corner.
   [[nodiscard]] std::optional<Picked> pick(double x, double y);
+  /// Adds to what was picked what has come to be known of it by now.
+  void complete(Picked& picked);
   /// Moves the camera on where it plays: by a turn, or along the recorded path.
   void advance(double seconds);
 

@@ -50,7 +50,7 @@ struct CutState {
   bool is_on = false;
   Plane plane{{}, {1, 0, 0}};
   bool cuts_away = true;      ///< what lies where the normal points to is not shown
-  bool shows_section = true;  ///< of materials, with their fields
+  bool shows_section = true;  ///< of materials with their fields, or of a store's samples
 };
 
 /// A viewpoint with a name.

@@ -22,7 +22,7 @@ class ValuesOf final : public VolumeValues {
   ValuesOf(const std::string& path, std::size_t memory)
       : memory_(memory), file_(path), pages_(file_, 0, memory), samples_(pages_) {}
 
-  [[nodiscard]] double at(const Vec3& in_space) override {
+  [[nodiscard]] double at(const Vec3& in_space, int lod) override {
     const VolumeGrid& grid = file_.header().grid;
     const Vec3 offset = grid.in_frame(in_space) - grid.origin;
     LatticePoint low{};
@@ -32,12 +32,14 @@ class ValuesOf final : public VolumeValues {
       const auto last = static_cast<double>(grid.dimensions[static_cast<std::size_t>(axis)] - 1);
       // A little beyond is round-off.
       if (!(place >= -1e-6 && place <= last + 1e-6)) return kNone;
-      const double below = std::clamp(std::floor(place), 0.0, std::max(0.0, last - 1));
+      const double step = std::ldexp(1.0, lod);
+      const double below =
+          step * std::clamp(std::floor(place / step), 0.0, std::max(0.0, std::ceil(last / step) - 1));
       low[axis] = static_cast<std::int32_t>(below);
-      part[axis] = std::clamp(place - below, 0.0, 1.0);
+      part[axis] = std::clamp((place - below) / step, 0.0, 1.0);
     }
     try {
-      return grid.value(between(low, part));
+      return grid.value(between(low, part, 1 << lod));
     } catch (const PageLost&) {
       return kNone;
     }
@@ -63,17 +65,19 @@ class ValuesOf final : public VolumeValues {
     return values;
   }
 
+  [[nodiscard]] int coarsest() const override { return std::max(0, samples_.lods() - 1); }
+  [[nodiscard]] const VolumeGrid& grid() const override { return file_.header().grid; }
   [[nodiscard]] const std::string& name() const override { return file_.name(); }
 
  private:
-  double between(LatticePoint low, const Vec3& part) {
+  double between(LatticePoint low, const Vec3& part, std::int32_t step) {
     double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
       LatticePoint p = low;
       double weight = 1;
       for (int axis = 0; axis < 3; ++axis) {
         const int bit = (corner >> axis) & 1;
-        p[axis] += bit;
+        p[axis] += bit * step;
         weight *= bit == 0 ? 1 - part[axis] : part[axis];
       }
       // Samples without weight need not exist, nor be numbers.

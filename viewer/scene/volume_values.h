@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "adamas/volume.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {
@@ -14,8 +15,13 @@ class VolumeValues {
  public:
   virtual ~VolumeValues() = default;
 
-  /// NaN where a place lies outside of the samples, or a page cannot be had.
-  [[nodiscard]] virtual double at(const Vec3& in_space) = 0;
+  /// NaN where a place lies outside of the samples, or a page cannot be had. `lod`: between which samples,
+  /// one of 2^lod along each axis.
+  [[nodiscard]] virtual double at(const Vec3& in_space, int lod) = 0;
+  [[nodiscard]] double at(const Vec3& in_space) { return at(in_space, 0); }
+  /// The coarsest LOD that tells more than one value.
+  [[nodiscard]] virtual int coarsest() const = 0;
+  [[nodiscard]] virtual const VolumeGrid& grid() const = 0;
   /// Of one sample of every cube of 2^N a side, N as small as there are a million at most: those that are
   /// finite.
   [[nodiscard]] virtual std::vector<double> some() = 0;

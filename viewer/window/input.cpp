@@ -66,6 +66,11 @@ void Input::release(double x, double y) {
   if (is_click) picked_ = session_.pick(x, y);
 }
 
+bool Input::complete_picked() {
+  if (picked_) session_.complete(*picked_);
+  return picked_ && picked_->reading.is_pending;
+}
+
 void Input::wheel(double steps) {
   Viewpoint& viewpoint = session_.state().viewpoint;
   viewpoint = zoomed(viewpoint, steps);

@@ -30,6 +30,8 @@ class Input {
   /// What the last click met; none where it met nothing.
   [[nodiscard]] const std::optional<Picked>& picked() const { return picked_; }
   void forget_picked() { picked_.reset(); }
+  /// Adds to that what has come to be known by now. Returns whether more is to come.
+  bool complete_picked();
 
  private:
   enum class Drag { kNone, kTurn, kPan, kZoom, kCut };

@@ -29,6 +29,11 @@ class OffscreenPictures {
  private:
   struct Parts;
 
+  /// Has the session know what the surface of now hides from the viewpoint of the state.
+  void find_depths();
+  /// The same of its whole surface, from the viewpoint that its mesh is to be made for.
+  void find_depths_of_culled_view();
+
   ViewSession& session_;
   std::unique_ptr<Parts> parts_;
   UpdateReport report_;

@@ -145,7 +145,7 @@ void show_field(const Document& document, DocumentState& state, ViewState& view)
     }
     ImGui::EndCombo();
   }
-  const auto range = document.colour_range(state);
+  const auto range = document.colour_range(view, state);
   if (!range) return;
   if (ImGui::BeginCombo("colour map", view.colour_map.c_str())) {
     for (const std::string& name : ColourMap::names()) {
@@ -171,7 +171,7 @@ void show_document(const Document& document, DocumentState& state, ViewState& vi
   ImGui::TextDisabled("%s", facts.summary.c_str());
   if (facts.has_isovalues) show_surfaces(facts, state);
   if (!facts.materials.empty()) show_materials(facts, state);
-  if (!facts.fields.empty()) show_field(document, state, view);
+  if (!facts.fields.empty() || document.colour_range(view, state)) show_field(document, state, view);
 }
 
 void show_detail(ViewState& view) {

@@ -244,6 +244,7 @@ class Viewer {
     fly(seconds);
     session_.advance(seconds);
     session_.set_size(width, height);
+    if (input_.complete_picked()) wake();
     const PictureContents contents = session_picture(session_);
     const auto before = std::chrono::steady_clock::now();
     if (!target_ || target_->width() != width || target_->height() != height) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "cli/command.h"
+#include "core/geometry/vec3.h"
+
+namespace adamas {
+
+/// A picture of the gradients of a store in a plane.
+struct GradientPicture {
+  std::string store;
+  Plane plane;
+  std::string output;  ///< a .png
+  double width = 0;    ///< in pixels
+};
+
+/// Draws the directions of gradients, each of the sample that is nearest to a pixel: red, green and blue for
+/// -1 to 1 along the axes of the grid (the dissertation's figure 4.4), so that grey stands for none; white
+/// beyond the data. Writes it and ends the run. Throws UsageError for another output, and Error for a store
+/// without gradients and a plane that does not cut it.
+void draw_gradients(const GradientPicture& picture, Session& session);
+
+}  // namespace adamas
