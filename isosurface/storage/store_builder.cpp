@@ -407,6 +407,13 @@ StoreFigures append_series(const std::filesystem::path& path, const SeriesSource
                            const StoreOptions& options, Progress& progress) {
   StoreFigures figures;
   const StoreFile file(path);
+  if (series.grid != file.header().grid) fail("{}: expected steps on its grid, found another", file.name());
+  if (options.gradients != file.header().gradients)
+    fail("{}: expected steps {} gradients, found others", file.name(),
+         file.header().gradients ? "with" : "without");
+  const double last = file.times().back();
+  if (series.times.empty() || series.times.front() <= last)
+    fail("{}: expected steps after the time {}, found earlier ones", file.name(), last);
   StoreFileWriter writer(path, file);
   add_blocks(writer, path, series, options, file.steps(), figures, progress);
   return figures;

@@ -37,7 +37,8 @@ StoreFile::StoreFile(const std::filesystem::path& path, Paging paging) : name_(p
     last_root_ = prologue.root;
     if (last_root_.offset > size_ || last_root_.size > size_ - last_root_.offset)
       fail("{}: expected {} bytes, found {}", name_, last_root_.end(), size_);
-    check_tail();
+    if (!is_block_mark(last_root_.end(), unfinished_bytes()))
+      fail("{}: expected {} bytes, found {}", name_, last_root_.end(), size_);
     read_blocks();
     grid_ = PageGrid(header().grid.dimensions);
   } catch (...) {
@@ -52,11 +53,10 @@ StoreFile::~StoreFile() {
   if (file_ >= 0) close(file_);
 }
 
-void StoreFile::check_tail() {
+bool StoreFile::is_block_mark(std::uint64_t offset, std::uint64_t most) {
   const auto mark = std::as_bytes(std::span(kBlockMark));
-  const auto tail = bytes_at(last_root_.end(), std::min<std::uint64_t>(mark.size(), unfinished_bytes()));
-  if (!std::equal(tail.begin(), tail.end(), mark.begin()))
-    fail("{}: expected {} bytes, found {}", name_, last_root_.end(), size_);
+  const auto found = bytes_at(offset, std::min<std::uint64_t>(mark.size(), most));
+  return std::equal(found.begin(), found.end(), mark.begin());
 }
 
 void StoreFile::read_blocks() {
@@ -204,7 +204,12 @@ void StoreFile::check_directory() {
     }
     const std::uint64_t wanted = grid_.page_count() * block.root.header.steps();
     if (entries != wanted) fail("{}: expected {} pages, found {}", name_, wanted, entries);
-    total += block.root_bytes + (block.root.header.first_step > 0 ? kBlockMark.size() : 0);
+    total += block.root_bytes;
+    if (block.root.header.first_step == 0) continue;
+    total += kBlockMark.size();
+    const std::uint64_t begin = block.root.before.end();
+    if (!is_block_mark(begin, size_ - begin))
+      fail("{}: the beginning of its steps at {} is damaged", name_, begin);
   }
   if (total != last_root_.end())
     fail("{}: expected {} bytes by its directory, found {}", name_, total, last_root_.end());

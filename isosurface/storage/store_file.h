@@ -85,7 +85,8 @@ class StoreFile {
   };
   [[nodiscard]] const Block& block_of(std::uint32_t step) const;
   void read_blocks();
-  void check_tail();
+  /// Whether a block begins at a place where there are `most` bytes, or as much of one as they hold.
+  bool is_block_mark(std::uint64_t offset, std::uint64_t most);
 
   using ChunkKey = std::pair<std::uint32_t, std::uint64_t>;  ///< the block's first step, the first page
   struct Chunk {
