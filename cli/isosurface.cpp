@@ -103,7 +103,8 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   SurfaceRequest request = request_of(options, grid);
   const std::string& name = options.input.path;
   check_surface_request(name, grid, request, wanted_region(options));
-  StoredPages<OrderedWord<Sample>> pages(file, wanted_step(options.input, file), store_memory(options.input));
+  StoredPages<OrderedWord<Sample>> pages(file, wanted_step(options.input, file, session),
+                                         store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;
   surface.value_name = "isovalue";

@@ -30,10 +30,11 @@ struct Wanted {
 };
 
 /// The steps of --steps A,B, both included; all where nothing is given.
-std::pair<std::uint32_t, std::uint32_t> wanted_steps(const Options& options, const StoreFile& file) {
+std::pair<std::uint32_t, std::uint32_t> wanted_steps(const Options& options, const StoreFile& file,
+                                                     Session& session) {
   if (!options.input.step.empty()) {
     if (!options.steps.empty()) wrong_usage("--step and --steps: expected one of them");
-    const std::uint32_t step = wanted_step(options.input, file);
+    const std::uint32_t step = wanted_step(options.input, file, session);
     return {step, step};
   }
   if (options.steps.empty()) return {0, file.steps() - 1};
@@ -60,7 +61,7 @@ std::size_t write_step(const std::string& output, StoreFile& file, std::uint32_t
 /// Writes F.pvd and F_0000.vti, F_0001.vti, ... beside it.
 std::size_t write_steps(const Options& options, StoreFile& file, const Wanted& wanted, PageCounts& counts,
                         Session& session) {
-  const auto [first, last] = wanted_steps(options, file);
+  const auto [first, last] = wanted_steps(options, file, session);
   const std::filesystem::path list = options.output;
   const std::vector<double> times = file.times();
   std::vector<SeriesEntry> entries;
@@ -101,12 +102,11 @@ void run(const Options& options, Session& session) {
   PageCounts counts;
   if (!is_series && !options.steps.empty())
     wrong_usage("--steps: expected a series as well, -o F.pvd, found '-o {}'", options.output);
-  if (!is_series && options.input.step.empty() && file->steps() > 1)
-    session.console.note("{}: the first of {} steps; -o F.pvd writes all of them, --step another one",
-                         options.input.path, file->steps());
-  const std::size_t bytes = is_series ? write_steps(options, *file, wanted, counts, session)
-                                      : write_step(options.output, *file, wanted_step(options.input, *file),
-                                                   wanted, counts, session);
+
+  const std::size_t bytes =
+      is_series ? write_steps(options, *file, wanted, counts, session)
+                : write_step(options.output, *file, wanted_step(options.input, *file, session), wanted,
+                             counts, session);
   const auto [nx, ny, nz] = part.grid.dimensions;
   session.console.print("{} x {} x {} samples, {}, {}\n", nx, ny, nz, sample_name(part.grid.type),
                         bytes_text(static_cast<double>(bytes)));

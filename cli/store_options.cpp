@@ -28,11 +28,16 @@ void add_step_option(const Command& command, StoreInput& input) {
       .type_name("N");
 }
 
-std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file) {
-  if (input.step.empty()) return 0;
-  const std::size_t step = parse_count("--step", input.step, 0);
+std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session,
+                          const char* option) {
+  if (input.step.empty()) {
+    if (file.steps() > 1)
+      session.console.note("{}: the first of {} steps; {} says which", input.path, file.steps(), option);
+    return 0;
+  }
+  const std::size_t step = parse_count(option, input.step, 0);
   if (step >= file.steps())
-    wrong_usage("--step: expected less than the {} steps of {}, found {}", file.steps(), input.path,
+    wrong_usage("{}: expected less than the {} steps of {}, found {}", option, file.steps(), input.path,
                 input.step);
   return static_cast<std::uint32_t>(step);
 }

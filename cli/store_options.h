@@ -18,8 +18,10 @@ struct StoreInput {
 void add_store_input(const Command& command, StoreInput& input);
 /// --step, of commands that look at one step of a series.
 void add_step_option(const Command& command, StoreInput& input);
-/// The step that was asked for, the first one where none was. Throws UsageError where the store has no such.
-std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file);
+/// The step that was asked for by an option; the first one where none was, with a note that it is that.
+/// Throws UsageError where the store has no such.
+std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session,
+                          const char* option = "--step");
 
 /// Bytes that decoded pages may take.
 std::size_t store_memory(const StoreInput& input);
