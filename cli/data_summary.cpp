@@ -176,37 +176,47 @@ Figures print_store(const std::string& path, Session& session) {
   const VolumeGrid& grid = header.grid;
   const auto [nx, ny, nz] = grid.dimensions;
   Console& console = session.console;
-  const std::uint64_t before = grid.bytes() * header.steps;
+  const std::uint64_t before = grid.bytes() * file->steps();
+  const StoreBytes bytes = file->bytes();
   const int levels = file->grid().top() + 1;
   const char* coding = header.coding == SampleCoding::kSplitEdge ? "split-edge"
                        : header.coding == SampleCoding::kRanks   ? "interpolation of ranks"
                                                                  : "interpolation";
-  console.print("{}: stored volume\n", path);
+  console.print("{}: stored {}\n", path, file->steps() > 1 ? "series of volumes" : "volume");
   console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
   if (grid.is_scaled())
     console.print("  values are {:.9g} times the samples plus {:.9g}\n", grid.slope, grid.intercept);
   print_places(grid, console);
+  const std::vector<double> times = file->times();
+  if (file->steps() > 1)
+    console.print("  {} steps in {} blocks, times from {:.6g} to {:.6g}\n", file->steps(), file->blocks(),
+                  times.front(), times.back());
+  if (file->unfinished_bytes() > 0)
+    console.note("{}: {} bytes at its end are of steps that were never finished", path,
+                 file->unfinished_bytes());
   Figures figures{{"file", path},
                   {"kind", "store"},
                   {"dimensions", grid.dimensions},
                   {"type", sample_name(grid.type)},
                   {"slope", grid.slope},
                   {"intercept", grid.intercept},
-                  {"steps", header.steps},
+                  {"steps", file->steps()},
+                  {"blocks", file->blocks()},
+                  {"times", times},
                   {"levels", levels},
                   {"pages", file->grid().page_count()},
                   {"coding", coding},
                   {"gradients", header.gradients},
                   {"bytes_input", before},
-                  {"bytes_data", header.bytes.samples},
-                  {"bytes_errors", header.bytes.bounds},
-                  {"bytes_gradients", header.bytes.gradients},
+                  {"bytes_data", bytes.samples},
+                  {"bytes_errors", bytes.bounds},
+                  {"bytes_gradients", bytes.gradients},
                   {"bytes_file", file->size()}};
   add_places(grid, figures);
   print_range(*file, console, figures);
   console.print("  levels 0 to {}, {} pages, coding {}, {} gradients\n\n", levels - 1,
                 file->grid().page_count(), coding, header.gradients ? "with" : "without");
-  print_store_bytes(before, header.bytes, file->size(), console);
+  print_store_bytes(before, bytes, file->size(), console);
   return figures;
 }
 

@@ -103,7 +103,8 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   SurfaceRequest request = request_of(options, grid);
   const std::string& name = options.input.path;
   check_surface_request(name, grid, request, wanted_region(options));
-  StoredPages<OrderedWord<Sample>> pages(file, 0, store_memory(options.input));
+  StoredPages<OrderedWord<Sample>> pages(file, wanted_step(options.input, file, session),
+                                         store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;
   surface.value_name = "isovalue";
@@ -157,6 +158,7 @@ void add_isosurface(const Command& app, Session& session) {
                   "adamas isosurface head.adm --isovalue 1150 --error 0.7voxels -o skull.ply",
                   [options, &session] { run(*options, session); });
   add_store_input(command, options->input);
+  add_step_option(command, options->input);
   command
       .add_option("--isovalue", options->isovalues, "The value; repeatable, for several surfaces in one file")
       .required()

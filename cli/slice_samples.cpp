@@ -122,8 +122,9 @@ void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& 
 
 SampleSlab store_slab(const StoreInput& input, const Plane& plane, Session& session) {
   const std::unique_ptr<StoreFile> file = open_store(input, session);
+  const std::uint32_t step = wanted_step(input, *file, session, "--time");
   const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
-    restore(*file, 0, part, store_memory(input), sink, session.console);
+    restore(*file, step, part, store_memory(input), sink, session.console);
   };
   return slab(input.path, file->header().grid, plane, read, session);
 }
@@ -149,7 +150,8 @@ SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
     if (!original.empty())
       wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", input.path);
     if (about_grid) wrong_usage("{}: expected data with materials as INPUT, found {}", option, input.path);
-    if (!of_volume.empty()) wrong_usage("{}: expected a volume as INPUT, found {}", of_volume, input.path);
+    if (!of_volume.empty() && of_volume != "--time")
+      wrong_usage("{}: expected a volume as INPUT, found {}", of_volume, input.path);
     return SampleOrigin::kStore;
   }
   if (!of_volume.empty()) {
@@ -173,6 +175,7 @@ SliceInput load_samples(const InputOptions& input, VolumeInput volume, SampleOri
   result.name = input.path;
   StoreInput store;
   store.path = volume.path = input.path;
+  store.step = volume.time;
   if (origin == SampleOrigin::kVolume && volume.array.empty() && is_aslant_image(input.path)) {
     volume.array = std::exchange(field, {});
   }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/option_values.h"
+#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 
@@ -20,6 +21,25 @@ void add_store_input(const Command& command, StoreInput& input) {
       .one_of({"read", "map"})
       .show_default()
       .group("Paging");
+}
+
+void add_step_option(const Command& command, StoreInput& input) {
+  command.add_option("--step", input.step, "Of a series: the number of a step, from 0 on (default 0)")
+      .type_name("N");
+}
+
+std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session,
+                          const char* option) {
+  if (input.step.empty()) {
+    if (file.steps() > 1)
+      session.console.note("{}: the first of {} steps; {} says which", input.path, file.steps(), option);
+    return 0;
+  }
+  const std::size_t step = parse_count(option, input.step, 0);
+  if (step >= file.steps())
+    wrong_usage("{}: expected less than the {} steps of {}, found {}", option, file.steps(), input.path,
+                input.step);
+  return static_cast<std::uint32_t>(step);
 }
 
 std::size_t store_memory(const StoreInput& input) { return parse_size("--memory", input.memory); }

@@ -12,10 +12,16 @@ namespace adamas {
 
 /// The options that all commands on stores have.
 struct StoreInput {
-  std::string path, memory = "256M", paging = "read";
+  std::string path, step, memory = "256M", paging = "read";
 };
 
 void add_store_input(const Command& command, StoreInput& input);
+/// --step, of commands that look at one step of a series.
+void add_step_option(const Command& command, StoreInput& input);
+/// The step that was asked for by an option; the first one where none was, with a note that it is that.
+/// Throws UsageError where the store has no such.
+std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session,
+                          const char* option = "--step");
 
 /// Bytes that decoded pages may take.
 std::size_t store_memory(const StoreInput& input);

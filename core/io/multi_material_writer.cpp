@@ -109,15 +109,4 @@ void write_multi_material_data(const std::filesystem::path& path, const MultiMat
   }
 }
 
-void write_series(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries) {
-  OutputStream stream(path);
-  stream.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n");
-  for (const SeriesEntry& entry : entries) {
-    stream.write(fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time,
-                             xml_attribute(entry.file)));
-  }
-  stream.write("  </Collection>\n</VTKFile>\n");
-  stream.finish();
-}
-
 }  // namespace adamas

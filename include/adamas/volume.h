@@ -84,6 +84,8 @@ struct VolumeGrid {
   /// eight bytes each), a spacing or the slope is not positive, a place or the intercept is not finite, or
   /// directions are no unit vectors or lie in one plane.
   void check(const std::string& name) const;
+
+  bool operator==(const VolumeGrid&) const = default;
 };
 
 /// A volume that owns its samples.

@@ -14,6 +14,9 @@ struct PagePayload {
   std::span<const std::byte> samples, bounds, gradients;
   std::size_t along = 0;  ///< how many those are, which come before `bounds`
 
+  /// Whether the bounds are those that the page has in the step before: there are no bytes of them then.
+  [[nodiscard]] bool has_earlier_bounds() const { return along + bounds.size() == 0; }
+
   /// All bytes of the bounds, by those that the decoded samples carried along; nothing where these are not as
   /// many.
   [[nodiscard]] std::optional<std::vector<std::byte>> all_bounds(const BytesAlong& carried) const;

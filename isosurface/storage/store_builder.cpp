@@ -14,11 +14,13 @@
 #include "isosurface/compression/range_rounding.h"
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
+#include "isosurface/compression/time_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/scratch_pages.h"
 #include "isosurface/storage/store_file.h"
+#include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -64,29 +66,35 @@ struct Job {
   Surroundings<Word> around;
   GradientCodes gradients;  ///< undefined, with those round it, where none are kept
   GradientCodesAround gradients_around;
+  std::array<EarlierPage<Word>, 2> earlier;  ///< of the steps before, as many as it may be coded with
+  std::size_t earlier_count = 0;
+  bool has_earlier_bounds = false;  ///< whether its bounds are those of the step before
+
+  [[nodiscard]] std::span<const EarlierPage<Word>> before() const {
+    return std::span(earlier).first(earlier_count);
+  }
 };
 
 /// What the tables are made from.
 template <class Word>
 struct Surveys {
-  std::unique_ptr<SampleSurvey<Word>> samples;
+  TimeSurvey<Word> samples;
   BoundsSurvey<Word> bounds;
   std::optional<GradientSurvey> gradients;
 
-  /// `ranks`, `prevailing`: see sample_survey.
-  Surveys(SampleCoding coding, std::shared_ptr<const SampleRanks> ranks, std::optional<Word> prevailing,
-          bool with_gradients, const Vec3& spacing, const RangeRounding<Word>& rounding)
-      : samples(sample_survey<Word>(coding, std::move(ranks), prevailing)), bounds(spacing, rounding) {
+  Surveys(TimeSurvey<Word> of_samples, SampleCoding coding, bool with_gradients, const Vec3& spacing,
+          const RangeRounding<Word>& rounding)
+      : samples(std::move(of_samples)), bounds(spacing, rounding) {
     if (with_gradients) gradients.emplace(coding_of_bytes(coding));
   }
 
   void add(const Job<Word>& job) {
-    samples->add(job.shape, job.around.samples, job.page.samples);
-    bounds.add(job.shape, job.around, job.page);
+    samples.add(job.shape, job.around.samples, job.page.samples, job.before());
+    if (!job.has_earlier_bounds) bounds.add(job.shape, job.around, job.page);
     if (gradients) gradients->add(job.shape, job.gradients_around, job.gradients);
   }
   void merge(const Surveys& other) {
-    samples->merge(*other.samples);
+    samples.merge(other.samples);
     bounds.merge(other.bounds);
     if (gradients) gradients->merge(*other.gradients);
   }
@@ -106,12 +114,12 @@ struct CodedPage {
 template <class Word>
 struct Codecs {
   SampleCoding coding;
-  std::unique_ptr<SampleCodec<Word>> samples;
+  TimeCodec<Word> samples;
   BoundsCodec<Word> bounds;
   std::optional<GradientCodec> gradients;
 
   Codecs(SampleCoding of_samples, const Surveys<Word>& surveys)
-      : coding(of_samples), samples(surveys.samples->codec()), bounds(surveys.bounds) {
+      : coding(of_samples), samples(surveys.samples), bounds(surveys.bounds) {
     if (surveys.gradients) gradients.emplace(surveys.gradients->codec());
   }
 
@@ -119,121 +127,201 @@ struct Codecs {
     coded.samples.clear();
     coded.bounds.clear();
     coded.gradients.clear();
-    bounds.encode(job.shape, job.around, job.page, coded.bounds);
-    samples->encode_with(job.shape, job.around.samples, job.page.samples, coded.samples, coded.bounds);
+    if (!job.has_earlier_bounds) bounds.encode(job.shape, job.around, job.page, coded.bounds);
+    samples.encode(job.shape, job.around.samples, job.page.samples, job.before(), coded.samples,
+                   coded.bounds);
     coded.along = carried_along(coding, coded.samples[0], coded.bounds.size());
     if (gradients) gradients->encode(job.shape, job.gradients_around, job.gradients, coded.gradients);
     coded.summary = summary(job.shape, job.page);
   }
 };
 
+/// Makes blocks of steps, each with tables of its own.
 template <class Sample>
 class StoreBuilder {
  public:
   using Word = OrderedWord<Sample>;
 
   StoreBuilder(const VolumeGrid& volume, const StoreOptions& options, Progress& progress)
-      : volume_(volume),
-        grid_(volume.dimensions),
-        options_(options),
-        progress_(progress),
-        scratch_(options.scratch, grid_, kMemory) {
-    if (options.gradients)
-      gradients_ =
-          std::make_unique<ScratchPages<std::uint16_t>>(options.scratch, grid_, kMemory, PageParts::kSamples);
-  }
+      : volume_(volume), grid_(volume.dimensions), options_(options), progress_(progress) {}
 
-  StoreFigures build(const std::filesystem::path& path, const std::string& shown, const PlaneSource& planes) {
-    preprocess<Sample>(
-        volume_, planes,
-        [this](const PageId& id, const Page<Word>& page) {
-          if (options_.coding == SampleCoding::kInterpolation)
-            census_.add(page_shape(grid_, id), page.samples);
-          scratch_.put(id, page);
-        },
-        progress_);
-    if (gradients_ != nullptr) make_gradients(planes);
+  /// Adds a block of these steps of the series, the first of which is the step `first` of the store. `file`:
+  /// the store as it is, for what its last steps hold; null where there are none before.
+  void add_block(StoreFileWriter& writer, const SeriesSource& series, std::uint32_t begin, std::uint32_t end,
+                 std::uint32_t first, StoreFile* file, StoreFigures& figures) {
+    first_ = first;
+    open_earlier(file);
+    const std::size_t memory = kMemory / (end - begin);
+    for (std::uint32_t step = begin; step < end; ++step) prepare(series.planes(step), memory);
     ranks_ = census_.ranks();
-    const std::vector<std::uint64_t> numbers = page_numbers(grid_);
-    look_at_coarse(std::span(numbers).first(std::min(numbers.size(), kCoarsePages)));
-    return write(numbers, survey(numbers), path, shown);
+    numbers_ = page_numbers(grid_);
+    look_at_coarse();
+    const Codecs<Word> codecs = survey();
+    StoreHeader header;
+    header.grid = volume_;
+    header.coding = coding();
+    header.gradients = options_.gradients;
+    header.first_step = first;
+    header.times.assign(series.times.begin() + begin, series.times.begin() + end);
+    write(writer, codecs, header);
+    figures.bytes += header.bytes;
+    figures.file_bytes = writer.finish_block(header);
+    figures.pages += numbers_.size() * steps_.size();
   }
 
  private:
-  void make_gradients(const PlaneSource& planes) {
+  /// What preprocessing has found of a step.
+  struct Step {
+    std::unique_ptr<ScratchPages<Word>> pages;
+    std::unique_ptr<ScratchPages<std::uint16_t>> gradients;  ///< OctahedralCodes; null where none are kept
+  };
+
+  void open_earlier(StoreFile* file) {
+    if (file == nullptr) return;
+    std::shared_ptr<StoredPages<Word>> before;
+    for (int n = steps_before(first_); n > 0; --n) {
+      before = std::make_shared<StoredPages<Word>>(*file, first_ - static_cast<std::uint32_t>(n), kMemory / 4,
+                                                   std::move(before));
+      earlier_.push_back(before);
+    }
+    std::reverse(earlier_.begin(), earlier_.end());
+  }
+
+  void prepare(const PlaneSource& planes, std::size_t memory) {
+    Step& step = steps_.emplace_back();
+    step.pages = std::make_unique<ScratchPages<Word>>(options_.scratch, grid_, memory);
+    preprocess<Sample>(
+        volume_, planes,
+        [&](const PageId& id, const Page<Word>& page) {
+          if (options_.coding == SampleCoding::kInterpolation)
+            census_.add(page_shape(grid_, id), page.samples);
+          step.pages->put(id, page);
+        },
+        progress_);
+    if (!options_.gradients) return;
+    step.gradients =
+        std::make_unique<ScratchPages<std::uint16_t>>(options_.scratch, grid_, memory, PageParts::kSamples);
     GradientPageOptions options;
     options.smoothing = options_.smoothing;
     options.scratch = options_.scratch;
     gradient_pages<Sample>(
         volume_, planes,
-        [this](const PageId& id, const Page<std::uint16_t>& page) { gradients_->put(id, page); }, options,
+        [&](const PageId& id, const Page<std::uint16_t>& page) { step.gradients->put(id, page); }, options,
         progress_);
   }
+
   [[nodiscard]] SampleCoding coding() const {
     return ranks_ != nullptr ? SampleCoding::kRanks : options_.coding;
   }
-  /// Finds the rounding of ranges and the prevailing sample, by the diamonds and the samples of these pages.
-  void look_at_coarse(std::span<const std::uint64_t> numbers) {
+  /// Finds the rounding of ranges and the prevailing sample, by the diamonds and the samples of the coarsest
+  /// pages.
+  void look_at_coarse() {
     std::vector<Word> low, high;
     PrevailingSample<Word> prevailing(ranks_.get());
     Page<Word> page;
-    for (const std::uint64_t number : numbers) {
+    for (const std::uint64_t number : std::span(numbers_).first(std::min(numbers_.size(), kCoarsePages))) {
       const PageId id = grid_.page(number);
-      scratch_.copy(id, page);
-      prevailing.add(page_shape(grid_, id), page.samples);
-      for_each_own_place(page_shape(grid_, id), [&](std::size_t place) {
-        if (page.low[place] > page.high[place]) return;
-        low.push_back(page.low[place]);
-        high.push_back(page.high[place]);
-      });
+      for (const Step& step : steps_) {
+        step.pages->copy(id, page);
+        prevailing.add(page_shape(grid_, id), page.samples);
+        for_each_own_place(page_shape(grid_, id), [&](std::size_t place) {
+          if (page.low[place] > page.high[place]) return;
+          low.push_back(page.low[place]);
+          high.push_back(page.high[place]);
+        });
+      }
     }
     rounding_ = find_rounding(std::move(low), std::move(high));
     prevailing_ = prevailing.found();
   }
-  /// Calls fn(jobs) for the pages in batches, with their ranges rounded.
+
+  /// Calls fn(jobs) for all steps of the pages in batches, with their ranges rounded.
   template <class Fn>
   void for_each_batch(const std::vector<std::uint64_t>& numbers, const char* stage, Fn&& fn) {
-    for (std::size_t begin = 0; begin < numbers.size(); begin += kBatch) {
-      progress_.step(stage, static_cast<double>(begin) / static_cast<double>(numbers.size()));
-      const std::size_t count = std::min(kBatch, numbers.size() - begin);
+    const std::size_t all = numbers.size() * steps_.size();
+    for (std::size_t begin = 0; begin < all; begin += kBatch) {
+      progress_.step(stage, static_cast<double>(begin) / static_cast<double>(all));
+      const std::size_t count = std::min(kBatch, all - begin);
       if (jobs_.size() < count) jobs_.resize(count);
-      for (std::size_t n = 0; n < count; ++n) {
-        Job<Word>& job = jobs_[n];
-        job.number = numbers[begin + n];
-        const PageId id = grid_.page(job.number);
-        job.shape = page_shape(grid_, id);
-        scratch_.surroundings(id, job.around);
-        scratch_.copy(id, job.page);
-        rounding_.round(job.around.low, job.around.high);
-        rounding_.round(job.page.low, job.page.high);
-        if (gradients_ != nullptr) get_gradients(id, job);
-      }
+      for (std::size_t n = 0; n < count; ++n)
+        load(numbers[(begin + n) / steps_.size()], (begin + n) % steps_.size(), jobs_[n]);
       fn(std::span<const Job<Word>>(jobs_).first(count));
     }
   }
 
-  void get_gradients(const PageId& id, Job<Word>& job) {
-    gradients_->surroundings(id, around_gradients_, PageParts::kSamples);
+  void load(std::uint64_t number, std::size_t n, Job<Word>& job) {
+    const Step& step = steps_[n];
+    job.number = number;
+    const PageId id = grid_.page(job.number);
+    job.shape = page_shape(grid_, id);
+    step.pages->surroundings(id, job.around);
+    step.pages->copy(id, job.page);
+    rounding_.round(job.around.low, job.around.high);
+    rounding_.round(job.page.low, job.page.high);
+    load_earlier(id, n, job);
+    if (step.gradients == nullptr) return;
+    step.gradients->surroundings(id, around_gradients_, PageParts::kSamples);
     job.gradients_around = around_gradients_.samples;
-    job.gradients = gradients_->samples(id)->samples;
+    job.gradients = step.gradients->samples(id)->samples;
   }
 
-  Codecs<Word> survey(const std::vector<std::uint64_t>& numbers) {
-    std::vector<std::uint64_t> some;
-    std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(some), [&](std::uint64_t number) {
-      return numbers.size() <= kSurveyed || grid_.page(number).lod > 0 || fibonacci_slot(number, 3) == 0;
+  void load_earlier(const PageId& id, std::size_t n, Job<Word>& job) {
+    job.earlier_count = 0;
+    job.has_earlier_bounds = false;
+    const int count = steps_before(first_ + static_cast<std::uint32_t>(n));
+    for (std::size_t back = 1; back <= static_cast<std::size_t>(count); ++back) {
+      PageCache<Word>* pages = nullptr;
+      if (n >= back) {
+        pages = steps_[n - back].pages.get();
+      } else if (back - n <= earlier_.size()) {
+        pages = earlier_[back - n - 1].get();
+      }
+      const PageSamples<Word>* samples = pages != nullptr ? pages->samples(id) : nullptr;
+      // What is damaged is no help.
+      if (samples == nullptr) return;
+      EarlierPage<Word>& earlier = job.earlier[back - 1];
+      earlier.samples = samples->samples;
+      if (!job.shape.complete) {
+        if (!pages->surroundings(id, around_, PageParts::kSamples)) return;
+        earlier.around = around_.samples;
+      }
+      job.earlier_count = back;
+      if (back == 1 && n > 0) job.has_earlier_bounds = are_bounds_of(steps_[n - 1], id, job);
+    }
+  }
+
+  /// Whether a step's page has the job's bounds. Carried bytes make them none in a page that has none.
+  bool are_bounds_of(const Step& step, const PageId& id, const Job<Word>& job) {
+    step.pages->copy(id, page_);
+    rounding_.round(page_.low, page_.high);
+    bool same = true;
+    for_each_own_place(job.shape, [&](std::size_t place) {
+      same = same && page_.low[place] == job.page.low[place] && page_.high[place] == job.page.high[place] &&
+             page_.errors[place] == job.page.errors[place];
     });
-    const auto empty = [this] {
-      return std::make_unique<Surveys<Word>>(coding(), ranks_, prevailing_, options_.gradients,
-                                             volume_.spacing, rounding_);
-    };
-    const auto surveys = empty();
+    return same;
+  }
+
+  [[nodiscard]] std::unique_ptr<Surveys<Word>> empty_surveys() const {
+    const bool in_time = steps_before(first_) > 0 || steps_.size() > 1;
+    TimeSurvey<Word> samples(sample_survey<Word>(coding(), ranks_, prevailing_), coding(), in_time);
+    return std::make_unique<Surveys<Word>>(std::move(samples), coding(), options_.gradients, volume_.spacing,
+                                           rounding_);
+  }
+
+  Codecs<Word> survey() {
+    std::vector<std::uint64_t> some;
+    const std::size_t all = numbers_.size() * steps_.size();
+    std::copy_if(numbers_.begin(), numbers_.end(), std::back_inserter(some), [&](std::uint64_t number) {
+      return all <= kSurveyed || grid_.page(number).lod > 0 || fibonacci_slot(number, 3) == 0;
+    });
+    const auto surveys = empty_surveys();
     for_each_batch(some, "surveying", [&](std::span<const Job<Word>> jobs) {
       constexpr std::size_t kPart = kBatch / 4;
       std::vector<std::unique_ptr<Surveys<Word>>> parts((jobs.size() + kPart - 1) / kPart);
       parallel_chunks(jobs.size(), kPart, [&](std::size_t begin, std::size_t end) {
         auto& part = parts[begin / kPart];
-        part = empty();
+        part = empty_surveys();
         for (const Job<Word>& job : jobs.subspan(begin, end - begin)) part->add(job);
       });
       for (const auto& part : parts) surveys->merge(*part);
@@ -241,31 +329,24 @@ class StoreBuilder {
     return Codecs<Word>(coding(), *surveys);
   }
 
-  StoreFigures write(const std::vector<std::uint64_t>& numbers, const Codecs<Word>& codecs,
-                     const std::filesystem::path& path, const std::string& shown) {
-    StoreHeader header;
-    header.grid = volume_;
-    header.coding = coding();
-    header.gradients = options_.gradients;
-    StoreFileWriter writer(path, shown, header);
+  void write(StoreFileWriter& writer, const Codecs<Word>& codecs, StoreHeader& header) {
     std::vector<CodedPage> coded(kBatch);
-    for_each_batch(numbers, "compressing", [&](std::span<const Job<Word>> jobs) {
+    for_each_batch(numbers_, "compressing", [&](std::span<const Job<Word>> jobs) {
       parallel_for(jobs.size(), kGrain, [&](std::size_t n) { codecs.encode(jobs[n], coded[n]); });
       for (std::size_t n = 0; n < jobs.size(); ++n) {
         const CodedPage& page = coded[n];
         const std::vector<std::byte> payload = join_payload(page.payload());
-        writer.add_page(0, jobs[n].number, payload, page.summary);
+        writer.add_page(jobs[n].number, payload, page.summary);
         add_bytes(page, header.bytes);
       }
     });
-    header.sample_tables = codecs.samples->tables();
+    header.sample_tables = codecs.samples.tables();
+    header.time_tables = codecs.samples.time_tables();
     header.bounds_tables = codecs.bounds.tables();
     if (codecs.gradients) header.gradient_tables = codecs.gradients->tables();
-    header.bytes.samples += header.sample_tables.size();
+    header.bytes.samples += header.sample_tables.size() + header.time_tables.size();
     header.bytes.bounds += header.bounds_tables.size();
     header.bytes.gradients += header.gradient_tables.size();
-    const StoreBytes bytes = header.bytes;
-    return {bytes, writer.finish(std::move(header)), numbers.size()};
   }
 
   /// Of a page that is in the file for its gradients alone all bytes are theirs.
@@ -286,9 +367,13 @@ class StoreBuilder {
   PageGrid grid_;
   StoreOptions options_;
   Progress& progress_;
-  ScratchPages<Word> scratch_;
-  std::unique_ptr<ScratchPages<std::uint16_t>> gradients_;  ///< OctahedralCodes; null where none are kept
+  std::uint32_t first_ = 0;  ///< the store's number of the block's first step
+  std::vector<Step> steps_;
+  std::vector<std::shared_ptr<StoredPages<Word>>> earlier_;  ///< of the steps before, the last one first
+  std::vector<std::uint64_t> numbers_;
   Surroundings<std::uint16_t> around_gradients_;
+  Surroundings<Word> around_;
+  Page<Word> page_;
   std::vector<Job<Word>> jobs_;
   SampleCensus<Word> census_;
   std::shared_ptr<const SampleRanks> ranks_;  ///< null where samples are coded as they are
@@ -296,13 +381,52 @@ class StoreBuilder {
   std::optional<Word> prevailing_;
 };
 
+/// Adds all steps of a series, in blocks that end where `block_steps` go into the number of steps.
+void add_blocks(StoreFileWriter& writer, const std::filesystem::path& path, const SeriesSource& series,
+                const StoreOptions& options, std::uint32_t first, StoreFigures& figures, Progress& progress) {
+  const auto count = static_cast<std::uint32_t>(series.times.size());
+  for (std::uint32_t begin = 0; begin < count;) {
+    const std::uint32_t step = first + begin;
+    const std::uint32_t end = std::min(count, begin + options.block_steps - step % options.block_steps);
+    const auto file = step > 0 && steps_before(step) > 0 ? std::make_unique<StoreFile>(path) : nullptr;
+    with_sample_type(series.grid.type, [&](auto sample) {
+      const auto builder = std::make_unique<StoreBuilder<decltype(sample)>>(series.grid, options, progress);
+      builder->add_block(writer, series, begin, end, step, file.get(), figures);
+    });
+    begin = end;
+  }
+}
+
 }  // namespace
+
+StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
+                          const SeriesSource& series, const StoreOptions& options, Progress& progress) {
+  StoreFigures figures;
+  StoreFileWriter writer(path, shown, series.grid);
+  add_blocks(writer, path, series, options, 0, figures, progress);
+  return figures;
+}
+
+StoreFigures append_series(const std::filesystem::path& path, const SeriesSource& series,
+                           const StoreOptions& options, Progress& progress) {
+  StoreFigures figures;
+  const StoreFile file(path);
+  if (series.grid != file.header().grid) fail("{}: expected steps on its grid, found another", file.name());
+  if (options.gradients != file.header().gradients)
+    fail("{}: expected steps {} gradients, found others", file.name(),
+         file.header().gradients ? "with" : "without");
+  const double last = file.times().back();
+  if (series.times.empty() || series.times.front() <= last)
+    fail("{}: expected steps after the time {}, found earlier ones", file.name(), last);
+  StoreFileWriter writer(path, file);
+  add_blocks(writer, path, series, options, file.steps(), figures, progress);
+  return figures;
+}
 
 StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,
                          const PlaneSource& planes, const StoreOptions& options, Progress& progress) {
-  return with_sample_type(grid.type, [&](auto sample) {
-    return StoreBuilder<decltype(sample)>(grid, options, progress).build(path, shown, planes);
-  });
+  return build_series(path, shown, {grid, {0}, [&planes](std::uint32_t) { return planes; }}, options,
+                      progress);
 }
 
 }  // namespace adamas

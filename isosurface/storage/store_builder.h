@@ -25,6 +25,16 @@ struct StoreOptions {
   bool gradients = false;  ///< whether the directions of samples' gradients are kept
   /// How these are smoothed first; none: not at all.
   std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
+  /// How many steps of a series are in a block, page by page, from 1 to kMostBlockSteps: reading a page's
+  /// next steps goes fast where they are many, reading one step where they are few.
+  std::uint32_t block_steps = 32;
+};
+
+/// The steps of a series of volumes on one grid.
+struct SeriesSource {
+  VolumeGrid grid;
+  std::vector<double> times;  ///< of the steps, ascending
+  std::function<PlaneSource(std::uint32_t step)> planes;
 };
 
 /// What became of a volume.
@@ -37,6 +47,16 @@ struct StoreFigures {
 /// Preprocesses a volume, orders it in pages and compresses them into a store at `path`; messages name
 /// `shown`. Planes are asked for several times, in any order. Needs 1 GiB of memory and 64 bytes for each
 /// sample of a plane of equal k; the file is the same whatever the number of threads.
+StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
+                          const SeriesSource& series, const StoreOptions& options,
+                          Progress& progress = SilentProgress::instance());
+
+/// Adds steps, whose times are after those of the store at `path`, behind its last ones. Who opens the file
+/// meanwhile, or after this was killed, finds all steps of the blocks that are finished.
+StoreFigures append_series(const std::filesystem::path& path, const SeriesSource& series,
+                           const StoreOptions& options, Progress& progress = SilentProgress::instance());
+
+/// The same of one volume, a series of one step.
 StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,
                          const PlaneSource& planes, const StoreOptions& options,
                          Progress& progress = SilentProgress::instance());

@@ -34,10 +34,13 @@ StoreFile::StoreFile(const std::filesystem::path& path, Paging paging) : name_(p
     if (paging == Paging::kMap && size_ > 0) map();
     const StorePrologue prologue =
         StorePrologue::parse(bytes_at(0, std::min<std::uint64_t>(size_, StorePrologue::kBytes)), name_);
-    if (prologue.root_offset > size_ || prologue.root_size != size_ - prologue.root_offset)
-      fail("{}: expected {} bytes, found {}", name_, prologue.root_offset + prologue.root_size, size_);
-    root_ = StoreRoot::parse(bytes_at(prologue.root_offset, prologue.root_size), prologue.root_offset, name_);
-    grid_ = PageGrid(root_.header.grid.dimensions);
+    last_root_ = prologue.root;
+    if (last_root_.offset > size_ || last_root_.size > size_ - last_root_.offset)
+      fail("{}: expected {} bytes, found {}", name_, last_root_.end(), size_);
+    if (!is_block_mark(last_root_.end(), unfinished_bytes()))
+      fail("{}: expected {} bytes, found {}", name_, last_root_.end(), size_);
+    read_blocks();
+    grid_ = PageGrid(header().grid.dimensions);
   } catch (...) {
     if (mapping_ != nullptr) munmap(const_cast<std::byte*>(mapping_), size_);
     close(file_);
@@ -50,6 +53,53 @@ StoreFile::~StoreFile() {
   if (file_ >= 0) close(file_);
 }
 
+bool StoreFile::is_block_mark(std::uint64_t offset, std::uint64_t most) {
+  const auto mark = std::as_bytes(std::span(kBlockMark));
+  const auto found = bytes_at(offset, std::min<std::uint64_t>(mark.size(), most));
+  return std::equal(found.begin(), found.end(), mark.begin());
+}
+
+void StoreFile::read_blocks() {
+  // From the last block to the first one.
+  for (RootPlace place = last_root_;;) {
+    Block block{StoreRoot::parse(bytes_at(place.offset, place.size), place.offset, name_), place.size};
+    const StoreHeader& header = block.root.header;
+    if (!blocks_.empty()) {
+      const StoreHeader& next = blocks_.back().root.header;
+      if (header.grid != next.grid || header.gradients != next.gradients ||
+          header.first_step + header.steps() != next.first_step || header.times.back() >= next.times.front())
+        fail("{}: expected the steps before step {}, found others", name_, next.first_step);
+    }
+    place = block.root.before;
+    blocks_.push_back(std::move(block));
+    if (blocks_.back().root.header.first_step == 0) break;
+  }
+  std::reverse(blocks_.begin(), blocks_.end());
+}
+
+const StoreFile::Block& StoreFile::block_of(std::uint32_t step) const {
+  ADAMAS_ASSERT(step < steps());
+  const auto next =
+      std::upper_bound(blocks_.begin(), blocks_.end(), step,
+                       [](std::uint32_t s, const Block& block) { return s < block.root.header.first_step; });
+  return *(next - 1);
+}
+
+std::vector<double> StoreFile::times() const {
+  std::vector<double> times;
+  for (const Block& block : blocks_) {
+    const std::vector<double>& own = block.root.header.times;
+    times.insert(times.end(), own.begin(), own.end());
+  }
+  return times;
+}
+
+StoreBytes StoreFile::bytes() const {
+  StoreBytes all;
+  for (const Block& block : blocks_) all += block.root.header.bytes;
+  return all;
+}
+
 void StoreFile::map() {
   void* mapping = mmap(nullptr, size_, PROT_READ, MAP_SHARED, file_, 0);
   if (mapping == MAP_FAILED) fail("{}: cannot be mapped: {}", name_, std::strerror(errno));
@@ -60,7 +110,8 @@ std::unique_ptr<StoreFile> StoreFile::for_another_thread() const {
   std::unique_ptr<StoreFile> other(new StoreFile);
   other->name_ = name_;
   other->size_ = size_;
-  other->root_ = root_;
+  other->blocks_ = blocks_;
+  other->last_root_ = last_root_;
   other->grid_ = grid_;
   other->file_ = fcntl(file_, F_DUPFD_CLOEXEC, 0);
   if (other->file_ < 0) fail("{}: cannot be opened again: {}", name_, std::strerror(errno));
@@ -86,18 +137,19 @@ std::span<const std::byte> StoreFile::bytes_at(std::uint64_t offset, std::uint64
 }
 
 StoreFile::ChunkKey StoreFile::key_of(std::uint32_t step, const PageId& page) const {
-  return {step, grid_.number(page) / DirectoryChunk::kPages * DirectoryChunk::kPages};
+  return {block_of(step).root.header.first_step,
+          grid_.number(page) / DirectoryChunk::kPages * DirectoryChunk::kPages};
 }
 
-const StoreFile::DirectoryPart& StoreFile::chunk(const DirectoryChunk& from) {
-  const auto known = chunks_.find({from.step, from.first});
+const StoreFile::DirectoryPart& StoreFile::chunk(const StoreHeader& block, const DirectoryChunk& from) {
+  const auto known = chunks_.find({block.first_step, from.first});
   if (known != chunks_.end()) return *known->second;
   auto part = std::make_shared<DirectoryPart>();
-  part->key = {from.step, from.first};
+  part->key = {block.first_step, from.first};
   part->numbers = chunk_pages(grid_, from.first);
   const auto bytes = bytes_at(from.offset, from.size);
   if (crc32c(bytes) == from.checksum) {
-    if (auto entries = parse_entries(grid_, from, bytes, sample_bytes(root_.header.grid.type)))
+    if (auto entries = parse_entries(grid_, from, block.steps(), bytes, sample_bytes(block.grid.type)))
       part->entries = std::move(*entries);
   }
   return *chunks_.emplace(part->key, part).first->second;
@@ -116,20 +168,23 @@ void StoreFile::take_over(std::shared_ptr<const DirectoryPart> part) {
 
 std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page) {
   const std::uint64_t number = grid_.number(page);
+  const Block& block = block_of(step);
+  const StoreHeader& header = block.root.header;
   const ChunkKey key = key_of(step, page);
   const auto known = chunks_.find(key);
   const DirectoryPart* found = known != chunks_.end() ? known->second.get() : nullptr;
   if (found == nullptr) {
-    const auto from = std::lower_bound(root_.chunks.begin(), root_.chunks.end(), key,
-                                       [](const DirectoryChunk& c, const ChunkKey& k) {
-                                         return ChunkKey{c.step, c.first} < k;
-                                       });
-    if (from == root_.chunks.end() || ChunkKey{from->step, from->first} != key) return {};
-    found = &chunk(*from);
+    const std::vector<DirectoryChunk>& chunks = block.root.chunks;
+    const auto from =
+        std::lower_bound(chunks.begin(), chunks.end(), key.second,
+                         [](const DirectoryChunk& c, std::uint64_t at) { return c.first < at; });
+    if (from == chunks.end() || from->first != key.second) return {};
+    found = &chunk(header, *from);
   }
   const auto at = std::lower_bound(found->numbers.begin(), found->numbers.end(), number);
   if (found->entries.empty() || at == found->numbers.end() || *at != number) return {};
-  return found->entries[static_cast<std::size_t>(at - found->numbers.begin())];
+  const auto row = static_cast<std::size_t>(at - found->numbers.begin());
+  return found->entries[row * header.steps() + (step - header.first_step)];
 }
 
 StoreFile::Payload StoreFile::read(std::uint32_t step, const PageId& page) {
@@ -153,33 +208,52 @@ bool StoreFile::copy_is_whole(const PageEntry& entry) {
 }
 
 void StoreFile::check_directory() {
-  std::uint64_t pages = 0, copies = 0, entries = 0, chunks = 0;
-  for (const DirectoryChunk& from : root_.chunks) {
-    const DirectoryPart& found = chunk(from);
-    if (found.entries.empty() && !found.numbers.empty())
-      fail("{}: the part of the directory at {} is damaged", name_, from.offset);
-    for (const PageEntry& entry : found.entries) {
-      pages += entry.size;
-      copies += entry.copy != 0 ? entry.size : 0;
+  std::uint64_t total = StorePrologue::kBytes;
+  for (const Block& block : blocks_) {
+    std::uint64_t entries = 0;
+    for (const DirectoryChunk& from : block.root.chunks) {
+      const DirectoryPart& found = chunk(block.root.header, from);
+      if (found.entries.empty() && !found.numbers.empty())
+        fail("{}: the part of the directory at {} is damaged", name_, from.offset);
+      for (const PageEntry& entry : found.entries) total += entry.copy != 0 ? 2 * entry.size : entry.size;
+      entries += found.entries.size();
+      total += from.size;
     }
-    entries += found.entries.size();
-    chunks += from.size;
+    const std::uint64_t wanted = grid_.page_count() * block.root.header.steps();
+    if (entries != wanted) fail("{}: expected {} pages, found {}", name_, wanted, entries);
+    total += block.root_bytes;
+    if (block.root.header.first_step == 0) continue;
+    total += kBlockMark.size();
+    const std::uint64_t begin = block.root.before.end();
+    if (!is_block_mark(begin, size_ - begin))
+      fail("{}: the beginning of its steps at {} is damaged", name_, begin);
   }
-  if (entries != grid_.page_count() * root_.header.steps)
-    fail("{}: expected {} pages, found {}", name_, grid_.page_count() * root_.header.steps, entries);
-  const std::uint64_t root = root_.serialise().size();
-  const std::uint64_t total = StorePrologue::kBytes + pages + copies + chunks + root;
-  if (total != size_) fail("{}: expected {} bytes by its directory, found {}", name_, total, size_);
+  if (total != last_root_.end())
+    fail("{}: expected {} bytes by its directory, found {}", name_, total, last_root_.end());
 }
 
-StoreFileWriter::StoreFileWriter(const std::filesystem::path& path, std::string shown,
-                                 const StoreHeader& header)
+StoreFileWriter::StoreFileWriter(const std::filesystem::path& path, std::string shown, const VolumeGrid& grid)
     : shown_(std::move(shown)),
-      stream_(path, std::ios::binary | std::ios::trunc),
-      grid_(header.grid.dimensions),
-      word_bytes_(sample_bytes(header.grid.type)) {
+      stream_(path, std::ios::binary | std::ios::out | std::ios::trunc),
+      grid_(grid.dimensions),
+      word_bytes_(sample_bytes(grid.type)) {
   if (!stream_) fail("{}: cannot be written", shown_);
   write(std::vector<std::byte>(StorePrologue::kBytes));
+}
+
+StoreFileWriter::StoreFileWriter(const std::filesystem::path& path, const StoreFile& store)
+    : shown_(store.name()),
+      stream_(path, std::ios::binary | std::ios::in | std::ios::out),
+      grid_(store.grid()),
+      word_bytes_(sample_bytes(store.header().grid.type)),
+      at_(store.last_root().end()),
+      before_(store.last_root()) {
+  if (!stream_) fail("{}: cannot be written", shown_);
+  // What was never finished goes first: were it longer than what comes, its end would stand behind that.
+  std::error_code failed;
+  std::filesystem::resize_file(path, at_, failed);
+  if (failed) fail("{}: cannot be cut to {} bytes: {}", shown_, at_, failed.message());
+  stream_.seekp(static_cast<std::streamoff>(at_));
 }
 
 void StoreFileWriter::write(std::span<const std::byte> bytes) {
@@ -188,9 +262,9 @@ void StoreFileWriter::write(std::span<const std::byte> bytes) {
   at_ += bytes.size();
 }
 
-void StoreFileWriter::begin_chunk(std::uint32_t step, std::uint64_t first) {
+void StoreFileWriter::begin_chunk(std::uint64_t first) {
+  if (chunks_.empty() && before_.size > 0) write(std::as_bytes(std::span(kBlockMark)));
   DirectoryChunk chunk;
-  chunk.step = step;
   chunk.first = first;
   chunk.pages = at_;
   chunk.copies = copies_.size();
@@ -198,17 +272,17 @@ void StoreFileWriter::begin_chunk(std::uint32_t step, std::uint64_t first) {
 }
 
 void StoreFileWriter::end_chunk() {
-  ADAMAS_ASSERT(entries_.size() == chunk_pages(grid_, chunks_.back().first).size());
+  ADAMAS_ASSERT(entries_.size() % chunk_pages(grid_, chunks_.back().first).size() == 0);
   entry_bytes_.push_back(serialise_entries(entries_, word_bytes_));
   entries_.clear();
 }
 
-void StoreFileWriter::add_page(std::uint32_t step, std::uint64_t number, std::span<const std::byte> payload,
+void StoreFileWriter::add_page(std::uint64_t number, std::span<const std::byte> payload,
                                const PageSummary& summary) {
   const std::uint64_t first = number / DirectoryChunk::kPages * DirectoryChunk::kPages;
-  if (chunks_.empty() || chunks_.back().step != step || chunks_.back().first != first) {
+  if (chunks_.empty() || chunks_.back().first != first) {
     if (!chunks_.empty()) end_chunk();
-    begin_chunk(step, first);
+    begin_chunk(first);
   }
   PageEntry entry{summary};
   ADAMAS_ASSERT(!payload.empty());
@@ -223,7 +297,7 @@ void StoreFileWriter::add_page(std::uint32_t step, std::uint64_t number, std::sp
   write(payload);
 }
 
-std::uint64_t StoreFileWriter::finish(StoreHeader header) {
+std::uint64_t StoreFileWriter::finish_block(const StoreHeader& header) {
   if (!chunks_.empty()) end_chunk();
   for (DirectoryChunk& chunk : chunks_) chunk.copies += at_;
   write(copies_);
@@ -233,17 +307,26 @@ std::uint64_t StoreFileWriter::finish(StoreHeader header) {
     chunks_[n].checksum = crc32c(entry_bytes_[n]);
     write(entry_bytes_[n]);
   }
-  StorePrologue prologue;
-  prologue.root_offset = at_;
-  const std::vector<std::byte> root = StoreRoot{std::move(header), chunks_}.serialise();
-  prologue.root_size = root.size();
-  write(root);
-  const std::uint64_t size = at_;
+  const std::vector<std::byte> bytes = StoreRoot{header, before_, std::move(chunks_)}.serialise();
+  before_ = {at_, bytes.size()};
+  write(bytes);
+  write_prologue(before_);
+  chunks_.clear();
+  entry_bytes_.clear();
+  copies_.clear();
+  return at_;
+}
+
+void StoreFileWriter::write_prologue(const RootPlace& root) {
+  // Whoever opens the file finds the block when all of it is there, and the blocks before until then.
+  stream_.flush();
+  const std::vector<std::byte> prologue = StorePrologue{root}.serialise();
   stream_.seekp(0);
-  write(prologue.serialise());
-  stream_.close();
+  stream_.write(reinterpret_cast<const char*>(prologue.data()),
+                static_cast<std::streamsize>(prologue.size()));
+  stream_.flush();
+  stream_.seekp(static_cast<std::streamoff>(at_));
   if (!stream_) fail("{}: cannot be written to its end: is the disk full?", shown_);
-  return size;
 }
 
 }  // namespace adamas

@@ -38,7 +38,21 @@ class StoreFile {
   [[nodiscard]] std::unique_ptr<StoreFile> for_another_thread() const;
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] const StoreHeader& header() const { return root_.header; }
+  /// Of the first block, the grid and the gradients of which are those of all.
+  [[nodiscard]] const StoreHeader& header() const { return blocks_.front().root.header; }
+  /// Of the block that has a step.
+  [[nodiscard]] const StoreHeader& header(std::uint32_t step) const { return block_of(step).root.header; }
+  [[nodiscard]] std::uint32_t steps() const {
+    return blocks_.back().root.header.first_step + blocks_.back().root.header.steps();
+  }
+  [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
+  /// Of each step.
+  [[nodiscard]] std::vector<double> times() const;
+  /// Of all blocks.
+  [[nodiscard]] StoreBytes bytes() const;
+  /// Bytes behind the last block, of one that was never finished.
+  [[nodiscard]] std::uint64_t unfinished_bytes() const { return size_ - last_root_.end(); }
+  [[nodiscard]] RootPlace last_root() const { return last_root_; }
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
@@ -75,19 +89,29 @@ class StoreFile {
   StoreFile() = default;
   void map();
 
-  using ChunkKey = std::pair<std::uint32_t, std::uint64_t>;
+  struct Block {
+    StoreRoot root;
+    std::uint64_t root_bytes = 0;
+  };
+  [[nodiscard]] const Block& block_of(std::uint32_t step) const;
+  void read_blocks();
+  /// Whether a block begins at a place where there are `most` bytes, or as much of one as they hold.
+  bool is_block_mark(std::uint64_t offset, std::uint64_t most);
+
+  using ChunkKey = std::pair<std::uint32_t, std::uint64_t>;  ///< the block's first step, the first page
 
   /// `size` bytes from `offset`, in the mapping or in buffer_. Bytes beyond the file's end are an Error.
   std::span<const std::byte> bytes_at(std::uint64_t offset, std::uint64_t size);
   [[nodiscard]] ChunkKey key_of(std::uint32_t step, const PageId& page) const;
-  const DirectoryPart& chunk(const DirectoryChunk& chunk);
+  const DirectoryPart& chunk(const StoreHeader& block, const DirectoryChunk& chunk);
 
   std::string name_;
   int file_ = -1;
   std::uint64_t size_ = 0;
   const std::byte* mapping_ = nullptr;
   std::vector<std::byte> buffer_;
-  StoreRoot root_;
+  std::vector<Block> blocks_;
+  RootPlace last_root_;
   PageGrid grid_{{1, 1, 1}};
   std::map<ChunkKey, std::shared_ptr<const DirectoryPart>> chunks_;
   std::uint64_t bytes_read_ = 0;
@@ -100,30 +124,36 @@ class StoreFile::DirectoryPart {
   std::vector<PageEntry> entries;  ///< none where the part is damaged
 };
 
-/// Writes a store, page after page. The file is no store before finish().
+/// Writes a store, block after block, page after page. A new file is no store before the first block is
+/// finished. What is written of a block is not seen by those who open the file before it is finished, also
+/// where that never comes.
 class StoreFileWriter {
  public:
-  /// Throws Error where the file cannot be written; messages name `shown`, the file's final name.
-  StoreFileWriter(const std::filesystem::path& path, std::string shown, const StoreHeader& header);
+  /// Of a new file with blocks of this grid. Throws Error where it cannot be written; messages name `shown`,
+  /// the file's final name.
+  StoreFileWriter(const std::filesystem::path& path, std::string shown, const VolumeGrid& grid);
+  /// Of a store that more is added to, behind its last block.
+  StoreFileWriter(const std::filesystem::path& path, const StoreFile& store);
 
-  /// Takes the pages that PageGrid::contains, every one, in ascending order of step and number.
-  void add_page(std::uint32_t step, std::uint64_t number, std::span<const std::byte> payload,
-                const PageSummary& summary);
-  /// Writes what is not pages, with a header of the bytes and tables that are known now. Returns the file's
-  /// size.
-  std::uint64_t finish(StoreHeader header);
+  /// Takes the pages of a block that PageGrid::contains, every one, in ascending order of number, then step.
+  void add_page(std::uint64_t number, std::span<const std::byte> payload, const PageSummary& summary);
+  /// Writes what is not pages of the block. `header`: of the bytes and tables that are known now. Returns the
+  /// file's size.
+  std::uint64_t finish_block(const StoreHeader& header);
 
  private:
   void write(std::span<const std::byte> bytes);
-  void begin_chunk(std::uint32_t step, std::uint64_t first);
+  void begin_chunk(std::uint64_t first);
   void end_chunk();
+  void write_prologue(const RootPlace& root);
 
   std::string shown_;
-  std::ofstream stream_;
+  std::fstream stream_;
   PageGrid grid_;
   std::size_t word_bytes_;
   std::uint64_t at_ = 0;
-  std::vector<DirectoryChunk> chunks_;
+  RootPlace before_;                                 ///< the root of the last block that is finished
+  std::vector<DirectoryChunk> chunks_;               ///< of the block, as all that follows
   std::vector<PageEntry> entries_;                   ///< of the last chunk
   std::vector<std::vector<std::byte>> entry_bytes_;  ///< of the chunks before
   std::vector<std::byte> copies_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -57,11 +58,29 @@ void write_header(ByteWriter& out, const StoreHeader& header) {
   write_grid(out, header.grid);
   out.number(static_cast<std::uint8_t>(header.coding));
   out.number(static_cast<std::uint8_t>(header.gradients));
-  out.number(header.steps);
+  out.number(header.first_step);
+  out.varint(header.times.size());
+  for (const double time : header.times) out.number(time);
   for (const std::uint64_t n : {header.bytes.samples, header.bytes.bounds, header.bytes.gradients})
     out.number(n);
-  for (const auto* tables : {&header.sample_tables, &header.bounds_tables, &header.gradient_tables})
+  for (const auto* tables :
+       {&header.sample_tables, &header.time_tables, &header.bounds_tables, &header.gradient_tables})
     out.sized_bytes(*tables);
+}
+
+void read_times(ByteReader& in, StoreHeader& header, std::string_view name) {
+  const std::uint64_t count = in.varint();
+  if (count == 0 || count > kMostBlockSteps || header.first_step > kMostSteps - count ||
+      count > in.rest().size() / sizeof(double))
+    fail("{}: expected from 1 to {} steps in a block, found {} from step {} on", name, kMostBlockSteps, count,
+         header.first_step);
+  header.times.clear();
+  for (std::uint64_t n = 0; n < count; ++n) {
+    const auto time = in.number<double>();
+    if (!std::isfinite(time) || (n > 0 && time <= header.times.back()))
+      fail("{}: expected times of steps that ascend, found others", name);
+    header.times.push_back(time);
+  }
 }
 
 StoreHeader read_header(ByteReader& in, std::string_view name) {
@@ -74,10 +93,12 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
   };
   header.coding = static_cast<SampleCoding>(choice("a coding of samples", 2));
   header.gradients = choice("a coding of gradients", 1) != 0;
-  header.steps = in.number<std::uint32_t>();
+  header.first_step = in.number<std::uint32_t>();
+  read_times(in, header, name);
   for (std::uint64_t* n : {&header.bytes.samples, &header.bytes.bounds, &header.bytes.gradients})
     *n = in.number<std::uint64_t>();
-  for (auto* tables : {&header.sample_tables, &header.bounds_tables, &header.gradient_tables}) {
+  for (auto* tables :
+       {&header.sample_tables, &header.time_tables, &header.bounds_tables, &header.gradient_tables}) {
     const auto bytes = in.sized_bytes();
     tables->assign(bytes.begin(), bytes.end());
   }
@@ -87,7 +108,6 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
     constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
     if (n > kMost) fail("{}: expected at most {} samples along every axis, found {}", name, kMost, n);
   }
-  if (header.steps == 0) fail("{}: expected a step or more, found none", name);
   return header;
 }
 
@@ -122,7 +142,6 @@ bool read_part_errors(ByteReader& in, PageSummary& summary) {
 }
 
 void write_chunk(ByteWriter& out, const DirectoryChunk& chunk) {
-  out.number(chunk.step);
   for (const std::uint64_t n : {chunk.first, chunk.offset, chunk.size, chunk.pages, chunk.copies})
     out.varint(n);
   out.number(chunk.checksum);
@@ -130,7 +149,6 @@ void write_chunk(ByteWriter& out, const DirectoryChunk& chunk) {
 
 DirectoryChunk read_chunk(ByteReader& in) {
   DirectoryChunk chunk;
-  chunk.step = in.number<std::uint32_t>();
   for (std::uint64_t* n : {&chunk.first, &chunk.offset, &chunk.size, &chunk.pages, &chunk.copies})
     *n = in.varint();
   chunk.checksum = in.number<std::uint32_t>();
@@ -140,15 +158,13 @@ DirectoryChunk read_chunk(ByteReader& in) {
 void check_chunks(const StoreRoot& root, const PageGrid& grid, std::uint64_t end, std::string_view name) {
   // What is kept in memory of every page must not be more than the file has room to tell of.
   const std::uint64_t parts = (grid.page_count() + DirectoryChunk::kPages - 1) / DirectoryChunk::kPages;
-  if (root.chunks.size() / root.header.steps < parts)
-    fail("{}: expected {} parts or more of a directory for each of {} steps, found {} in all", name, parts,
-         root.header.steps, root.chunks.size());
+  if (root.chunks.size() < parts)
+    fail("{}: expected {} parts or more of a directory, found {}", name, parts, root.chunks.size());
   const DirectoryChunk* before = nullptr;
   for (const DirectoryChunk& chunk : root.chunks) {
-    if (chunk.step >= root.header.steps || chunk.first % DirectoryChunk::kPages != 0 ||
-        chunk.first >= std::uint64_t{2} << (3 * grid.top()))
-      fail("{}: expected pages of its steps, found a directory of others", name);
-    if (before != nullptr && std::pair(before->step, before->first) >= std::pair(chunk.step, chunk.first))
+    if (chunk.first % DirectoryChunk::kPages != 0 || chunk.first >= std::uint64_t{2} << (3 * grid.top()))
+      fail("{}: expected pages of its grid, found a directory of others", name);
+    if (before != nullptr && before->first >= chunk.first)
       fail("{}: expected a directory in the order of pages, found another", name);
     if (chunk.offset > end || chunk.size > end - chunk.offset || chunk.pages > end || chunk.copies > end)
       fail("{}: expected a directory inside the file, found one beyond its end", name);
@@ -197,8 +213,8 @@ std::vector<std::byte> StorePrologue::serialise() const {
   ByteWriter out(bytes);
   out.bytes(std::as_bytes(std::span(kMagic)));
   out.number(kVersion);
-  out.number(root_offset);
-  out.number(root_size);
+  out.number(root.offset);
+  out.number(root.size);
   out.number(crc32c(bytes));
   return bytes;
 }
@@ -209,8 +225,8 @@ StorePrologue StorePrologue::parse(std::span<const std::byte> bytes, std::string
   ByteReader in(bytes.subspan(kMagic.size()));
   StorePrologue prologue;
   const auto version = in.number<std::uint32_t>();
-  prologue.root_offset = in.number<std::uint64_t>();
-  prologue.root_size = in.number<std::uint64_t>();
+  prologue.root.offset = in.number<std::uint64_t>();
+  prologue.root.size = in.number<std::uint64_t>();
   const auto checksum = in.number<std::uint32_t>();
   if (!in.good()) fail("{}: expected {} bytes or more, found {}", name, kBytes, bytes.size());
   if (version != kVersion) fail("{}: expected version {} of the format, found {}", name, kVersion, version);
@@ -222,6 +238,8 @@ std::vector<std::byte> StoreRoot::serialise() const {
   std::vector<std::byte> bytes;
   ByteWriter out(bytes);
   write_header(out, header);
+  out.varint(before.offset);
+  out.varint(before.size);
   out.varint(chunks.size());
   for (const DirectoryChunk& chunk : chunks) write_chunk(out, chunk);
   out.number(crc32c(bytes));
@@ -239,7 +257,13 @@ StoreRoot StoreRoot::parse(std::span<const std::byte> bytes, std::uint64_t root_
   StoreRoot root;
   root.header = read_header(in, name);
   const PageGrid grid(root.header.grid.dimensions);
-  constexpr std::size_t kLeastChunkBytes = 13;
+  root.before.offset = in.varint();
+  root.before.size = in.varint();
+  const bool is_first = root.header.first_step == 0;
+  if (is_first ? root.before != RootPlace{}
+               : root.before.offset > root_offset || root.before.size > root_offset - root.before.offset)
+    fail("{}: expected the steps before step {}, found none", name, root.header.first_step);
+  constexpr std::size_t kLeastChunkBytes = 9;
   const std::uint64_t count = in.varint();
   if (count > in.rest().size() / kLeastChunkBytes)
     fail("{}: expected {} parts of a directory, found room for fewer", name, count);
@@ -292,8 +316,9 @@ namespace {
 /// Takes the entries of pages one after another, without offsets.
 class EntryReader {
  public:
-  EntryReader(std::span<const std::byte> bytes, std::size_t word_bytes)
-      : in_(bytes), word_bytes_(word_bytes) {}
+  /// `most`: how many there may be.
+  EntryReader(std::span<const std::byte> bytes, std::size_t word_bytes, std::uint64_t most)
+      : in_(bytes), word_bytes_(word_bytes), most_(most) {}
 
   /// Nothing where the bytes are not those of an entry, or a stretch of plain pages goes on from another.
   std::optional<PageEntry> take() {
@@ -305,7 +330,7 @@ class EntryReader {
       plain_left_ = in_.varint();
       take_range(plain_);
       const bool goes_on = follows_plain_ && static_cast<const PageSummary&>(plain_) == before;
-      if (plain_left_ == 0 || plain_left_ > DirectoryChunk::kPages || goes_on) return {};
+      if (plain_left_ == 0 || plain_left_ > most_ || goes_on) return {};
     }
     --plain_left_;
     follows_plain_ = true;
@@ -334,6 +359,7 @@ class EntryReader {
 
   ByteReader in_;
   std::size_t word_bytes_;
+  std::uint64_t most_;
   PageEntry plain_;  ///< of the stretch of plain pages that was begun last
   std::uint64_t plain_left_ = 0;
   bool follows_plain_ = false;
@@ -342,21 +368,25 @@ class EntryReader {
 }  // namespace
 
 std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
-                                                    std::span<const std::byte> bytes,
+                                                    std::uint32_t steps, std::span<const std::byte> bytes,
                                                     std::size_t word_bytes) {
-  EntryReader in(bytes, word_bytes);
+  const std::vector<std::uint64_t> numbers = chunk_pages(grid, chunk.first);
+  EntryReader in(bytes, word_bytes, numbers.size() * steps);
   std::vector<PageEntry> entries;
   std::uint64_t offset = chunk.pages, copy = chunk.copies;
-  for (const std::uint64_t number : chunk_pages(grid, chunk.first)) {
-    std::optional<PageEntry> entry = in.take();
-    if (!entry) return {};
-    entry->offset = offset;
-    offset += entry->size;
-    if (grid.page(number).lod >= kCopiedLod) {
-      entry->copy = copy;
-      copy += entry->size;
+  for (const std::uint64_t number : numbers) {
+    const bool is_copied = grid.page(number).lod >= kCopiedLod;
+    for (std::uint32_t step = 0; step < steps; ++step) {
+      std::optional<PageEntry> entry = in.take();
+      if (!entry) return {};
+      entry->offset = offset;
+      offset += entry->size;
+      if (is_copied) {
+        entry->copy = copy;
+        copy += entry->size;
+      }
+      entries.push_back(*entry);
     }
-    entries.push_back(*entry);
   }
   if (!in.at_end()) return {};
   return entries;

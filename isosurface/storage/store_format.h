@@ -23,16 +23,31 @@ namespace adamas {
 /// count.
 struct StoreBytes {
   std::uint64_t samples = 0, bounds = 0, gradients = 0;  ///< bounds: errors and ranges
+
+  StoreBytes& operator+=(const StoreBytes& other) {
+    samples += other.samples;
+    bounds += other.bounds;
+    gradients += other.gradients;
+    return *this;
+  }
 };
 
-/// What a store says of itself as a whole.
+/// How many steps a store may have in all, and a block of it.
+inline constexpr std::uint32_t kMostSteps = 1u << 24, kMostBlockSteps = 256;
+
+/// What a store says of a block, which is one or several steps in time that were added together. A volume is
+/// a block of one step.
 struct StoreHeader {
-  VolumeGrid grid;
+  VolumeGrid grid;  ///< the same of all blocks
   SampleCoding coding = SampleCoding::kInterpolation;
-  bool gradients = false;  ///< whether pages hold directions of gradients
-  std::uint32_t steps = 1;
+  bool gradients = false;        ///< whether pages hold directions of gradients; the same of all blocks
+  std::uint32_t first_step = 0;  ///< how many steps the blocks before have
+  std::vector<double> times{0};  ///< of the block's steps, one or more, ascending
   StoreBytes bytes;
-  std::vector<std::byte> sample_tables, bounds_tables, gradient_tables;
+  /// `time_tables`: of differences in time; empty where no page of the block can have them.
+  std::vector<std::byte> sample_tables, time_tables, bounds_tables, gradient_tables;
+
+  [[nodiscard]] std::uint32_t steps() const { return static_cast<std::uint32_t>(times.size()); }
 };
 
 /// What is known of a page without reading it.
@@ -80,10 +95,10 @@ struct PageEntry : PageSummary {
   std::uint32_t checksum = 0;
 };
 
-/// Pages whose numbers agree but for the last nine bits have their directory entries in one piece. Pages, and
-/// their copies, lie in the file one after another.
+/// Pages whose numbers agree but for the last nine bits have their directory entries in one piece, those of
+/// each page for all steps of the block one after another. Pages, and their copies, lie in the file in the
+/// same order.
 struct DirectoryChunk {
-  std::uint32_t step = 0;
   std::uint64_t first = 0;  ///< the least page number of the chunk, a multiple of kPages
   static constexpr std::uint64_t kPages = 512;
 
@@ -96,22 +111,35 @@ struct DirectoryChunk {
 /// LODs from this on, the coarsest 1/512 of the samples, are in the file twice.
 inline constexpr int kCopiedLod = 3;
 
+/// Where the root of a block lies.
+struct RootPlace {
+  std::uint64_t offset = 0, size = 0;
+
+  [[nodiscard]] std::uint64_t end() const { return offset + size; }
+  bool operator==(const RootPlace&) const = default;
+};
+
+/// What a block that was added to a file begins with. What stands behind the last root of a file and begins
+/// so, or with a part of it, is a block that was never finished.
+inline constexpr std::array<std::uint8_t, 8> kBlockMark{0xad, 'b', 'l', 'o', 'c', 'k', '\r', '\n'};
+
 /// What a file begins with; everything else is found from here.
 struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
   static constexpr std::uint32_t kVersion = 5;
 
-  std::uint64_t root_offset = 0, root_size = 0;
+  RootPlace root;  ///< of the last block
 
   [[nodiscard]] std::vector<std::byte> serialise() const;
   /// Throws Error, which begins with `name`, where the bytes are not those of a store of this version.
   static StorePrologue parse(std::span<const std::byte> bytes, std::string_view name);
 };
 
-/// The last part of a file: the header and where the directory lies.
+/// The last part of a block: the header and where the directory lies.
 struct StoreRoot {
   StoreHeader header;
-  std::vector<DirectoryChunk> chunks;  ///< in ascending order of step and first page
+  RootPlace before;                    ///< of the block before; nothing of the first block
+  std::vector<DirectoryChunk> chunks;  ///< in ascending order of first page
 
   [[nodiscard]] std::vector<std::byte> serialise() const;
   /// Throws Error, which begins with `name`, where the bytes are damaged or say what cannot be: chunks out of
@@ -122,10 +150,11 @@ struct StoreRoot {
 /// Numbers of the pages that a chunk has, in ascending order.
 std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first);
 
-/// The entries of a chunk's pages in that order. Words have `word_bytes` bytes.
+/// The entries of a chunk's pages in that order, each of all steps. Words have `word_bytes` bytes.
 std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std::size_t word_bytes);
 /// Offsets and copies too. Nothing where the bytes are not those of so many entries, or an error is no code.
 std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
-                                                    std::span<const std::byte> bytes, std::size_t word_bytes);
+                                                    std::uint32_t steps, std::span<const std::byte> bytes,
+                                                    std::size_t word_bytes);
 
 }  // namespace adamas

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "isosurface/gradients/direction_code.h"
@@ -13,12 +14,20 @@ namespace adamas {
 
 template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory)
+    : StoredPages(file, step, memory, nullptr) {}
+
+template <class Word>
+StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory,
+                               std::shared_ptr<StoredPages> before)
     : PageCache<Word>(file.grid(), memory),
       file_(file),
       step_(step),
       memory_(memory),
-      sample_codec_(
-          parse_sample_codec<Word>(file.header().coding, file.header().sample_tables, file.name())) {}
+      sample_codec_(file.header(step).coding, file.header(step).sample_tables, file.header(step).time_tables,
+                    file.name()),
+      before_(std::move(before)) {
+  ADAMAS_ASSERT(before_ == nullptr || before_->step() + 1 == step);
+}
 
 template <class Word>
 bool StoredPages<Word>::load(const PageToLoad<Word>& page) {
@@ -34,18 +43,60 @@ bool StoredPages<Word>::load(const PageToLoad<Word>& page) {
 }
 
 template <class Word>
+StoredPages<Word>& StoredPages<Word>::before() {
+  // The steps that one is coded with are fewer than kWholeSteps, and share the memory of one.
+  if (before_ == nullptr) before_ = std::make_shared<StoredPages>(file_, step_ - 1, memory_ / 2);
+  return *before_;
+}
+
+template <class Word>
 bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageToLoad<Word>& page) {
+  const SampleCoding coding = file_.header(step_).coding;
   PagePayload coded;
-  if (!split_payload(payload, file_.header().coding, coded)) return false;
-  if (has_part(page.parts, PageParts::kSamples) &&
-      !sample_codec_->decode_with(coded.samples, page.shape, page.around.samples, page.samples.samples,
-                                  page.samples.along))
-    return false;
-  if (page.bounds == nullptr) return true;
-  if (!bounds_codec_) {
-    const StoreHeader& header = file_.header();
-    bounds_codec_ = BoundsCodec<Word>::parse(header.bounds_tables, header.grid.spacing, file_.name());
+  if (!split_payload(payload, coding, coded)) return false;
+  std::vector<std::byte> kept;
+  if (time_order(coded.samples) > 0 || coded.has_earlier_bounds()) {
+    // Reading another step's page ends the life of this one's bytes.
+    kept.assign(payload.begin(), payload.end());
+    if (!split_payload(kept, coding, coded)) return false;
   }
+  if (has_part(page.parts, PageParts::kSamples) && !decode_samples(coded.samples, page)) return false;
+  return page.bounds == nullptr || decode_bounds(coded, page);
+}
+
+template <class Word>
+bool StoredPages<Word>::decode_samples(std::span<const std::byte> coded, const PageToLoad<Word>& page) {
+  const int order = time_order(coded);
+  if (order > steps_before(step_)) return false;
+  if (order > 0 && earlier_ == nullptr) earlier_ = std::make_unique_for_overwrite<EarlierPages<Word>>();
+  std::span<EarlierPage<Word>> earlier;
+  if (order > 0) earlier = std::span(earlier_->pages).first(static_cast<std::size_t>(order));
+  StoredPages* step = this;
+  for (EarlierPage<Word>& to : earlier) {
+    step = &step->before();
+    const PageSamples<Word>* samples = step->samples(page.id);
+    if (samples == nullptr) return false;
+    to.samples = samples->samples;
+    if (page.shape.complete) continue;
+    if (!step->surroundings(page.id, earlier_->around, PageParts::kSamples)) return false;
+    to.around = earlier_->around.samples;
+  }
+  return sample_codec_.decode(coded, page.shape, page.around.samples, earlier, page.samples.samples,
+                              page.samples.along);
+}
+
+template <class Word>
+bool StoredPages<Word>::decode_bounds(const PagePayload& coded, const PageToLoad<Word>& page) {
+  const StoreHeader& header = file_.header(step_);
+  if (coded.has_earlier_bounds()) {
+    if (step_ == header.first_step) return false;
+    const PageBounds<Word>* bounds = before().bounds(page.id);
+    if (bounds == nullptr) return false;
+    *page.bounds = *bounds;
+    return true;
+  }
+  if (!bounds_codec_)
+    bounds_codec_ = BoundsCodec<Word>::parse(header.bounds_tables, header.grid.spacing, file_.name());
   const auto bounds = coded.all_bounds(page.samples.along);
   return bounds && bounds_codec_->decode(*bounds, page.shape, page.around, page.samples, *page.bounds);
 }
@@ -129,8 +180,8 @@ template std::optional<std::array<double, 2>> sample_range<float>(StoredPages<st
 
 namespace {
 
-GradientCodec gradient_codec_of(const StoreFile& file) {
-  const StoreHeader& header = file.header();
+GradientCodec gradient_codec_of(const StoreFile& file, std::uint32_t step) {
+  const StoreHeader& header = file.header(step);
   if (!header.gradients) fail("{}: expected gradients, found none", file.name());
   return GradientCodec::parse(coding_of_bytes(header.coding), header.gradient_tables, file.name());
 }
@@ -138,12 +189,13 @@ GradientCodec gradient_codec_of(const StoreFile& file) {
 }  // namespace
 
 StoredGradients::StoredGradients(StoreFile& file, std::uint32_t step, std::size_t memory)
-    : PageCache(file.grid(), memory), file_(file), step_(step), codec_(gradient_codec_of(file)) {}
+    : PageCache(file.grid(), memory), file_(file), step_(step), codec_(gradient_codec_of(file, step)) {}
 
 bool StoredGradients::load(const PageToLoad<std::uint16_t>& page) {
   const StoreFile::Payload payload = file_.read(step_, page.id);
   PagePayload coded;
-  if (payload.state != PageState::kDamaged && split_payload(payload.bytes, file_.header().coding, coded) &&
+  if (payload.state != PageState::kDamaged &&
+      split_payload(payload.bytes, file_.header(step_).coding, coded) &&
       codec_.decode(coded.gradients, page.shape, page.around.samples, page.samples.samples))
     return true;
   last_damaged_ = page.id;

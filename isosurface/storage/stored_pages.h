@@ -10,8 +10,9 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/compression/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
-#include "isosurface/compression/sample_codec.h"
+#include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/page_cache.h"
+#include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/volume/samples.h"
 
@@ -40,6 +41,13 @@ struct PageLost {
   PageId page, damaged;
 };
 
+/// What a page that is coded in time is decoded with.
+template <class Word>
+struct EarlierPages {
+  std::array<EarlierPage<Word>, 2> pages;
+  Surroundings<Word> around;
+};
+
 /// The decoded samples and bounds of one step of a store. Pages that are damaged, or predicted from one that
 /// is, cannot be had. Word: OrderedWord of the store's samples.
 template <class Word>
@@ -48,6 +56,9 @@ class StoredPages : public PageCache<Word> {
   /// `memory`: bytes that decoded pages may take. Throws Error where the tables are damaged, those of bounds
   /// not before bounds are asked for. The file must outlive this.
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
+  /// The same, with the pages of the step before, which those of this one may be coded with; null where
+  /// nobody has them yet.
+  StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory, std::shared_ptr<StoredPages> before);
 
   [[nodiscard]] StoreFile& file() { return file_; }
   /// The same step of the same file for each of some threads, the first of which has these pages: they share
@@ -71,6 +82,10 @@ class StoredPages : public PageCache<Word> {
  private:
   bool load(const PageToLoad<Word>& page) override;
   bool decode(std::span<const std::byte> payload, const PageToLoad<Word>& page);
+  bool decode_samples(std::span<const std::byte> coded, const PageToLoad<Word>& page);
+  bool decode_bounds(const PagePayload& coded, const PageToLoad<Word>& page);
+  /// Of the step before, one of which there is.
+  StoredPages& before();
   template <class Part>
   const Part& needed(const PageId& id, const Part* part) const {
     if (part == nullptr) throw PageLost{id, this->loads() ? last_damaged_ : id};
@@ -86,7 +101,9 @@ class StoredPages : public PageCache<Word> {
   std::uint32_t step_;
   std::size_t memory_;  ///< for the pages of all threads
   std::vector<OfThread> others_;
-  std::unique_ptr<SampleCodec<Word>> sample_codec_;
+  TimeCodec<Word> sample_codec_;
+  std::shared_ptr<StoredPages> before_;            ///< null before it is asked for
+  std::unique_ptr<EarlierPages<Word>> earlier_;    ///< work memory; null before a page is coded in time
   std::optional<BoundsCodec<Word>> bounds_codec_;  ///< none before bounds are asked for
   std::vector<PageId> damaged_;
   PageId last_damaged_;

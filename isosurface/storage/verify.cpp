@@ -52,7 +52,7 @@ class Verifier {
     const StoreFile::Payload payload = file_.read(step_, id);
     PagePayload parts;
     const bool has_gradients =
-        split_payload(payload.bytes, file_.header().coding, parts) && !parts.gradients.empty();
+        split_payload(payload.bytes, file_.header(step_).coding, parts) && !parts.gradients.empty();
     const std::optional<PageEntry> entry = file_.entry(step_, id);
     if (payload.state == PageState::kCopied ||
         (payload.state == PageState::kWhole && entry && !file_.copy_is_whole(*entry))) {
@@ -145,7 +145,7 @@ class Verifier {
 VerifiedStore verify_store(StoreFile& file, std::size_t memory, Progress& progress) {
   file.check_directory();
   VerifiedStore result;
-  for (std::uint32_t step = 0; step < file.header().steps; ++step) {
+  for (std::uint32_t step = 0; step < file.steps(); ++step) {
     with_sample_type(file.header().grid.type, [&](auto sample) {
       Verifier<decltype(sample)>(file, step, memory, result).run(progress);
     });

@@ -13,7 +13,8 @@ TEST_F(StoreFailures, WrongUsageOfStore) {
   expect_wrong_usage({"store"}, {"expected INPUT"});
   expect_wrong_usage({"store", "ball.nhdr"}, {"--output"});
   expect_wrong_usage({"store", "ball.nhdr", "-o", "b.txt"}, {"ends in .adm", "b.txt"});
-  expect_wrong_usage({"store", "ball.nhdr", "ball.nhdr", "-o", "b.adm"}, {"expected no more arguments"});
+  expect_wrong_usage({"store", "ball.nhdr", "ball.nhdr", "--stack", "-o", "b.adm"},
+                     {"--stack", "one pattern", "2"});
   const auto refused = [this](const std::vector<std::string>& more, const std::vector<std::string>& parts) {
     std::vector<std::string> all{"store", "ball.raw", "-o", "b.adm"};
     all.insert(all.end(), more.begin(), more.end());

@@ -25,19 +25,20 @@ inline std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
 inline void store_directory(const StoreRoot& root, std::span<const std::byte> bytes) {
   const PageGrid grid(root.header.grid.dimensions);
   const std::size_t word_bytes = sample_bytes(root.header.grid.type);
+  const std::uint32_t steps = root.header.steps();
   for (const DirectoryChunk& chunk : root.chunks) {
     const auto part =
         bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(chunk.size, bytes.size())));
     bytes = bytes.subspan(part.size());
-    const auto entries = parse_entries(grid, chunk, part, word_bytes);
+    const auto entries = parse_entries(grid, chunk, steps, part, word_bytes);
     if (!entries) fail("expected a part of the directory, found other bytes");
     require(std::ranges::equal(serialise_entries(*entries, word_bytes), part), "another part");
     const auto numbers = chunk_pages(grid, chunk.first);
-    require(entries->size() == numbers.size(), "pages without entries");
+    require(entries->size() == steps * numbers.size(), "pages without entries");
     std::uint64_t offset = chunk.pages, copy = chunk.copies;
-    for (std::size_t n = 0; n < numbers.size(); ++n) {
+    for (std::size_t n = 0; n < entries->size(); ++n) {
       const PageEntry& entry = (*entries)[n];
-      const bool is_copied = grid.page(numbers[n]).lod >= kCopiedLod;
+      const bool is_copied = grid.page(numbers[n / steps]).lod >= kCopiedLod;
       require(entry.offset == offset && entry.copy == (is_copied ? copy : 0), "pages with gaps");
       require(entry.error < 64, "an error without a code");
       offset += entry.size;
@@ -64,13 +65,12 @@ inline void store_format(std::string_view bytes) {
                     256 * std::to_integer<std::size_t>(given[kPrologue + 1]);
   const auto rest = given.subspan(kHeader);
   const auto last = with_checksum(rest.first(std::min(size, rest.size())));
-  const StoreRoot root = StoreRoot::parse(last, prologue.root_offset, "fuzz");
+  const StoreRoot root = StoreRoot::parse(last, prologue.root.offset, "fuzz");
   require(root.serialise() == last, "another root");
   for (const DirectoryChunk& chunk : root.chunks)
-    require(chunk.offset + chunk.size <= prologue.root_offset, "a directory beyond the root");
+    require(chunk.offset + chunk.size <= prologue.root.offset, "a directory beyond the root");
   const std::uint64_t pages = PageGrid(root.header.grid.dimensions).page_count();
-  require(pages <= root.chunks.size() * DirectoryChunk::kPages / root.header.steps,
-          "pages without a directory");
+  require(pages <= root.chunks.size() * DirectoryChunk::kPages, "pages without a directory");
   store_directory(root, rest.subspan(last.size() - 4));
 }
 

@@ -23,7 +23,7 @@ class Store:
     def __init__(self, data):
         self.data = data
         prologue = Bytes(data)
-        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 4
+        assert prologue.take(8) == b"adamas\r\n" and prologue.number("I") == 5
         root_offset, root_size = prologue.number("Q"), prologue.number("Q")
         root = Bytes(data[root_offset:root_offset + root_size])
         self.bytes = (1, 2, 2, 4)[root.number("B")]
@@ -32,15 +32,16 @@ class Store:
         root.sized()
         root.take(2 * 8)
         self.coding = root.number("B")
-        root.take(1 + 4 + 24)
-        tables = [root.sized() for _ in range(3)]
+        root.take(1 + 4)
+        root.take(8 * root.varint() + 24)
+        tables = [root.sized() for _ in range(4)]
+        root.varint(), root.varint()
         self.codec = codec_of(self.coding, tables[0], 8 * self.bytes)
         self.last = [n - 1 for n in self.size]
         self.depth = width(max(max(self.last) - 1, 0))
         self.top = max(self.depth, 3) - 3
         self.pages = {}
         for _ in range(root.varint()):
-            root.take(4)
             first, offset, size, at, _ = (root.varint() for _ in range(5))
             root.take(4)
             self.read_chunk(Bytes(data[offset:offset + size]), first, at)
@@ -109,7 +110,7 @@ class Store:
             size = stream.varint()
             carried = min(len(along), size)
             bounds = along[:carried] + stream.take(size - carried)
-            assert not any(along[carried:]) and bounds[0] < 16
+            assert not any(along[carried:]) and bounds[0] >> 2 <= 4
             for q, word in words.items():
                 known[tuple((16 * b + x) << level for b, x in zip(block, q))] = word
         i, j, k = self.size

@@ -67,7 +67,7 @@ class StoreOfRandomPages : public testing::Test {
     header_.grid.directions = {{{0, 1, 0}, {-0.6, 0, 0.8}, {0.8, 0, 0.6}}};
     header_.grid.space = "LAS";
     header_.coding = SampleCoding::kSplitEdge;
-    header_.steps = 2;
+    header_.times = {0, 0.5};
     header_.sample_tables = random_bytes(random_, 100);
     header_.bounds_tables = random_bytes(random_, 3);
     header_.bytes = {10, 20, 30};
@@ -76,11 +76,10 @@ class StoreOfRandomPages : public testing::Test {
 
   void write() {
     const PageGrid grid(header_.grid.dimensions);
-    StoreFileWriter writer(path_, "store.adm", header_);
-    for (std::uint32_t step = 0; step < header_.steps; ++step) {
-      for (std::uint64_t number = 0; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
-        if (number == 0 || (std::bit_width(number) - 1) % 3 != 0 || !grid.contains(grid.page(number)))
-          continue;
+    StoreFileWriter writer(path_, "store.adm", header_.grid);
+    for (std::uint64_t number = 0; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
+      if (number == 0 || (std::bit_width(number) - 1) % 3 != 0 || !grid.contains(grid.page(number))) continue;
+      for (std::uint32_t step = 0; step < header_.steps(); ++step) {
         Written page{step, grid.page(number), random_bytes(random_, 1 + random_() % 200), {}};
         page.summary.low = static_cast<std::uint32_t>(random_() & 0xffffu);
         page.summary.high = static_cast<std::uint32_t>(random_() & 0xffffu);
@@ -96,11 +95,11 @@ class StoreOfRandomPages : public testing::Test {
           page.summary = {word, word + 7, 0, {}};
           ++plain_;
         }
-        writer.add_page(step, number, page.bytes, page.summary);
+        writer.add_page(number, page.bytes, page.summary);
         pages_.push_back(std::move(page));
       }
     }
-    size_ = writer.finish(header_);
+    size_ = writer.finish_block(header_);
   }
 
   struct Written {
@@ -131,7 +130,8 @@ TEST_F(StoreOfRandomPages, GivesThemBack) {
     EXPECT_EQ(file.header().grid.directions, header_.grid.directions);
     EXPECT_EQ(file.header().grid.space, "LAS");
     EXPECT_EQ(file.header().coding, header_.coding);
-    EXPECT_EQ(file.header().steps, 2u);
+    EXPECT_EQ(file.steps(), 2u);
+    EXPECT_EQ(file.times(), header_.times);
     EXPECT_EQ(file.header().sample_tables, header_.sample_tables);
     EXPECT_EQ(file.header().bounds_tables, header_.bounds_tables);
     EXPECT_EQ(file.header().bytes.gradients, 30u);
@@ -158,8 +158,9 @@ TEST(Directory, OfPagesInAnyOrderIsReadAsItWasWritten) {
   const PageGrid grid({700, 300, 200});
   std::mt19937 random(21);
   for (int trial = 0; trial < 50; ++trial) {
-    const DirectoryChunk chunk{0, 512, 0, 0, 0, 1000, 5000};
-    std::vector<PageEntry> entries(chunk_pages(grid, chunk.first).size());
+    const DirectoryChunk chunk{512, 0, 0, 0, 1000, 5000};
+    const auto steps = static_cast<std::uint32_t>(1 + trial % 3);
+    std::vector<PageEntry> entries(steps * chunk_pages(grid, chunk.first).size());
     for (PageEntry& entry : entries) {
       entry.low = static_cast<std::uint32_t>(random() % 2);
       entry.high = static_cast<std::uint32_t>(random() % 3);
@@ -168,7 +169,7 @@ TEST(Directory, OfPagesInAnyOrderIsReadAsItWasWritten) {
       entry.checksum = static_cast<std::uint32_t>(random());
     }
     const auto bytes = serialise_entries(entries, 2);
-    const auto found = parse_entries(grid, chunk, bytes, 2);
+    const auto found = parse_entries(grid, chunk, steps, bytes, 2);
     ASSERT_TRUE(found && found->size() == entries.size());
     std::uint64_t offset = chunk.pages;
     for (std::size_t n = 0; n < entries.size(); ++n) {
@@ -179,7 +180,7 @@ TEST(Directory, OfPagesInAnyOrderIsReadAsItWasWritten) {
       offset += entries[n].size;
     }
     for (std::size_t length = 0; length < bytes.size(); ++length)
-      EXPECT_FALSE(parse_entries(grid, chunk, std::span(bytes).first(length), 2)) << length;
+      EXPECT_FALSE(parse_entries(grid, chunk, steps, std::span(bytes).first(length), 2)) << length;
   }
 }
 
@@ -244,7 +245,7 @@ TEST(StoreFile, RefusesMorePagesThanItsDirectoryHas) {
   root.header.grid.dimensions = {262145, 262145, 262145};
   for (std::size_t parts = 0; parts < 3; ++parts) {
     const std::vector<std::byte> last = root.serialise();
-    const StorePrologue prologue{StorePrologue::kBytes, last.size()};
+    const StorePrologue prologue{{StorePrologue::kBytes, last.size()}};
     std::string bytes;
     for (const auto& part : {prologue.serialise(), last})
       bytes.append(reinterpret_cast<const char*>(part.data()), part.size());
@@ -253,23 +254,21 @@ TEST(StoreFile, RefusesMorePagesThanItsDirectoryHas) {
       StoreFile(folder / "huge.adm");
       FAIL();
     } catch (const Error& e) {
-      const std::string wanted = fmt::format(
-          "huge.adm: expected 9819165450 parts or more of a directory for each of 1 "
-          "steps, found {} in all",
-          parts);
+      const std::string wanted =
+          fmt::format("huge.adm: expected 9819165450 parts or more of a directory, found {}", parts);
       EXPECT_NE(std::string(e.what()).find(wanted), std::string::npos) << e.what();
     }
-    root.chunks.push_back({0, DirectoryChunk::kPages * parts});
+    root.chunks.push_back({DirectoryChunk::kPages * parts});
   }
 }
 
 TEST(StoreFileWriter, TellsOfAFullDisk) {
   StoreHeader header;
   header.grid.dimensions = {1, 1, 1};
-  StoreFileWriter writer("/dev/full", "out.adm", header);
+  StoreFileWriter writer("/dev/full", "out.adm", header.grid);
   try {
-    writer.add_page(0, 1, std::vector<std::byte>(100000), {});
-    writer.finish(header);
+    writer.add_page(1, std::vector<std::byte>(100000), {});
+    writer.finish_block(header);
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(std::string(e.what()).rfind("out.adm: ", 0), 0u) << e.what();

@@ -181,7 +181,7 @@ void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
   StoreHeader header = file.header();
   std::vector<std::byte> none;
   change(header, none);
-  StoreFileWriter writer(to, "b.adm", header);
+  StoreFileWriter writer(to, "b.adm", header.grid);
   for (std::uint64_t first = 0; first < std::uint64_t{2} << (3 * file.grid().top());
        first += DirectoryChunk::kPages) {
     for (const std::uint64_t number : chunk_pages(file.grid(), first)) {
@@ -190,11 +190,11 @@ void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
       ASSERT_TRUE(split_payload(file.read(0, id).bytes, header.coding, parts));
       std::vector<std::byte> gradients(parts.gradients.begin(), parts.gradients.end());
       if (id.lod == 0) change(header, gradients);
-      writer.add_page(0, number, join_payload({parts.samples, parts.bounds, gradients, parts.along}),
+      writer.add_page(number, join_payload({parts.samples, parts.bounds, gradients, parts.along}),
                       *file.entry(0, id));
     }
   }
-  writer.finish(header);
+  writer.finish_block(header);
 }
 
 TEST(StoredGradients, ThoseThatAreNoneAreFound) {

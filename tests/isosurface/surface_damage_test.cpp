@@ -143,7 +143,7 @@ TEST_F(DamagedSurface, IsToldEveryTime) {
 TEST_F(DamagedSurface, PartsOfTheDirectory) {
   const auto all = std::as_bytes(std::span(bytes_));
   const StorePrologue prologue = StorePrologue::parse(all.first(StorePrologue::kBytes), "store");
-  const StoreRoot root = StoreRoot::parse(all.subspan(prologue.root_offset), prologue.root_offset, "store");
+  const StoreRoot root = StoreRoot::parse(all.subspan(prologue.root.offset), prologue.root.offset, "store");
   ASSERT_GE(root.chunks.size(), 2u);
   for (const DirectoryChunk& chunk : root.chunks) {
     std::string bytes = bytes_;

@@ -94,8 +94,8 @@ class SurfaceWorker {
   };
 
   void run();
-  /// Waits for another wish, for a place that is asked about, or for pages that are missing. Returns false at the
-  /// end.
+  /// Waits for another wish, for a place that is asked about, or for pages that are missing. Returns false at
+  /// the end.
   bool wait_for_work(const std::optional<WantedSurfaces>& done);
   void answer(const SurfacePlace& place);
   /// Whether the surfaces that are worked out are not those that are wanted by now.

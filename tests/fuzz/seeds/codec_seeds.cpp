@@ -193,29 +193,28 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
                 std::uint32_t steps, bool has_plain = false) {
   StoreRoot root;
   root.header.grid = grid;
-  root.header.steps = steps;
+  root.header.times.resize(steps);
+  for (std::size_t n = 0; n < root.header.times.size(); ++n) root.header.times[n] = static_cast<double>(n);
   root.header.sample_tables = root.header.bounds_tables = {std::byte{1}, std::byte{2}};
   const PageGrid pages(grid.dimensions);
   Bytes directory, bytes;
-  StorePrologue prologue{StorePrologue::kBytes, 0};
-  for (std::uint32_t step = 0; step < steps; ++step) {
-    const std::uint64_t end = std::uint64_t{2} << (3 * pages.top());
-    for (std::uint64_t first = 0; first < end; first += DirectoryChunk::kPages) {
-      const std::size_t count = chunk_pages(pages, first).size();
-      if (count == 0) continue;
-      PageEntry entry;
-      entry.low = 3, entry.high = 200, entry.error = 40, entry.size = 20, entry.checksum = 77;
-      for (std::size_t n = 1; n < entry.part_count(); ++n)
-        entry.part_errors[n] = static_cast<std::uint8_t>(41 - n % 15);
-      std::vector<PageEntry> entries(count, entry);
-      for (std::size_t n = 0; has_plain && n < count; ++n) {
-        if (n % 7 < 4) entries[n] = PageEntry{{3, n % 7 < 2 ? 200u : 201u, 0, {}}};
-      }
-      const Bytes part = serialise_entries(entries, sample_bytes(grid.type));
-      root.chunks.push_back({step, first, prologue.root_offset, part.size(), crc32c(part), 32, 33});
-      prologue.root_offset += part.size();
-      append(directory, part);
+  StorePrologue prologue{{StorePrologue::kBytes, 0}};
+  const std::uint64_t end = std::uint64_t{2} << (3 * pages.top());
+  for (std::uint64_t first = 0; first < end; first += DirectoryChunk::kPages) {
+    const std::size_t count = steps * chunk_pages(pages, first).size();
+    if (count == 0) continue;
+    PageEntry entry;
+    entry.low = 3, entry.high = 200, entry.error = 40, entry.size = 20, entry.checksum = 77;
+    for (std::size_t n = 1; n < entry.part_count(); ++n)
+      entry.part_errors[n] = static_cast<std::uint8_t>(41 - n % 15);
+    std::vector<PageEntry> entries(count, entry);
+    for (std::size_t n = 0; has_plain && n < count; ++n) {
+      if (n % 7 < 4) entries[n] = PageEntry{{3, n % 7 < 2 ? 200u : 201u, 0, {}}};
     }
+    const Bytes part = serialise_entries(entries, sample_bytes(grid.type));
+    root.chunks.push_back({first, prologue.root.offset, part.size(), crc32c(part), 32, 33});
+    prologue.root.offset += part.size();
+    append(directory, part);
   }
   Bytes last = root.serialise(), start = prologue.serialise();
   last.erase(last.end() - 4, last.end());

@@ -1,0 +1,80 @@
+#include "core/io/series_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/io/byte_supply.h"
+#include "core/io/input_file.h"
+#include "core/io/output_stream.h"
+#include "core/io/volume_stack.h"
+#include "core/io/xml_file.h"
+
+namespace adamas {
+namespace {
+
+double time_of(const XmlTag& tag, const std::string& name) {
+  const std::string_view text = tag.value("timestep");
+  double time = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), time);
+  if (failed != std::errc{} || end != text.data() + text.size() || !std::isfinite(time))
+    fail("{}: expected a number as the timestep of a DataSet, found '{}'", name, text);
+  return time;
+}
+
+}  // namespace
+
+void write_series(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries) {
+  OutputStream stream(path);
+  stream.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n");
+  for (const SeriesEntry& entry : entries) {
+    stream.write(fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time,
+                             xml_attribute(entry.file)));
+  }
+  stream.write("  </Collection>\n</VTKFile>\n");
+  stream.finish();
+}
+
+std::vector<SeriesEntry> read_series(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const std::vector<XmlTag> tags = read_xml_tags(supply_file(FileHandle::open(path), 0), name);
+  if (tags.empty() || tags[0].name != "VTKFile" || tags[0].value("type") != "Collection")
+    fail("{}: expected a VTKFile of the type Collection, found other XML", name);
+  std::vector<SeriesEntry> entries;
+  for (const XmlTag& tag : tags) {
+    if (tag.closing || tag.name != "DataSet") continue;
+    if (!tag.has("file")) fail("{}: expected the file of a DataSet, found none", name);
+    // What has no time is the only step.
+    const double time = tag.has("timestep") ? time_of(tag, name) : 0;
+    entries.push_back({time, (path.parent_path() / std::string(tag.value("file"))).string()});
+  }
+  if (entries.empty()) fail("{}: expected a DataSet or more, found none", name);
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const SeriesEntry& a, const SeriesEntry& b) { return a.time < b.time; });
+  for (std::size_t n = 1; n < entries.size(); ++n) {
+    if (entries[n].time == entries[n - 1].time)
+      fail("{}: expected one file for each time, found {} and {} for {}", name, entries[n - 1].file,
+           entries[n].file, entries[n].time);
+  }
+  return entries;
+}
+
+std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs) {
+  std::vector<std::string> files = inputs;
+  if (inputs.size() == 1) {
+    if (file_extension(inputs[0]) == ".pvd") return read_series(inputs[0]);
+    std::error_code unknown;
+    const bool is_pattern = inputs[0].find_first_of("*?#%") != std::string::npos;
+    if (!is_pattern || std::filesystem::exists(inputs[0], unknown)) return {};
+    files.clear();
+    for (const auto& file : match_stack(inputs[0])) files.push_back(file.string());
+  }
+  std::vector<SeriesEntry> entries;
+  for (const std::string& file : files) entries.push_back({static_cast<double>(entries.size()), file});
+  return entries;
+}
+
+}  // namespace adamas

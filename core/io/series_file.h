@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace adamas {
+
+/// One step of a series: its time, and its file's name as seen from the series' folder.
+struct SeriesEntry {
+  double time = 0;
+  std::string file;
+};
+
+/// Writes a .pvd, the list of files that ParaView and VisIt read as a series. Throws Error where it cannot be
+/// written in full.
+void write_series(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries);
+
+/// The steps of a .pvd in the order of their times, with whole paths. Throws Error, with the file's name,
+/// where it is no such list, has several files for one time, or none.
+std::vector<SeriesEntry> read_series(const std::filesystem::path& path);
+
+/// The steps that inputs of a command stand for: those of a .pvd; the files that fit a pattern (match_stack),
+/// or several files in the order given, at the times 0, 1, 2 and so on. Nothing where there is one file
+/// alone, which is no .pvd. Throws Error as read_series and match_stack do.
+std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs);
+
+}  // namespace adamas

@@ -1,0 +1,185 @@
+#include <unistd.h>
+
+#include <csignal>
+#include <random>
+
+#include "tests/cli/program.h"
+
+namespace adamas::test {
+namespace {
+
+/// Stores of a few volumes of 9^3 bytes, s_0.raw, s_1.raw, ...
+class SeriesStores : public ProgramTest {
+ protected:
+  SeriesStores() {
+    for (int step = 0; step < 5; ++step) write(file(step), samples(step));
+  }
+
+  static std::string file(int step) { return "s_" + std::to_string(step) + ".raw"; }
+  static std::string samples(int step) {
+    std::string bytes;
+    for (int n = 0; n < 729; ++n)
+      bytes += static_cast<char>(n % 9 * (n / 9 % 9) + (n / 81) * 3 + step * (n & 7));
+    return bytes;
+  }
+  /// `store` of some inputs.
+  static std::vector<std::string> store(std::vector<std::string> inputs, const std::string& output,
+                                        const std::vector<std::string>& more = {}) {
+    std::vector<std::string> all{"store"};
+    all.insert(all.end(), inputs.begin(), inputs.end());
+    for (const char* option : {"--dimensions", "9,9,9", "--type", "uint8", "-o"}) all.emplace_back(option);
+    all.push_back(output);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  void expect_step(const std::string& store, int step) const {
+    run_well({"restore", store, "--step", std::to_string(step), "-o", "out.raw", "-q"});
+    EXPECT_EQ(read("out.raw"), samples(step)) << store << " step " << step;
+  }
+  [[nodiscard]] nlohmann::json info(const std::string& store) const {
+    run_well({"info", store, "--json", "info.json", "-q"});
+    return read_json("info.json");
+  }
+};
+
+TEST_F(SeriesStores, OfSeveralVolumesAndOfAPattern) {
+  run_well(store({file(0), file(1), file(2), file(3), file(4)}, "a.adm"));
+  run_well(store({"s_%d.raw"}, "b.adm"));
+  EXPECT_EQ(read("a.adm"), read("b.adm"));
+  for (int step = 0; step < 5; ++step) expect_step("a.adm", step);
+  const auto found = info("a.adm");
+  EXPECT_EQ(found["steps"], 5);
+  EXPECT_EQ(found["times"], (std::vector<double>{0, 1, 2, 3, 4}));
+  run_well({"verify", "a.adm", "-q"});
+}
+
+TEST_F(SeriesStores, ThereAndBackByPvd) {
+  run_well(store({"s_%d.raw"}, "a.adm"));
+  run_well({"restore", "a.adm", "-o", "back.pvd", "-q"});
+  run_well({"store", "back.pvd", "-o", "b.adm", "-q"});
+  for (int step = 0; step < 5; ++step) expect_step("b.adm", step);
+  run_well({"restore", "a.adm", "--steps", "1,3", "-o", "some.pvd", "-q"});
+  run_well({"store", "some.pvd", "-o", "c.adm", "-q"});
+  EXPECT_EQ(info("c.adm")["times"], (std::vector<double>{1, 2, 3}));
+}
+
+TEST_F(SeriesStores, StepsAreAdded) {
+  run_well(store({file(0), file(1)}, "a.adm", {"--append"}));
+  for (const int step : {2, 3, 4}) run_well(store({file(step)}, "a.adm", {"--append"}));
+  for (int step = 0; step < 5; ++step) expect_step("a.adm", step);
+  EXPECT_EQ(info("a.adm")["blocks"], 4);
+  run_well({"verify", "a.adm", "-q"});
+}
+
+/// Of a list only the later ones are added, as a simulation makes it longer.
+TEST_F(SeriesStores, LaterStepsOfAListAreAdded) {
+  run_well(store({"s_%d.raw"}, "all.adm"));
+  run_well({"restore", "all.adm", "--steps", "0,2", "-o", "back.pvd", "-q"});
+  run_well({"store", "back.pvd", "-o", "a.adm", "-q"});
+  run_well({"restore", "all.adm", "-o", "back.pvd", "-q"});
+  const RunResult result = run({"store", "back.pvd", "-o", "a.adm", "--append", "-q"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(info("a.adm")["times"], (std::vector<double>{0, 1, 2, 3, 4}));
+  for (int step = 0; step < 5; ++step) expect_step("a.adm", step);
+}
+
+TEST_F(SeriesStores, SurfacesOfSteps) {
+  run_well(store({"s_%d.raw"}, "a.adm"));
+  run_well(store({file(3)}, "one.adm"));
+  run_well({"isosurface", "a.adm", "--step", "3", "--isovalue", "30", "-o", "a.ply", "-q"});
+  run_well({"isosurface", "one.adm", "--isovalue", "30", "-o", "b.ply", "-q"});
+  EXPECT_EQ(read("a.ply"), read("b.ply"));
+}
+
+TEST_F(SeriesStores, SlicesOfSteps) {
+  run_well(store({"s_%d.raw"}, "a.adm"));
+  run_well(store({file(3)}, "one.adm"));
+  run_well({"slice", "a.adm", "--time", "3", "--origin", "4,4,4", "--normal", "0,0,1", "-o", "a.png", "-q"});
+  expect_wrong_usage({"slice", "a.adm", "--time", "5", "--plane", "z=4", "-o", "c.png"}, {"--time", "5 steps"});
+  const RunResult result = run({"slice", "a.adm", "--plane", "z=4", "-o", "c.png"});
+  // Pictures show the file's name.
+  std::filesystem::rename(folder() / "one.adm", folder() / "a.adm");
+  run_well({"slice", "a.adm", "--origin", "4,4,4", "--normal", "0,0,1", "-o", "b.png", "-q"});
+  EXPECT_TRUE(read("a.png") == read("b.png"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("the first of 5 steps"), std::string::npos) << result.err;
+}
+
+TEST_F(SeriesStores, WrongUsage) {
+  run_well(store({"s_%d.raw"}, "a.adm"));
+  expect_wrong_usage({"restore", "a.adm", "--step", "5", "-o", "r.raw"}, {"--step", "5 steps"});
+  expect_wrong_usage({"restore", "a.adm", "--steps", "3,1", "-o", "r.pvd"}, {"--steps", "3,1"});
+  expect_wrong_usage({"restore", "a.adm", "--steps", "1,3", "-o", "r.raw"}, {"--steps", "r.raw"});
+  expect_wrong_usage(store({"s_%d.raw"}, "b.adm", {"--block-steps", "1000"}), {"--block-steps", "256"});
+  write("short.raw", "123");
+  expect_failure(store({file(0), "short.raw"}, "b.adm"), {"short.raw"});
+  expect_failure(store({file(0), "missing.raw"}, "b.adm"), {"missing.raw"});
+}
+
+TEST_F(SeriesStores, StepsOnAnotherGridAreRefused) {
+  run_well(store({file(0)}, "a.adm"));
+  run_well({"restore", "a.adm", "-o", "a.vti", "-q"});
+  run_well({"generate", "buckyball", "--dimensions", "8", "-o", "b.vti", "-q"});
+  expect_failure({"store", "a.vti", "b.vti", "-o", "c.adm"}, {"b.vti", "9 x 9 x 9 uint8", "8 x 8 x 8"});
+  const std::string before = read("a.adm");
+  expect_failure({"store", "b.vti", "-o", "a.adm", "--append"}, {"b.vti", "9 x 9 x 9 uint8", "8 x 8 x 8"});
+  EXPECT_EQ(read("a.adm"), before);
+}
+
+TEST_F(SeriesStores, ListsThatAreNone) {
+  write("a.pvd", "<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection/></VTKFile>");
+  expect_failure({"store", "a.pvd", "-o", "a.adm"}, {"a.pvd", "DataSet"});
+  write("b.pvd", "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\"/>");
+  expect_failure({"store", "b.pvd", "-o", "a.adm"}, {"b.pvd", "Collection"});
+  write("c.pvd",
+        "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"1\" file=\"x.vti\"/>"
+        "<DataSet timestep=\"1\" file=\"y.vti\"/></Collection></VTKFile>");
+  expect_failure({"store", "c.pvd", "-o", "a.adm"}, {"c.pvd", "x.vti", "y.vti"});
+  write("d.pvd",
+        "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"now\" "
+        "file=\"x.vti\"/></Collection></VTKFile>");
+  expect_failure({"store", "d.pvd", "-o", "a.adm"}, {"d.pvd", "now"});
+  write("e.pvd",
+        "<VTKFile type=\"Collection\"><Collection><DataSet file=\"none.vti\"/></Collection></VTKFile>");
+  expect_failure({"store", "e.pvd", "-o", "a.adm"}, {"none.vti"});
+}
+
+/// The program is killed 200 times while it adds steps: the store has all steps that were finished, and no
+/// others.
+TEST_F(SeriesStores, AreWholeWhereverTheProgramIsKilled) {
+  run_well(store({file(0)}, "a.adm"));
+  std::mt19937 random(7);
+  unsigned longest = 20000;  // microseconds that a run takes, as far as is known
+  std::size_t steps = 1, killed = 0;
+  for (int time = 0; time < 200; ++time) {
+    RunOptions options;
+    options.interrupt_when = [] { return true; };
+    options.act = [&](pid_t program) {
+      usleep(random() % longest);
+      kill(program, SIGKILL);
+    };
+    const RunResult result =
+        run(store({file(static_cast<int>(steps % 5))}, "a.adm", {"--append", "-q"}), options);
+    const std::size_t found = info("a.adm")["steps"];
+    ASSERT_TRUE(found == steps || found == steps + 1) << time;
+    if (result.status == 1000 + SIGKILL) {
+      ++killed;
+      longest += longest / 50;
+    } else {
+      ASSERT_EQ(result.status, 0) << result.err;
+      ASSERT_EQ(found, steps + 1) << time;
+      longest = std::max(longest - longest / 25, 1000u);
+    }
+    steps = found;
+    if (time % 20 == 19) run_well({"verify", "a.adm", "-q"});
+  }
+  EXPECT_GT(killed, 50u);
+  EXPECT_GT(steps, 20u);
+  for (std::size_t step = 0; step < steps; step += 9) {
+    run_well({"restore", "a.adm", "--step", std::to_string(step), "-o", "out.raw", "-q"});
+    EXPECT_EQ(read("out.raw"), samples(static_cast<int>(step % 5))) << step;
+  }
+}
+
+}  // namespace
+}  // namespace adamas::test

@@ -1,0 +1,234 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "isosurface/storage/page_payload.h"
+#include "isosurface/storage/verify.h"
+#include "tests/support/prepared_volume.h"
+#include "tests/support/volume_store.h"
+
+namespace adamas {
+namespace {
+
+using test::Dimensions;
+using test::MemoryVolume;
+
+enum class Motion {
+  kStill,   ///< all steps are the same
+  kLinear,  ///< samples rise evenly in time
+  kWaves,   ///< waves that travel, with some noise
+  kRandom   ///< nothing of one step is in another
+};
+
+template <class Sample>
+MemoryVolume<Sample> volume_at(const Dimensions& dimensions, Motion motion, int step) {
+  std::mt19937 random(motion == Motion::kStill ? 1u : static_cast<unsigned>(step) + 1u);
+  return {dimensions, [&, motion, step](LatticePoint p) {
+            const auto word = static_cast<OrderedWord<Sample>>(random());
+            if (motion == Motion::kRandom) return from_ordered<Sample>(word);
+            const int noise = motion == Motion::kWaves && random() % 16 == 0 ? 1 : 0;
+            const double t = motion == Motion::kWaves ? 0.3 * step : 0;
+            const double wave = 30 * std::sin(0.4 * p.i - t) * std::cos(0.3 * p.j + 0.1 * p.k) + 60 + noise;
+            return static_cast<Sample>(wave + (motion == Motion::kLinear ? (1 + (p.i & 3)) * step : 0));
+          }};
+}
+
+/// Steps of a motion from `first` on.
+template <class Sample>
+struct TestSeries {
+  std::vector<MemoryVolume<Sample>> steps;
+
+  TestSeries(const Dimensions& dimensions, Motion motion, int count, int first = 0) {
+    for (int step = first; step < first + count; ++step)
+      steps.push_back(volume_at<Sample>(dimensions, motion, step));
+  }
+  /// Of the steps from `begin` to before `end`.
+  [[nodiscard]] SeriesSource source(std::size_t begin, std::size_t end) const {
+    SeriesSource source{
+        steps.front().grid, {}, [this, begin](std::uint32_t n) { return steps[begin + n].planes(); }};
+    for (std::size_t n = begin; n < end; ++n) source.times.push_back(0.5 * static_cast<double>(n));
+    return source;
+  }
+  [[nodiscard]] SeriesSource source() const { return source(0, steps.size()); }
+};
+
+StoreOptions with_blocks(std::uint32_t steps, SampleCoding coding = SampleCoding::kInterpolation) {
+  StoreOptions options;
+  options.block_steps = steps;
+  options.coding = coding;
+  return options;
+}
+
+/// The samples of all steps, in an order of steps that jumps, and the errors and ranges that each has on its
+/// own.
+template <class Sample>
+void expect_steps(const std::filesystem::path& path, const TestSeries<Sample>& series) {
+  StoreFile file(path);
+  ASSERT_EQ(file.steps(), series.steps.size());
+  ASSERT_EQ(file.times(), series.source().times);
+  const VerifiedStore verified = verify_store(file, 0, SilentProgress::instance());
+  ASSERT_EQ(verified.pages, file.grid().page_count() * file.steps());
+  ASSERT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front();
+  for (std::uint32_t n = 0; n < file.steps(); ++n) {
+    const std::uint32_t step = (n * 7 + 3) % file.steps();
+    SCOPED_TRACE(testing::Message() << "step " << step);
+    const MemoryVolume<Sample>& volume = series.steps[step];
+    ASSERT_EQ(test::restored<Sample>(file, 0, {}, std::size_t{1} << 24, step), test::bits_of(volume.samples));
+    const test::PreparedVolume<Sample> prepared(volume.grid.dimensions, volume.samples, volume.grid.spacing,
+                                                NoiseBounds::kSame);
+    StoredPages<OrderedWord<Sample>> pages(file, step, 0);
+    for (std::uint64_t number = 1; number < std::uint64_t{2} << (3 * file.grid().top()); ++number) {
+      const PageId id = file.grid().page(number);
+      if (!file.grid().contains(id)) continue;
+      Page<OrderedWord<Sample>> found{};
+      ASSERT_TRUE(pages.copy(id, found)) << page_name(id);
+      const auto page = prepared.page(id);
+      for_each_own_place(prepared.shape(id), [&](std::size_t at) {
+        ASSERT_EQ(found.errors[at], page.errors[at]) << page_name(id) << " place " << at;
+        ASSERT_LE(found.low[at], page.low[at]);
+        ASSERT_GE(found.high[at], page.high[at]);
+      });
+    }
+  }
+}
+
+template <class Sample>
+class SeriesStoreOf : public testing::Test {};
+using SampleTypes = testing::Types<std::uint8_t, std::uint16_t, std::int16_t, float>;
+TYPED_TEST_SUITE(SeriesStoreOf, SampleTypes);
+
+TYPED_TEST(SeriesStoreOf, GivesAllStepsBack) {
+  const test::Scratch folder;
+  for (const Motion motion : {Motion::kStill, Motion::kLinear, Motion::kWaves, Motion::kRandom}) {
+    const TestSeries<TypeParam> series({19, 18, 9}, motion, 11);
+    for (const std::uint32_t block : {1u, 4u, 32u}) {
+      SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << ", blocks of " << block);
+      build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(block));
+      expect_steps(folder / "a.adm", series);
+      if (this->HasFatalFailure()) return;
+    }
+    build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(8, SampleCoding::kSplitEdge));
+    expect_steps(folder / "a.adm", series);
+  }
+}
+
+/// Whatever number of steps is added at a time.
+TYPED_TEST(SeriesStoreOf, GivesStepsBackThatWereAdded) {
+  const test::Scratch folder;
+  const TestSeries<TypeParam> series({12, 17, 20}, Motion::kWaves, 13);
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 4; ++trial) {
+    std::size_t end = 1 + random() % 4;
+    build_series(folder / "a.adm", "a.adm", series.source(0, end), with_blocks(4));
+    while (end < series.steps.size()) {
+      const std::size_t begin = end;
+      end = std::min(series.steps.size(), begin + 1 + random() % 5);
+      append_series(folder / "a.adm", series.source(begin, end), with_blocks(4));
+    }
+    expect_steps(folder / "a.adm", series);
+    if (this->HasFatalFailure()) return;
+  }
+}
+
+TEST(SeriesStore, IsSmallerWhereStepsAreAlike) {
+  const test::Scratch folder;
+  const auto bytes = [&](const TestSeries<std::uint8_t>& series) {
+    return build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(32)).file_bytes;
+  };
+  const Dimensions dimensions{33, 33, 33};
+  const std::uint64_t one = bytes({dimensions, Motion::kWaves, 1});
+  const std::uint64_t eight = bytes({dimensions, Motion::kWaves, 8});
+  EXPECT_LT(eight, 8 * one - one / 4);
+  // Seven of eight steps say of each page that it is the one before.
+  EXPECT_LT(bytes({dimensions, Motion::kStill, 8}), one + one / 3);
+  // What rises evenly has no second differences.
+  EXPECT_LT(bytes({dimensions, Motion::kLinear, 8}), 4 * one);
+}
+
+TEST(SeriesStore, IsTheSameOnAnyNumberOfThreads) {
+  const test::Scratch folder;
+  const TestSeries<std::uint16_t> series({40, 33, 21}, Motion::kWaves, 10);
+  for (const int threads : {1, 3}) {
+    set_thread_limit(static_cast<std::size_t>(threads));
+    const auto path = folder / std::to_string(threads);
+    build_series(path, "a.adm", series.source(0, 6), with_blocks(4));
+    append_series(path, series.source(6, 10), with_blocks(4));
+  }
+  set_thread_limit(0);
+  EXPECT_EQ(test::bytes_of(folder / "1"), test::bytes_of(folder / "3"));
+}
+
+/// Whoever adds steps may be stopped after any byte: what was there stays, and what is not finished is not
+/// seen.
+TEST(SeriesStore, OpensWithAllFinishedStepsWhereverAddingEnds) {
+  const test::Scratch folder;
+  const TestSeries<std::uint8_t> series({9, 9, 9}, Motion::kWaves, 6);
+  const auto path = folder / "a.adm", cut = folder / "cut.adm";
+  build_series(path, "a.adm", series.source(0, 2), with_blocks(8));
+  for (std::size_t begin = 2; begin < 6; begin += 2) {
+    const std::string before = test::bytes_of(path);
+    append_series(path, series.source(begin, begin + 2), with_blocks(8));
+    const std::string after = test::bytes_of(path);
+    ASSERT_EQ(after.substr(StorePrologue::kBytes, before.size() - StorePrologue::kBytes),
+              before.substr(StorePrologue::kBytes));
+    for (std::size_t size = before.size(); size <= after.size(); ++size) {
+      test::put_bytes(cut, before.substr(0, StorePrologue::kBytes) +
+                               after.substr(StorePrologue::kBytes, size - StorePrologue::kBytes));
+      StoreFile file(cut);
+      ASSERT_EQ(file.steps(), begin);
+      ASSERT_EQ(file.unfinished_bytes(), size - before.size());
+      file.check_directory();
+    }
+    // And steps can be added again, with the same bytes.
+    append_series(cut, series.source(begin, begin + 2), with_blocks(8));
+    ASSERT_EQ(test::bytes_of(cut), after);
+  }
+  expect_steps(path, series);
+}
+
+TEST(SeriesStore, AnswersToFlippedBitsAndTruncation) {
+  const test::Scratch folder;
+  const TestSeries<std::uint8_t> series({18, 9, 17}, Motion::kWaves, 5);
+  const auto path = folder / "a.adm";
+  build_series(path, "a.adm", series.source(0, 3), with_blocks(8));
+  append_series(path, series.source(3, 5), with_blocks(8));
+  const std::string whole = test::bytes_of(path);
+  for (std::size_t at = 0; at < whole.size(); at += 5 + at % 7) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 1 << at % 8);
+    test::put_bytes(path, bytes);
+    bool found = false;
+    try {
+      StoreFile file(path);
+      const VerifiedStore verified = verify_store(file, 0, SilentProgress::instance());
+      found = verified.bad_pages + verified.bad_copies > 0;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("a.adm"), std::string::npos) << e.what();
+      found = true;
+    }
+    EXPECT_TRUE(found) << "byte " << at;
+  }
+  for (std::size_t size = 0; size < whole.size(); size += 31) {
+    test::put_bytes(path, whole.substr(0, size));
+    EXPECT_THROW(StoreFile{path}, Error) << size;
+  }
+}
+
+TEST(SeriesStore, RefusesOtherStepsThanThoseAfterItsLast) {
+  const test::Scratch folder;
+  const auto path = folder / "a.adm";
+  const TestSeries<std::uint8_t> series({9, 9, 9}, Motion::kWaves, 3);
+  build_series(path, "a.adm", series.source(0, 2), with_blocks(8));
+  const std::string before = test::bytes_of(path);
+  EXPECT_THROW(append_series(path, series.source(1, 2), with_blocks(8)), Error);
+  const TestSeries<std::uint8_t> other({9, 9, 8}, Motion::kWaves, 3);
+  EXPECT_THROW(append_series(path, other.source(2, 3), with_blocks(8)), Error);
+  EXPECT_EQ(test::bytes_of(path), before);
+}
+
+}  // namespace
+}  // namespace adamas
