@@ -71,9 +71,12 @@ void draw_gradients(const GradientPicture& picture, Session& session) {
     wrong_usage("--gradients: expected a store from adamas store --gradients, found {}", picture.store);
   if (file_extension(picture.output) != ".png")
     wrong_usage("--gradients: expected a .png as output, found {}", picture.output);
-  const std::unique_ptr<StoreFile> file = open_store({picture.store}, session);
+  StoreInput input;
+  input.path = picture.store;
+  input.step = picture.time;
+  const std::unique_ptr<StoreFile> file = open_store(input, session);
   const VolumeGrid& grid = file->header().grid;
-  StoredGradients gradients(*file, 0, store_memory({picture.store}));
+  StoredGradients gradients(*file, wanted_step(input, *file, session, "--time"), store_memory(input));
   std::vector<Vec3> polygon = clip_plane(plane_in_frame(grid, picture.plane), grid.frame_box());
   for (Vec3& corner : polygon) corner = grid.in_space(corner);
   if (polygon.size() < 3)

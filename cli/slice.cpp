@@ -192,7 +192,8 @@ void run(const Options& options, Session& session) {
   const SliceOptions size = picture_size(options);
   if (options.gradients) {
     check_options(options, session.outputs);
-    return draw_gradients({options.input.path, style.plane, options.output, size.width}, session);
+    return draw_gradients({options.input.path, style.plane, options.output, size.width, options.volume.time},
+                          session);
   }
   InputOptions from = options.input;
   style.field = split_fields(from);

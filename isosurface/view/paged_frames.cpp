@@ -10,7 +10,6 @@
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
 #include "isosurface/view/joined_edges.h"
-#include "isosurface/view/mesh_cells.h"
 
 namespace adamas {
 
@@ -36,11 +35,6 @@ int classes_further(std::uint64_t triangles, std::uint64_t most) {
   constexpr double kMost = 8;
   const double ratio = static_cast<double>(most) / static_cast<double>(std::max<std::uint64_t>(triangles, 1));
   return static_cast<int>(std::clamp(4 * std::log2(ratio), 1.0, kMost));
-}
-
-std::array<std::uint32_t, 3> renumbered(const std::array<std::uint32_t, 3>& triangle,
-                                        const std::vector<std::uint32_t>& numbers) {
-  return {numbers[triangle[0]], numbers[triangle[1]], numbers[triangle[2]]};
 }
 
 }  // namespace
@@ -356,54 +350,6 @@ bool PagedFrames<Sample>::is_split(LatticePoint p) {
   const ViewedPage* const page = pages_.find(lod, {u.i / kSide, u.j / kSide, u.k / kSide});
   return page != nullptr && page->chunk != nullptr &&
          page->chunk->split.has({u.i % kSide, u.j % kSide, u.k % kSide});
-}
-
-template <class Sample>
-std::vector<std::vector<Vec3>> PagedFrames<Sample>::cells_in(const Plane& plane) {
-  if (!isovalue_) return {};
-  return adamas::cells_in(diamonds_.root(), diamonds_.domain(), plane, diamonds_.data_box(),
-                          [this](LatticePoint p) { return is_split(p); });
-}
-
-template <class Sample>
-std::optional<double> PagedFrames<Sample>::error_at(const Vec3& place) {
-  if (!isovalue_) return std::nullopt;
-  const LatticePoint p =
-      diamond_at(diamonds_.root(), diamonds_.domain(), place, [this](LatticePoint q) { return is_split(q); });
-  try {
-    return diamonds_.is_stored(p) ? diamonds_.error(diamonds_.class_if_crossed(p)) : 0;
-  } catch (const PageLost&) {
-    return std::nullopt;
-  }
-}
-
-template <class Sample>
-Contour PagedFrames<Sample>::contour() const {
-  Contour contour;
-  JoinedEdges edges(contour);
-  std::vector<std::uint32_t> numbers;
-  for (const ViewedPage* const page : chunks_) {
-    const PageChunk& chunk = *page->chunk;
-    numbers.clear();
-    for (std::size_t n = 0; n < chunk.inside.edges.size(); ++n)
-      numbers.push_back(
-          edges.number(maker_.edge_point(chunk, chunk.inside.edges[n], chunk.inside.parameters[n]),
-                       chunk.shown.points[n]));
-    for (const auto& triangle : chunk.shown.triangles)
-      contour.triangles.push_back(renumbered(triangle, numbers));
-  }
-  if (!apart_) return contour;
-  const Contour& apart = apart_->contour;
-  numbers.clear();
-  for (std::size_t n = 0; n < apart.edge_points.size(); ++n)
-    numbers.push_back(edges.number(apart.edge_points[n], apart.points[n]));
-  for (std::size_t n = apart.edge_points.size(); n < apart.points.size(); ++n) {
-    numbers.push_back(static_cast<std::uint32_t>(contour.points.size()));
-    contour.points.push_back(apart.points[n]);
-  }
-  contour.mean_points = apart.mean_points;
-  for (const auto& triangle : apart.triangles) contour.triangles.push_back(renumbered(triangle, numbers));
-  return contour;
 }
 
 template <class Sample>
