@@ -205,7 +205,8 @@ void add_generate_scene(const Command& generate, Session& session) {
       add_command(generate, session, "scene", "Analytic materials with known volumes, and fields", example,
                   [options, &session] { run(*options, session); });
   command.add_option("name", options->name, "The scene").required().type_name("NAME").one_of(scene_names());
-  command.add_option("--dimensions", options->dimensions, "Numbers of cells").type_name("X,Y,Z");
+  command.add_option("--dimensions", options->dimensions, "Numbers of cells, or with --volume of samples")
+      .type_name("X,Y,Z");
   command.add_option("--seed", options->seed, "Which of the scenes of a kind (voronoi10, random)")
       .type_name("N");
   command.add_option("--box", options->box, "Where the scene lies (default: the unit cube)")
@@ -222,7 +223,11 @@ void add_generate_scene(const Command& generate, Session& session) {
       .add_option("--volume", options->volume,
                   "Write samples of how far points are inside the bodies, as a volume, in place of fractions")
       .one_of(sample_type_names());
-  add_steps(command, options->steps, kSteps);
+  command
+      .add_option("--steps", options->steps,
+                  fmt::format("How many data sets a series of {} has, from its start to its end (default {})",
+                              kMoving, kSteps))
+      .type_name("N");
   command
       .add_option("-o,--output", options->output,
                   "The data: .vtr or .vti; of the scene moving the last, or a series: .pvd")

@@ -77,17 +77,13 @@ void SeriesOutput::write_list(OutputSet& outputs) {
   bytes_ += outputs.bytes(output_);
 }
 
-void add_steps(const Command& command, std::string& steps, std::size_t steps_by_default) {
-  command
-      .add_option("--steps", steps,
-                  fmt::format("How many data sets a series has, the first at the start (default {})",
-                              steps_by_default))
-      .type_name("N");
-}
-
 void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
                        std::string& output, std::string& steps) {
-  add_steps(command, steps, form.steps);
+  command
+      .add_option(
+          "--steps", steps,
+          fmt::format("How many data sets a series has, the first at the start (default {})", form.steps))
+      .type_name("N");
   command.add_option("-o,--output", output, fmt::format("The last data: {}; or a series: .pvd", single))
       .required()
       .type_name("FILE");

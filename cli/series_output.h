@@ -48,9 +48,7 @@ class SeriesOutput {
   std::size_t bytes_ = 0;
 };
 
-/// Adds --steps of such a command.
-void add_steps(const Command& command, std::string& steps, std::size_t steps_by_default);
-/// The same, and -o; `single` tells the one file.
+/// Adds --steps and -o of such a command; `single` tells the one file.
 void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
                        std::string& output, std::string& steps);
 
