@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "datasets/half_space_clipping.h"
 #include "datasets/shortest_side.h"
 
 namespace adamas {
@@ -44,12 +45,13 @@ SceneDescription moving_scene(const Box3& box, double time) {
   const double around = between(0.3, 0.3 + pi, time), bubble = between(0.08, 0.13, time) * scale;
   const Vec3 round = place({0.25 * std::cos(around), 0.25 * std::sin(around), -0.12});
   d.candidates.push_back({kBubble, {d.add(SceneFunction::sphere(round, bubble))}});
-  const double surface = box.center().z + between(-0.42, -0.3, time) * scale;
-  d.candidates.push_back(
-      {kPool, {d.add(SceneFunction::linear({0, 0, -1}, {box.center().x, box.center().y, surface}))}});
+  // Aslant: cells would be cut alike all over otherwise, and the rounding of their fractions would add up.
+  const Vec3 up = normalized({-0.06, -0.04, 1}), surface = place({0, 0, between(-0.42, -0.3, time)});
+  const SceneFunction below = SceneFunction::linear(-up, surface);
+  d.candidates.push_back({kPool, {d.add(below)}});
 
   const double each = ball_volume(drop) - 0.5 * lens_volume(drop, apart);
-  const double pool = box.size().x * box.size().y * (surface - box.min.z);
+  const double pool = clipped_volume(box, {below});
   d.volumes = {box.volume() - 2 * each - ball_volume(bubble) - pool, each, each, ball_volume(bubble), pool};
   return d;
 }
