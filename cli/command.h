@@ -81,6 +81,7 @@ Command add_command(const Command& parent, Session& session, const std::string& 
 // One function per command, in the file of its name; first the kinds of data that `adamas generate` makes.
 void add_generate_scene(const Command& generate, Session& session);
 void add_generate_impact(const Command& generate, Session& session);
+void add_generate_mixing(const Command& generate, Session& session);
 void add_generate_buckyball(const Command& generate, Session& session);
 void add_info(const Command& root, Session& session);
 void add_reconstruct(const Command& root, Session& session);

@@ -35,6 +35,7 @@ void add_all_commands(const Command& root, Session& session) {
                              "adamas generate scene voronoi10 --dimensions 32,32,32 --seed 7 -o cells.vtr");
   add_generate_scene(generate, session);
   add_generate_impact(generate, session);
+  add_generate_mixing(generate, session);
   add_generate_buckyball(generate, session);
   add_info(root, session);
   add_reconstruct(root, session);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -12,27 +11,14 @@ namespace adamas {
 
 namespace {
 
-constexpr SampleType kTypes[] = {SampleType::kUint8, SampleType::kUint16, SampleType::kFloat32};
-
 struct Options {
-  std::string dimensions, type = sample_name(kTypes[0]), output;
+  std::string dimensions, type = "uint8", output;
 };
-
-std::vector<std::string> type_names() {
-  std::vector<std::string> names;
-  for (const SampleType type : kTypes) names.emplace_back(sample_name(type));
-  return names;
-}
-
-SampleType parse_type(const std::string& name) {
-  return *std::find_if(std::begin(kTypes), std::end(kTypes),
-                       [&name](SampleType type) { return sample_name(type) == name; });
-}
 
 void run(const Options& options, Session& session) {
   const auto n = parse_dimensions("--dimensions", options.dimensions);
   declare_volume_output(options.output, session.outputs);
-  const Buckyball ball({n[0], n[1], n[2]}, parse_type(options.type));
+  const Buckyball ball({n[0], n[1], n[2]}, parse_sample_type(options.type));
   const VolumeGrid& grid = ball.grid();
   const auto make = [&](const PlaneSink& sink) {
     std::vector<std::byte> samples(grid.plane_bytes());
@@ -64,8 +50,7 @@ void add_generate_buckyball(const Command& generate, Session& session) {
   command.add_option("--dimensions", options->dimensions, "Numbers of samples, or one for all axes")
       .required()
       .type_name("X,Y,Z");
-  command.add_option("--type", options->type, "Of the samples, whose values fill its range; float32: 0 to 1")
-      .one_of(type_names())
+  add_sample_type(command, options->type, "Of the samples, whose values fill its range; float32: 0 to 1")
       .show_default();
   add_volume_output(command, options->output);
 }

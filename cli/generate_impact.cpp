@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
+#include "cli/series_output.h"
 #include "cli/usage_error.h"
 #include "core/io/multi_material_writer.h"
 #include "core/io/series_file.h"
@@ -19,75 +19,7 @@ namespace adamas {
 
 namespace {
 
-constexpr std::size_t kDefaultSteps = 11;
-/// A greater number of files is taken for a typing error.
-constexpr std::size_t kMostSteps = 1000;
-
-/// The files with the states of a flow: either one file with the last state, or a series F.pvd with
-/// F_0000.vtr, F_0001.vtr, ... beside it, which are evenly spaced in time from the start to the end.
-class FlowSeries {
- public:
-  /// Declares the outputs. `steps` is the value of --steps, or empty. Throws UsageError and Error.
-  FlowSeries(std::string output, const std::string& steps, double end, OutputSet& outputs);
-
-  /// Advances the flow to each of the times and writes its state there.
-  template <std::size_t N>
-  void write(FlowSolver<N>& flow, const FlowUnits& units, Session& session) {
-    for (std::size_t i = 0; i < files_.size(); ++i) {
-      flow.advance_to(times_[i], session.console, times_.back());
-      session.console.step("writing " + files_[i], times_[i] / times_.back());
-      const MultiMaterialData data = flow_data(flow, output_, units);
-      session.outputs.write(files_[i], [&data](const auto& path) { write_multi_material_data(path, data); });
-      bytes_ += session.outputs.bytes(files_[i]);
-    }
-    finish(session.outputs);
-  }
-  [[nodiscard]] const std::vector<double>& times() const { return times_; }
-  /// The bytes of all files together, once they are written.
-  [[nodiscard]] std::size_t bytes() const { return bytes_; }
-
- private:
-  void finish(OutputSet& outputs);
-
-  std::string output_;
-  bool is_series_ = false;
-  std::vector<std::string> files_;
-  std::vector<double> times_;
-  std::size_t bytes_ = 0;
-};
-
-FlowSeries::FlowSeries(std::string output, const std::string& steps, double end, OutputSet& outputs)
-    : output_(std::move(output)) {
-  outputs.declare("-o", output_, {".vtr", ".vti", ".pvd"});
-  std::filesystem::path name = output_;
-  std::string extension = name.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  is_series_ = extension == ".pvd";
-  if (!is_series_) {
-    if (!steps.empty()) wrong_usage("--steps: expected a series as well, -o F.pvd, found '-o {}'", output_);
-    files_ = {output_};
-    times_ = {end};
-    return;
-  }
-  const std::size_t count = steps.empty() ? kDefaultSteps : parse_count("--steps", steps, 2);
-  if (count > kMostSteps) wrong_usage("--steps: expected at most {}, found {}", kMostSteps, steps);
-  const std::string stem = name.stem().string();
-  for (std::size_t i = 0; i < count; ++i) {
-    files_.push_back(name.replace_filename(fmt::format("{}_{:04}.vtr", stem, i)).string());
-    outputs.declare("-o", files_.back(), {".vtr"});
-    times_.push_back(end * static_cast<double>(i) / static_cast<double>(count - 1));
-  }
-}
-
-void FlowSeries::finish(OutputSet& outputs) {
-  if (!is_series_) return;
-  std::vector<SeriesEntry> entries;
-  for (std::size_t i = 0; i < files_.size(); ++i) {
-    entries.push_back({times_[i], std::filesystem::path(files_[i]).filename().string()});
-  }
-  outputs.write(output_, [&entries](const auto& path) { write_series(path, entries); });
-  bytes_ += outputs.bytes(output_);
-}
+const SeriesForm kForm{".vtr", 11};
 
 struct Options {
   std::string dimensions, box, steps, end_time, speed, output;
@@ -129,10 +61,16 @@ void print_ledger(const FlowSolver<3>& flow, const FlowLedger<3>& start, Console
 void run(const Options& options, Session& session) {
   const ImpactOptions impact = impact_options(options);
   const double end = options.end_time.empty() ? kImpactTime : parse_positive("--end-time", options.end_time);
-  FlowSeries series(options.output, options.steps, end, session.outputs);
+  SeriesOutput series(options.output, options.steps, end, kForm, {".vtr", ".vti", ".pvd"}, session.outputs);
   FlowSolver<3> flow = make_impact(impact);
   const FlowLedger<3> start = flow.inside();
-  series.write(flow, kImpactUnits, session);
+  const auto make = [&](double time, Progress& progress) -> SeriesOutput::Writer {
+    flow.advance_to(time, progress);
+    return [data = flow_data(flow, options.output, kImpactUnits)](const auto& path) {
+      write_multi_material_data(path, data);
+    };
+  };
+  series.write(make, session);
   const auto& cells = impact.cells;
   Figures figures{{"dimensions", cells}, {"bytes", series.bytes()}, {"box", box_figures(impact.box)}};
   figures["speed"] = impact.speed;
@@ -170,13 +108,7 @@ void add_generate_impact(const Command& generate, Session& session) {
           "--speed", options->speed,
           fmt::format("Speed of the projectile in cm per microsecond (default {})", ImpactOptions().speed))
       .type_name("V");
-  command
-      .add_option("--steps", options->steps,
-                  "How many data sets a series has, the first at the start (default 11)")
-      .type_name("N");
-  command.add_option("-o,--output", options->output, "The last data: .vtr or .vti; or a series: .pvd")
-      .required()
-      .type_name("FILE");
+  add_series_output(command, ".vtr or .vti", kForm, options->output, options->steps);
 }
 
 }  // namespace adamas

@@ -1,23 +1,39 @@
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
+#include "cli/series_output.h"
 #include "cli/usage_error.h"
+#include "cli/volume_options.h"
+#include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
+#include "core/io/volume_writer.h"
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
 #include "datasets/scene_sampling.h"
+#include "datasets/scene_volume.h"
 
 namespace adamas {
 
 namespace {
 
 struct Options {
-  std::string name, dimensions, seed, box, interfaces, resolution, output;
+  std::string name, dimensions, seed, box, interfaces, resolution, volume, steps, output;
 };
+
+/// The scene that goes on in time, from 0 to 1.
+constexpr const char* kMoving = "moving";
+constexpr std::size_t kSteps = 60;
+
+SeriesForm series_form(const Options& options) { return {options.volume.empty() ? ".vtr" : ".vti", kSteps}; }
 
 std::uint64_t parse_seed(const std::string& text) {
   return text.empty() ? 0 : parse_count("--seed", text, 0);
@@ -33,10 +49,18 @@ double interface_resolution(const Options& options, const Box3& box) {
                    size.z / static_cast<double>(cells[2])});
 }
 
-void print_volumes(const Scene& scene, const SceneIntegral* sampled, Console& console, Figures& figures) {
-  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
+Scene scene_at(const Options& options, double time) {
+  SceneOptions where{.time = time};
+  if (!options.box.empty()) where.box = to_box(parse_bounds("--box", options.box));
+  return make_scene(options.name, parse_seed(options.seed), where);
+}
+
+/// The figures of the materials' volumes, and rows of a table of them.
+Figures volume_figures(const Scene& scene, const SceneIntegral* sampled,
+                       std::vector<std::vector<std::string>>& rows) {
+  rows = {{"material", "volume"}};
   if (sampled != nullptr) rows[0].insert(rows[0].end(), {"on the grid", "integration error"});
-  figures["materials"] = Figures::array();
+  Figures figures = Figures::array();
   for (MaterialId m(0); m.value < scene.materials().size(); ++m.value) {
     Figures figure{
         {"name", scene.materials()[m]}, {"volume", scene.volume(m)}, {"volume_error", scene.volume_error(m)}};
@@ -47,49 +71,119 @@ void print_volumes(const Scene& scene, const SceneIntegral* sampled, Console& co
       rows.back().insert(rows.back().end(),
                          {volume_text(sampled->volumes[m]), fmt::format("{:.2g}", sampled->errors[m])});
     }
-    figures["materials"].push_back(std::move(figure));
+    figures.push_back(std::move(figure));
   }
-  console.table(rows);
+  return figures;
 }
 
-void write_grid(const Scene& scene, const Options& options, Session& session, Figures& figures) {
-  const auto cells = parse_dimensions("--dimensions", options.dimensions);
-  SceneIntegral integral;
-  const MultiMaterialData data = sample_scene(scene, cells, {}, session.console, &integral);
-  session.console.step("writing " + options.output, -1);
-  session.outputs.write(options.output, [&data](const auto& path) { write_multi_material_data(path, data); });
-  figures["dimensions"] = cells;
-  figures["bytes"] = session.outputs.bytes(options.output);
-  session.console.print("Scene {} on {} x {} x {} cells, {}\n", scene.name(), cells[0], cells[1], cells[2],
-                        bytes_text(static_cast<double>(session.outputs.bytes(options.output))));
-  print_volumes(scene, &integral, session.console, figures);
+/// Writes the data of the scene at each time of the series, and adds what is in them to the figures.
+class SceneSeries {
+ public:
+  SceneSeries(const Options& options, Session& session, SeriesOutput& output)
+      : options_(options),
+        session_(session),
+        output_(output),
+        cells_(parse_dimensions("--dimensions", options.dimensions)) {}
+
+  void write(Figures& figures) {
+    Figures steps = Figures::array();
+    const auto make = [&](double time, Progress& progress) {
+      Scene scene = scene_at(options_, time);
+      SeriesOutput::Writer writer =
+          options_.volume.empty() ? cells_of(scene, progress) : samples_of(scene, progress);
+      steps.push_back({{"time", time}, {"materials", materials_}});
+      return writer;
+    };
+    output_.write(make, session_);
+    figures["dimensions"] = cells_;
+    figures["bytes"] = output_.bytes();
+    figures["materials"] = materials_;
+    if (output_.is_series()) {
+      figures["steps"] = steps.size();
+      figures["series"] = std::move(steps);
+    }
+    if (!options_.volume.empty())
+      figures["type"] = options_.volume, figures["slope"] = slope_, figures["intercept"] = intercept_;
+    const std::string_view what = options_.volume.empty() ? "cells" : "samples";
+    const std::string many = output_.is_series() ? fmt::format(", {} steps", output_.times().size()) : "";
+    session_.console.print("Scene {} on {} x {} x {} {}{}, {}\n", options_.name, cells_[0], cells_[1],
+                           cells_[2], what, many, bytes_text(static_cast<double>(output_.bytes())));
+    session_.console.table(rows_);
+  }
+
+ private:
+  SeriesOutput::Writer cells_of(const Scene& scene, Progress& progress) {
+    SceneIntegral integral;
+    MultiMaterialData data = sample_scene(scene, cells_, {}, progress, &integral);
+    materials_ = volume_figures(scene, &integral, rows_);
+    return [data = std::move(data)](const auto& path) { write_multi_material_data(path, data); };
+  }
+
+  SeriesOutput::Writer samples_of(Scene scene, Progress& progress) {
+    materials_ = volume_figures(scene, nullptr, rows_);
+    return [this, &progress, scene = std::move(scene)](const std::filesystem::path& path) {
+      const SceneVolume volume(scene, cells_, parse_sample_type(options_.volume));
+      slope_ = volume.scale().slope(), intercept_ = volume.scale().intercept();
+      std::vector<std::byte> samples(volume.grid().plane_bytes());
+      const auto plane = [&](std::uint64_t k) {
+        progress.check();
+        volume.plane(k, samples);
+        return std::span<const std::byte>(samples);
+      };
+      write_point_arrays(path, volume.grid(), {{"inside", slope_, intercept_, plane}});
+    };
+  }
+
+  const Options& options_;
+  Session& session_;
+  SeriesOutput& output_;
+  std::array<std::size_t, 3> cells_;
+  // Of the last step.
+  Figures materials_;
+  std::vector<std::vector<std::string>> rows_;
+  double slope_ = 1, intercept_ = 0;
+};
+
+/// Throws UsageError where options do not go together.
+void check(const Options& options) {
+  if (options.output.empty() && options.interfaces.empty())
+    wrong_usage("expected -o or --interfaces, found neither");
+  if (!options.resolution.empty() && options.interfaces.empty())
+    wrong_usage("--resolution: expected --interfaces as well");
+  if (!options.output.empty() && options.dimensions.empty())
+    wrong_usage("-o: expected --dimensions X,Y,Z as well");
+  if (options.output.empty() && !options.steps.empty()) wrong_usage("--steps: expected -o F.pvd as well");
+  if (options.output.empty() && !options.volume.empty()) wrong_usage("--volume: expected -o as well");
+}
+
+SeriesOutput declare_output(const Options& options, OutputSet& outputs) {
+  const bool moves = options.name == kMoving;
+  if (!moves && file_extension(options.output) == ".pvd")
+    wrong_usage("-o: expected the scene {} for a series, found {}", kMoving, options.name);
+  std::vector<const char*> endings{".vti"};
+  if (options.volume.empty()) endings.insert(endings.begin(), ".vtr");
+  if (moves) endings.push_back(".pvd");
+  return {options.output, options.steps, 1, series_form(options), endings, outputs};
 }
 
 void run(const Options& options, Session& session) {
-  if (options.output.empty() && options.interfaces.empty()) {
-    wrong_usage("expected -o or --interfaces, found neither");
-  }
-  if (!options.resolution.empty() && options.interfaces.empty()) {
-    wrong_usage("--resolution: expected --interfaces as well");
-  }
-  if (!options.output.empty() && options.dimensions.empty()) {
-    wrong_usage("-o: expected --dimensions X,Y,Z as well");
-  }
-  SceneOptions where;
-  if (!options.box.empty()) where.box = to_box(parse_bounds("--box", options.box));
-  const Scene scene = make_scene(options.name, parse_seed(options.seed), where);
+  check(options);
+  const Scene scene = scene_at(options, 1);
   const double resolution = interface_resolution(options, scene.box());
-  session.outputs.declare("-o", options.output, {".vtr", ".vti"});
+  std::optional<SeriesOutput> series;
+  if (!options.output.empty()) series.emplace(declare_output(options, session.outputs));
   session.outputs.declare("--interfaces", options.interfaces,
                           {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   Figures figures{{"dimensions", nullptr}, {"bytes", nullptr}, {"scene", scene.name()}};
   figures["seed"] = parse_seed(options.seed);
   figures["box"] = box_figures(scene.box());
-  if (options.output.empty()) {
-    session.console.print("Scene {}\n", scene.name());
-    print_volumes(scene, nullptr, session.console, figures);
+  if (series) {
+    SceneSeries(options, session, *series).write(figures);
   } else {
-    write_grid(scene, options, session, figures);
+    session.console.print("Scene {}\n", scene.name());
+    std::vector<std::vector<std::string>> rows;
+    figures["materials"] = volume_figures(scene, nullptr, rows);
+    session.console.table(rows);
   }
   if (!options.interfaces.empty()) {
     const InterfaceMesh mesh = scene_interfaces(scene, resolution, session.console);
@@ -111,7 +205,8 @@ void add_generate_scene(const Command& generate, Session& session) {
       add_command(generate, session, "scene", "Analytic materials with known volumes, and fields", example,
                   [options, &session] { run(*options, session); });
   command.add_option("name", options->name, "The scene").required().type_name("NAME").one_of(scene_names());
-  command.add_option("--dimensions", options->dimensions, "Numbers of cells").type_name("X,Y,Z");
+  command.add_option("--dimensions", options->dimensions, "Numbers of cells, or with --volume of samples")
+      .type_name("X,Y,Z");
   command.add_option("--seed", options->seed, "Which of the scenes of a kind (voronoi10, random)")
       .type_name("N");
   command.add_option("--box", options->box, "Where the scene lies (default: the unit cube)")
@@ -124,7 +219,19 @@ void add_generate_scene(const Command& generate, Session& session) {
       .add_option("--resolution", options->resolution,
                   "Size of their triangles on curved interfaces (default: a cell)")
       .type_name("H");
-  command.add_option("-o,--output", options->output, "The data: .vtr or .vti").type_name("FILE");
+  command
+      .add_option("--volume", options->volume,
+                  "Write samples of how far points are inside the bodies, as a volume, in place of fractions")
+      .one_of(sample_type_names());
+  command
+      .add_option("--steps", options->steps,
+                  fmt::format("How many data sets a series of {} has, from its start to its end (default {})",
+                              kMoving, kSteps))
+      .type_name("N");
+  command
+      .add_option("-o,--output", options->output,
+                  "The data: .vtr or .vti; of the scene moving the last, or a series: .pvd")
+      .type_name("FILE");
 }
 
 }  // namespace adamas

@@ -18,8 +18,8 @@ std::string lower_case(std::string text) {
 }
 
 void check_extension(const std::string& option, const std::filesystem::path& path,
-                     std::initializer_list<const char*> extensions) {
-  if (extensions.size() == 0) return;
+                     const std::vector<const char*>& extensions) {
+  if (extensions.empty()) return;
   const std::string name = lower_case(path.filename().string());
   std::string known;
   for (const char* extension : extensions) {
@@ -84,7 +84,7 @@ std::string OutputSet::naming_input(const std::string& message) const {
 }
 
 void OutputSet::declare(const std::string& option, const std::string& path,
-                        std::initializer_list<const char*> extensions) {
+                        const std::vector<const char*>& extensions) {
   if (path.empty()) return;
   check_extension(option, path, extensions);
   const std::filesystem::path full = std::filesystem::absolute(path).lexically_normal();

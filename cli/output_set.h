@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,7 +27,7 @@ class OutputSet {
   /// UsageError for an extension that is not among those given, for a path declared before and for an input,
   /// and Error where its folder cannot be used.
   void declare(const std::string& option, const std::string& path,
-               std::initializer_list<const char*> extensions = {});
+               const std::vector<const char*>& extensions = {});
   /// Calls `writer` with the name to write to, if the path was declared. Its Errors name the final path.
   void write(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
   /// The same for an output that is whole at several moments: it gets its name at once, and may be written

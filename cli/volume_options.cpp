@@ -21,6 +21,8 @@ constexpr StoredType kStoredTypes[] = {
     StoredType::kUint8, StoredType::kInt8,   StoredType::kUint16, StoredType::kInt16,   StoredType::kUint32,
     StoredType::kInt32, StoredType::kUint64, StoredType::kInt64,  StoredType::kFloat32, StoredType::kFloat64};
 
+constexpr SampleType kMadeTypes[] = {SampleType::kUint8, SampleType::kUint16, SampleType::kFloat32};
+
 std::vector<std::string> type_names() {
   std::vector<std::string> names;
   for (const StoredType type : kStoredTypes) names.emplace_back(stored_name(type));
@@ -202,6 +204,21 @@ void add_volume_output(const Command& command, std::string& output) {
           "The volume: .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw alone")
       .required()
       .type_name("FILE");
+}
+
+std::vector<std::string> sample_type_names() {
+  std::vector<std::string> names;
+  for (const SampleType made : kMadeTypes) names.emplace_back(sample_name(made));
+  return names;
+}
+
+CommandOption add_sample_type(const Command& command, std::string& type, const std::string& description) {
+  return command.add_option("--type", type, description).one_of(sample_type_names());
+}
+
+SampleType parse_sample_type(const std::string& name) {
+  return *std::find_if(std::begin(kMadeTypes), std::end(kMadeTypes),
+                       [&name](SampleType type) { return sample_name(type) == name; });
 }
 
 void declare_volume_output(const std::string& output, OutputSet& outputs) {

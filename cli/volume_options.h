@@ -53,6 +53,13 @@ void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
 /// The option -o of a command that makes a volume.
 void add_volume_output(const Command& command, std::string& output);
 
+/// The types of samples that are made: uint8, uint16 and float32.
+std::vector<std::string> sample_type_names();
+/// The option --type of a command that makes samples.
+CommandOption add_sample_type(const Command& command, std::string& type, const std::string& description);
+/// The type of that name, which the option lets through.
+SampleType parse_sample_type(const std::string& name);
+
 /// Declares the file and, where its samples go to another, that one.
 void declare_volume_output(const std::string& output, OutputSet& outputs);
 

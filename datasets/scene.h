@@ -106,11 +106,12 @@ class Scene {
 /// How a named scene is placed.
 struct SceneOptions {
   Box3 box{{0, 0, 0}, {1, 1, 1}};
+  double time = 1;  ///< of `moving`, from 0 to 1: the end
 };
 
 /// A named scene. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`;
-/// other scenes ignore it. Lengths scale with the shortest side of the box. Throws Error for an unknown name
-/// and a box without volume.
+/// other scenes ignore it. Lengths scale with the shortest side of the box. Throws Error for an unknown name,
+/// a box without volume and a time out of range.
 Scene make_scene(std::string_view name, std::uint64_t seed = 0, const SceneOptions& options = {});
 
 }  // namespace adamas

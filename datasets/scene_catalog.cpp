@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "datasets/half_space_clipping.h"
+#include "datasets/moving_scene.h"
 #include "datasets/random_numbers.h"
 #include "datasets/random_scene.h"
 #include "datasets/scene.h"
@@ -148,7 +149,7 @@ bool has_volume(const Box3& box) {
 }  // namespace
 
 std::vector<std::string> scene_names() {
-  return {"sphere", "shell3", "shell2", "plate", "tjunction", "reflex", "voronoi10", "random"};
+  return {"sphere", "shell3", "shell2", "plate", "tjunction", "reflex", "voronoi10", "random", "moving"};
 }
 
 Scene make_scene(std::string_view name, std::uint64_t seed, const SceneOptions& options) {
@@ -157,6 +158,8 @@ Scene make_scene(std::string_view name, std::uint64_t seed, const SceneOptions& 
     fail("scene {}: expected a box with volume, found [{},{}]x[{},{}]x[{},{}]", name, box.min.x, box.max.x,
          box.min.y, box.max.y, box.min.z, box.max.z);
   }
+  if (!(options.time >= 0 && options.time <= 1))
+    fail("scene {}: expected a time from 0 to 1, found {}", name, options.time);
   if (name == "sphere") return Scene(sphere(box));
   if (name == "shell3") return Scene(shell(name, box, {"outside", "shell", "core"}, kThird));
   if (name == "shell2") return Scene(shell(name, box, {"surrounding", "shell"}, kFirst));
@@ -165,6 +168,7 @@ Scene make_scene(std::string_view name, std::uint64_t seed, const SceneOptions& 
   if (name == "reflex") return Scene(reflex(box));
   if (name == "voronoi10") return Scene(voronoi(box, seed));
   if (name == "random") return Scene(random_scene(box, seed));
+  if (name == "moving") return Scene(moving_scene(box, options.time));
   std::string known;
   for (const std::string& each : scene_names()) known += (known.empty() ? "" : ", ") + each;
   fail("scene: expected one of {}, found '{}'", known, name);

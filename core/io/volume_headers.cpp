@@ -73,7 +73,8 @@ std::string meta_image_header_text(VolumeGrid grid, const std::string& data_name
       data_name.empty() ? "LOCAL" : data_name);
 }
 
-std::string vti_header_text(const std::string& name, const VolumeGrid& grid, const std::string& array) {
+std::string vti_header_text(const std::string& name, const VolumeGrid& grid,
+                            const std::vector<VtiArray>& arrays) {
   const auto& n = grid.dimensions;
   // VTK counts points along an axis in 32 bits.
   constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
@@ -82,26 +83,38 @@ std::string vti_header_text(const std::string& name, const VolumeGrid& grid, con
          n[1], n[2]);
   }
   const std::string extent = fmt::format("0 {} 0 {} 0 {}", n[0] - 1, n[1] - 1, n[2] - 1);
-  const std::string quoted = xml_attribute(array);
   const auto& [i, j, k] = grid.directions;
   const std::string direction = grid.is_straight()
                                     ? ""
                                     : fmt::format(" Direction=\"{} {} {}\"", numbers({i.x, j.x, k.x}),
                                                   numbers({i.y, j.y, k.y}), numbers({i.z, j.z, k.z}));
-  std::string text = fmt::format(
+  std::string declared;
+  std::uint64_t offset = 0;
+  for (const VtiArray& array : arrays) {
+    const std::string scale =
+        array.slope == 1 && array.intercept == 0
+            ? ""
+            : fmt::format(" slope=\"{}\" intercept=\"{}\"", array.slope, array.intercept);
+    declared += fmt::format(
+        "        <DataArray type=\"{}\" Name=\"{}\"{} format=\"appended\" offset=\"{}\"/>\n",
+        stored_name(stored_type(grid.type), TypeNames::kVtk), xml_attribute(array.name), scale, offset);
+    offset += sizeof(std::uint64_t) + grid.bytes();
+  }
+  return fmt::format(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
       "  <ImageData WholeExtent=\"{0}\" Origin=\"{1}\" Spacing=\"{2}\"{5}>\n"
       "    <Piece Extent=\"{0}\">\n"
       "      <PointData Scalars=\"{3}\">\n"
-      "        <DataArray type=\"{4}\" Name=\"{3}\" format=\"appended\" offset=\"0\"/>\n"
-      "      </PointData>\n      <CellData/>\n    </Piece>\n  </ImageData>\n"
+      "{4}      </PointData>\n      <CellData/>\n    </Piece>\n  </ImageData>\n"
       "  <AppendedData encoding=\"raw\">\n   _",
-      extent, numbers(grid.origin), numbers(grid.spacing), quoted,
-      stored_name(stored_type(grid.type), TypeNames::kVtk), direction);
+      extent, numbers(grid.origin), numbers(grid.spacing), xml_attribute(arrays.front().name), declared,
+      direction);
+}
+
+std::string vti_count(const VolumeGrid& grid) {
   const std::uint64_t bytes = grid.bytes();
-  text.append(reinterpret_cast<const char*>(&bytes), sizeof(bytes));
-  return text;
+  return {reinterpret_cast<const char*>(&bytes), sizeof(bytes)};
 }
 
 std::string nifti_header_bytes(VolumeGrid grid) {

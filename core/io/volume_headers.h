@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "adamas/volume.h"
 #include "core/geometry/vec3.h"
@@ -13,8 +14,17 @@ namespace adamas {
 /// `data_name`: the file of the samples, empty where they follow.
 std::string nrrd_header_text(const VolumeGrid& grid, const std::string& data_name);
 std::string meta_image_header_text(VolumeGrid grid, const std::string& data_name);
-/// `array`: the name of the samples. Throws Error with `name` where there are too many along an axis.
-std::string vti_header_text(const std::string& name, const VolumeGrid& grid, const std::string& array);
+/// An array of a .vti: its values are slope * sample + intercept, which attributes of it say where they are
+/// other numbers than the samples.
+struct VtiArray {
+  std::string name;
+  double slope = 1, intercept = 0;
+};
+/// Before each array's samples, which follow, vti_count() has to go. Throws Error with `name` where there are
+/// too many along an axis.
+std::string vti_header_text(const std::string& name, const VolumeGrid& grid,
+                            const std::vector<VtiArray>& arrays);
+std::string vti_count(const VolumeGrid& grid);
 inline constexpr const char* kVtiEnd = "\n  </AppendedData>\n</VTKFile>\n";
 std::string nifti_header_bytes(VolumeGrid grid);
 

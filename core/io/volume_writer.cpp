@@ -78,7 +78,7 @@ VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& 
   if (apart) check_data_name(name, data_name);
   std::string text;
   if (extension == ".vti") {
-    text = vti_header_text(name, grid, options.array);
+    text = vti_header_text(name, grid, {{options.array}}) + vti_count(grid);
     end_ = kVtiEnd;
   } else if (extension == ".nrrd" || extension == ".nhdr") {
     text = nrrd_header_text(grid, apart ? data_name : "");
@@ -134,6 +134,27 @@ void VolumeWriter::finish() {
   header_->close();
   if (data_) data_->commit();
   header_->commit();
+}
+
+void write_point_arrays(const std::filesystem::path& path, const VolumeGrid& grid,
+                        const std::vector<PointArray>& arrays) {
+  grid.check(path.string());
+  std::vector<VtiArray> declared;
+  for (const PointArray& array : arrays) declared.push_back({array.name, array.slope, array.intercept});
+  const std::string text = vti_header_text(path.string(), grid, declared);
+  OutputStream stream(path);
+  check_room(path, grid.bytes() * arrays.size());
+  stream.write(text);
+  for (const PointArray& array : arrays) {
+    stream.write(vti_count(grid));
+    for (std::uint64_t k = 0; k < grid.dimensions[2]; ++k) {
+      const std::span<const std::byte> samples = array.plane(k);
+      ADAMAS_ASSERT(samples.size() == grid.plane_bytes());
+      stream.write(samples.data(), samples.size());
+    }
+  }
+  stream.write(kVtiEnd);
+  stream.finish();
 }
 
 }  // namespace adamas

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -60,5 +61,19 @@ class VolumeWriter {
   std::unique_ptr<GzipStream> gzip_;  ///< into header_, where the file is compressed
   std::string end_;                   ///< of the header's file, behind the samples
 };
+
+/// One array of several that share a grid.
+struct PointArray {
+  std::string name;
+  /// A value is slope * sample + intercept. The readers of this project know; other programs see samples.
+  double slope = 1, intercept = 0;
+  /// The samples of plane k, as of VolumeWriter::write_plane; called for each plane in ascending order.
+  std::function<std::span<const std::byte>(std::uint64_t k)> plane;
+};
+
+/// Writes a .vti with arrays at the grid's points, all of the grid's type; the grid's own scale does not
+/// count. Equal samples give equal bytes. Throws Error as VolumeWriter does.
+void write_point_arrays(const std::filesystem::path& path, const VolumeGrid& grid,
+                        const std::vector<PointArray>& arrays);
 
 }  // namespace adamas

@@ -1,6 +1,7 @@
 #include "core/io/vti_header.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -146,6 +147,17 @@ class Parser {
     array.missing = fmt::format("{}: expected {}, found '{}'", what, expected, printable(found, kShown));
   }
 
+  /// As write_point_arrays writes it.
+  void read_scale(const XmlTag& tag, VolumeSource& source) const {
+    const double slope = numbers<double>(tag, "slope", 1).front(),
+                 intercept = numbers<double>(tag, "intercept", 1).front();
+    if (!(slope > 0) || !std::isfinite(slope)) fail_value("slope", "a number above 0", tag.value("slope"));
+    if (!std::isfinite(intercept)) fail_value("intercept", "a finite number", tag.value("intercept"));
+    source.slope = slope;
+    source.intercept = intercept;
+    if (source.scaled()) source.grid.type = SampleType::kFloat32;
+  }
+
   ImageArray array_of(const XmlTag& tag) {
     ImageArray array;
     array.name = tag.value("Name");
@@ -160,6 +172,7 @@ class Parser {
                            : find_stored_type(tag.value("type"), TypeNames::kVtk);
     if (!type) set_form(array, "DataArray type", "a type of numbers", tag.value("type"));
     source.set_stored(type.value_or(StoredType::kUint8));
+    if (tag.has("slope") || tag.has("intercept")) read_scale(tag, source);
     if (tag.has("NumberOfComponents"))
       source.components = numbers<std::size_t>(tag, "NumberOfComponents", 1).front();
     const std::string_view format = tag.value("format");

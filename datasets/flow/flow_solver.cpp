@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <numeric>
+
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
@@ -35,27 +37,16 @@ FlowSolver<N>::FlowSolver(std::string name, FlowProblem<N> problem,
         for (std::size_t k = 0; k < N; ++k) gases[k] = problem_.materials[k].gas;
         return MixtureLaw<N>(gases);
       }()) {
-  check();
+  check_cells(name_, problem_.cells);
   size_ = cell_size(problem_.box, problem_.cells);
   const std::size_t nx = problem_.cells[0], ny = problem_.cells[1], nz = problem_.cells[2];
   for (auto& values : state_) values.resize(nx * ny * nz);
   parallel_for(nz, 1, [&](std::size_t k) {
     for (std::size_t j = 0; j < ny; ++j) {
       for (std::size_t i = 0; i < nx; ++i) {
-        const FlowCell<N> c = cell(i, j, k);
-        const std::size_t at = index(i, j, k);
-        double density = 0, internal = 0;
-        for (std::size_t m = 0; m < N; ++m) {
-          state_[V::kFraction + m][at] = c.fractions[m];
-          state_[V::kMass + m][at] = c.fractions[m] * c.densities[m];
-          density += state_[V::kMass + m][at];
-          internal += c.fractions[m] * (law_.inverse[m] * c.pressure + law_.offset[m]);
-        }
-        state_[V::kNormal][at] = density * c.velocity.x;
-        state_[V::kNormal + 1][at] = density * c.velocity.y;
-        state_[V::kNormal + 2][at] = density * c.velocity.z;
-        state_[V::kEnergy][at] = internal + 0.5 * density * dot(c.velocity, c.velocity);
-        if (!(density > 0))
+        const Conserved q = conserved(cell(i, j, k));
+        for (std::size_t v = 0; v < V::kCount; ++v) state_[v][index(i, j, k)] = q[v];
+        if (!(std::accumulate(&q[V::kMass], &q[V::kMass] + N, 0.0) > 0))
           fail("{}: expected matter in every cell, found none in ({}, {}, {})", name_, i, j, k);
       }
     }
@@ -63,19 +54,41 @@ FlowSolver<N>::FlowSolver(std::string name, FlowProblem<N> problem,
 }
 
 template <std::size_t N>
-void FlowSolver<N>::check() const {
-  double cells = 1;
-  for (const std::size_t n : problem_.cells) cells *= static_cast<double>(n);
-  if (!(cells > 0)) fail("{}: expected at least one cell along each axis, found none", name_);
+void FlowSolver<N>::check_cells(const std::string& name, const std::array<std::size_t, 3>& cells) {
+  double count = 1;
+  for (const std::size_t n : cells) count *= static_cast<double>(n);
+  if (!(count > 0)) fail("{}: expected at least one cell along each axis, found none", name);
   // With the arrays that are written.
-  const double needed = cells * (V::kCount * sizeof(double) + (2 * N + 4) * sizeof(float));
+  const double needed = count * (V::kCount * sizeof(double) + (2 * N + 4) * sizeof(float));
   const double memory =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   if (needed > memory) {
     fail("{}: expected dimensions that fit in memory ({:.0f} GiB), found {}x{}x{}, which need {:.0f} GiB",
-         name_, memory / kGibibyte, problem_.cells[0], problem_.cells[1], problem_.cells[2],
-         needed / kGibibyte);
+         name, memory / kGibibyte, cells[0], cells[1], cells[2], needed / kGibibyte);
   }
+}
+
+template <std::size_t N>
+auto FlowSolver<N>::conserved(const FlowCell<N>& cell) const -> Conserved {
+  Conserved q{};
+  double density = 0, internal = 0;
+  for (std::size_t m = 0; m < N; ++m) {
+    q[V::kFraction + m] = cell.fractions[m];
+    q[V::kMass + m] = cell.fractions[m] * cell.densities[m];
+    density += q[V::kMass + m];
+    internal += cell.fractions[m] * (law_.inverse[m] * cell.pressure + law_.offset[m]);
+  }
+  q[V::kNormal] = density * cell.velocity.x;
+  q[V::kNormal + 1] = density * cell.velocity.y;
+  q[V::kNormal + 2] = density * cell.velocity.z;
+  q[V::kEnergy] = internal + 0.5 * density * dot(cell.velocity, cell.velocity);
+  return q;
+}
+
+template <std::size_t N>
+void FlowSolver<N>::set_beyond(std::size_t axis, std::size_t end, const FlowCell<N>& state) {
+  problem_.boundaries[axis][end] = FlowBoundary::kGiven;
+  beyond_[axis][end] = conserved(state);
 }
 
 template <std::size_t N>
@@ -160,11 +173,28 @@ void FlowSolver<N>::fail_in(std::size_t axis, std::size_t cell, std::size_t line
 }
 
 template <std::size_t N>
+std::size_t FlowSolver<N>::variable_along(std::size_t axis, std::size_t v) {
+  const std::size_t across = axis == 0 ? 1 : 0, beyond = axis == 2 ? 1 : 2;
+  if (v == V::kNormal) return V::kNormal + axis;
+  if (v == V::kTransverse) return V::kNormal + across;
+  if (v == V::kTransverse + 1) return V::kNormal + beyond;
+  return v;
+}
+
+template <std::size_t N>
+LineEnd<N> FlowSolver<N>::line_end(std::size_t axis, std::size_t end) const {
+  LineEnd<N> result{problem_.boundaries[axis][end]};
+  for (std::size_t v = 0; v < V::kCount; ++v) result.given[v] = beyond_[axis][end][variable_along(axis, v)];
+  return result;
+}
+
+template <std::size_t N>
 void FlowSolver<N>::sweep(std::size_t axis, double step) {
   const auto& n = problem_.cells;
   const std::array<std::size_t, 3> strides{1, n[0], n[0] * n[1]};
   const std::size_t across = axis == 0 ? 1 : 0, beyond = axis == 2 ? 1 : 2;
   const std::size_t batches = (n[across] + kLanes - 1) / kLanes, count = batches * n[beyond];
+  const std::array<LineEnd<N>, 2> ends{line_end(axis, 0), line_end(axis, 1)};
   std::vector<LineResult<N>> results(count);
   parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
     LineSweep<N> line(law_, problem_.opening);
@@ -172,17 +202,14 @@ void FlowSolver<N>::sweep(std::size_t axis, double step) {
       const std::size_t first = b % batches * kLanes, layer = b / batches;
       FlowLines<N> lines;
       for (std::size_t v = 0; v < V::kCount; ++v) {
-        std::size_t variable = v;
-        if (v == V::kNormal) variable = V::kNormal + axis;
-        if (v == V::kTransverse) variable = V::kNormal + across;
-        if (v == V::kTransverse + 1) variable = V::kNormal + beyond;
-        lines.variables[v] = state_[variable].data() + first * strides[across] + layer * strides[beyond];
+        lines.variables[v] =
+            state_[variable_along(axis, v)].data() + first * strides[across] + layer * strides[beyond];
       }
       lines.cells = n[axis];
       lines.stride = strides[axis];
       lines.lanes = std::min(kLanes, n[across] - first);
       lines.lane_stride = strides[across];
-      results[b] = line.advance(lines, step / size_[axis], problem_.boundaries[axis]);
+      results[b] = line.advance(lines, step / size_[axis], ends);
     }
   });
   const double amount = step * size_[across] * size_[beyond];
@@ -198,9 +225,10 @@ void FlowSolver<N>::sweep(std::size_t axis, double step) {
 }
 
 template <std::size_t N>
-void FlowSolver<N>::advance_to(double time, Progress& progress, double end) {
+void FlowSolver<N>::advance_to(double time, Progress& progress) {
+  const double start = time_;
   while (time_ < time) {
-    progress.step("computing the flow", time_ / std::max(time, end));
+    progress.step("computing the flow", (time_ - start) / (time - start));
     double step = problem_.courant / fastest();
     if (steps_ < kCarefulSteps) step *= kCarefulPart;
     const bool last = time_ + step >= time;

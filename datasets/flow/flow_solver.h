@@ -36,7 +36,7 @@ struct FlowProblem {
   Box3 box;
   std::array<std::size_t, 3> cells{};
   std::array<FlowMaterial, N> materials;
-  /// At the low and at the high end of each axis.
+  /// At the low and at the high end of each axis; not kGiven, which FlowSolver::set_beyond makes them.
   std::array<std::array<FlowBoundary, 2>, 3> boundaries{};
   std::optional<VoidOpening> opening;
   double courant = 0.45;  ///< part of a cell that the fastest wave crosses in a step, below 1
@@ -61,10 +61,15 @@ class FlowSolver {
   FlowSolver(std::string name, FlowProblem<N> problem,
              const std::function<FlowCell<N>(std::size_t, std::size_t, std::size_t)>& cell);
 
-  /// Goes on to that time, in the problem's unit; the last step is shortened. Progress is reported as a part
-  /// of the time `end`, where that is later. Throws Error, naming the cell and the time, where the flow
-  /// leaves what the materials' laws can describe, and Cancelled.
-  void advance_to(double time, Progress& progress = SilentProgress::instance(), double end = 0);
+  /// Throws Error, naming `name`, where there is no cell or more of them than fit in memory.
+  static void check_cells(const std::string& name, const std::array<std::size_t, 3>& cells);
+
+  /// Goes on to that time, in the problem's unit; the last step is shortened. Throws Error, naming the cell
+  /// and the time, where the flow leaves what the materials' laws can describe, and Cancelled.
+  void advance_to(double time, Progress& progress = SilentProgress::instance());
+
+  /// From now on that state is beyond an end of an axis (FlowBoundary::kGiven).
+  void set_beyond(std::size_t axis, std::size_t end, const FlowCell<N>& state);
 
   [[nodiscard]] const FlowProblem<N>& problem() const { return problem_; }
   [[nodiscard]] double time() const { return time_; }
@@ -79,10 +84,14 @@ class FlowSolver {
 
  private:
   using V = Variables<N>;
+  using Conserved = std::array<double, V::kCount>;
+  [[nodiscard]] Conserved conserved(const FlowCell<N>& cell) const;
+  /// The variable of the state that is number v on lines along an axis.
+  static std::size_t variable_along(std::size_t axis, std::size_t v);
+  [[nodiscard]] LineEnd<N> line_end(std::size_t axis, std::size_t end) const;
   [[nodiscard]] std::size_t index(std::size_t i, std::size_t j, std::size_t k) const {
     return i + problem_.cells[0] * (j + problem_.cells[1] * k);
   }
-  void check() const;
   [[nodiscard]] double fastest() const;
   void sweep(std::size_t axis, double step);
   [[noreturn]] void fail_in(std::size_t axis, std::size_t cell, std::size_t line, std::size_t layer) const;
@@ -92,6 +101,7 @@ class FlowSolver {
   MixtureLaw<N> law_;
   std::array<double, 3> size_{};  ///< of a cell
   std::array<std::vector<double>, V::kCount> state_;
+  std::array<std::array<Conserved, 2>, 3> beyond_{};  ///< of ends of axes, where it is given
   FlowLedger<N> entered_;
   double time_ = 0;
   std::size_t steps_ = 0, first_order_ = 0;

@@ -71,7 +71,7 @@ bool any(const std::array<double, kLanes>& flags) {
 }  // namespace
 
 template <std::size_t N>
-void LineSweep<N>::load(const FlowLines<N>& lines, const std::array<FlowBoundary, 2>& boundaries) {
+void LineSweep<N>::load(const FlowLines<N>& lines, const std::array<LineEnd<N>, 2>& ends) {
   using V = Variables<N>;
   cells_ = lines.cells;
   before_.resize(cells_ + 2 * kGhosts);
@@ -89,9 +89,12 @@ void LineSweep<N>::load(const FlowLines<N>& lines, const std::array<FlowBoundary
     }
   }
   for (const std::size_t ghost : {std::size_t{0}, std::size_t{1}, cells_ + 2, cells_ + 3}) {
-    const FlowBoundary boundary = boundaries[ghost < kGhosts ? 0 : 1];
-    before_[ghost] = before_[origin_of(ghost, cells_, boundary)];
-    if (boundary != FlowBoundary::kMirror) continue;
+    const LineEnd<N>& end = ends[ghost < kGhosts ? 0 : 1];
+    before_[ghost] = before_[origin_of(ghost, cells_, end.boundary)];
+    if (end.boundary == FlowBoundary::kGiven) {
+      for (std::size_t v = 0; v < V::kCount; ++v) before_[ghost][v].fill(end.given[v]);
+    }
+    if (end.boundary != FlowBoundary::kMirror) continue;
     for (double& momentum : before_[ghost][V::kNormal]) momentum = -momentum;
   }
   for (std::size_t s = 0; s < before_.size(); ++s) to_primitive(law_, before_[s], primitive_[s]);
@@ -161,7 +164,7 @@ void LineSweep<N>::find_thin(const Row<N>& q, Lane& thin) const {
 
 /// Sets the order to zero round bad cells; their number.
 template <std::size_t N>
-std::size_t LineSweep<N>::distrust(const std::array<FlowBoundary, 2>& boundaries, LineResult<N>& result) {
+std::size_t LineSweep<N>::distrust(const std::array<LineEnd<N>, 2>& ends, LineResult<N>& result) {
   std::size_t count = 0;
   for (std::size_t s = 0; s < cells_; ++s) {
     for (std::size_t l = 0; l < kLanes; ++l) {
@@ -175,7 +178,7 @@ std::size_t LineSweep<N>::distrust(const std::array<FlowBoundary, 2>& boundaries
     }
   }
   for (const std::size_t ghost : {std::size_t{0}, std::size_t{1}, cells_ + 2, cells_ + 3}) {
-    order_[ghost] = order_[origin_of(ghost, cells_, boundaries[ghost < kGhosts ? 0 : 1])];
+    order_[ghost] = order_[origin_of(ghost, cells_, ends[ghost < kGhosts ? 0 : 1].boundary)];
   }
   return count;
 }
@@ -192,15 +195,15 @@ void LineSweep<N>::store(const FlowLines<N>& lines) const {
 
 template <std::size_t N>
 LineResult<N> LineSweep<N>::advance(const FlowLines<N>& lines, double ratio,
-                                    const std::array<FlowBoundary, 2>& boundaries) {
+                                    const std::array<LineEnd<N>, 2>& ends) {
   LineResult<N> result;
-  load(lines, boundaries);
+  load(lines, ends);
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     find_fluxes(ratio);
     update(ratio);
     settle();
     result.bad_cell.reset();
-    const std::size_t bad = distrust(boundaries, result);
+    const std::size_t bad = distrust(ends, result);
     if (bad == 0) break;
     result.first_order += bad;
   }

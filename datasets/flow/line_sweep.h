@@ -11,8 +11,16 @@
 
 namespace adamas {
 
-/// What is beyond an end of the domain: the same as in the last cell, a mirror, or the other end.
-enum class FlowBoundary { kOutflow, kMirror, kPeriodic };
+/// What is beyond an end of the domain: the same as in the last cell, a mirror, the other end, or a state
+/// that is given.
+enum class FlowBoundary { kOutflow, kMirror, kPeriodic, kGiven };
+
+/// An end of a line.
+template <std::size_t N>
+struct LineEnd {
+  FlowBoundary boundary = FlowBoundary::kOutflow;
+  std::array<double, Variables<N>::kCount> given{};  ///< the conserved variables beyond it, of kGiven
+};
 
 /// Up to kLanes lines of cells side by side, in the arrays of the conserved variables; the momentum along the
 /// line comes first.
@@ -45,17 +53,16 @@ class LineSweep {
       : law_(law), opening_(opening) {}
 
   /// `ratio` is the step over the size of a cell. Lines with a bad cell are left as they were.
-  LineResult<N> advance(const FlowLines<N>& lines, double ratio,
-                        const std::array<FlowBoundary, 2>& boundaries);
+  LineResult<N> advance(const FlowLines<N>& lines, double ratio, const std::array<LineEnd<N>, 2>& ends);
 
  private:
   using Lane = std::array<double, kLanes>;
-  void load(const FlowLines<N>& lines, const std::array<FlowBoundary, 2>& boundaries);
+  void load(const FlowLines<N>& lines, const std::array<LineEnd<N>, 2>& ends);
   void find_fluxes(double ratio);
   void update(double ratio);
   void settle();
   void find_thin(const Row<N>& q, Lane& thin) const;
-  std::size_t distrust(const std::array<FlowBoundary, 2>& boundaries, LineResult<N>& result);
+  std::size_t distrust(const std::array<LineEnd<N>, 2>& ends, LineResult<N>& result);
   void store(const FlowLines<N>& lines) const;
 
   MixtureLaw<N> law_;

@@ -2,10 +2,13 @@
 
 #include "core/io/volume_writer.h"
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "core/io/grid_file.h"
 #include "core/io/input_file.h"
+#include "core/io/volume_reader.h"
 #include "tests/io/volume_samples.h"
 #include "tests/support/scratch.h"
 
@@ -102,6 +105,58 @@ TEST(VolumeWriter, NamesOfArraysAreQuoted) {
   const test::Scratch scratch;
   test::write_volume(scratch / "a.vti", grid, test::random_samples(grid), {"a<\"b\">&c", {}, {}});
   EXPECT_EQ(read_grid_file(scratch / "a.vti").array_names(), "'a<\"b\">&c'");
+}
+
+TEST(VolumeWriter, SeveralArraysHaveScalesOfTheirOwn) {
+  const VolumeGrid grid{{5, 4, 3}, SampleType::kUint16, {1, 2, 3}, {4, 5, 6}};
+  const test::Scratch scratch;
+  const auto first = test::random_samples(grid);
+  auto second = first;
+  std::reverse(second.begin(), second.end());
+  const auto planes_of = [&grid](const std::vector<std::byte>& samples) {
+    return [&](std::uint64_t k) {
+      return std::span(samples).subspan(k * grid.plane_bytes(), grid.plane_bytes());
+    };
+  };
+  const auto path = scratch / "a.vti";
+  write_point_arrays(path, grid,
+                     {{"plain", 1, 0, planes_of(first)}, {"scaled", 0.125, -3, planes_of(second)}});
+  GridFile file = read_grid_file(path);
+  EXPECT_EQ(file.array_names(), "'plain', 'scaled'");
+  const auto plain = file.arrays[0].take_floats(), scaled = file.arrays[1].take_floats();
+  VolumeReader kept = open_volume(path, {"scaled", {}, {}, true});
+  EXPECT_EQ(kept.grid().type, SampleType::kUint16);
+  EXPECT_EQ(kept.grid().slope, 0.125);
+  EXPECT_EQ(kept.grid().intercept, -3);
+  std::vector<std::byte> plane(grid.plane_bytes());
+  kept.read_plane(2, plane);
+  EXPECT_TRUE(
+      std::equal(plane.begin(), plane.end(), second.end() - static_cast<std::ptrdiff_t>(plane.size())));
+  for (std::size_t at = 0; at < grid.samples(); ++at) {
+    EXPECT_EQ(plain[at], value_at(first, grid.type, at));
+    EXPECT_EQ(scaled[at], 0.125 * value_at(second, grid.type, at) - 3);
+  }
+}
+
+TEST(VolumeWriter, ScalesThatAreNoneAreBadInput) {
+  const VolumeGrid grid{{2, 2, 2}, SampleType::kUint8, {1, 1, 1}, {}};
+  const test::Scratch scratch;
+  const std::vector<std::byte> samples(8);
+  write_point_arrays(scratch / "a.vti", grid,
+                     {{"v", 0.5, 1, [&](std::uint64_t k) { return std::span(samples).subspan(4 * k, 4); }}});
+  const std::string text = read_file(scratch / "a.vti");
+  const auto message = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    std::ofstream(scratch / "b.vti", std::ios::binary) << changed;
+    return error_of([&] { open_volume(scratch / "b.vti"); });
+  };
+  for (const char* slope : {"0", "-1", "nan", "inf", "x", ""}) {
+    const std::string attribute = "slope=\"" + std::string(slope) + "\"";
+    EXPECT_TRUE(says(message("slope=\"0.5\"", attribute), "b.vti: slope: expected")) << slope;
+  }
+  EXPECT_TRUE(says(message("intercept=\"1\"", "intercept=\"inf\""), "b.vti: intercept: expected"));
+  EXPECT_TRUE(says(message(" intercept=\"1\"", ""), "b.vti: intercept: expected 1 numbers"));
 }
 
 TEST(VolumeWriter, WhatCannotBeWrittenIsRefused) {

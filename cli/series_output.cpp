@@ -1,0 +1,92 @@
+#include "cli/series_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "cli/option_values.h"
+#include "cli/usage_error.h"
+#include "core/io/input_file.h"
+#include "core/io/multi_material_writer.h"
+
+namespace adamas {
+
+namespace {
+
+/// A greater number of files is taken for a typing error.
+constexpr std::size_t kMostSteps = 1000;
+
+/// The progress of one step as a part of that of all.
+class StepProgress final : public Progress {
+ public:
+  StepProgress(Progress& all, std::size_t step, std::size_t count) : all_(all), step_(step), count_(count) {}
+
+  void report(std::string_view stage, double fraction) override {
+    const double done = static_cast<double>(step_) + std::clamp(fraction, 0.0, 1.0);
+    const std::string text =
+        count_ > 1 ? fmt::format("{}, step {} of {}", stage, step_ + 1, count_) : std::string(stage);
+    all_.report(text, done / static_cast<double>(count_));
+  }
+  [[nodiscard]] bool cancelled() const override { return all_.cancelled(); }
+
+ private:
+  Progress& all_;
+  std::size_t step_, count_;
+};
+
+}  // namespace
+
+SeriesOutput::SeriesOutput(std::string output, const std::string& steps, double end, const SeriesForm& form,
+                           const std::vector<const char*>& endings, OutputSet& outputs)
+    : output_(std::move(output)), is_series_(file_extension(output_) == ".pvd") {
+  outputs.declare("-o", output_, endings);
+  if (!is_series_) {
+    if (!steps.empty()) wrong_usage("--steps: expected a series as well, -o F.pvd, found '-o {}'", output_);
+    files_ = {output_};
+    times_ = {end};
+    return;
+  }
+  const std::size_t count = steps.empty() ? form.steps : parse_count("--steps", steps, 2);
+  if (count > kMostSteps) wrong_usage("--steps: expected at most {}, found {}", kMostSteps, steps);
+  std::filesystem::path name = output_;
+  const std::string stem = name.stem().string();
+  for (std::size_t i = 0; i < count; ++i) {
+    files_.push_back(name.replace_filename(fmt::format("{}_{:04}{}", stem, i, form.ending)).string());
+    outputs.declare("-o", files_.back());
+    times_.push_back(end * static_cast<double>(i) / static_cast<double>(count - 1));
+  }
+}
+
+void SeriesOutput::write(const std::function<Writer(double, Progress&)>& make, Session& session) {
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    StepProgress progress(session.console, i, files_.size());
+    const Writer writer = make(times_[i], progress);
+    progress.step("writing " + files_[i], 1);
+    session.outputs.write(files_[i], writer);
+    bytes_ += session.outputs.bytes(files_[i]);
+  }
+  if (is_series_) write_list(session.outputs);
+}
+
+void SeriesOutput::write_list(OutputSet& outputs) {
+  std::vector<SeriesEntry> entries;
+  for (std::size_t i = 0; i < files_.size(); ++i)
+    entries.push_back({times_[i], std::filesystem::path(files_[i]).filename().string()});
+  outputs.write(output_, [&entries](const auto& path) { write_series(path, entries); });
+  bytes_ += outputs.bytes(output_);
+}
+
+void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
+                       std::string& output, std::string& steps) {
+  command
+      .add_option(
+          "--steps", steps,
+          fmt::format("How many data sets a series has, the first at the start (default {})", form.steps))
+      .type_name("N");
+  command.add_option("-o,--output", output, fmt::format("The last data: {}; or a series: .pvd", single))
+      .required()
+      .type_name("FILE");
+}
+
+}  // namespace adamas
