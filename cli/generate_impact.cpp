@@ -11,7 +11,6 @@
 #include "cli/series_output.h"
 #include "cli/usage_error.h"
 #include "core/io/multi_material_writer.h"
-#include "core/io/series_file.h"
 #include "datasets/flow/flow_output.h"
 #include "datasets/flow/impact.h"
 

@@ -8,7 +8,7 @@
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
-#include "core/io/multi_material_writer.h"
+#include "core/io/series_file.h"
 
 namespace adamas {
 
