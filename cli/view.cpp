@@ -27,6 +27,13 @@ DocumentOptions document_options(const ViewOptions& options) {
   return documents;
 }
 
+/// Says that of a series the first step is what is seen.
+void note_steps(const std::string& path, Console& console) {
+  if (!is_store(path)) return;
+  if (const std::uint32_t steps = StoreFile(path).steps(); steps > 1)
+    console.note("{}: the first of {} steps", path, steps);
+}
+
 void open_files(const ViewOptions& options, ViewSession& view, Session& session) {
   DocumentOptions documents = document_options(options);
   documents.colour_by = options.colour_by;
@@ -34,6 +41,7 @@ void open_files(const ViewOptions& options, ViewSession& view, Session& session)
     session.outputs.protect(path);
     try {
       view.open(path, documents, session.console);
+      note_steps(path, session.console);
     } catch (const Error& error) {
       if (is_store(path) || !options.colour_by.empty()) throw;
       fail("{}", error.what());

@@ -67,8 +67,8 @@ std::unique_ptr<SampleCodec<Word>> parse_ranked(std::span<const std::byte> table
 }  // namespace
 
 std::size_t carried_along(SampleCoding coding, std::byte first, std::size_t size) {
-  const bool carries =
-      coding != SampleCoding::kSplitEdge && static_cast<PageKind>(first & std::byte{3}) == PageKind::kResiduals;
+  const bool carries = coding != SampleCoding::kSplitEdge &&
+                       static_cast<PageKind>(first & std::byte{3}) == PageKind::kResiduals;
   return carries ? std::min(size, std::tuple_size_v<BytesAlong>) : 0;
 }
 

@@ -60,7 +60,8 @@ class SampleCodec {
   }
 };
 
-/// How many of `size` bytes a coded page carries along; the two lowest bits of `first`, its first byte, are its kind.
+/// How many of `size` bytes a coded page carries along; the two lowest bits of `first`, its first byte, are
+/// its kind.
 std::size_t carried_along(SampleCoding coding, std::byte first, std::size_t size);
 
 /// Counts what pages hold, for the tables of the codec that will code them. Codecs code any page, also one

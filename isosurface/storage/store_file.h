@@ -64,7 +64,7 @@ class StoreFile {
     return chunks_.contains(key_of(step, page));
   }
   /// A part of the directory, which files of the same store in several threads may share.
-  class DirectoryPart;
+  struct DirectoryPart;
   /// The part that tells of a page; null where there is none.
   std::shared_ptr<const DirectoryPart> directory_part(std::uint32_t step, const PageId& page);
   void take_over(std::shared_ptr<const DirectoryPart> part);
@@ -117,8 +117,7 @@ class StoreFile {
   std::uint64_t bytes_read_ = 0;
 };
 
-class StoreFile::DirectoryPart {
-  friend class StoreFile;
+struct StoreFile::DirectoryPart {
   ChunkKey key;
   std::vector<std::uint64_t> numbers;
   std::vector<PageEntry> entries;  ///< none where the part is damaged

@@ -95,7 +95,8 @@ TEST_F(SeriesStores, SlicesOfSteps) {
   run_well(store({"s_%d.raw"}, "a.adm"));
   run_well(store({file(3)}, "one.adm"));
   run_well({"slice", "a.adm", "--time", "3", "--origin", "4,4,4", "--normal", "0,0,1", "-o", "a.png", "-q"});
-  expect_wrong_usage({"slice", "a.adm", "--time", "5", "--plane", "z=4", "-o", "c.png"}, {"--time", "5 steps"});
+  expect_wrong_usage({"slice", "a.adm", "--time", "5", "--plane", "z=4", "-o", "c.png"},
+                     {"--time", "5 steps"});
   const RunResult result = run({"slice", "a.adm", "--plane", "z=4", "-o", "c.png"});
   // Pictures show the file's name.
   std::filesystem::rename(folder() / "one.adm", folder() / "a.adm");
