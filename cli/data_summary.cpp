@@ -41,14 +41,18 @@ void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
   }
 }
 
-/// Prints the least and the greatest sample, which the store knows.
+/// Prints the least and the greatest sample of all steps, which the store knows.
 void print_range(StoreFile& file, Console& console, Figures& figures) {
   with_sample_type(file.header().grid.type, [&](auto sample) {
     using Sample = decltype(sample);
-    StoredPages<OrderedWord<Sample>> pages(file, 0, 0);
-    const auto found = sample_range<Sample>(pages);
-    if (!found) return console.note_damage("{}: what tells the range of values is damaged", file.name());
-    const auto [low, high] = *found;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::uint32_t step = 0; step < file.steps(); ++step) {
+      StoredPages<OrderedWord<Sample>> pages(file, step, 0);
+      const auto found = sample_range<Sample>(pages);
+      if (!found) return console.note_damage("{}: what tells the range of values is damaged", file.name());
+      low = std::min(low, (*found)[0]);
+      high = std::max(high, (*found)[1]);
+    }
     if (low > high) return;
     const VolumeGrid& grid = file.header().grid;
     console.print("  values from {:.6g} to {:.6g}\n", grid.value(low), grid.value(high));

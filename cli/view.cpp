@@ -24,14 +24,16 @@ DocumentOptions document_options(const ViewOptions& options) {
   DocumentOptions documents;
   documents.memory = parse_size("--memory", options.memory);
   documents.waits_for_pages = waits_for_pages(options);
+  if (!options.step.empty())
+    documents.step = static_cast<std::uint32_t>(parse_count("--step", options.step, 0));
   return documents;
 }
 
-/// Says that of a series the first step is what is seen.
-void note_steps(const std::string& path, Console& console) {
-  if (!is_store(path)) return;
+/// Says which step of a series is what is seen, where that was not asked for.
+void note_steps(const std::string& path, const ViewOptions& options, Console& console) {
+  if (!is_store(path) || !options.step.empty()) return;
   if (const std::uint32_t steps = StoreFile(path).steps(); steps > 1)
-    console.note("{}: the first of {} steps", path, steps);
+    console.note("{}: the first of {} steps; --step says which", path, steps);
 }
 
 void open_files(const ViewOptions& options, ViewSession& view, Session& session) {
@@ -41,7 +43,7 @@ void open_files(const ViewOptions& options, ViewSession& view, Session& session)
     session.outputs.protect(path);
     try {
       view.open(path, documents, session.console);
-      note_steps(path, session.console);
+      note_steps(path, options, session.console);
     } catch (const Error& error) {
       if (is_store(path) || !options.colour_by.empty()) throw;
       fail("{}", error.what());

@@ -9,6 +9,7 @@
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/picture/colour_map.h"
+#include "isosurface/storage/store_format.h"
 #include "viewer/scene/flight.h"
 
 namespace adamas {
@@ -160,6 +161,10 @@ void add_budget_options(const Command& command, ViewOptions& options) {
   command.add_flag("--occlusion", options.occlusion,
                    "Surfaces of stores stay coarse where the picture hides them");
   command
+      .add_option("--step", options.step,
+                  "Of a stored series: the number of the step that is seen (default 0)")
+      .type_name("N");
+  command
       .add_option(
           "--max-triangles", options.max_triangles,
           "Never more triangles of a store's surfaces in a frame, whatever the error (default 500000)")
@@ -235,6 +240,8 @@ void check_view_options(const ViewOptions& options, const Session& session) {
   if (!options.pixels.empty()) static_cast<void>(parse_positive("--pixels", options.pixels));
   if (!options.max_triangles.empty())
     static_cast<void>(parse_count("--max-triangles", options.max_triangles));
+  if (!options.step.empty() && parse_count("--step", options.step, 0) >= kMostSteps)
+    wrong_usage("--step: expected less than {}, found {}", kMostSteps, options.step);
   static_cast<void>(frame_milliseconds(options));
   if (options.offscreen && options.frames.empty() && session.json.empty())
     wrong_usage("expected --frames or --json, found no output");

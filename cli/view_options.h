@@ -11,7 +11,7 @@ namespace adamas {
 /// The options of `adamas view` as they were given; empty where they were not.
 struct ViewOptions {
   std::vector<std::string> paths, isovalues, opacities, hidden;
-  std::string memory = "256M", colour_by, pixels, max_triangles, frame_time, paging, path, frames, size,
+  std::string memory = "256M", step, colour_by, pixels, max_triangles, frame_time, paging, path, frames, size,
               shading, field, range, colour_map, plane, origin, normal, state, culled_from;
   bool offscreen = false, overwrite = false, edges = false, plain = false, no_cut = false, no_section = false,
        occlusion = false, fresh = false;

@@ -108,6 +108,31 @@ TEST_F(ViewCommand, WaitsForPagesOrTellsHowManyAreMissing) {
     EXPECT_EQ(read(std::string("short/") + name), read(std::string("frames/") + name));
 }
 
+TEST_F(ViewCommand, ShowsTheStepThatIsAskedFor) {
+  std::string samples = read("ball.raw");
+  for (std::size_t n = 0; n < samples.size(); ++n) samples[n] = n % 40 < 20 ? samples[n] : '\0';
+  write("half.raw", samples);
+  const std::vector<std::string> raw{"--dimensions", "40", "--type", "uint8", "-o"};
+  const auto store = [&](std::vector<std::string> all, const std::string& output) {
+    all.insert(all.begin(), "store");
+    all.insert(all.end(), raw.begin(), raw.end());
+    all.push_back(output);
+    run_well(all);
+  };
+  store({"ball.raw", "half.raw"}, "b.adm");
+  ASSERT_EQ(view({"--camera-path", "orbit:1", "--step", "1", "--frames", "second"}).status, 0);
+  const RunResult first = view({"--camera-path", "orbit:1", "--frames", "first"});
+  EXPECT_EQ(first.status, 0);
+  EXPECT_NE(first.err.find("b.adm: the first of 2 steps"), std::string::npos) << first.err;
+  const RunResult none = view({"--camera-path", "orbit:1", "--step", "2", "--json", "f.json"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("b.adm: expected a step below 2, found 2"), std::string::npos) << none.err;
+  store({"half.raw"}, "b.adm");
+  ASSERT_EQ(view({"--camera-path", "orbit:1", "--frames", "half"}).status, 0);
+  EXPECT_TRUE(read("second/frame0001.png") == read("half/frame0001.png"));
+  EXPECT_FALSE(read("first/frame0001.png") == read("half/frame0001.png"));
+}
+
 TEST_F(ViewCommand, ShowsSeveralSurfacesColoursAndStates) {
   const auto picture = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all{"--camera-path", "orbit:1", "--frames", "frames",

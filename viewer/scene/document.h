@@ -78,6 +78,8 @@ class Document {
 struct DocumentOptions {
   std::size_t memory = std::size_t{256} << 20;  ///< bytes that decoded pages may take
   std::string colour_by;                        ///< another store, whose values colour surfaces; empty: none
+  /// Of a stored series: which step is seen, from 0 on; of `colour_by` too if that is a series.
+  std::uint32_t step = 0;
   /// Whether surfaces wait for the pages that they need. Otherwise they are coarser at first, and sharpen as
   /// pages come.
   bool waits_for_pages = true;

@@ -35,7 +35,9 @@ Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
 class StoreDocument final : public Document {
  public:
   StoreDocument(const std::string& path, const DocumentOptions& options)
-      : values_(VolumeValues::open(path, options.memory)), worker_(path, options), section_(path, options) {
+      : values_(VolumeValues::open(path, options.memory, options.step)),
+        worker_(path, options),
+        section_(path, options) {
     const VolumeGrid& grid = worker_.file().header().grid;
     check_two_samples(path, grid);
     facts_.name = path;
@@ -45,7 +47,8 @@ class StoreDocument final : public Document {
     facts_.has_isovalues = true;
     fill_histogram();
     if (options.colour_by.empty()) return;
-    const std::unique_ptr<VolumeValues> colours = VolumeValues::open(options.colour_by, options.memory);
+    const std::unique_ptr<VolumeValues> colours =
+        VolumeValues::open(options.colour_by, options.memory, options.step);
     facts_.fields = {std::filesystem::path(options.colour_by).filename().string()};
     const std::vector<double> some = colours->some();
     if (some.empty()) fail("{}: expected finite samples to colour by, found none", options.colour_by);

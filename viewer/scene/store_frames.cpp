@@ -16,8 +16,8 @@ namespace {
 template <class Sample>
 class StoreFramesOf final : public StoreFrames {
  public:
-  StoreFramesOf(StoreFile& file, std::size_t memory, std::function<void()> arrived)
-      : memory_(memory), pages_(file, 0, memory), frames_(pages_), arrived_(std::move(arrived)) {}
+  StoreFramesOf(StoreFile& file, std::uint32_t step, std::size_t memory, std::function<void()> arrived)
+      : memory_(memory), pages_(file, step, memory), frames_(pages_), arrived_(std::move(arrived)) {}
 
   FrameFigures next(const FrameRequest& request) override {
     try {
@@ -96,10 +96,10 @@ class StoreFramesOf final : public StoreFrames {
 
 }  // namespace
 
-std::unique_ptr<StoreFrames> StoreFrames::open(StoreFile& file, std::size_t memory,
+std::unique_ptr<StoreFrames> StoreFrames::open(StoreFile& file, std::uint32_t step, std::size_t memory,
                                                std::function<void()> arrived) {
   return with_sample_type(file.header().grid.type, [&](auto sample) -> std::unique_ptr<StoreFrames> {
-    return std::make_unique<StoreFramesOf<decltype(sample)>>(file, memory, std::move(arrived));
+    return std::make_unique<StoreFramesOf<decltype(sample)>>(file, step, memory, std::move(arrived));
   });
 }
 

@@ -38,10 +38,10 @@ class StoreFrames {
   /// From the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;
 
-  /// `memory`: bytes that decoded pages may take. The file must outlive the frames. `arrived` is called in
-  /// the thread that loads pages when some have come.
+  /// `step`: one of the file's. `memory`: bytes that decoded pages may take. The file must outlive the
+  /// frames. `arrived` is called in the thread that loads pages when some have come.
   static std::unique_ptr<StoreFrames> open(
-      StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {});
+      StoreFile& file, std::uint32_t step, std::size_t memory, std::function<void()> arrived = [] {});
 };
 
 }  // namespace adamas

@@ -29,8 +29,10 @@ bool StoreSection::Wanted::operator==(const Wanted& other) const {
 
 StoreSection::StoreSection(const std::string& path, const DocumentOptions& options)
     : grid_(StoreFile(path).header().grid),
-      values_(VolumeValues::open(path, options.memory)),
-      colours_(options.colour_by.empty() ? nullptr : VolumeValues::open(options.colour_by, options.memory)),
+      values_(VolumeValues::open(path, options.memory, options.step)),
+      colours_(options.colour_by.empty()
+                   ? nullptr
+                   : VolumeValues::open(options.colour_by, options.memory, options.step)),
       thread_([this] { run(); }) {}
 
 StoreSection::~StoreSection() {

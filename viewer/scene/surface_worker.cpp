@@ -12,8 +12,11 @@ namespace adamas {
 SurfaceWorker::SurfaceWorker(const std::string& path, const DocumentOptions& options)
     : file_(path),
       memory_(options.memory),
+      step_(options.step),
       waits_for_pages_(options.waits_for_pages),
-      colours_(options.colour_by.empty() ? nullptr : VolumeValues::open(options.colour_by, options.memory)),
+      colours_(options.colour_by.empty()
+                   ? nullptr
+                   : VolumeValues::open(options.colour_by, options.memory, options.step)),
       thread_([this] { run(); }) {}
 
 SurfaceWorker::~SurfaceWorker() {
@@ -171,7 +174,7 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
     }
     changed_.notify_all();
   };
-  while (surfaces_.size() <= n) surfaces_.push_back({StoreFrames::open(file_, memory_, arrived), {}});
+  while (surfaces_.size() <= n) surfaces_.push_back({StoreFrames::open(file_, step_, memory_, arrived), {}});
   const WantedSurfaces& wanted = found.wanted;
   FrameRequest request;
   request.viewpoint = wanted.viewpoint;

@@ -116,6 +116,7 @@ class SurfaceWorker {
 
   StoreFile file_;
   std::size_t memory_;
+  std::uint32_t step_;
   bool waits_for_pages_;
   std::vector<Surface> surfaces_;  ///< of the thread, like colours_
   std::unique_ptr<VolumeValues> colours_;

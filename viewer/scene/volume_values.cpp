@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/error.h"
 #include "isosurface/extraction/lattice_samples.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/volume/samples.h"
@@ -19,8 +20,8 @@ constexpr std::uint64_t kMostOfSome = 1'000'000;
 template <class Sample>
 class ValuesOf final : public VolumeValues {
  public:
-  ValuesOf(const std::string& path, std::size_t memory)
-      : memory_(memory), file_(path), pages_(file_, 0, memory), samples_(pages_) {}
+  ValuesOf(const std::string& path, std::size_t memory, std::uint32_t step)
+      : memory_(memory), file_(path), pages_(file_, step, memory), samples_(pages_) {}
 
   [[nodiscard]] double at(const Vec3& in_space, int lod) override {
     const VolumeGrid& grid = file_.header().grid;
@@ -52,7 +53,7 @@ class ValuesOf final : public VolumeValues {
     std::vector<double> values;
     const RestoredPart part = restored_part(grid, std::min(lod, samples_.lods()), std::nullopt, file_.name());
     restore(
-        file_, 0, part, memory_,
+        file_, pages_.step(), part, memory_,
         [&](std::span<const std::byte> plane) {
           for (std::size_t n = 0; n < plane.size() / sizeof(Sample); ++n) {
             Sample sample;
@@ -94,10 +95,13 @@ class ValuesOf final : public VolumeValues {
 
 }  // namespace
 
-std::unique_ptr<VolumeValues> VolumeValues::open(const std::string& path, std::size_t memory) {
-  const SampleType type = StoreFile(path).header().grid.type;
-  return with_sample_type(type, [&](auto sample) -> std::unique_ptr<VolumeValues> {
-    return std::make_unique<ValuesOf<decltype(sample)>>(path, memory);
+std::unique_ptr<VolumeValues> VolumeValues::open(const std::string& path, std::size_t memory,
+                                                 std::uint32_t step) {
+  const StoreFile file(path);
+  if (file.steps() == 1) step = 0;
+  if (step >= file.steps()) fail("{}: expected a step below {}, found {}", path, file.steps(), step);
+  return with_sample_type(file.header().grid.type, [&](auto sample) -> std::unique_ptr<VolumeValues> {
+    return std::make_unique<ValuesOf<decltype(sample)>>(path, memory, step);
   });
 }
 

@@ -27,8 +27,9 @@ class VolumeValues {
   [[nodiscard]] virtual std::vector<double> some() = 0;
   [[nodiscard]] virtual const std::string& name() const = 0;
 
-  /// `memory`: bytes that decoded pages may take. Throws Error where the file is no store.
-  static std::unique_ptr<VolumeValues> open(const std::string& path, std::size_t memory);
+  /// `memory`: bytes that decoded pages may take. `step`: of a series; a store of one volume has that alone.
+  /// Throws Error where the file is no store or has no such step.
+  static std::unique_ptr<VolumeValues> open(const std::string& path, std::size_t memory, std::uint32_t step);
 };
 
 }  // namespace adamas
