@@ -87,7 +87,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
   }
   /// Puts what is missing, up to so many pages.
   void put_missing(const PagedFrames<Sample>& frames, std::size_t most) {
-    const std::vector<MissingPage> missing = frames.missing_pages();
+    const std::vector<MissingPage>& missing = frames.missing_pages();
     for (std::size_t n = 0; n < std::min(most, missing.size()); ++n) {
       const auto& [id, part, view_class, depth] = missing[n];
       if (part == MissingPage::Part::kDirectory) {
