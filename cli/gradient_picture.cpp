@@ -77,8 +77,7 @@ void draw_gradients(const GradientPicture& picture, Session& session) {
   const std::unique_ptr<StoreFile> file = open_store(input, session);
   const VolumeGrid& grid = file->header().grid;
   StoredGradients gradients(*file, wanted_step(input, *file, session, "--time"), store_memory(input));
-  std::vector<Vec3> polygon = clip_plane(plane_in_frame(grid, picture.plane), grid.frame_box());
-  for (Vec3& corner : polygon) corner = grid.in_space(corner);
+  const std::vector<Vec3> polygon = plane_in_samples(grid, picture.plane);
   if (polygon.size() < 3)
     fail("{}: expected a plane that cuts {}, found {}", picture.store, box_text(grid.box()),
          to_string(picture.plane));

@@ -66,7 +66,7 @@ std::size_t write_steps(const Options& options, StoreFile& file, const Wanted& w
   const std::vector<double> times = file.times();
   std::vector<SeriesEntry> entries;
   for (std::uint32_t step = first; step <= last; ++step) {
-    const std::string name = fmt::format("{}_{:04}.vti", list.stem().string(), step);
+    const std::string name = step_file(list, step, ".vti");
     entries.push_back({times[step], name});
     session.outputs.declare("-o", (list.parent_path() / name).string(), {".vti"});
   }
@@ -102,7 +102,6 @@ void run(const Options& options, Session& session) {
   PageCounts counts;
   if (!is_series && !options.steps.empty())
     wrong_usage("--steps: expected a series as well, -o F.pvd, found '-o {}'", options.output);
-
   const std::size_t bytes =
       is_series ? write_steps(options, *file, wanted, counts, session)
                 : write_step(options.output, *file, wanted_step(options.input, *file, session), wanted,

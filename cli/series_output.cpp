@@ -49,10 +49,9 @@ SeriesOutput::SeriesOutput(std::string output, const std::string& steps, double 
   }
   const std::size_t count = steps.empty() ? form.steps : parse_count("--steps", steps, 2);
   if (count > kMostSteps) wrong_usage("--steps: expected at most {}, found {}", kMostSteps, steps);
-  std::filesystem::path name = output_;
-  const std::string stem = name.stem().string();
+  const std::filesystem::path list = output_;
   for (std::size_t i = 0; i < count; ++i) {
-    files_.push_back(name.replace_filename(fmt::format("{}_{:04}{}", stem, i, form.ending)).string());
+    files_.push_back((list.parent_path() / step_file(list, i, form.ending)).string());
     outputs.declare("-o", files_.back());
     times_.push_back(end * static_cast<double>(i) / static_cast<double>(count - 1));
   }

@@ -185,15 +185,12 @@ std::vector<SeriesEntry> later_steps(std::vector<SeriesEntry> entries, bool have
 }
 
 void append(const Options& options, std::vector<SeriesEntry> entries, Session& session) {
-  StoreOptions store = store_options(options);
+  const StoreOptions store = store_options(options);
   const bool have_times = file_extension(options.inputs[0]) == ".pvd";
   VolumeGrid grid;
   {
     const StoreFile file(options.output);
     grid = file.header().grid;
-    store.gradients = file.header().gradients;
-    store.coding = file.header().coding == SampleCoding::kSplitEdge ? SampleCoding::kSplitEdge
-                                                                    : SampleCoding::kInterpolation;
     const std::size_t given = entries.size();
     entries = later_steps(std::move(entries), have_times, file.times().back());
     if (entries.size() < given)

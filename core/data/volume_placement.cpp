@@ -32,6 +32,12 @@ Plane plane_in_frame(const VolumeGrid& grid, const Plane& plane) {
   return {grid.in_frame(plane.origin), {dot(a, plane.normal), dot(b, plane.normal), dot(c, plane.normal)}};
 }
 
+std::vector<Vec3> plane_in_samples(const VolumeGrid& grid, const Plane& plane) {
+  std::vector<Vec3> corners = clip_plane(plane_in_frame(grid, plane), grid.frame_box());
+  for (Vec3& corner : corners) corner = grid.in_space(corner);
+  return corners;
+}
+
 FrameRegion region_in_frame(const VolumeGrid& grid, const Box3& in_space) {
   if (grid.is_straight()) return {in_space, {}};
   FrameRegion region;

@@ -19,6 +19,10 @@ void place_in_space(const VolumeGrid& grid, TriangleSurface& surface);
 /// A plane in space as one in the frame.
 Plane plane_in_frame(const VolumeGrid& grid, const Plane& plane);
 
+/// What of a plane in space lies within a grid's samples: a convex polygon in space; empty where there is
+/// nothing.
+std::vector<Vec3> plane_in_samples(const VolumeGrid& grid, const Plane& plane);
+
 /// What of the frame is in a box in space: what lies in `box` and, where the axes run aslant, on that side of
 /// all `sides` which their normals point away from.
 struct FrameRegion {

@@ -38,6 +38,10 @@ void write_series(const std::filesystem::path& path, const std::vector<SeriesEnt
   stream.finish();
 }
 
+std::string step_file(const std::filesystem::path& list, std::size_t step, const std::string& ending) {
+  return fmt::format("{}_{:04}{}", list.stem().string(), step, ending);
+}
+
 std::vector<SeriesEntry> read_series(const std::filesystem::path& path) {
   const std::string name = path.string();
   const std::vector<XmlTag> tags = read_xml_tags(supply_file(FileHandle::open(path), 0), name);

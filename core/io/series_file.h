@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ struct SeriesEntry {
 /// Writes a .pvd, the list of files that ParaView and VisIt read as a series. Throws Error where it cannot be
 /// written in full.
 void write_series(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries);
+
+/// The name of a step's file beside the list of a series: F_0007.vti of F.pvd.
+std::string step_file(const std::filesystem::path& list, std::size_t step, const std::string& ending);
 
 /// The steps of a .pvd in the order of their times, with whole paths. Throws Error, with the file's name,
 /// where it is no such list, has several files for one time, or none.

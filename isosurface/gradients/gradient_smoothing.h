@@ -47,8 +47,6 @@ class GradientSmoother {
   static std::size_t bytes(const GradientSmoothingOptions& options);
 
  private:
-  class Anchored;
-
   /// Takes a plane through the rounds from `first` on, as far as it gets.
   void run(std::size_t first, std::span<const Gradient> plane);
   /// Calls fn(update) with what round n makes of averages.

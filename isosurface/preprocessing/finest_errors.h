@@ -18,9 +18,8 @@ namespace adamas {
 
 /// Own errors of the diamonds of scale 1, in blocks of 16^3 points.
 ///
-/// In blocks of noise (is_noise) all diamonds have one error, the greatest of the LOD, and one range, that of
-/// the block's samples: a surface through noise is refined nearly everywhere whatever they say, and the
-/// bounds of each diamond would take more bytes than all that is stored beside the samples.
+/// In blocks of noise (is_noise) all diamonds have one error, the greatest of the LOD, and one range, in
+/// which their samples lie (NoiseBounds).
 template <class Sample>
 class FinestErrors {
  public:

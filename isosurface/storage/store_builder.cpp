@@ -165,13 +165,17 @@ class StoreBuilder {
       progress_.step(stage, static_cast<double>(begin) / static_cast<double>(all));
       const std::size_t count = std::min(kBatch, all - begin);
       if (jobs_.size() < count) jobs_.resize(count);
+      // The page of the step before is that of the job before, which of a batch's first job is the last one
+      // of the batch before.
       for (std::size_t n = 0; n < count; ++n)
-        load(numbers[(begin + n) / steps_.size()], (begin + n) % steps_.size(), jobs_[n]);
+        load(numbers[(begin + n) / steps_.size()], (begin + n) % steps_.size(),
+             jobs_[n == 0 ? jobs_.size() - 1 : n - 1], jobs_[n]);
       fn(std::span<const Job<Word>>(jobs_).first(count));
     }
   }
 
-  void load(std::uint64_t number, std::size_t n, Job<Word>& job) {
+  /// `before`: the job of the same page one step before, if n is not 0.
+  void load(std::uint64_t number, std::size_t n, const Job<Word>& before, Job<Word>& job) {
     const Step& step = steps_[n];
     job.number = number;
     const PageId id = grid_.page(job.number);
@@ -180,46 +184,48 @@ class StoreBuilder {
     step.pages->copy(id, job.page);
     rounding_.round(job.around.low, job.around.high);
     rounding_.round(job.page.low, job.page.high);
-    load_earlier(id, n, job);
+    job.earlier_count = 0;
+    job.has_earlier_bounds = false;
+    if (const int count = steps_before(first_ + static_cast<std::uint32_t>(n)); count > 0) {
+      if (n > 0) {
+        take_earlier(before, static_cast<std::size_t>(count), job);
+      } else {
+        load_earlier(id, static_cast<std::size_t>(count), job);
+      }
+    }
     if (step.gradients == nullptr) return;
     step.gradients->surroundings(id, around_gradients_, PageParts::kSamples);
     job.gradients_around = around_gradients_.samples;
     job.gradients = step.gradients->samples(id)->samples;
   }
 
-  void load_earlier(const PageId& id, std::size_t n, Job<Word>& job) {
-    job.earlier_count = 0;
-    job.has_earlier_bounds = false;
-    const int count = steps_before(first_ + static_cast<std::uint32_t>(n));
-    for (std::size_t back = 1; back <= static_cast<std::size_t>(count); ++back) {
-      PageCache<Word>* pages = nullptr;
-      if (n >= back) {
-        pages = steps_[n - back].pages.get();
-      } else if (back - n <= earlier_.size()) {
-        pages = earlier_[back - n - 1].get();
-      }
-      const PageSamples<Word>* samples = pages != nullptr ? pages->samples(id) : nullptr;
-      // What is damaged is no help.
+  /// From the job of the page one step before, in the same block.
+  static void take_earlier(const Job<Word>& before, std::size_t count, Job<Word>& job) {
+    job.earlier[0] = {before.page.samples, before.around.samples};
+    job.earlier_count = std::min(count, before.earlier_count + 1);
+    if (job.earlier_count > 1) job.earlier[1] = before.earlier[0];
+    job.has_earlier_bounds = are_same_bounds(job.shape, before.page, job.page);
+  }
+
+  /// From the steps of the blocks before. What is damaged is no help.
+  void load_earlier(const PageId& id, std::size_t count, Job<Word>& job) {
+    for (std::size_t n = 0; n < std::min(count, earlier_.size()); ++n) {
+      const PageSamples<Word>* samples = earlier_[n]->samples(id);
       if (samples == nullptr) return;
-      EarlierPage<Word>& earlier = job.earlier[back - 1];
-      earlier.samples = samples->samples;
+      job.earlier[n].samples = samples->samples;
       if (!job.shape.complete) {
-        if (!pages->surroundings(id, around_, PageParts::kSamples)) return;
-        earlier.around = around_.samples;
+        if (!earlier_[n]->surroundings(id, around_, PageParts::kSamples)) return;
+        job.earlier[n].around = around_.samples;
       }
-      job.earlier_count = back;
-      if (back == 1 && n > 0) job.has_earlier_bounds = are_bounds_of(steps_[n - 1], id, job);
+      job.earlier_count = n + 1;
     }
   }
 
-  /// Whether a step's page has the job's bounds. Carried bytes make them none in a page that has none.
-  bool are_bounds_of(const Step& step, const PageId& id, const Job<Word>& job) {
-    step.pages->copy(id, page_);
-    rounding_.round(page_.low, page_.high);
+  static bool are_same_bounds(const PageShape& shape, const PageBounds<Word>& a, const PageBounds<Word>& b) {
     bool same = true;
-    for_each_own_place(job.shape, [&](std::size_t place) {
-      same = same && page_.low[place] == job.page.low[place] && page_.high[place] == job.page.high[place] &&
-             page_.errors[place] == job.page.errors[place];
+    for_each_own_place(shape, [&](std::size_t place) {
+      same = same && a.low[place] == b.low[place] && a.high[place] == b.high[place] &&
+             a.errors[place] == b.errors[place];
     });
     return same;
   }
@@ -295,7 +301,6 @@ class StoreBuilder {
   std::vector<std::uint64_t> numbers_;
   Surroundings<std::uint16_t> around_gradients_;
   Surroundings<Word> around_;
-  Page<Word> page_;
   std::vector<Job<Word>> jobs_;
   SampleCensus<Word> census_;
   std::shared_ptr<const SampleRanks> ranks_;  ///< null where samples are coded as they are
@@ -310,7 +315,7 @@ void add_blocks(StoreFileWriter& writer, const std::filesystem::path& path, cons
   for (std::uint32_t begin = 0; begin < count;) {
     const std::uint32_t step = first + begin;
     const std::uint32_t end = std::min(count, begin + options.block_steps - step % options.block_steps);
-    const auto file = step > 0 && steps_before(step) > 0 ? std::make_unique<StoreFile>(path) : nullptr;
+    const auto file = steps_before(step) > 0 ? std::make_unique<StoreFile>(path) : nullptr;
     with_sample_type(series.grid.type, [&](auto sample) {
       const auto builder = std::make_unique<StoreBuilder<decltype(sample)>>(series.grid, options, progress);
       builder->add_block(writer, series, begin, end, step, file.get(), figures);
@@ -330,16 +335,15 @@ StoreFigures build_series(const std::filesystem::path& path, const std::string& 
 }
 
 StoreFigures append_series(const std::filesystem::path& path, const SeriesSource& series,
-                           const StoreOptions& options, Progress& progress) {
+                           StoreOptions options, Progress& progress) {
   StoreFigures figures;
   const StoreFile file(path);
   if (series.grid != file.header().grid) fail("{}: expected steps on its grid, found another", file.name());
-  if (options.gradients != file.header().gradients)
-    fail("{}: expected steps {} gradients, found others", file.name(),
-         file.header().gradients ? "with" : "without");
   const double last = file.times().back();
   if (series.times.empty() || series.times.front() <= last)
     fail("{}: expected steps after the time {}, found earlier ones", file.name(), last);
+  options.coding = coding_of_bytes(file.header().coding);
+  options.gradients = file.header().gradients;
   StoreFileWriter writer(path, file);
   add_blocks(writer, path, series, options, file.steps(), figures, progress);
   return figures;

@@ -44,17 +44,18 @@ struct StoreFigures {
   std::uint64_t pages = 0;
 };
 
-/// Preprocesses a volume, orders it in pages and compresses them into a store at `path`; messages name
-/// `shown`. Planes are asked for several times, in any order. Needs 1 GiB of memory and 64 bytes for each
-/// sample of a plane of equal k; the file is the same whatever the number of threads.
+/// Preprocesses the steps of a series, orders them in pages and compresses these into a store at `path`;
+/// messages name `shown`. Planes are asked for several times, in any order. Needs 1 GiB of memory and 64
+/// bytes for each sample of a plane of equal k; the file is the same whatever the number of threads.
 StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
                           const SeriesSource& series, const StoreOptions& options,
                           Progress& progress = SilentProgress::instance());
 
-/// Adds steps, whose times are after those of the store at `path`, behind its last ones. Who opens the file
-/// meanwhile, or after this was killed, finds all steps of the blocks that are finished.
+/// Adds steps, whose times are after those of the store at `path`, behind its last ones, with its coding and
+/// with gradients if it has some. Who opens the file meanwhile, or after this was killed, finds all steps of
+/// the blocks that are finished.
 StoreFigures append_series(const std::filesystem::path& path, const SeriesSource& series,
-                           const StoreOptions& options, Progress& progress = SilentProgress::instance());
+                           StoreOptions options, Progress& progress = SilentProgress::instance());
 
 /// The same of one volume, a series of one step.
 StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,

@@ -243,11 +243,10 @@ template <class Sample>
 void PagedFrames<Sample>::note_cell(LatticePoint p) {
   const int lod = diamonds_.lod(p);
   if (lod >= diamonds_.lods() || !diamonds_.domain().contains(p)) return;
-  const LatticePoint s = diamonds_.in_samples(p), u{s.i >> lod, s.j >> lod, s.k >> lod};
-  ViewedPage* const page = pages_.find(lod, {u.i / kSide, u.j / kSide, u.k / kSide});
+  const auto [page, q] = pages_.find(p);
   if (page == nullptr) return;
   if (std::exchange(page->changed_in, pages_.walk_number()) != pages_.walk_number()) page->changed = 0;
-  page->changed |= std::uint64_t{1} << PageChunk::cell({u.i % kSide, u.j % kSide, u.k % kSide});
+  page->changed |= std::uint64_t{1} << PageChunk::cell(q);
 }
 
 template <class Sample>
@@ -346,10 +345,8 @@ template <class Sample>
 bool PagedFrames<Sample>::is_split(LatticePoint p) {
   const int lod = diamonds_.lod(p);
   if (lod < 0 || lod >= diamonds_.lods()) return false;
-  const LatticePoint s = diamonds_.in_samples(p), u{s.i >> lod, s.j >> lod, s.k >> lod};
-  const ViewedPage* const page = pages_.find(lod, {u.i / kSide, u.j / kSide, u.k / kSide});
-  return page != nullptr && page->chunk != nullptr &&
-         page->chunk->split.has({u.i % kSide, u.j % kSide, u.k % kSide});
+  const auto [page, q] = pages_.find(p);
+  return page != nullptr && page->chunk != nullptr && page->chunk->split.has(q);
 }
 
 template <class Sample>

@@ -56,6 +56,14 @@ ViewedPage* ViewedPages<Sample>::find(int lod, LatticePoint block) {
 }
 
 template <class Sample>
+typename ViewedPages<Sample>::PageAndPlace ViewedPages<Sample>::find(LatticePoint p) {
+  constexpr std::int32_t kSide = PageGrid::kSide;
+  const int lod = diamonds_.lod(p);
+  const LatticePoint s = diamonds_.in_samples(p), u{s.i >> lod, s.j >> lod, s.k >> lod};
+  return {find(lod, {u.i / kSide, u.j / kSide, u.k / kSide}), {u.i % kSide, u.j % kSide, u.k % kSide}};
+}
+
+template <class Sample>
 ViewedPage& ViewedPages<Sample>::page(int lod, LatticePoint block) {
   if (ViewedPage* const known = find(lod, block)) return *known;
   ViewedPage& added = pages_.emplace_back();

@@ -118,6 +118,12 @@ class ViewedPages {
   [[nodiscard]] const std::vector<ViewedPage*>& shown() const { return shown_; }
   /// Null where no frame has met with the page.
   [[nodiscard]] ViewedPage* find(int lod, LatticePoint block);
+  /// The page of a diamond, null as above, and the diamond's place on it.
+  struct PageAndPlace {
+    ViewedPage* page;
+    LatticePoint place;
+  };
+  [[nodiscard]] PageAndPlace find(LatticePoint p);
   /// Null where nothing of the page is split in the present frame.
   [[nodiscard]] const PageMask* split_of(int lod, LatticePoint block) {
     const ViewedPage* const page = find(lod, block);

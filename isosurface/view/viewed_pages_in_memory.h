@@ -170,15 +170,11 @@ void ViewedPages<Sample>::suspect_children(const ViewedPage& page) {
 
 template <class Sample>
 bool ViewedPages<Sample>::has_parents(LatticePoint p) {
-  constexpr std::int32_t kSide = PageGrid::kSide;
   const auto parents = Diamond(p).parents(diamonds_.domain());
   return std::ranges::all_of(parents, [&](LatticePoint parent) {
     if (!diamonds_.is_stored(parent)) return true;
-    const int lod = diamonds_.lod(parent);
-    const LatticePoint s = diamonds_.in_samples(parent), u{s.i >> lod, s.j >> lod, s.k >> lod};
-    const ViewedPage* const page = find(lod, {u.i / kSide, u.j / kSide, u.k / kSide});
+    const auto [page, q] = find(parent);
     if (page == nullptr || page->looked_at != walk_) return false;
-    const LatticePoint q{u.i % kSide, u.j % kSide, u.k % kSide};
     return page->masks->above.has(q) || page->masks->at_low.has(q);
   });
 }

@@ -57,10 +57,10 @@ class MaterialDocument final : public Document {
     const std::optional<std::size_t> field = field_number(state);
     if (field != field_) set_field(field);
     take_section();
-    if (wants_section(view)) ask_section({view.cut.plane, field});
+    if (view.cut.has_section()) ask_section({view.cut.plane, field});
     std::vector<DrawnPart> result;
     add_interfaces(view, state, result);
-    if (wants_section(view) && section_) add_section(view, state, result);
+    if (view.cut.has_section() && section_) add_section(view, state, result);
     return result;
   }
 
@@ -122,8 +122,6 @@ class MaterialDocument final : public Document {
     const auto [low, high] = scene_->field_range(*field);
     return std::array{low, high};
   }
-
-  static bool wants_section(const ViewState& view) { return view.cut.is_on && view.cut.shows_section; }
 
   void ask_section(const SectionKey& key) {
     if (running_.valid() || (section_ && section_->key == key)) return;

@@ -16,15 +16,17 @@ namespace {
 /// A place in the plane, along its two axes.
 using Place = std::array<double, 2>;
 
+/// Above 0 on the left of the way from a to b, and below 0 on its right.
+double side(const Place& a, const Place& b, const Place& p) {
+  return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+}
+
 /// What remains of a convex polygon on the left of the way from a to b.
 std::vector<Place> left_of(const std::vector<Place>& polygon, const Place& a, const Place& b) {
-  const auto side = [&](const Place& p) {
-    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-  };
   std::vector<Place> result;
   for (std::size_t n = 0; n < polygon.size(); ++n) {
     const Place &p = polygon[n], &q = polygon[(n + 1) % polygon.size()];
-    const double at_p = side(p), at_q = side(q);
+    const double at_p = side(a, b, p), at_q = side(a, b, q);
     if (at_p >= 0) result.push_back(p);
     if ((at_p >= 0) == (at_q >= 0)) continue;
     const double t = at_p / (at_p - at_q);
@@ -115,9 +117,7 @@ class PlaneMaker {
   }
 
   static bool is_left_of(const std::array<Place, 4>& corners, const Place& a, const Place& b) {
-    return std::all_of(corners.begin(), corners.end(), [&](const Place& p) {
-      return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0;
-    });
+    return std::all_of(corners.begin(), corners.end(), [&](const Place& p) { return side(a, b, p) >= 0; });
   }
 
   /// The vertex of a corner of the present row's lower or upper side.

@@ -66,9 +66,9 @@ class StoreDocument final : public Document {
     if (!waits) worker_.want(wanted(view, state));
     const std::shared_ptr<const FoundSurfaces> found = worker_.found();
     std::vector<DrawnPart> result;
-    if (wants_section(view)) add_section(view, state, result);
+    if (view.cut.has_section()) add_section(view, state, result);
     if (!found) return result;
-    if (view.has_edges && wants_section(view) && found->cell_edges) {
+    if (view.has_edges && view.cut.has_section() && found->cell_edges) {
       PartStyle style;
       style.front = style.back = kCellEdges;
       style.is_flat = true;
@@ -99,7 +99,7 @@ class StoreDocument final : public Document {
   void finish(const ViewState& view, const DocumentState& state) override {
     const WantedSurfaces all = wanted(view, state);
     worker_.want(all);
-    if (wants_section(view)) {
+    if (view.cut.has_section()) {
       section_.want(wanted_section(view, state));
       section_.wait_for(wanted_section(view, state));
     }
@@ -123,7 +123,7 @@ class StoreDocument final : public Document {
   [[nodiscard]] std::optional<std::array<double, 2>> colour_range(const ViewState& view,
                                                                   const DocumentState& state) const override {
     const bool has_field = !state.field.empty() && !facts_.fields.empty();
-    if (!has_field && !wants_section(view)) return std::nullopt;
+    if (!has_field && !view.cut.has_section()) return std::nullopt;
     if (state.range) return state.range;
     return has_field ? colour_range_ : facts_.value_range;
   }
@@ -148,7 +148,6 @@ class StoreDocument final : public Document {
   }
 
  private:
-  static bool wants_section(const ViewState& view) { return view.cut.is_on && view.cut.shows_section; }
   [[nodiscard]] StoreSection::Wanted wanted_section(const ViewState& view, const DocumentState& state) const {
     return section_.wanted(view.cut.plane, view.viewpoint, !state.field.empty());
   }
@@ -224,7 +223,7 @@ class StoreDocument final : public Document {
         view.depths->viewpoint() == result.viewpoint)
       result.depths = view.depths;
     result.isovalues = isovalues_of(state);
-    if (view.has_edges && wants_section(view))
+    if (view.has_edges && view.cut.has_section())
       result.cells_in = {view.cut.plane.origin, view.cut.plane.normal};
     return result;
   }

@@ -48,25 +48,18 @@ double StoreSection::least_step() const {
   return 0.5 * std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z});
 }
 
-std::vector<Vec3> StoreSection::polygon(const Plane& plane) const {
-  std::vector<Vec3> corners = clip_plane(plane_in_frame(grid_, plane), grid_.frame_box());
-  for (Vec3& corner : corners) corner = grid_.in_space(corner);
-  return corners;
-}
-
 StoreSection::Wanted StoreSection::wanted(const Plane& plane, const Viewpoint& viewpoint,
                                           bool is_of_colours) const {
   Wanted result{plane, 0, is_of_colours};
-  const std::vector<Vec3> corners = polygon(plane);
+  const std::vector<Vec3> corners = plane_in_samples(grid_, plane);
   if (corners.empty()) return result;
   Box3 box;
   for (const Vec3& corner : corners) box.extend(corner);
   const double pixel = 1 / View(viewpoint).pixels(1, {box.center(), 0.5 * box.size()});
-  const double step = std::max(pixel, std::sqrt(polygon_area(corners) / kMostPlaces));
+  const double least = std::sqrt(polygon_area(corners) / kMostPlaces), step = std::max(pixel, least);
   // Powers of two, so that a section lasts while a view moves a little.
   result.coarseness = std::max(0, static_cast<int>(std::floor(std::log2(step / least_step()))));
-  if (std::ldexp(least_step(), result.coarseness) < std::sqrt(polygon_area(corners) / kMostPlaces))
-    ++result.coarseness;
+  if (std::ldexp(least_step(), result.coarseness) < least) ++result.coarseness;
   return result;
 }
 
@@ -146,7 +139,7 @@ SharedMesh StoreSection::mesh_of(const Wanted& wanted, int roughness) {
   const int lod =
       std::clamp(static_cast<int>(std::floor(std::log2(step / least_spacing))), 0, values.coarsest());
   std::size_t asked = 0;
-  return plane_mesh(polygon(wanted.plane), wanted.plane.normal, step, [&](const Vec3& place) {
+  return plane_mesh(plane_in_samples(grid_, wanted.plane), wanted.plane.normal, step, [&](const Vec3& place) {
     constexpr std::size_t kBetweenLooks = 4096;
     if (roughness == 1 && ++asked % kBetweenLooks == 0 && is_overtaken(wanted)) throw Overtaken{};
     return values.at(place, lod);

@@ -57,8 +57,6 @@ class StoreSection {
   /// Places are so many times as far apart as is wanted.
   void find(const Wanted& wanted, int roughness);
   [[nodiscard]] SharedMesh mesh_of(const Wanted& wanted, int roughness);
-  /// The plane's part of the data, in space.
-  [[nodiscard]] std::vector<Vec3> polygon(const Plane& plane) const;
   [[nodiscard]] double least_step() const;
 
   const VolumeGrid grid_;

@@ -51,6 +51,8 @@ struct CutState {
   Plane plane{{}, {1, 0, 0}};
   bool cuts_away = true;      ///< what lies where the normal points to is not shown
   bool shows_section = true;  ///< of materials with their fields, or of a store's samples
+
+  [[nodiscard]] bool has_section() const { return is_on && shows_section; }
 };
 
 /// A viewpoint with a name.
