@@ -29,7 +29,7 @@ struct ThreePlaces {
 
 template <class Sample>
 LatticeSamples<Sample>::LatticeSamples(StoredPages<Word>& pages)
-    : pages_(pages),
+    : pages_(&pages),
       grid_(pages.grid()),
       shift_(kRootBits - grid_.depth()),
       domain_(domain_of(pages.file().header().grid, grid_.depth())) {
@@ -46,7 +46,7 @@ typename LatticeSamples<Sample>::Word LatticeSamples<Sample>::word_in_memory(Lat
     const LatticePoint end = grid_.extent(lod);
     LatticePoint u{at.i >> lod, at.j >> lod, at.k >> lod};
     for (int axis = 0; axis < 3; ++axis) u[axis] = std::min(u[axis], end[axis]);
-    const PageSamples<Word>* const page = pages_.held({lod, {u.i / kSide, u.j / kSide, u.k / kSide}});
+    const PageSamples<Word>* const page = pages_->held({lod, {u.i / kSide, u.j / kSide, u.k / kSide}});
     if (page != nullptr) return page->samples[PageGrid::place(u, 0)];
   }
   throw PageLost{own, own};
@@ -69,7 +69,7 @@ bool LatticeSamples<Sample>::samples_round(LatticePoint p, std::int32_t step, Bl
 /// Copies the block that begins at a point, in units of the LOD of the page that has all of it.
 template <class Sample>
 bool LatticeSamples<Sample>::block_of_page(const PageId& id, LatticePoint first, Block& samples) {
-  const PageSamples<Word>* page = pages_.held(id);
+  const PageSamples<Word>* page = pages_->held(id);
   if (page == nullptr) return false;
   const Word* from = page->samples.data() + PageGrid::place(first, 0);
   Word* to = samples.data();
@@ -89,7 +89,7 @@ bool LatticeSamples<Sample>::block_of_pages(const PageId& id, LatticePoint first
   for (std::int32_t second = 0; second < 8; ++second) {
     const LatticePoint step{second & 1, second >> 1 & 1, second >> 2};
     if (step.i > reach.i || step.j > reach.j || step.k > reach.k) continue;
-    const PageSamples<Word>* from = pages_.held({id.lod, id.block + step});
+    const PageSamples<Word>* from = pages_->held({id.lod, id.block + step});
     if (from == nullptr) return false;
     pages[static_cast<std::size_t>(second)] = from->samples.data();
   }

@@ -23,7 +23,9 @@ class LatticeSamples {
   /// The pages must outlive this.
   explicit LatticeSamples(StoredPages<Word>& pages);
 
-  [[nodiscard]] StoredPages<Word>& pages() const { return pages_; }
+  [[nodiscard]] StoredPages<Word>& pages() const { return *pages_; }
+  /// Goes over to the pages of another step of the same store.
+  void set_pages(StoredPages<Word>& pages) { pages_ = &pages; }
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   [[nodiscard]] const Domain& domain() const { return domain_; }
   /// The diamond of the mesh in which nothing is split.
@@ -58,8 +60,8 @@ class LatticeSamples {
     const LatticePoint end = ends_[static_cast<std::size_t>(l)];
     for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], end[axis]);
     const PageId id = grid_.page(at);
-    if (!pages_.loads()) return word_in_memory(at, id);
-    return pages_.needed_samples(id).samples[PageGrid::place(at, id.lod)];
+    if (!pages_->loads()) return word_in_memory(at, id);
+    return pages_->needed_samples(id).samples[PageGrid::place(at, id.lod)];
   }
   /// A sample and its 26 neighbours, i running fastest.
   using Block = std::array<Word, 27>;
@@ -76,7 +78,7 @@ class LatticeSamples {
   bool block_of_page(const PageId& id, LatticePoint first, Block& samples);
   bool block_of_pages(const PageId& id, LatticePoint first, Block& samples);
 
-  StoredPages<Word>& pages_;
+  StoredPages<Word>* pages_;
   PageGrid grid_;
   int shift_;  ///< 2^shift lattice units are the spacing of samples
   Domain domain_;

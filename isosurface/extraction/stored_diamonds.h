@@ -35,6 +35,12 @@ class StoredDiamonds : public LatticeSamples<Sample> {
   /// The greatest class whose error is not greater.
   [[nodiscard]] int class_within(double error) const;
 
+  /// As LatticeSamples; the contour stays.
+  void set_pages(StoredPages<Word>& pages) {
+    LatticeSamples<Sample>::set_pages(pages);
+    for (RecentEntry& recent : recent_) recent.id.lod = -1;
+  }
+
   /// Sets the contour that all the following is about.
   void set_contour(double isovalue);
   /// Whether a sample is not below the isovalue.

@@ -32,8 +32,14 @@ Vec3 downwards(const Vec3& gradient) {
 template <class Sample>
 class VertexGradients {
  public:
-  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages) : samples_(pages) {
-    if (pages.file().header().gradients) stored_.emplace(pages.file(), pages.step(), kStoredMemory);
+  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages) : samples_(pages) { open_stored(); }
+
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages) {
+    samples_.set_pages(pages);
+    open_stored();
+    lost_.clear();
+    missing_.clear();
+    std::ranges::fill(known_, KnownGradient{});
   }
 
   /// The stored one, or from neighbours `step` away.
@@ -54,6 +60,11 @@ class VertexGradients {
   StoredGradients* stored() { return stored_ ? &*stored_ : nullptr; }
 
  private:
+  void open_stored() {
+    StoredPages<OrderedWord<Sample>>& pages = samples_.pages();
+    if (pages.file().header().gradients) stored_.emplace(pages.file(), pages.step(), kStoredMemory);
+  }
+
   Vec3 stored(LatticePoint p, std::int32_t step) {
     stored_->set_loading(samples_.pages().loads());
     const LatticePoint at = samples_.in_samples(p);
@@ -242,6 +253,11 @@ template <class Sample>
 PointNormals<Sample>::~PointNormals() = default;
 template <class Sample>
 PointNormals<Sample>::PointNormals(PointNormals&&) noexcept = default;
+
+template <class Sample>
+void PointNormals<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
+  gradients_->set_pages(pages);
+}
 
 template <class Sample>
 Vec3 PointNormals<Sample>::of(const EdgePoint& point) {

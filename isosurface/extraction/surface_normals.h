@@ -45,6 +45,9 @@ class PointNormals {
   ~PointNormals();
   PointNormals(PointNormals&&) noexcept;
 
+  /// Goes over to the pages of another step of the same store.
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages);
+
   Vec3 of(const EdgePoint& point);
   Vec3 of(const MeanPoint& point);
 

@@ -96,12 +96,34 @@ void copy_part(const Part& part, const PagePoints<T>& from, std::array<T, kAroun
 }  // namespace
 
 template <class Word>
-PageCache<Word>::PageCache(const PageGrid& grid, std::size_t memory) : grid_(grid), memory_(memory) {
+PageCache<Word>::PageCache(const PageGrid& grid, std::size_t memory)
+    : PageCache(grid, std::make_shared<Memory>(memory)) {}
+
+template <class Word>
+PageCache<Word>::PageCache(const PageGrid& grid, std::shared_ptr<Memory> memory)
+    : grid_(grid), memory_(std::move(memory)) {
   for (int lod = 0; lod <= grid_.top(); ++lod) {
     const LatticePoint n = grid_.blocks(lod);
     const auto row = static_cast<std::size_t>(n.i), plane = row * static_cast<std::size_t>(n.j);
     lods_.push_back({row, plane, std::vector<std::uint32_t>(plane * static_cast<std::size_t>(n.k), kNone)});
   }
+  memory_->caches.push_back(this);
+}
+
+template <class Word>
+PageCache<Word>::~PageCache() {
+  std::erase(memory_->caches, this);
+  for (const Slot& slot : slots_) {
+    if (slot.samples != nullptr) memory_->samples.free.push_back(slot.samples);
+    if (slot.bounds != nullptr) memory_->bounds.free.push_back(slot.bounds);
+  }
+}
+
+template <class Word>
+void PageCache<Word>::touch(const PageCache* before) {
+  std::vector<PageCache*>& caches = memory_->caches;
+  std::erase(caches, this);
+  caches.insert(before == nullptr ? caches.end() : std::find(caches.begin(), caches.end(), before), this);
 }
 
 template <class Word>
@@ -124,17 +146,21 @@ const typename PageCache<Word>::Slot* PageCache<Word>::fetch(const PageId& id, P
   if (!surroundings(id, around, parts)) return nullptr;
   // The pages that predict this one may have pushed others out, and so may its bounds: even its own samples,
   // where they were in memory. Only now is it known whether they still are.
-  PageBounds<Word>* const bounds = has_part(parts, PageParts::kBounds) ? room_in(bounds_) : nullptr;
+  PageBounds<Word>* const bounds = has_part(parts, PageParts::kBounds) ? room_in(memory_->bounds) : nullptr;
   const std::uint32_t known = slot_of(id);
-  PageSamples<Word>* const samples = known != kNone ? slots_[known].samples : room_in(samples_);
+  PageSamples<Word>* const samples = known != kNone ? slots_[known].samples : room_in(memory_->samples);
   const PageToLoad<Word> page{
       id, page_shape(grid_, id), known == kNone ? parts : PageParts::kBounds, around, *samples, bounds};
   if (!page.shape.complete) fill_coarser(page);
   // A cube whose only point belongs to coarser LODs has no page.
   const bool is_stored = grid_.contains(id);
-  if (is_stored && !load(page)) {
-    if (known == kNone) samples_.free.push_back(samples);
-    if (bounds != nullptr) bounds_.free.push_back(bounds);
+  // Other caches may need room meanwhile.
+  if (known != kNone) slots_[known].pinned = true;
+  const bool is_loaded = !is_stored || load(page);
+  if (known != kNone) slots_[known].pinned = false;
+  if (!is_loaded) {
+    if (known == kNone) memory_->samples.free.push_back(samples);
+    if (bounds != nullptr) memory_->bounds.free.push_back(bounds);
     return nullptr;
   }
   if (known != kNone) {
@@ -173,8 +199,8 @@ template <class Word>
 void PageCache<Word>::copy_samples(std::span<const HeldPage> pages) {
   for (const HeldPage& page : pages) {
     if (slot_of(page.id) != kNone) continue;
-    if (!has_room_in(samples_)) return;
-    PageSamples<Word>* const samples = room_in(samples_);
+    if (!memory_->has_room_in(memory_->samples)) return;
+    PageSamples<Word>* const samples = room_in(memory_->samples);
     *samples = *page.samples;
     const std::uint32_t fresh = free_slot();
     slot_of(page.id) = fresh;
@@ -206,7 +232,7 @@ template <class Word>
 bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, const PageBounds<Word>* bounds,
                           int importance) {
   if (slot_of(id) == kNone) {
-    PageSamples<Word>* const room = room_in(samples_, importance);
+    PageSamples<Word>* const room = room_in(memory_->samples, importance);
     if (room == nullptr) return false;
     *room = samples;
     const std::uint32_t fresh = free_slot();
@@ -217,7 +243,7 @@ bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, co
   // Room for the bounds is not made by the page itself.
   need(id, importance);
   if (bounds == nullptr || slots_[slot_of(id)].bounds != nullptr) return true;
-  PageBounds<Word>* const room = room_in(bounds_, importance);
+  PageBounds<Word>* const room = room_in(memory_->bounds, importance);
   if (room == nullptr) return false;
   *room = *bounds;
   slots_[slot_of(id)].bounds = room;
@@ -228,13 +254,15 @@ template <class Word>
 void PageCache<Word>::drop_bounds(const PageId& id) {
   const std::uint32_t found = slot_of(id);
   if (found == kNone || slots_[found].bounds == nullptr) return;
-  bounds_.free.push_back(std::exchange(slots_[found].bounds, nullptr));
+  memory_->bounds.free.push_back(std::exchange(slots_[found].bounds, nullptr));
 }
 
 template <class Word>
 void PageCache<Word>::drop_bounds() {
-  for (Slot& slot : slots_) slot.bounds = nullptr;
-  bounds_ = {};
+  for (Slot& slot : slots_) {
+    if (slot.bounds != nullptr) memory_->bounds.free.push_back(std::exchange(slot.bounds, nullptr));
+  }
+  if (memory_->caches.size() == 1) memory_->bounds = {};
 }
 
 template <class Word>
@@ -292,17 +320,13 @@ void PageCache<Word>::fill_coarser(const PageToLoad<Word>& page) {
 
 template <class Word>
 template <class Part>
-bool PageCache<Word>::has_room_in(const Pool<Part>& pool) const {
-  const std::size_t taken =
-      samples_.all.size() * sizeof(PageSamples<Word>) + bounds_.all.size() * sizeof(PageBounds<Word>);
-  return !pool.free.empty() || taken + sizeof(Part) <= memory_ || pool.all.size() < kLeast;
-}
-
-template <class Word>
-template <class Part>
 Part* PageCache<Word>::room_in(Pool<Part>& pool) {
-  if (pool.free.empty() && has_room_in(pool)) return pool.all.add();
-  while (pool.free.empty()) evict();
+  if (pool.free.empty() && memory_->has_room_in(pool)) return pool.all.add();
+  while (pool.free.empty()) {
+    // There are more pages than those that are being loaded.
+    const bool is_out = evict_from_caches(nullptr);
+    ADAMAS_ASSERT(is_out);
+  }
   Part* const part = pool.free.back();
   pool.free.pop_back();
   return part;
@@ -311,8 +335,10 @@ Part* PageCache<Word>::room_in(Pool<Part>& pool) {
 template <class Word>
 template <class Part>
 Part* PageCache<Word>::room_in(Pool<Part>& pool, int importance) {
-  while (!has_room_in(pool)) {
-    if (!evict_less_than(std::numeric_limits<int>::min()) && !evict_less_than(importance)) return nullptr;
+  while (!memory_->has_room_in(pool)) {
+    if (!evict_from_caches(this) && !evict_less_than(std::numeric_limits<int>::min()) &&
+        !evict_less_than(importance))
+      return nullptr;
   }
   return room_in(pool);
 }
@@ -333,19 +359,31 @@ bool PageCache<Word>::evict_less_than(int importance) {
 }
 
 template <class Word>
-void PageCache<Word>::evict() {
-  for (;; next_turn()) {
-    Slot& slot = slots_[turn_];
-    if (slot.samples == nullptr) continue;
-    if (std::exchange(slot.used, false)) continue;
-    return remove(slot);
+bool PageCache<Word>::evict_from_caches(const PageCache* end) {
+  for (PageCache* const cache : memory_->caches) {
+    if (cache == end) return false;
+    if (cache->evict()) return true;
   }
+  return false;
+}
+
+template <class Word>
+bool PageCache<Word>::evict() {
+  if (free_slots_.size() == slots_.size()) return false;
+  for (std::size_t looks = 2 * slots_.size() + 1; looks > 0; --looks, next_turn()) {
+    Slot& slot = slots_[turn_];
+    if (slot.samples == nullptr || slot.pinned) continue;
+    if (std::exchange(slot.used, false)) continue;
+    remove(slot);
+    return true;
+  }
+  return false;
 }
 
 template <class Word>
 void PageCache<Word>::remove(Slot& slot) {
-  samples_.free.push_back(slot.samples);
-  if (slot.bounds != nullptr) bounds_.free.push_back(slot.bounds);
+  memory_->samples.free.push_back(slot.samples);
+  if (slot.bounds != nullptr) memory_->bounds.free.push_back(slot.bounds);
   slot_of(slot.id) = kNone;
   free_slots_.push_back(static_cast<std::uint32_t>(&slot - slots_.data()));
   slot = {};

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <unordered_set>
 #include <vector>
@@ -23,6 +24,39 @@ struct PageToLoad {
   PageBounds<Word>* bounds;  ///< null where they are not among the parts
 };
 
+template <class Word>
+class PageCache;
+
+/// Memory for samples and bounds of pages, which caches of one grid may share: where it is full, a page
+/// leaves the cache that was used least recently.
+template <class Word>
+struct PageMemory {
+  /// Keeps parts of pages of so many bytes at most, but never fewer than kLeast of each kind.
+  explicit PageMemory(std::size_t bytes) : limit(bytes) {}
+  static constexpr std::size_t kLeast = 64;
+
+  /// Parts of one kind, and those of them that no page uses.
+  template <class Part>
+  struct Pool {
+    StableVector<Part> all;
+    std::vector<Part*> free;
+  };
+
+  [[nodiscard]] std::size_t taken() const {
+    return samples.all.size() * sizeof(PageSamples<Word>) + bounds.all.size() * sizeof(PageBounds<Word>);
+  }
+  /// Whether there is room for which no page has to leave.
+  template <class Part>
+  [[nodiscard]] bool has_room_in(const Pool<Part>& pool) const {
+    return !pool.free.empty() || taken() + sizeof(Part) <= limit || pool.all.size() < kLeast;
+  }
+
+  std::size_t limit;
+  Pool<PageSamples<Word>> samples;
+  Pool<PageBounds<Word>> bounds;
+  std::vector<PageCache<Word>*> caches;  ///< those used least recently first
+};
+
 /// The memory of one volume's pages: the samples of those that were asked for, and the bounds of those whose
 /// bounds were. The samples of a page need those of the pages of the next coarser LOD round it, and its
 /// bounds need those of the one page that covers it there; the cache gets these pages in the same way. Where
@@ -31,16 +65,21 @@ struct PageToLoad {
 template <class Word>
 class PageCache {
  public:
-  /// Keeps pages of `memory` bytes at most, but never fewer than kLeast.
+  using Memory = PageMemory<Word>;
+  /// With a memory of its own: pages of `memory` bytes at most.
   PageCache(const PageGrid& grid, std::size_t memory);
-  virtual ~PageCache() = default;
+  /// With a memory that others share.
+  PageCache(const PageGrid& grid, std::shared_ptr<Memory> memory);
+  virtual ~PageCache();
   PageCache(const PageCache&) = delete;
   PageCache& operator=(const PageCache&) = delete;
-  static constexpr std::size_t kLeast = 64;
 
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   /// Pages that are in memory stay there until others need room.
-  void set_memory(std::size_t bytes) { memory_ = bytes; }
+  void set_memory(std::size_t bytes) { memory_->limit = bytes; }
+  [[nodiscard]] const std::shared_ptr<Memory>& memory() const { return memory_; }
+  /// Of the caches that share the memory, this one was used last; or just before another one.
+  void touch(const PageCache* before = nullptr);
   /// Whether pages that are not in memory are loaded. Otherwise they cannot be had, and none leaves.
   void set_loading(bool loads) { loads_ = loads; }
   [[nodiscard]] bool loads() const { return loads_; }
@@ -115,6 +154,7 @@ class PageCache {
     PageBounds<Word>* bounds = nullptr;    ///< null where they are not in memory
     bool used = false;                     ///< since the slot's turn came last
     bool wanted = false;                   ///< for its own sake, not only to predict another
+    bool pinned = false;                   ///< it cannot leave
     std::uint64_t needed = 0;              ///< needs_ when it was noted as needed last
     int importance = 0;                    ///< and how much it was then
   };
@@ -123,13 +163,6 @@ class PageCache {
     std::size_t row, plane;
     std::vector<std::uint32_t> slots;
   };
-  /// Memory for samples or for bounds of pages, and what of it no page uses.
-  template <class Part>
-  struct Pool {
-    StableVector<Part> all;
-    std::vector<Part*> free;
-  };
-
   [[nodiscard]] std::uint32_t& slot_of(const PageId& id) {
     Lod& lod = lods_[static_cast<std::size_t>(id.lod)];
     const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
@@ -140,9 +173,8 @@ class PageCache {
   const Slot* fetch(const PageId& id, PageParts parts, bool wanted);
   /// Copies the points of coarser LODs into the missing parts of a page.
   static void fill_coarser(const PageToLoad<Word>& page);
-  /// Whether there is memory for which no page has to leave.
   template <class Part>
-  [[nodiscard]] bool has_room_in(const Pool<Part>& pool) const;
+  using Pool = typename Memory::template Pool<Part>;
   /// Memory from a pool, for which pages leave if need be.
   template <class Part>
   Part* room_in(Pool<Part>& pool);
@@ -151,17 +183,18 @@ class PageCache {
   Part* room_in(Pool<Part>& pool, int importance);
   /// Makes one page leave that is not needed, or less than something else. Returns false where there is none.
   bool evict_less_than(int importance);
-  /// Makes one page leave.
-  void evict();
+  /// Makes one page of one of the caches leave, of those before `end` in their order. Returns false where
+  /// there is none.
+  bool evict_from_caches(const PageCache* end);
+  /// Makes one page leave. Returns false where there is none that may.
+  bool evict();
   void remove(Slot& slot);
   void next_turn() { turn_ = turn_ + 1 >= slots_.size() ? 0 : turn_ + 1; }
   std::uint32_t free_slot();
 
   PageGrid grid_;
-  std::size_t memory_;
+  std::shared_ptr<Memory> memory_;
   std::vector<Lod> lods_;
-  Pool<PageSamples<Word>> samples_;
-  Pool<PageBounds<Word>> bounds_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_slots_;
   std::size_t turn_ = 0;  ///< the slot whose page is the next that may leave

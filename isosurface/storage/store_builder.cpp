@@ -20,8 +20,8 @@
 #include "isosurface/storage/page_coding.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/scratch_pages.h"
+#include "isosurface/storage/step_pages.h"
 #include "isosurface/storage/store_file.h"
-#include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -100,12 +100,9 @@ class StoreBuilder {
 
   void open_earlier(StoreFile* file) {
     if (file == nullptr) return;
-    std::shared_ptr<StoredPages<Word>> before;
-    for (int n = steps_before(first_); n > 0; --n) {
-      before = std::make_shared<StoredPages<Word>>(*file, first_ - static_cast<std::uint32_t>(n), kMemory / 4,
-                                                   std::move(before));
-      earlier_.push_back(before);
-    }
+    earlier_pages_ = std::make_unique<StepPages<Word>>(*file, kMemory / 2);
+    for (int n = steps_before(first_); n > 0; --n)
+      earlier_.push_back(&earlier_pages_->at(first_ - static_cast<std::uint32_t>(n)));
     std::reverse(earlier_.begin(), earlier_.end());
   }
 
@@ -297,7 +294,8 @@ class StoreBuilder {
   Progress& progress_;
   std::uint32_t first_ = 0;  ///< the store's number of the block's first step
   std::vector<Step> steps_;
-  std::vector<std::shared_ptr<StoredPages<Word>>> earlier_;  ///< of the steps before, the last one first
+  std::unique_ptr<StepPages<Word>> earlier_pages_;
+  std::vector<StoredPages<Word>*> earlier_;  ///< of the steps before, the last one first
   std::vector<std::uint64_t> numbers_;
   Surroundings<std::uint16_t> around_gradients_;
   Surroundings<Word> around_;

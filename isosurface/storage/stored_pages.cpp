@@ -14,19 +14,24 @@ namespace adamas {
 
 template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory)
-    : StoredPages(file, step, memory, nullptr) {}
+    : StoredPages(file, step, std::make_shared<PageMemory<Word>>(memory), nullptr, nullptr) {}
 
 template <class Word>
-StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory,
-                               std::shared_ptr<StoredPages> before)
+StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::shared_ptr<PageMemory<Word>> memory,
+                               FindStep find, const StoredPages* alike)
     : PageCache<Word>(file.grid(), memory),
       file_(file),
       step_(step),
-      memory_(memory),
-      sample_codec_(file.header(step).coding, file.header(step).sample_tables, file.header(step).time_tables,
-                    file.name()),
-      before_(std::move(before)) {
-  ADAMAS_ASSERT(before_ == nullptr || before_->step() + 1 == step);
+      memory_for_threads_(memory->limit),
+      find_(std::move(find)) {
+  const StoreHeader& header = file.header(step);
+  if (alike != nullptr && file.header(alike->step()).first_step == header.first_step) {
+    sample_codec_ = alike->sample_codec_;
+    bounds_codec_ = alike->bounds_codec_;
+  } else {
+    sample_codec_ = std::make_shared<TimeCodec<Word>>(header.coding, header.sample_tables, header.time_tables,
+                                                      file.name());
+  }
 }
 
 template <class Word>
@@ -44,8 +49,11 @@ bool StoredPages<Word>::load(const PageToLoad<Word>& page) {
 
 template <class Word>
 StoredPages<Word>& StoredPages<Word>::before() {
-  // The steps that one is coded with are fewer than kWholeSteps, and share the memory of one.
-  if (before_ == nullptr) before_ = std::make_shared<StoredPages>(file_, step_ - 1, memory_ / 2);
+  if (find_) return find_(step_ - 1);
+  if (before_ == nullptr) {
+    before_ = std::make_unique<StoredPages>(file_, step_ - 1, this->memory(), nullptr, this);
+    before_->touch(this);
+  }
   return *before_;
 }
 
@@ -81,8 +89,8 @@ bool StoredPages<Word>::decode_samples(std::span<const std::byte> coded, const P
     if (!step->surroundings(page.id, earlier_->around, PageParts::kSamples)) return false;
     to.around = earlier_->around.samples;
   }
-  return sample_codec_.decode(coded, page.shape, page.around.samples, earlier, page.samples.samples,
-                              page.samples.along);
+  return sample_codec_->decode(coded, page.shape, page.around.samples, earlier, page.samples.samples,
+                               page.samples.along);
 }
 
 template <class Word>
@@ -96,7 +104,8 @@ bool StoredPages<Word>::decode_bounds(const PagePayload& coded, const PageToLoad
     return true;
   }
   if (!bounds_codec_)
-    bounds_codec_ = BoundsCodec<Word>::parse(header.bounds_tables, header.grid.spacing, file_.name());
+    bounds_codec_ = std::make_shared<BoundsCodec<Word>>(
+        BoundsCodec<Word>::parse(header.bounds_tables, header.grid.spacing, file_.name()));
   const auto bounds = coded.all_bounds(page.samples.along);
   return bounds && bounds_codec_->decode(*bounds, page.shape, page.around, page.samples, *page.bounds);
 }
@@ -121,12 +130,12 @@ template <class Word>
 std::vector<StoredPages<Word>*> StoredPages<Word>::for_threads(std::size_t count) {
   while (others_.size() + 1 < count) {
     OfThread other{file_.for_another_thread(), nullptr};
-    other.pages = std::make_unique<StoredPages>(*other.file, step_, memory_);
+    other.pages = std::make_unique<StoredPages>(*other.file, step_, memory_for_threads_);
     others_.push_back(std::move(other));
   }
   std::vector<StoredPages*> result{this};
   for (const OfThread& other : others_) result.push_back(other.pages.get());
-  for (StoredPages* pages : result) pages->set_memory(memory_ / result.size());
+  for (StoredPages* pages : result) pages->set_memory(memory_for_threads_ / result.size());
   result.resize(std::max<std::size_t>(1, count));
   if (count <= 1) return result;
   std::vector<std::vector<typename PageCache<Word>::HeldPage>> held;

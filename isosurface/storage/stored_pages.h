@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -53,12 +54,16 @@ struct EarlierPages {
 template <class Word>
 class StoredPages : public PageCache<Word> {
  public:
-  /// `memory`: bytes that decoded pages may take. Throws Error where the tables are damaged, those of bounds
-  /// not before bounds are asked for. The file must outlive this.
+  /// `memory`: bytes that decoded pages may take, with those of the steps before that these are coded with.
+  /// Throws Error where the tables are damaged, those of bounds not before bounds are asked for. The file
+  /// must outlive this.
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
-  /// The same, with the pages of the step before, which those of this one may be coded with; null where
-  /// nobody has them yet.
-  StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory, std::shared_ptr<StoredPages> before);
+  /// Gives the pages of another step.
+  using FindStep = std::function<StoredPages&(std::uint32_t step)>;
+  /// The same of one of several steps that share a memory. `alike`: the pages of another step of the same
+  /// block, the tables of which serve here too, or null.
+  StoredPages(StoreFile& file, std::uint32_t step, std::shared_ptr<PageMemory<Word>> memory, FindStep find,
+              const StoredPages* alike);
 
   [[nodiscard]] StoreFile& file() { return file_; }
   /// The same step of the same file for each of some threads, the first of which has these pages: they share
@@ -99,12 +104,13 @@ class StoredPages : public PageCache<Word> {
 
   StoreFile& file_;
   std::uint32_t step_;
-  std::size_t memory_;  ///< for the pages of all threads
+  std::size_t memory_for_threads_;  ///< of all of them
   std::vector<OfThread> others_;
-  TimeCodec<Word> sample_codec_;
-  std::shared_ptr<StoredPages> before_;            ///< null before it is asked for
-  std::unique_ptr<EarlierPages<Word>> earlier_;    ///< work memory; null before a page is coded in time
-  std::optional<BoundsCodec<Word>> bounds_codec_;  ///< none before bounds are asked for
+  std::shared_ptr<const TimeCodec<Word>> sample_codec_;
+  FindStep find_;                                ///< none where no steps are shared
+  std::unique_ptr<StoredPages> before_;          ///< null where they are, and before it is asked for
+  std::unique_ptr<EarlierPages<Word>> earlier_;  ///< work memory; null before a page is coded in time
+  std::shared_ptr<const BoundsCodec<Word>> bounds_codec_;  ///< null before bounds are asked for
   std::vector<PageId> damaged_;
   PageId last_damaged_;
   std::uint64_t copies_ = 0;

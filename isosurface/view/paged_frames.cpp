@@ -61,6 +61,14 @@ const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
 }
 
 template <class Sample>
+void PagedFrames<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
+  if (&pages == &diamonds_.pages()) return;
+  diamonds_.set_pages(pages);
+  maker_.normals().set_pages(pages);
+  is_of_another_step_ = true;
+}
+
+template <class Sample>
 FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
   changes_ = {};
   diamonds_.set_view(View(request.viewpoint, request.depths));
@@ -88,7 +96,11 @@ FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
 template <class Sample>
 FrameFigures PagedFrames<Sample>::find_frame(const FrameRequest& request, const Progress& progress) {
   FrameFigures figures;
-  if (isovalue_ != request.isovalue) start(request.isovalue);
+  if (isovalue_ != request.isovalue) {
+    start(request.isovalue);
+  } else if (is_of_another_step_) {
+    count_root();
+  }
   const SurfaceCut cut = cut_of(request, progress);
   last_class_ = cut.error_class;
   figures.largest_error = diamonds_.most_pixels(pages_.split(cut, [&] { progress.check(); }));
@@ -150,10 +162,16 @@ void PagedFrames<Sample>::start(double isovalue) {
   surface_.isovalue = isovalue;
   merge_all();
   pages_.clear();
+  count_root();
+  last_class_ = 0;
+  is_of_another_step_ = false;
+  isovalue_ = isovalue;
+}
+
+template <class Sample>
+void PagedFrames<Sample>::count_root() {
   root_triangles_ =
       static_cast<std::uint64_t>(TriangleCounter<Sample>(diamonds_, surface_).triangles(diamonds_.root()));
-  last_class_ = 0;
-  isovalue_ = isovalue;
 }
 
 template <class Sample>
@@ -256,11 +274,12 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
   for (ViewedPage* const page : pages_.shown()) {
     // Provisional normals are worked out anew, all together.
     const bool is_provisional = page->chunk != nullptr && !page->chunk->missing.empty();
-    if (page->chunk != nullptr && page->changed_in != pages_.walk_number() &&
+    const bool is_of_step = page->chunk_step == page->step;
+    if (page->chunk != nullptr && is_of_step && page->changed_in != pages_.walk_number() &&
         !(is_provisional && has_come(page->chunk->missing)))
       continue;
     progress.check();
-    const PageChunk* const before = is_provisional ? nullptr : page->chunk.get();
+    const PageChunk* const before = is_provisional || !is_of_step ? nullptr : page->chunk.get();
     made.push_back({page, maker_.make(page->lod, page->block, before, page->changed)});
     made.back().chunk->shown.id = id_of(page->lod, page->block);
   }
@@ -270,7 +289,8 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
 template <class Sample>
 void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   ++revision_;
-  bool border_changed = apart_ && (apart_->shown.id == kRoot || has_come(apart_->missing));
+  const bool is_apart_old = is_of_another_step_ || (apart_ && has_come(apart_->missing));
+  bool border_changed = is_apart_old || (apart_ && apart_->shown.id == kRoot);
   const auto note_border = [&](const PageChunk& chunk) {
     border_changed = border_changed || !chunk.border.triangles.empty();
   };
@@ -285,15 +305,17 @@ void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
     if (next.page->chunk != nullptr) note_border(*next.page->chunk);
     touch(next.chunk->shown.id, next.page->chunk != nullptr);
     next.chunk->shown.revision = revision_;
+    next.page->chunk_step = next.page->step;
     maker_.recycle(std::exchange(next.page->chunk, std::move(next.chunk)));
   }
   chunks_ = pages_.shown();
   if (chunks_.empty()) {
-    if (!apart_ || apart_->shown.id != kRoot || has_come(apart_->missing))
+    if (is_apart_old || !apart_ || apart_->shown.id != kRoot)
       set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
   } else if (border_changed) {
     set_apart(kBorder, border());
   }
+  is_of_another_step_ = false;
 }
 
 template <class Sample>

@@ -30,6 +30,11 @@ class PagedFrames {
   /// look at. The pages must outlive this.
   explicit PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory = kMemory);
 
+  /// Goes over to another step of the same store, of which the next frame is to be. The mesh of the last
+  /// frame is what that begins with; values of the step are looked at where the walk through the mesh meets
+  /// with them. The pages must outlive this, or the next call.
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages);
+
   /// Finds the surface of a frame. A stopped one leaves what there was, or the mesh in which nothing is split
   /// where that is of another contour or has too many triangles; its greatest error is not known then. Throws
   /// PageLost.
@@ -95,6 +100,7 @@ class PagedFrames {
   void add_missing(const std::vector<MissingNormals>& missing);
   /// Forgets all of another contour, and leaves the mesh in which nothing is split.
   void start(double isovalue);
+  void count_root();
   /// Leaves the surface of the mesh in which nothing is split.
   void merge_all();
   SurfaceCut cut_of(const FrameRequest& request, const Progress& progress);
@@ -123,7 +129,8 @@ class PagedFrames {
   SurfaceRequest surface_;
   ViewedPages<Sample> pages_;
   ChunkMaker<Sample> maker_;
-  std::optional<double> isovalue_;  ///< none before the first frame
+  std::optional<double> isovalue_;   ///< none before the first frame
+  bool is_of_another_step_ = false;  ///< the last frame's surface is of another step than the next one
   std::uint64_t root_triangles_ = 0;
   int last_class_ = 0;    ///< the least class of the last cut of this contour; 0 before there is one
   FrameFigures figures_;  ///< of the last frame that was not stopped

@@ -70,8 +70,16 @@ ViewedPage& ViewedPages<Sample>::page(int lod, LatticePoint block) {
   added.lod = lod;
   added.block = block;
   added.order = ZOrder::interleave(block);
+  added.step = diamonds_.pages().step();
   *index_[static_cast<std::size_t>(lod)].insert(block).first = &added;
   return added;
+}
+
+template <class Sample>
+void ViewedPages<Sample>::renew(ViewedPage& page) {
+  if (page.crossed != nullptr) forget_crossed(page);
+  page.is_told = false;
+  page.step = diamonds_.pages().step();
 }
 
 template <class Sample>
@@ -86,6 +94,7 @@ void ViewedPages<Sample>::add_candidate(int lod, LatticePoint block) {
     known = &page(lod, block);
   }
   if (std::exchange(known->met, walk_) == walk_) return;
+  if (known->step != diamonds_.pages().step()) renew(*known);
   known->split = nullptr;
   known->children = 0;
   known->at_low = known->lost_at_low = {};
@@ -368,9 +377,7 @@ void ViewedPages<Sample>::forget_old() {
     std::ranges::stable_sort(old, {}, &ViewedPage::used);
     for (ViewedPage* const page : old) {
       if (bytes_ <= memory_) break;
-      bytes_ -= bytes_of(*page);
-      page->crossed.reset();
-      page->masks.reset();
+      forget_crossed(*page);
     }
   }
   ++frame_;

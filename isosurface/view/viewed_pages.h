@@ -33,6 +33,7 @@ struct ViewedPage {
   std::uint64_t order = 0;  ///< the place of its cube in z-order
   /// An error class that none of its diamonds exceeds; the greatest one where the directory does not tell.
   int greatest = 0;
+  std::uint32_t step = 0;                ///< of the store: all that is known of the page is of this one
   bool is_told = false;                  ///< the directory was asked for that
   std::unique_ptr<CrossedPage> crossed;  ///< null where it is not known
   std::unique_ptr<ViewedMasks> masks;    ///< null where `crossed` is
@@ -50,7 +51,8 @@ struct ViewedPage {
   std::array<std::uint32_t, 3> at_low{}, lost_at_low{};
   const PageMask* split = nullptr;  ///< in the present frame; null where nothing is
   std::uint64_t changed_in = 0;     ///< the walk after which `changed` was noted
-  std::uint64_t changed = 0;  ///< the cells of the chunk in which not all is as in the last frame, as bits
+  std::uint64_t changed = 0;     ///< the cells of the chunk in which not all is as in the last frame, as bits
+  std::uint32_t chunk_step = 0;  ///< the step of the store that `chunk` is of
   std::unique_ptr<PageChunk> chunk;  ///< its triangles in the last frame; null where it had none
 };
 
@@ -149,6 +151,8 @@ class ViewedPages {
   [[nodiscard]] Depths depths_of(int view_class) const;
 
   ViewedPage& page(int lod, LatticePoint block);
+  /// Forgets what is known of a page for another step.
+  void renew(ViewedPage& page);
   /// Sets candidates_ to the pages of an LOD on which diamonds may be split, since coarser ones may.
   void find_candidates(int lod);
   void add_candidate(int lod, LatticePoint block);
@@ -179,6 +183,11 @@ class ViewedPages {
   [[gnu::cold]] void suspect_children(const ViewedPage& page);
   [[nodiscard]] PageView view_of(const ViewedPage& page) const {
     return {diamonds_.view(), places_[static_cast<std::size_t>(page.lod)], page.block};
+  }
+  void forget_crossed(ViewedPage& page) {
+    bytes_ -= bytes_of(page);
+    page.crossed.reset();
+    page.masks.reset();
   }
   static std::size_t bytes_of(const ViewedPage& page) { return page.crossed->bytes() + sizeof(ViewedMasks); }
   [[nodiscard]] int generation_of(int lod) const { return 3 * (lods() - 1 - lod); }

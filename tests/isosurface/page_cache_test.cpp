@@ -290,7 +290,7 @@ TEST(PageCache, PagesLeaveForMoreImportantOnesAlone) {
       needed[grid.number(id)] = std::max(importance, needed[grid.number(id)]);
     }
     EXPECT_TRUE(cache.has(coarsest, PageParts::kAll));
-    EXPECT_LE(cache.held_pages().size(), PageCache<Word>::kLeast);
+    EXPECT_LE(cache.held_pages().size(), PageMemory<Word>::kLeast);
     std::erase_if(needed, [&](const auto& of) {
       const bool is_there = cache.has(grid.page(of.first), PageParts::kSamples);
       EXPECT_TRUE(is_there || of.second < importance);

@@ -107,7 +107,7 @@ TEST(PageLoader, LeavesFramesWithinTheirMemory) {
   const MemoryVolume<Sample> volume = waves({200, 60, 60});
   OpenStore<Sample> store(volume);
   store.open(0);
-  const std::size_t least = PageCache<Sample>::kLeast;
+  const std::size_t least = PageMemory<Sample>::kLeast;
   PagedFrames<Sample> frames(store.pages());
   PageLoader<Sample> loader(store.pages(), 1 << 20);
   FrameRequest wanted;

@@ -9,59 +9,16 @@
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/verify.h"
 #include "tests/support/prepared_volume.h"
-#include "tests/support/volume_store.h"
+#include "tests/support/test_series.h"
 
 namespace adamas {
 namespace {
 
 using test::Dimensions;
 using test::MemoryVolume;
-
-enum class Motion {
-  kStill,   ///< all steps are the same
-  kLinear,  ///< samples rise evenly in time
-  kWaves,   ///< waves that travel, with some noise
-  kRandom   ///< nothing of one step is in another
-};
-
-template <class Sample>
-MemoryVolume<Sample> volume_at(const Dimensions& dimensions, Motion motion, int step) {
-  std::mt19937 random(motion == Motion::kStill ? 1u : static_cast<unsigned>(step) + 1u);
-  return {dimensions, [&, motion, step](LatticePoint p) {
-            const auto word = static_cast<OrderedWord<Sample>>(random());
-            if (motion == Motion::kRandom) return from_ordered<Sample>(word);
-            const int noise = motion == Motion::kWaves && random() % 16 == 0 ? 1 : 0;
-            const double t = motion == Motion::kWaves ? 0.3 * step : 0;
-            const double wave = 30 * std::sin(0.4 * p.i - t) * std::cos(0.3 * p.j + 0.1 * p.k) + 60 + noise;
-            return static_cast<Sample>(wave + (motion == Motion::kLinear ? (1 + (p.i & 3)) * step : 0));
-          }};
-}
-
-/// Steps of a motion from `first` on.
-template <class Sample>
-struct TestSeries {
-  std::vector<MemoryVolume<Sample>> steps;
-
-  TestSeries(const Dimensions& dimensions, Motion motion, int count, int first = 0) {
-    for (int step = first; step < first + count; ++step)
-      steps.push_back(volume_at<Sample>(dimensions, motion, step));
-  }
-  /// Of the steps from `begin` to before `end`.
-  [[nodiscard]] SeriesSource source(std::size_t begin, std::size_t end) const {
-    SeriesSource source{
-        steps.front().grid, {}, [this, begin](std::uint32_t n) { return steps[begin + n].planes(); }};
-    for (std::size_t n = begin; n < end; ++n) source.times.push_back(0.5 * static_cast<double>(n));
-    return source;
-  }
-  [[nodiscard]] SeriesSource source() const { return source(0, steps.size()); }
-};
-
-StoreOptions with_blocks(std::uint32_t steps, SampleCoding coding = SampleCoding::kInterpolation) {
-  StoreOptions options;
-  options.block_steps = steps;
-  options.coding = coding;
-  return options;
-}
+using test::Motion;
+using test::TestSeries;
+using test::with_blocks;
 
 /// The samples of all steps, in an order of steps that jumps, and the errors and ranges that each has on its
 /// own.

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include "isosurface/storage/stored_pages.h"
+
+namespace adamas {
+
+/// The pages of the steps of a store, in one memory: where it is full, pages leave of the step that was
+/// wanted least recently. What steps have decoded serves the steps that are coded with them.
+template <class Word>
+class StepPages {
+ public:
+  /// `memory`: bytes that decoded pages may take. The file must outlive this.
+  StepPages(StoreFile& file, std::size_t memory);
+  StepPages(const StepPages&) = delete;
+  StepPages& operator=(const StepPages&) = delete;
+
+  [[nodiscard]] StoreFile& file() { return file_; }
+  /// The pages of a step. They stay until kMostSteps others were wanted. Throws Error where tables are
+  /// damaged.
+  StoredPages<Word>& at(std::uint32_t step);
+  static constexpr std::size_t kMostSteps = 32;
+  void set_memory(std::size_t bytes) { memory_->limit = bytes; }
+  /// Of all steps, those that were dropped included.
+  [[nodiscard]] PageCounts counts() const;
+
+ private:
+  StoredPages<Word>& found(std::uint32_t step);
+  void drop_old();
+
+  struct Step {
+    std::unique_ptr<StoredPages<Word>> pages;
+    std::uint64_t wanted = 0;  ///< when it was wanted last, or first for another step to be decoded
+  };
+  StoreFile& file_;
+  std::shared_ptr<PageMemory<Word>> memory_;
+  std::map<std::uint32_t, Step> steps_;
+  std::uint64_t wants_ = 0;
+  PageCounts dropped_;  ///< of steps that were dropped
+};
+
+extern template class StepPages<std::uint8_t>;
+extern template class StepPages<std::uint16_t>;
+extern template class StepPages<std::uint32_t>;
+
+}  // namespace adamas
