@@ -95,6 +95,7 @@ void add_store(const Command& root, Session& session);
 void add_restore(const Command& root, Session& session);
 void add_verify(const Command& root, Session& session);
 void add_isosurface(const Command& root, Session& session);
+void add_play(const Command& root, Session& session);
 void add_view(const Command& root, Session& session);
 void add_completion(const Command& root, Session& session);
 void add_man(const Command& root, Session& session);

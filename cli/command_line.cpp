@@ -49,6 +49,7 @@ void add_all_commands(const Command& root, Session& session) {
   add_restore(root, session);
   add_verify(root, session);
   add_isosurface(root, session);
+  add_play(root, session);
   if constexpr (kHasViewer) add_view(root, session);
   add_completion(root, session);
   add_man(root, session);

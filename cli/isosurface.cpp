@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <memory>
 
 #include "cli/command.h"
@@ -27,25 +25,6 @@ struct Options {
   PictureOptions picture;
   bool no_normals = false, plain = false, certify = false, strict = false;
 };
-
-/// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
-/// diagonal.
-double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
-  const auto in_voxels = before_voxels(text);
-  std::string_view number = in_voxels ? *in_voxels : text;
-  double unit = 1;
-  if (in_voxels) {
-    unit = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  } else if (number.ends_with('%')) {
-    number.remove_suffix(1);
-    unit = grid.frame_box().diagonal() / 100;
-  }
-  double value = 0;
-  const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (code != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || value < 0)
-    wrong_usage("--error: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", text);
-  return unit * value;
-}
 
 std::vector<double> parse_isovalues(const std::vector<std::string>& texts) {
   std::vector<double> values;

@@ -1,6 +1,10 @@
 #include "cli/store_options.h"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
@@ -56,6 +60,23 @@ std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session)
 }
 
 bool is_store(const std::string& path) { return file_extension(path) == ".adm"; }
+
+double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
+  const auto in_voxels = before_voxels(text);
+  std::string_view number = in_voxels ? *in_voxels : text;
+  double unit = 1;
+  if (in_voxels) {
+    unit = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
+  } else if (number.ends_with('%')) {
+    number.remove_suffix(1);
+    unit = grid.frame_box().diagonal() / 100;
+  }
+  double value = 0;
+  const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (code != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || value < 0)
+    wrong_usage("--error: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", text);
+  return unit * value;
+}
 
 void add_page_counts(const PageCounts& counts, Figures& figures) {
   figures["pages_read"] = counts.pages;

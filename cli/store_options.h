@@ -30,6 +30,11 @@ std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session)
 /// Whether a file is a store, by its name.
 bool is_store(const std::string& path);
 
+/// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
+/// diagonal.
+/// Throws UsageError.
+double parse_surface_error(const std::string& text, const VolumeGrid& grid);
+
 /// Adds how many pages and bytes were read to the figures of a run.
 void add_page_counts(const PageCounts& counts, Figures& figures);
 

@@ -10,7 +10,7 @@
 #include "cli/view_options.h"
 #include "core/io/input_file.h"
 #include "core/picture/canvas.h"
-#include "viewer/scene/flight.h"
+#include "isosurface/view/flight.h"
 #include "viewer/scene/remembered_states.h"
 #include "viewer/scene/view_session.h"
 #include "viewer/window/offscreen_pictures.h"

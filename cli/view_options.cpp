@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/picture/colour_map.h"
 #include "isosurface/storage/store_format.h"
-#include "viewer/scene/flight.h"
+#include "isosurface/view/flight.h"
 
 namespace adamas {
 

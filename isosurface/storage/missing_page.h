@@ -18,13 +18,14 @@ struct MissingPage {
   /// The greatest error in the picture of what is not split for want of the page, in classes of the frame; 0
   /// where only normals need it.
   int view_class = 0;
-  double depth = 0;  ///< the least of that
+  double depth = 0;        ///< the least of that
+  std::uint32_t step = 0;  ///< of the store
 
   bool operator==(const MissingPage&) const = default;
 };
 
 /// Puts missing pages in the order in which they are worth most: greater errors first, then what is nearer to
-/// the eye, then coarser LODs. Each part of a page stays once.
+/// the eye, then coarser LODs. Each part of a page stays once. All are of one step.
 void sort_by_importance(const PageGrid& grid, std::vector<MissingPage>& pages);
 
 }  // namespace adamas

@@ -5,23 +5,24 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
 namespace adamas {
 
 namespace {
 
-bool is_of_same_page(const MissingPage& a, const MissingPage& b) { return a.id == b.id && a.part == b.part; }
+bool is_of_same_page(const MissingPage& a, const MissingPage& b) {
+  return a.id == b.id && a.part == b.part && a.step == b.step;
+}
 
 }  // namespace
 
 template <class Word>
 PageLoader<Word>::PageLoader(StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived)
     : file_(pages.file().for_another_thread()),
-      pages_(*file_, pages.step(), memory),
-      gradients_(file_->header().gradients
-                     ? std::make_unique<StoredGradients>(*file_, pages.step(), memory / 2)
-                     : nullptr),
+      memory_(memory),
+      pages_(*file_, memory),
       notify_(std::move(arrived)),
       most_arrived_(std::clamp<std::size_t>(memory / (4 * sizeof(Page<Word>)), 16, 256)),
       thread_([this] { run(); }) {}
@@ -62,6 +63,7 @@ void PageLoader<Word>::run() {
       lock.lock();
       is_loading_ = false;
       counts_ = counts;
+      page_reads_ = file_->page_reads();
       if (problem_.empty()) problem_ = arrived.problem;
       arrived_.push_back(std::move(arrived));
     }
@@ -86,38 +88,45 @@ typename PageLoader<Word>::Arrived PageLoader<Word>::load(const MissingPage& wan
 }
 
 template <class Word>
-void PageLoader<Word>::load_part(Arrived& arrived) {
-  const PageId& id = arrived.what.id;
-  const auto note_damaged = [&](const PageId& damaged) {
-    arrived.problem = fmt::format("{}: {} is damaged", file_->name(), page_name(damaged));
-  };
-  switch (arrived.what.part) {
-    case MissingPage::Part::kDirectory:
-      arrived.directory = file_->directory_part(pages_.step(), id);
-      if (!file_->entry(pages_.step(), id)) note_damaged(id);
-      return;
-    case MissingPage::Part::kGradients: {
-      const PageSamples<std::uint16_t>* const found = gradients_->samples(id);
-      if (found == nullptr) return note_damaged(gradients_->last_damaged());
-      arrived.gradients = std::make_unique<PageSamples<std::uint16_t>>(*found);
-      return;
-    }
-    case MissingPage::Part::kSamples:
-    case MissingPage::Part::kAll:
-      arrived.page = std::make_unique<Page<Word>>();
-      if (arrived.what.part == MissingPage::Part::kAll) {
-        if (!pages_.copy(id, *arrived.page)) note_damaged(pages_.last_damaged());
-        return;
-      }
-      const PageSamples<Word>* const found = pages_.samples(id);
-      if (found == nullptr) return note_damaged(pages_.last_damaged());
-      static_cast<PageSamples<Word>&>(*arrived.page) = *found;
-  }
+StoredGradients& PageLoader<Word>::gradients(std::uint32_t step) {
+  if (gradients_ == nullptr || gradients_step_ != step)
+    gradients_ = std::make_unique<StoredGradients>(*file_, step, memory_ / 2);
+  gradients_step_ = step;
+  return *gradients_;
 }
 
 template <class Word>
-typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages,
-                                                        StoredGradients* gradients) {
+void PageLoader<Word>::load_part(Arrived& arrived) {
+  const auto& [id, part, view_class, depth, step] = arrived.what;
+  const auto note_damaged = [&](const PageId& damaged) {
+    arrived.problem = fmt::format("{}: {} is damaged", file_->name(), page_name(damaged));
+  };
+  if (part == MissingPage::Part::kDirectory) {
+    arrived.directory = file_->directory_part(step, id);
+    if (!file_->entry(step, id)) note_damaged(id);
+    return;
+  }
+  if (part == MissingPage::Part::kGradients) {
+    StoredGradients& from = gradients(step);
+    const PageSamples<std::uint16_t>* const found = from.samples(id);
+    if (found == nullptr) return note_damaged(from.last_damaged());
+    arrived.gradients = std::make_unique<PageSamples<std::uint16_t>>(*found);
+    return;
+  }
+  StoredPages<Word>& pages = pages_.at(step);
+  arrived.page = std::make_unique<Page<Word>>();
+  if (part == MissingPage::Part::kAll) {
+    if (!pages.copy(id, *arrived.page)) note_damaged(pages.last_damaged());
+    return;
+  }
+  const PageSamples<Word>* const found = pages.samples(id);
+  if (found == nullptr) return note_damaged(pages.last_damaged());
+  static_cast<PageSamples<Word>&>(*arrived.page) = *found;
+}
+
+template <class Word>
+typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages, StoredGradients* gradients,
+                                                        const PagesOf& pages_of) {
   std::vector<Arrived> arrived;
   std::vector<MissingPage> wanted;
   {
@@ -127,21 +136,26 @@ typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages
   }
   changed_.notify_all();
   const auto key = [&](const MissingPage& page) {
-    return std::pair(pages.grid().number(page.id), page.part);
+    return std::tuple(page.step, pages.grid().number(page.id), page.part);
   };
-  std::vector<std::pair<std::uint64_t, MissingPage::Part>> keys;
+  std::vector<decltype(key(MissingPage{}))> keys;
   if (!arrived.empty()) std::ranges::transform(wanted, std::back_inserter(keys), key);
   std::ranges::sort(keys);
   Taken taken;
   for (const Arrived& one : arrived) {
     if (one.directory) pages.file().take_over(one.directory);
+    const bool is_of_step = one.what.step == pages.step();
+    StoredPages<Word>* const to = is_of_step ? &pages : pages_of(one.what.step);
+    if (to == nullptr) continue;
     if (!one.problem.empty()) {
-      note_lost(one, pages, gradients);
-      taken.pages.push_back(one.what);
+      note_lost(one, *to, is_of_step ? gradients : nullptr);
+      if (is_of_step) taken.pages.push_back(one.what);
       continue;
     }
     if (!std::ranges::binary_search(keys, key(one.what))) continue;
-    if (put(one, pages, gradients)) {
+    const bool has_room = put(one, *to, is_of_step ? gradients : nullptr);
+    if (!is_of_step) continue;
+    if (has_room) {
       taken.pages.push_back(one.what);
     } else {
       taken.is_full = true;
@@ -199,6 +213,12 @@ template <class Word>
 PageCounts PageLoader<Word>::counts() const {
   const std::lock_guard lock(mutex_);
   return counts_;
+}
+
+template <class Word>
+std::uint64_t PageLoader<Word>::page_reads() const {
+  const std::lock_guard lock(mutex_);
+  return page_reads_;
 }
 
 template class PageLoader<std::uint8_t>;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "isosurface/storage/missing_page.h"
-#include "isosurface/storage/stored_pages.h"
+#include "isosurface/storage/step_pages.h"
 
 namespace adamas {
 
@@ -21,7 +21,7 @@ namespace adamas {
 template <class Word>
 class PageLoader {
  public:
-  /// A loader for pages of a memory that other frames use. `memory`: bytes that its own pages may take.
+  /// A loader for pages of memories of all steps of a store. `memory`: bytes that its own pages may take.
   /// `arrived` is called in the loader's thread when there is something to take. Throws Error where the file
   /// cannot be opened again.
   PageLoader(
@@ -37,9 +37,14 @@ class PageLoader {
     std::vector<MissingPage> pages;  ///< those that are there now, and those that cannot be had
     bool is_full = false;            ///< there was no room for some
   };
-  /// Puts what has come into the memory of pages, and of gradients if that is not null; pages that have come
-  /// and are not wanted any more are dropped. Not to be called while a frame is being worked out.
-  Taken take(StoredPages<Word>& pages, StoredGradients* gradients);
+  /// The memory of the pages of another step; null where they are not wanted.
+  using PagesOf = std::function<StoredPages<Word>*(std::uint32_t step)>;
+  /// Puts what has come into the memory of a step's pages, and of its gradients if that is not null, and of
+  /// other steps; pages that have come and are not wanted any more are dropped. Tells of those of the step.
+  /// Not to be called while a frame is being worked out.
+  Taken take(
+      StoredPages<Word>& pages, StoredGradients* gradients,
+      const PagesOf& pages_of = [](std::uint32_t) { return nullptr; });
   /// Whether there is nothing to load or to take.
   [[nodiscard]] bool is_idle() const;
   /// Waits until there is something to take or nothing to load.
@@ -48,6 +53,8 @@ class PageLoader {
   [[nodiscard]] std::string problem() const;
   /// What was read; pages that others were predicted from too.
   [[nodiscard]] PageCounts counts() const;
+  /// How often its file was read for pages.
+  [[nodiscard]] std::uint64_t page_reads() const;
 
  private:
   struct Arrived {
@@ -61,13 +68,16 @@ class PageLoader {
   void run();
   Arrived load(const MissingPage& wanted);
   void load_part(Arrived& arrived);
+  StoredGradients& gradients(std::uint32_t step);
   [[nodiscard]] bool has_work() const { return next_ < wanted_.size() && arrived_.size() < most_arrived_; }
   static bool put(const Arrived& arrived, StoredPages<Word>& pages, StoredGradients* gradients);
   static void note_lost(const Arrived& arrived, StoredPages<Word>& pages, StoredGradients* gradients);
 
   std::unique_ptr<StoreFile> file_;
-  StoredPages<Word> pages_;  ///< of the thread, like gradients_
-  std::unique_ptr<StoredGradients> gradients_;
+  std::size_t memory_;
+  StepPages<Word> pages_;                       ///< of the thread, like gradients_
+  std::unique_ptr<StoredGradients> gradients_;  ///< of gradients_step_; null before they are asked for
+  std::uint32_t gradients_step_ = 0;
   std::function<void()> notify_;
   std::size_t most_arrived_;  ///< so many pages wait to be taken at most
   mutable std::mutex mutex_;
@@ -78,6 +88,7 @@ class PageLoader {
   std::vector<Arrived> arrived_;
   std::string problem_;
   PageCounts counts_;
+  std::uint64_t page_reads_ = 0;
   std::thread thread_;
 };
 

@@ -21,6 +21,14 @@ StoredPages<Word>& StepPages<Word>::at(std::uint32_t step) {
 }
 
 template <class Word>
+StoredPages<Word>& StepPages<Word>::ahead(std::uint32_t step, const StoredPages<Word>& current) {
+  StoredPages<Word>& pages = found(step);
+  pages.touch(&current);
+  steps_.at(step).wanted = wants_;
+  return pages;
+}
+
+template <class Word>
 StoredPages<Word>& StepPages<Word>::found(std::uint32_t step) {
   const auto next = steps_.lower_bound(step);
   if (next != steps_.end() && next->first == step) return *next->second.pages;

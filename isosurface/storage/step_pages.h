@@ -19,11 +19,14 @@ class StepPages {
   StepPages(const StepPages&) = delete;
   StepPages& operator=(const StepPages&) = delete;
 
-  [[nodiscard]] StoreFile& file() { return file_; }
+  [[nodiscard]] StoreFile& file() const { return file_; }
   /// The pages of a step. They stay until kMostSteps others were wanted. Throws Error where tables are
   /// damaged.
   StoredPages<Word>& at(std::uint32_t step);
   static constexpr std::size_t kMostSteps = 32;
+  /// The pages of a step that comes after another one, to be read before it is wanted: they leave before
+  /// those of that one.
+  StoredPages<Word>& ahead(std::uint32_t step, const StoredPages<Word>& current);
   void set_memory(std::size_t bytes) { memory_->limit = bytes; }
   /// Of all steps, those that were dropped included.
   [[nodiscard]] PageCounts counts() const;

@@ -13,6 +13,7 @@
 #include "core/base/assert.h"
 #include "core/base/checksum.h"
 #include "core/base/error.h"
+#include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas {
@@ -113,6 +114,8 @@ std::unique_ptr<StoreFile> StoreFile::for_another_thread() const {
   other->blocks_ = blocks_;
   other->last_root_ = last_root_;
   other->grid_ = grid_;
+  other->ahead_ = ahead_;
+  other->runs_ = runs_;
   other->file_ = fcntl(file_, F_DUPFD_CLOEXEC, 0);
   if (other->file_ < 0) fail("{}: cannot be opened again: {}", name_, std::strerror(errno));
   if (mapping_ != nullptr) other->map();
@@ -166,7 +169,7 @@ void StoreFile::take_over(std::shared_ptr<const DirectoryPart> part) {
   chunks_.emplace(part->key, std::move(part));
 }
 
-std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page) {
+std::optional<StoreFile::EntryPlace> StoreFile::entry_place(std::uint32_t step, const PageId& page) {
   const std::uint64_t number = grid_.number(page);
   const Block& block = block_of(step);
   const StoreHeader& header = block.root.header;
@@ -184,19 +187,64 @@ std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page
   const auto at = std::lower_bound(found->numbers.begin(), found->numbers.end(), number);
   if (found->entries.empty() || at == found->numbers.end() || *at != number) return {};
   const auto row = static_cast<std::size_t>(at - found->numbers.begin());
-  return found->entries[row * header.steps() + (step - header.first_step)];
+  return EntryPlace{std::span(found->entries).subspan(row * header.steps(), header.steps()),
+                    step - header.first_step, header.first_step};
+}
+
+std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page) {
+  const std::optional<EntryPlace> place = entry_place(step, page);
+  if (!place) return {};
+  return place->entry();
+}
+
+std::span<const std::byte> StoreFile::page_bytes(const EntryPlace& place) {
+  const PageEntry& page = place.entry();
+  const bool is_ahead = mapping_ == nullptr && ahead_.is_on();
+  if (is_ahead) {
+    if (buffer_.size() < page.size) buffer_.resize(page.size);
+    const std::span<std::byte> known(buffer_.data(), page.size);
+    if (runs_->copy(page.offset, known)) return known;
+  }
+  ++page_reads_;
+  if (!is_ahead) return bytes_at(page.offset, page.size);
+  // The steps of a page lie one after another; those without bytes have no place.
+  std::uint64_t begin = page.offset, end = page.offset + page.size;
+  std::size_t first = place.n, last = place.n;
+  const auto add = [&](const PageEntry& step, std::uint64_t most) {
+    if (step.size == 0) return true;
+    const std::uint64_t from = std::min(begin, step.offset), to = std::max(end, step.offset + step.size);
+    if (to - from > most || to > size_) return false;
+    begin = from;
+    end = to;
+    return true;
+  };
+  // Where the steps that this one may be coded with were not read lately, they will be asked for too.
+  const bool follows =
+      first > 0 && runs_->has(place.entries[first - 1].offset, place.entries[first - 1].size);
+  const std::size_t coded_with = follows ? 0 : (place.first_step + first) % kWholeSteps;
+  while (first > 0 && place.n - first < coded_with && add(place.entries[first - 1], size_)) --first;
+  const std::uint64_t length = ahead_.length(page.offset);
+  if (ahead_.is_backward) {
+    while (first > 0 && add(place.entries[first - 1], length)) --first;
+  } else {
+    while (last + 1 < place.entries.size() && add(place.entries[last + 1], length)) ++last;
+  }
+  const auto bytes = bytes_at(begin, end - begin);
+  runs_->put(begin, bytes, ahead_.memory);
+  return bytes.subspan(page.offset - begin, page.size);
 }
 
 StoreFile::Payload StoreFile::read(std::uint32_t step, const PageId& page) {
-  const std::optional<PageEntry> found = entry(step, page);
-  if (!found) return {PageState::kDamaged, {}};
-  if (found->size == 0) return {PageState::kWhole, plain_payload()};
-  for (const std::uint64_t offset : {found->offset, found->copy}) {
+  const std::optional<EntryPlace> place = entry_place(step, page);
+  if (!place) return {PageState::kDamaged, {}};
+  const PageEntry& found = place->entry();
+  if (found.size == 0) return {PageState::kWhole, plain_payload()};
+  for (const std::uint64_t offset : {found.offset, found.copy}) {
     // A damaged directory may say that the page lies anywhere.
-    if (offset == 0 || offset > size_ || found->size > size_ - offset) continue;
-    const auto bytes = bytes_at(offset, found->size);
-    if (crc32c(bytes) == found->checksum)
-      return {offset == found->offset ? PageState::kWhole : PageState::kCopied, bytes};
+    if (offset == 0 || offset > size_ || found.size > size_ - offset) continue;
+    const bool is_first = offset == found.offset;
+    const auto bytes = is_first ? page_bytes(*place) : bytes_at(offset, found.size);
+    if (crc32c(bytes) == found.checksum) return {is_first ? PageState::kWhole : PageState::kCopied, bytes};
   }
   return {PageState::kDamaged, {}};
 }

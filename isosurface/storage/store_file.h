@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "isosurface/storage/page_runs.h"
 #include "isosurface/storage/store_format.h"
 
 namespace adamas {
@@ -75,6 +76,9 @@ class StoreFile {
     std::span<const std::byte> bytes;
   };
   Payload read(std::uint32_t step, const PageId& page);
+  /// What read() reads at a time, and the files for other threads that are made later; a file that is mapped
+  /// takes no notice.
+  void set_read_ahead(const ReadAhead& ahead) { ahead_ = ahead; }
 
   /// Reads all that is not pages, and throws Error at the first thing that is damaged: the directory's parts,
   /// bytes that belong to nothing.
@@ -84,6 +88,8 @@ class StoreFile {
 
   /// How many bytes of pages and the directory were read.
   [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
+  /// How often the file was read for pages.
+  [[nodiscard]] std::uint64_t page_reads() const { return page_reads_; }
 
  private:
   StoreFile() = default;
@@ -104,6 +110,17 @@ class StoreFile {
   std::span<const std::byte> bytes_at(std::uint64_t offset, std::uint64_t size);
   [[nodiscard]] ChunkKey key_of(std::uint32_t step, const PageId& page) const;
   const DirectoryPart& chunk(const StoreHeader& block, const DirectoryChunk& chunk);
+  /// A page in the directory: its entries for all steps of a block, and which of them is meant.
+  struct EntryPlace {
+    std::span<const PageEntry> entries;
+    std::size_t n = 0;
+    std::uint32_t first_step = 0;  ///< of the block
+    [[nodiscard]] const PageEntry& entry() const { return entries[n]; }
+  };
+  /// Nothing where that part of the directory is damaged.
+  std::optional<EntryPlace> entry_place(std::uint32_t step, const PageId& page);
+  /// The first copy of a page's bytes.
+  std::span<const std::byte> page_bytes(const EntryPlace& place);
 
   std::string name_;
   int file_ = -1;
@@ -114,7 +131,9 @@ class StoreFile {
   RootPlace last_root_;
   PageGrid grid_{{1, 1, 1}};
   std::map<ChunkKey, std::shared_ptr<const DirectoryPart>> chunks_;
-  std::uint64_t bytes_read_ = 0;
+  ReadAhead ahead_;
+  std::shared_ptr<PageRuns> runs_ = std::make_shared<PageRuns>();
+  std::uint64_t bytes_read_ = 0, page_reads_ = 0;
 };
 
 struct StoreFile::DirectoryPart {

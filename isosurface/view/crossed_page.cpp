@@ -59,8 +59,10 @@ void CrossedPageReader<Sample>::find_codes(int lod, LatticePoint block) {
   const PageGrid& grid = diamonds_.grid();
   const PageId id{std::min(lod, grid.top()), block};
   diamonds_.find_crossed(id, codes_);
-  // Bounds of the finest LOD predict nothing, and others predict none here where pages are not loaded.
-  if (id.lod < grid.top() && (lod == 0 || !diamonds_.pages().loads())) diamonds_.pages().drop_bounds(id);
+  // Bounds of the finest LOD predict nothing, and others predict none here where pages are not loaded. Those
+  // of the next step may be the same.
+  StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
+  if (id.lod < grid.top() && (lod == 0 || !pages.loads()) && pages.file().steps() == 1) pages.drop_bounds(id);
   const auto all = codes_;
   codes_.fill(0);
   const std::int32_t step = 1 << (lod - id.lod);

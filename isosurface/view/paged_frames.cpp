@@ -140,7 +140,9 @@ void PagedFrames<Sample>::add_missing(const std::vector<MissingNormals>& missing
   for (const MissingNormals& of : missing) {
     const bool is_lost =
         of.is_of_gradients ? gradients()->is_lost(of.page) : diamonds_.pages().is_lost(of.page);
-    if (!is_lost) missing_.push_back({of.page, of.is_of_gradients ? Part::kGradients : Part::kSamples, 0, 0});
+    if (is_lost) continue;
+    const Part part = of.is_of_gradients ? Part::kGradients : Part::kSamples;
+    missing_.push_back({of.page, part, 0, 0, diamonds_.pages().step()});
   }
 }
 
@@ -153,6 +155,13 @@ void PagedFrames<Sample>::find_missing(FrameFigures& figures) {
   figures.pages_missing = missing_.size();
   figures.pages_lost = pages_.lost();
   if (!missing_.empty()) pages_.spare_needed();
+}
+
+template <class Sample>
+std::vector<MissingPage> PagedFrames<Sample>::needed_pages() {
+  std::vector<MissingPage> pages = pages_.needed();
+  sort_by_importance(diamonds_.grid(), pages);
+  return pages;
 }
 
 template <class Sample>

@@ -55,6 +55,9 @@ class PagedFrames {
   /// needs: what is worth most first. Once they are there (PageCache::put), the next frame sharpens. Those of
   /// a frame that was stopped are of the frame before.
   [[nodiscard]] const std::vector<MissingPage>& missing_pages() const { return missing_; }
+  /// The pages that the last frame has used, in that order: what a frame of another step will need, but for
+  /// what changes meanwhile.
+  [[nodiscard]] std::vector<MissingPage> needed_pages();
   [[nodiscard]] StoredPages<OrderedWord<Sample>>& pages() { return diamonds_.pages(); }
   /// The directions of gradients that the store keeps; null where it has none.
   [[nodiscard]] StoredGradients* gradients() { return maker_.normals().stored(); }

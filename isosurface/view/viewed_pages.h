@@ -78,6 +78,9 @@ class ViewedPages {
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
   /// Has the memory of pages spare those that the last walk needs.
   void spare_needed();
+  /// These pages, in no order, each as often as it is needed: what another frame much like the last one will
+  /// need.
+  [[nodiscard]] std::vector<MissingPage> needed();
   /// Called for each page that is looked at; may throw.
   using Check = std::function<void()>;
 
@@ -170,9 +173,14 @@ class ViewedPages {
   /// Finds what of a page is in memory, and notes what is missing. Returns false where nothing can be split.
   bool find_in_memory(ViewedPage& page, const PageView& view);
   [[nodiscard]] std::size_t groups_in_memory(const ViewedPage& page);
+  /// Finds the pages that have members of the first groups of a page.
+  void find_members(const ViewedPage& page, std::size_t groups);
   /// Calls visit(id) for the pages that have members of a group; until it returns false.
   template <class Visit>
   bool for_each_member_page(const ViewedPage& page, std::size_t group, Visit&& visit);
+  /// Calls visit(id, part, class, depth) for the pages that the last walk needs.
+  template <class Visit>
+  void for_each_needed(Visit&& visit);
   [[gnu::cold]] void note_missing(const PageId& id, MissingPage::Part part, int view_class, double depth);
   [[gnu::cold]] void note_missing_groups(const ViewedPage& page, const PageView& view);
   /// Takes diamonds out of the masks of an LOD whose parents are not in those of their pages.

@@ -56,7 +56,7 @@ void ViewedPages<Sample>::note_missing(const PageId& id, MissingPage::Part part,
   if (diamonds_.pages().is_lost(id)) {
     ++lost_;
   } else {
-    missing_.push_back({id, part, view_class, depth});
+    missing_.push_back({id, part, view_class, depth, diamonds_.pages().step()});
   }
 }
 
@@ -79,10 +79,15 @@ bool ViewedPages<Sample>::for_each_member_page(const ViewedPage& page, std::size
 }
 
 template <class Sample>
-std::size_t ViewedPages<Sample>::groups_in_memory(const ViewedPage& page) {
+void ViewedPages<Sample>::find_members(const ViewedPage& page, std::size_t groups) {
   bytes_ -= page.crossed->bytes();
-  page.crossed->find_members(page.groups_wanted);
+  page.crossed->find_members(groups);
   bytes_ += page.crossed->bytes();
+}
+
+template <class Sample>
+std::size_t ViewedPages<Sample>::groups_in_memory(const ViewedPage& page) {
+  find_members(page, page.groups_wanted);
   auto& pages = diamonds_.pages();
   std::size_t group = 0;
   while (group < page.groups_wanted && for_each_member_page(page, group, [&](const PageId& id) {
@@ -232,21 +237,44 @@ bool ViewedPages<Sample>::drop_without_parents(ViewedPage& page, int phase, Adde
 }
 
 template <class Sample>
-void ViewedPages<Sample>::spare_needed() {
-  auto& pages = diamonds_.pages();
-  pages.forget_needs();
+template <class Visit>
+void ViewedPages<Sample>::for_each_needed(Visit&& visit) {
   for (const auto& of_lod : active_) {
     for (const ViewedPage* const page : of_lod) {
       const double depth = view_of(*page).least_depth(0);
-      for (std::size_t g = 0; g < page->groups_wanted; ++g) {
+      const std::size_t groups = loads_ ? page->crossed->counted : page->groups_wanted;
+      find_members(*page, groups);
+      if (groups > 0) {
+        const PageId own{std::min(page->lod, diamonds_.grid().top()), page->block};
+        visit(own, MissingPage::Part::kAll,
+              class_at(error_class(page->crossed->groups[0].code, page->lod), depth), depth);
+      }
+      for (std::size_t g = 0; g < groups; ++g) {
         const int importance = class_at(error_class(page->crossed->groups[g].code, page->lod), depth);
         for_each_member_page(*page, g, [&](const PageId& id) {
-          pages.need(id, importance);
+          visit(id, MissingPage::Part::kSamples, importance, depth);
           return true;
         });
       }
     }
   }
+}
+
+template <class Sample>
+void ViewedPages<Sample>::spare_needed() {
+  auto& pages = diamonds_.pages();
+  pages.forget_needs();
+  for_each_needed(
+      [&](const PageId& id, MissingPage::Part, int importance, double) { pages.need(id, importance); });
+}
+
+template <class Sample>
+std::vector<MissingPage> ViewedPages<Sample>::needed() {
+  std::vector<MissingPage> pages;
+  for_each_needed([&](const PageId& id, MissingPage::Part part, int view_class, double depth) {
+    pages.push_back({id, part, view_class, depth, diamonds_.pages().step()});
+  });
+  return pages;
 }
 
 }  // namespace adamas

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "isosurface/view/flight.h"
 #include "tests/fuzz/require.h"
-#include "viewer/scene/flight.h"
 #include "viewer/scene/view_state.h"
 
 namespace adamas::fuzz {

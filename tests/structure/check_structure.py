@@ -15,10 +15,11 @@ MAY_INCLUDE = {
     "core/picture": ["core"],
     "interfaces": ["core"],
     "isosurface": ["core"],
+    "timevarying": ["core", "isosurface"],
     "datasets": ["core"],
-    "viewer": ["core", "core/io", "core/picture", "interfaces", "isosurface"],
-    "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "viewer"],
-    "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "datasets", "viewer", "cli"],
+    "viewer": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying"],
+    "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "viewer"],
+    "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "viewer", "cli"],
 }
 # Within a module: a folder may include those before it.
 FOLDER_ORDER = {
@@ -47,7 +48,7 @@ LIGHT = [r"CLI/.*", r"nlohmann/.*"]
 SLOW = {r"CLI/.*": ["cli/command.cpp", "cli/command_line.cpp", "cli/config_file.cpp", "cli/help.cpp"]}
 # Headers that are there to convert to the types of a library: for .cpp files of every folder.
 CONVERSIONS = ["interfaces/simplification/openmesh_patches.h"]
-FOLDERS = ["include", "core", "interfaces", "isosurface", "datasets", "viewer", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
+FOLDERS = ["include", "core", "interfaces", "isosurface", "timevarying", "datasets", "viewer", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
 ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
 LIBRARY_PAGE = "docs/library.md"
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}

@@ -11,9 +11,9 @@
 #include "ball_store.h"
 #include "core/base/error.h"
 #include "core/picture/canvas.h"
+#include "isosurface/view/flight.h"
 #include "tests/picture/decode_png.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/flight.h"
 #include "viewer/window/offscreen_pictures.h"
 
 namespace adamas {

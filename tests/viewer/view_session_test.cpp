@@ -9,8 +9,8 @@
 
 #include "ball_store.h"
 #include "core/base/error.h"
+#include "isosurface/view/flight.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/flight.h"
 #include "viewer/scene/picking.h"
 #include "viewer/window/input.h"
 

@@ -174,7 +174,7 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
     }
     changed_.notify_all();
   };
-  while (surfaces_.size() <= n) surfaces_.push_back({StoreFrames::open(file_, step_, memory_, arrived), {}});
+  while (surfaces_.size() <= n) surfaces_.push_back({SeriesFrames::open(file_, memory_, arrived), {}});
   const WantedSurfaces& wanted = found.wanted;
   FrameRequest request;
   request.viewpoint = wanted.viewpoint;
@@ -185,7 +185,7 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
       std::max<std::uint64_t>(1, budget_.triangles() / wanted.isovalues.size() / roughness);
   request.resident_only = !waits_for_pages_;
   request.stop = [&] { return is_overtaken(wanted) || std::chrono::steady_clock::now() > frame_end_; };
-  const FrameFigures figures = surfaces_[n].frames->next(request);
+  const FrameFigures figures = surfaces_[n].frames->next(step_, request);
   if (figures.stopped) return false;
   found.surfaces.push_back(drawn_chunks(surfaces_[n]));
   found.counts += surfaces_[n].frames->counts();

@@ -15,10 +15,10 @@
 
 #include "adamas/meshes.h"
 #include "isosurface/storage/store_file.h"
+#include "timevarying/series_frames.h"
 #include "viewer/scene/document.h"
 #include "viewer/scene/drawn_mesh.h"
 #include "viewer/scene/frame_budget.h"
-#include "viewer/scene/store_frames.h"
 #include "viewer/scene/volume_values.h"
 
 namespace adamas {
@@ -89,7 +89,7 @@ class SurfaceWorker {
       std::uint64_t revision = 0;
       SharedMesh mesh;
     };
-    std::unique_ptr<StoreFrames> frames;
+    std::unique_ptr<SeriesFrames> frames;
     std::unordered_map<std::uint64_t, Drawn> drawn;
   };
 

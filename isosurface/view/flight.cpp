@@ -1,4 +1,4 @@
-#include "viewer/scene/flight.h"
+#include "isosurface/view/flight.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/vec3.h"
+#include "isosurface/storage/stored_pages.h"
+#include "isosurface/view/frame_refinement.h"
+#include "isosurface/view/surface_chunk.h"
+
+namespace adamas {
+
+/// The surfaces of a store of one step or several, frame after frame. Each is the same whatever frames came
+/// before it; it begins with the mesh of the last one, of whatever step that was.
+class SeriesFrames {
+ public:
+  virtual ~SeriesFrames() = default;
+
+  /// The frame of a step. Throws Error where the store is damaged. With `resident_only` the pages that the
+  /// frame lacks are loaded in a thread; what has come by then, the next frame has.
+  virtual FrameFigures next(std::uint32_t step, const FrameRequest& request) = 0;
+  /// Which steps are expected to be wanted after the last frame's one, the next one first: pages that it has
+  /// used are read of these too, in a thread. None at first.
+  virtual void expect(std::vector<std::uint32_t> steps) = 0;
+  /// Whether the pages that the last frame has used are in memory of another step too.
+  [[nodiscard]] virtual bool is_ready(std::uint32_t step) = 0;
+  /// Whether pages are on their way that the last frame lacks. Each comes once at most for a view: where the
+  /// memory has no room for what a view needs, some stay missing.
+  [[nodiscard]] virtual bool is_paging() const = 0;
+  /// Whether pages are on their way of the steps that are expected.
+  [[nodiscard]] virtual bool is_reading_ahead() const = 0;
+  /// Waits until pages have come or none are on their way.
+  virtual void wait() = 0;
+  /// Why pages cannot be had that were to be loaded, of the first one; empty: nothing.
+  [[nodiscard]] virtual std::string paging_problem() const = 0;
+  /// Calls for all parts of the last frame's surface, which are in the frame of the grid.
+  virtual void for_each_chunk(const std::function<void(const SurfaceChunk&)>& visit) const = 0;
+  /// The isosurface error of the cell of the last frame's mesh at a place, in the frame of the grid; an
+  /// estimate. None where it is not known.
+  [[nodiscard]] virtual std::optional<double> error_at(const Vec3& place) = 0;
+  /// The cells of the last frame's mesh in a plane, as polygons; in the frame of the grid.
+  [[nodiscard]] virtual std::vector<std::vector<Vec3>> cells_in(const Plane& plane) = 0;
+  [[nodiscard]] virtual PageCounts counts() const = 0;
+  /// How often the file was read for pages.
+  [[nodiscard]] virtual std::uint64_t page_reads() const = 0;
+  /// From the first sample to the last, in the grid's frame.
+  [[nodiscard]] virtual Box3 data_box() const = 0;
+
+  /// `memory`: bytes that decoded pages may take. The file must outlive the frames. `arrived` is called in
+  /// the thread that loads pages when some have come.
+  static std::unique_ptr<SeriesFrames> open(
+      StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {});
+};
+
+}  // namespace adamas
