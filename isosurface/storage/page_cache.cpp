@@ -324,7 +324,7 @@ Part* PageCache<Word>::room_in(Pool<Part>& pool) {
   if (pool.free.empty() && memory_->has_room_in(pool)) return pool.all.add();
   while (pool.free.empty()) {
     // There are more pages than those that are being loaded.
-    const bool is_out = evict_from_caches(nullptr);
+    const bool is_out = evict_in_turn();
     ADAMAS_ASSERT(is_out);
   }
   Part* const part = pool.free.back();
@@ -336,7 +336,7 @@ template <class Word>
 template <class Part>
 Part* PageCache<Word>::room_in(Pool<Part>& pool, int importance) {
   while (!memory_->has_room_in(pool)) {
-    if (!evict_from_caches(this) && !evict_less_than(std::numeric_limits<int>::min()) &&
+    if (!evict_from_older() && !evict_less_than(std::numeric_limits<int>::min()) &&
         !evict_less_than(importance))
       return nullptr;
   }
@@ -359,24 +359,36 @@ bool PageCache<Word>::evict_less_than(int importance) {
 }
 
 template <class Word>
-bool PageCache<Word>::evict_from_caches(const PageCache* end) {
+bool PageCache<Word>::evict_in_turn() {
+  const std::vector<PageCache*>& caches = memory_->caches;
+  // In the second round no page counts as used.
+  for (std::size_t looks = 2 * caches.size() + 1; looks > 0; --looks, ++memory_->turn) {
+    if (caches[memory_->turn %= caches.size()]->evict()) return true;
+  }
+  return false;
+}
+
+template <class Word>
+bool PageCache<Word>::evict_from_older() {
   for (PageCache* const cache : memory_->caches) {
-    if (cache == end) return false;
-    if (cache->evict()) return true;
+    if (cache == this) return false;
+    for (int round = 0; round < 3; ++round) {
+      if (cache->evict()) return true;
+    }
   }
   return false;
 }
 
 template <class Word>
 bool PageCache<Word>::evict() {
-  if (free_slots_.size() == slots_.size()) return false;
-  for (std::size_t looks = 2 * slots_.size() + 1; looks > 0; --looks, next_turn()) {
+  for (; turn_ < slots_.size(); ++turn_) {
     Slot& slot = slots_[turn_];
     if (slot.samples == nullptr || slot.pinned) continue;
     if (std::exchange(slot.used, false)) continue;
     remove(slot);
     return true;
   }
+  turn_ = 0;
   return false;
 }
 

@@ -27,13 +27,14 @@ struct PageToLoad {
 template <class Word>
 class PageCache;
 
-/// Memory for samples and bounds of pages, which caches of one grid may share: where it is full, a page
-/// leaves the cache that was used least recently.
+/// Memory for samples and bounds of pages, which caches of one grid may share: where it is full, a page of
+/// any of them leaves.
 template <class Word>
 struct PageMemory {
-  /// Keeps parts of pages of so many bytes at most, but never fewer than kLeast of each kind.
-  explicit PageMemory(std::size_t bytes) : limit(bytes) {}
   static constexpr std::size_t kLeast = 64;
+  /// Keeps parts of pages of so many bytes at most, but never fewer than `least_parts` of each kind.
+  explicit PageMemory(std::size_t bytes, std::size_t least_parts = kLeast)
+      : limit(bytes), least(least_parts) {}
 
   /// Parts of one kind, and those of them that no page uses.
   template <class Part>
@@ -48,13 +49,14 @@ struct PageMemory {
   /// Whether there is room for which no page has to leave.
   template <class Part>
   [[nodiscard]] bool has_room_in(const Pool<Part>& pool) const {
-    return !pool.free.empty() || taken() + sizeof(Part) <= limit || pool.all.size() < kLeast;
+    return !pool.free.empty() || taken() + sizeof(Part) <= limit || pool.all.size() < least;
   }
 
-  std::size_t limit;
+  std::size_t limit, least;
   Pool<PageSamples<Word>> samples;
   Pool<PageBounds<Word>> bounds;
   std::vector<PageCache<Word>*> caches;  ///< those used least recently first
+  std::size_t turn = 0;                  ///< of the caches: the one of which a page may leave next
 };
 
 /// The memory of one volume's pages: the samples of those that were asked for, and the bounds of those whose
@@ -183,10 +185,12 @@ class PageCache {
   Part* room_in(Pool<Part>& pool, int importance);
   /// Makes one page leave that is not needed, or less than something else. Returns false where there is none.
   bool evict_less_than(int importance);
-  /// Makes one page of one of the caches leave, of those before `end` in their order. Returns false where
-  /// there is none.
-  bool evict_from_caches(const PageCache* end);
-  /// Makes one page leave. Returns false where there is none that may.
+  /// Makes one page of one of the caches leave. Returns false where there is none that may.
+  bool evict_in_turn();
+  /// The same of those that were used less recently than this one.
+  bool evict_from_older();
+  /// Makes one page leave, of those from the slot on whose turn it is. Returns false where there is none
+  /// among them that may.
   bool evict();
   void remove(Slot& slot);
   void next_turn() { turn_ = turn_ + 1 >= slots_.size() ? 0 : turn_ + 1; }

@@ -23,9 +23,10 @@ struct BlockSpan {
 
 /// The bytes of the pages that restoring a part needs at a time: one row of pages of its LOD, each of which
 /// is needed once, and a few rows of coarser ones. They count twice, since pages leave a cache in no strict
-/// order.
+/// order. Those of the steps that the step is coded with are needed at the same time.
 template <class Word>
-std::size_t working_set(const PageGrid& grid, const RestoredPart& part) {
+std::size_t working_set(const PageGrid& grid, std::uint32_t step, const RestoredPart& part) {
+  const std::size_t steps = 1 + step % kWholeSteps;
   std::size_t pages = 0;
   for (int lod = part.lod; lod <= grid.top(); ++lod) {
     const auto along = [&](int axis) {
@@ -34,7 +35,7 @@ std::size_t working_set(const PageGrid& grid, const RestoredPart& part) {
     };
     pages += lod == part.lod ? along(0) : 3 * along(0) * along(1);
   }
-  return 2 * pages * sizeof(PageSamples<Word>);
+  return 2 * steps * pages * sizeof(PageSamples<Word>);
 }
 
 template <class Sample>
@@ -45,7 +46,7 @@ class Restorer {
   Restorer(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory)
       : file_(file),
         part_(part),
-        pages_(file, step, std::min(memory, working_set<Word>(file.grid(), part))) {}
+        pages_(file, step, std::min(memory, working_set<Word>(file.grid(), step, part))) {}
 
   PageCounts run(const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
     const std::size_t plane = part_.grid.plane_samples();

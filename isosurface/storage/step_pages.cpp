@@ -8,7 +8,7 @@ namespace adamas {
 
 template <class Word>
 StepPages<Word>::StepPages(StoreFile& file, std::size_t memory)
-    : file_(file), memory_(std::make_shared<PageMemory<Word>>(memory)) {}
+    : file_(file), memory_(StoredPages<Word>::memory_for(file, memory)) {}
 
 template <class Word>
 StoredPages<Word>& StepPages<Word>::at(std::uint32_t step) {

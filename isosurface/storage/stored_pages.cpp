@@ -14,7 +14,13 @@ namespace adamas {
 
 template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory)
-    : StoredPages(file, step, std::make_shared<PageMemory<Word>>(memory), nullptr, nullptr) {}
+    : StoredPages(file, step, memory_for(file, memory), nullptr, nullptr) {}
+
+template <class Word>
+std::shared_ptr<PageMemory<Word>> StoredPages<Word>::memory_for(const StoreFile& file, std::size_t bytes) {
+  const std::size_t steps = std::min(file.steps(), kWholeSteps);
+  return std::make_shared<PageMemory<Word>>(bytes, steps * PageMemory<Word>::kLeast);
+}
 
 template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::shared_ptr<PageMemory<Word>> memory,
@@ -114,6 +120,11 @@ template <class Word>
 PageCounts StoredPages<Word>::counts() const {
   const std::uint64_t predictors = this->loaded_as_predictors();
   PageCounts all{this->loaded() - predictors, predictors, file_.bytes_read(), copies_, 0};
+  if (before_ != nullptr) {
+    const PageCounts before = before_->counts();
+    all.predictors += before.pages + before.predictors;
+    all.copies += before.copies;
+  }
   // Several threads may meet with the same damage.
   std::vector<PageId> damaged = damaged_;
   for (const OfThread& other : others_) {

@@ -58,6 +58,9 @@ class StoredPages : public PageCache<Word> {
   /// Throws Error where the tables are damaged, those of bounds not before bounds are asked for. The file
   /// must outlive this.
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
+  /// A memory for steps of a store. Where pages are coded with those of the steps before, it has room for
+  /// these in any case: without them each page would be decoded again for each of the steps that follow.
+  static std::shared_ptr<PageMemory<Word>> memory_for(const StoreFile& file, std::size_t bytes);
   /// Gives the pages of another step.
   using FindStep = std::function<StoredPages&(std::uint32_t step)>;
   /// The same of one of several steps that share a memory. `alike`: the pages of another step of the same

@@ -34,6 +34,12 @@ struct CrossedPage {
   /// bits: for each step from -1 to 1 along each axis, i running fastest. As far as find_members() was asked.
   std::vector<std::uint32_t> members;
 
+  /// How many triangles a split adds and takes away, by index in `places`, where that is known.
+  struct Change {
+    std::uint32_t added = 0, lost = 0;
+  };
+  [[nodiscard]] Change change(std::size_t n) const { return {added[n], lost.empty() ? 0u : lost[n]}; }
+
   /// Finds these of so many groups.
   void find_members(std::size_t groups);
   [[nodiscard]] std::size_t bytes() const {

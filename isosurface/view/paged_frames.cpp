@@ -205,7 +205,7 @@ SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, const Progre
   const std::uint64_t most = request.max_triangles.value_or(std::numeric_limits<std::uint64_t>::max());
   if (!request.max_triangles || root_triangles_ > most) {
     const int of_all = request.max_triangles ? kNothing : least;
-    pages_.walk(of_all, std::numeric_limits<std::uint64_t>::max(), check);
+    pages_.walk(of_all, ViewedPages<Sample>::kAnyNumber, check);
     return {.error_class = of_all};
   }
   constexpr int kFirst = 7;

@@ -135,6 +135,7 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
   low_ = depths_of(least_class);
   next_ = depths_of(least_class + 1);
   greatest_passed_ = 0;
+  counts_ = room != kAnyNumber;
   Added added;
   added.of_generations.resize(static_cast<std::size_t>(generations()));
   for (int lod = lods() - 1; lod >= 0; --lod) {
@@ -168,18 +169,18 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
 }
 
 template <class Sample>
-const CrossedPage& ViewedPages<Sample>::crossed(ViewedPage& page, const PageView& view) {
+std::size_t ViewedPages<Sample>::find_groups(ViewedPage& page, const PageView& view) {
   page.used = frame_;
   if (page.crossed == nullptr) read(page);
   CrossedPage& known = *page.crossed;
-  const std::size_t needed =
-      loads_ ? groups_within(known, page.lod, view.least_depth(0)) : page.groups_in_memory;
-  if (needed > known.counted) {
+  if (loads_) page.groups_wanted = groups_within(known, page.lod, view.least_depth(0));
+  const std::size_t groups = loads_ ? page.groups_wanted : page.groups_in_memory;
+  if (counts_ && groups > known.counted) {
     bytes_ -= known.bytes();
-    reader_.count(page.lod, page.block, needed, known);
+    reader_.count(page.lod, page.block, groups, known);
     bytes_ += known.bytes();
   }
-  return known;
+  return groups;
 }
 
 template <class Sample>
@@ -191,7 +192,7 @@ void ViewedPages<Sample>::read(ViewedPage& page) {
 
 template <class Sample>
 std::size_t ViewedPages<Sample>::groups_within(const CrossedPage& known, int lod, double depth) const {
-  std::size_t groups = loads_ ? known.counted : 0;
+  std::size_t groups = 0;
   while (groups < known.groups.size() &&
          low_[static_cast<std::size_t>(error_class(known.groups[groups].code, lod))] >= depth)
     ++groups;
@@ -208,12 +209,12 @@ bool ViewedPages<Sample>::is_occluded(const PageView& view, std::uint16_t place,
 
 template <class Sample>
 void ViewedPages<Sample>::look_at(ViewedPage& page, const PageView& view, Added& added) {
-  const CrossedPage& known = crossed(page, view);
+  const std::size_t groups = find_groups(page, view);
+  const CrossedPage& known = *page.crossed;
   PageMask &above = page.masks->above, &at_low = page.masks->at_low;
   above = at_low = {};
   page.looked_at = walk_;
   const bool whole = view.is_whole();
-  const std::size_t groups = loads_ ? known.counted : page.groups_in_memory;
   for (std::size_t g = 0; g < groups; ++g) {
     const CrossedPage::Group& group = known.groups[g];
     const auto of_error = static_cast<std::size_t>(error_class(group.code, page.lod));
@@ -238,7 +239,7 @@ void ViewedPages<Sample>::look_at(ViewedPage& page, const PageView& view, Added&
         const double depth = view.depth(place, group.phase);
         if (depth > low || (!whole && !view.is_in_picture(place, group.phase))) continue;
         if (view.has_depths() && is_occluded(view, place, group.phase)) continue;
-        const std::uint32_t more = known.added[n], lost = known.lost.empty() ? 0u : known.lost[n];
+        const auto [more, lost] = counts_ ? known.change(n) : CrossedPage::Change{};
         if (depth <= next) {
           above.add(place);
           added.above += {more, lost};
@@ -280,7 +281,7 @@ template <class Sample>
 void ViewedPages<Sample>::end_on(const ViewedPage& page, std::uint64_t room, CutAndSum& found) {
   const CrossedPage& known = *page.crossed;
   std::vector<std::pair<std::uint16_t, std::size_t>> at_low;
-  for (std::size_t g = 0; g < known.counted; ++g) {
+  for (std::size_t g = 0; g < page.groups_wanted; ++g) {
     if (known.groups[g].phase != found.cut.generation % 3) continue;
     for (std::size_t n = known.groups[g].begin; n < known.groups[g].end; ++n) {
       if (page.masks->at_low.has(CrossedPage::point(known.places[n])))
@@ -292,7 +293,7 @@ void ViewedPages<Sample>::end_on(const ViewedPage& page, std::uint64_t room, Cut
   for (const auto& [place, n] : at_low) {
     found.cut.place = place;
     if (found.sum.added + known.added[n] > room) return;
-    found.sum += {known.added[n], known.lost.empty() ? 0u : known.lost[n]};
+    found.sum += {known.added[n], known.change(n).lost};
   }
 }
 

@@ -41,8 +41,8 @@ struct ViewedPage {
   std::uint64_t met = 0;                 ///< the walk that met with it last
   std::uint64_t looked_at = 0;           ///< the walk that looked at it last
   std::uint64_t suspect = 0;             ///< the walk in which pages with parents of its diamonds lack some
-  /// Of a walk that loads no pages: for how many groups all members are in memory, and how many are wanted;
-  /// after how many pages had left the memory that was so.
+  /// How many groups the walk wants. Where it loads no pages: for how many all members are in memory; after
+  /// how many pages had left the memory that was so.
   std::size_t groups_in_memory = 0, groups_wanted = 0;
   std::uint64_t left_then = 0;
   /// In that walk: where the children of its diamonds of the walk's classes are, as CrossedPage has them.
@@ -105,8 +105,10 @@ class ViewedPages {
     std::vector<Sum> of_generations;  ///< those of the least class, by generation
     [[nodiscard]] Sum all() const;
   };
+  static constexpr std::uint64_t kAnyNumber = ~std::uint64_t{0};
   /// Walks over all pages on which diamonds may have at least a class, from the coarsest LOD on. Nothing
-  /// where the diamonds of greater classes alone add more than `room`. Throws PageLost.
+  /// where the diamonds of greater classes alone add more than `room`; triangles are not counted where that
+  /// is kAnyNumber. Throws PageLost.
   std::optional<Added> walk(int least_class, std::uint64_t room, const Check& check);
   struct CutAndSum {
     SurfaceCut cut;
@@ -163,7 +165,8 @@ class ViewedPages {
   void look_at(ViewedPage& page, const PageView& view, Added& added);
   /// Whether depths hide a diamond; counts.
   bool is_occluded(const PageView& view, std::uint16_t place, int phase);
-  const CrossedPage& crossed(ViewedPage& page, const PageView& view);
+  /// Finds the groups of a page that the walk looks at, and what splits in them add. Returns how many.
+  std::size_t find_groups(ViewedPage& page, const PageView& view);
   void read(ViewedPage& page);
   /// How many groups of a page may have diamonds of the walk's classes.
   [[nodiscard]] std::size_t groups_within(const CrossedPage& known, int lod, double depth) const;
@@ -220,6 +223,7 @@ class ViewedPages {
   Depths low_, next_;        ///< of the least class of the walk, and the next one
   int greatest_passed_ = 0;  ///< of the pages that the walk met with and did not look at
   bool loads_ = true;
+  bool counts_ = true;  ///< in the last walk
   std::vector<MissingPage> missing_;
   std::uint64_t lost_ = 0;
   int greatest_missing_ = 0;                          ///< of the diamonds for whose split pages are missing

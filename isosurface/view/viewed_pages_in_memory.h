@@ -222,7 +222,7 @@ bool ViewedPages<Sample>::drop_without_parents(ViewedPage& page, int phase, Adde
       }
       is_changed = true;
       (is_above ? page.masks->above : page.masks->at_low).remove(known.places[n]);
-      const std::uint32_t more = known.added[n], lost = known.lost.empty() ? 0u : known.lost[n];
+      const auto [more, lost] = counts_ ? known.change(n) : CrossedPage::Change{};
       if (is_above) {
         added.above -= {more, lost};
       } else {
@@ -242,7 +242,7 @@ void ViewedPages<Sample>::for_each_needed(Visit&& visit) {
   for (const auto& of_lod : active_) {
     for (const ViewedPage* const page : of_lod) {
       const double depth = view_of(*page).least_depth(0);
-      const std::size_t groups = loads_ ? page->crossed->counted : page->groups_wanted;
+      const std::size_t groups = page->groups_wanted;
       find_members(*page, groups);
       if (groups > 0) {
         const PageId own{std::min(page->lod, diamonds_.grid().top()), page->block};

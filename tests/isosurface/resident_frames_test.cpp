@@ -89,7 +89,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
   void put_missing(const PagedFrames<Sample>& frames, std::size_t most) {
     const std::vector<MissingPage>& missing = frames.missing_pages();
     for (std::size_t n = 0; n < std::min(most, missing.size()); ++n) {
-      const auto& [id, part, view_class, depth] = missing[n];
+      const auto& [id, part, view_class, depth, step] = missing[n];
       if (part == MissingPage::Part::kDirectory) {
         some.file().take_over(whole.file().directory_part(0, id));
       } else {

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "isosurface/storage/restore.h"
 #include "tests/support/test_series.h"
 
 namespace adamas {
@@ -72,7 +73,7 @@ TYPED_TEST(StepPagesOf, AreThoseOfEachStepAlone) {
         ASSERT_EQ(pages.step(), step);
         expect_same_page<Word>(pages, *alone[step], id, random() % 2 == 0);
         const PageMemory<Word>& taken = *pages.memory();
-        EXPECT_LE(taken.taken(), memory + PageMemory<Word>::kLeast * sizeof(Page<Word>));
+        EXPECT_LE(taken.taken(), memory + taken.least * sizeof(Page<Word>));
         EXPECT_LE(taken.caches.size(), StepPages<Word>::kMostSteps);
         if (testing::Test::HasFailure()) return;
       }
@@ -98,6 +99,26 @@ TEST(StepPages, DecodeEachPageOnceInEitherDirection) {
     }
     EXPECT_EQ(steps.counts().pages + steps.counts().predictors, 32 * file.grid().page_count());
   }
+}
+
+/// With the least memory there is, a step takes no more than a few times the pages that it and those that it
+/// is coded with have.
+TEST(StepPages, DecodeAStepInLittleMemory) {
+  const test::Scratch folder;
+  const TestSeries<std::uint8_t> series({129, 129, 65}, Motion::kWaves, 8);
+  build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(8));
+  StoreFile file(folder / "a.adm");
+  const PageCounts counts = restore(
+      file, 7, restored_part(file.header().grid, 0, {}, file.name()), 0, [](std::span<const std::byte>) {},
+      SilentProgress::instance());
+  EXPECT_LT(counts.pages + counts.predictors, 2 * 8 * file.grid().page_count());
+  StoredPages<std::uint8_t> pages(file, 7, 0);
+  for (std::uint64_t number = 1; number < std::uint64_t{2} << (3 * file.grid().top()); ++number) {
+    const PageId id = file.grid().page(number);
+    if (!file.grid().contains(id)) continue;
+    ASSERT_NE(pages.bounds(id), nullptr);
+  }
+  EXPECT_LT(pages.counts().pages + pages.counts().predictors, 3 * 8 * file.grid().page_count());
 }
 
 }  // namespace
