@@ -55,7 +55,10 @@ class SeriesFramesOf final : public SeriesFrames {
     });
   }
   [[nodiscard]] bool is_paging() const override { return is_paging_; }
-  [[nodiscard]] bool is_reading_ahead() const override { return loader_ && !loader_->is_idle(); }
+  [[nodiscard]] bool is_reading_ahead() override {
+    take_arrived();
+    return loader_ && !loader_->is_idle();
+  }
   void wait() override {
     if (loader_) loader_->wait();
   }

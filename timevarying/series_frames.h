@@ -33,7 +33,7 @@ class SeriesFrames {
   /// memory has no room for what a view needs, some stay missing.
   [[nodiscard]] virtual bool is_paging() const = 0;
   /// Whether pages are on their way of the steps that are expected.
-  [[nodiscard]] virtual bool is_reading_ahead() const = 0;
+  [[nodiscard]] virtual bool is_reading_ahead() = 0;
   /// Waits until pages have come or none are on their way.
   virtual void wait() = 0;
   /// Why pages cannot be had that were to be loaded, of the first one; empty: nothing.
