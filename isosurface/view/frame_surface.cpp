@@ -1,7 +1,9 @@
-// What can be asked of the last frame: its surface as a whole, its mesh in a plane, and its error at a place.
+// What can be asked of the last frame: its surface as a whole and at the border of the data, its mesh in a
+// plane, and its error at a place.
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -38,6 +40,26 @@ std::optional<double> PagedFrames<Sample>::error_at(const Vec3& place) {
   } catch (const PageLost&) {
     return std::nullopt;
   }
+}
+
+template <class Sample>
+Contour PagedFrames<Sample>::border() const {
+  Contour contour;
+  JoinedEdges edges(contour);
+  std::vector<std::uint32_t> numbers;
+  for (const ViewedPage* const page : chunks_) {
+    const PageChunk& chunk = *page->chunk;
+    // The triangles name edges by their places.
+    numbers.resize(std::numeric_limits<PageChunk::EdgePlace>::max());
+    for (std::size_t n = 0; n < chunk.border.edges.size(); ++n) {
+      const EdgePoint point = maker_.edge_point(chunk, chunk.border.edges[n], chunk.border.parameters[n]);
+      numbers[chunk.border.edges[n]] = edges.number(point, maker_.position(point));
+    }
+    for (const auto& places : chunk.border.triangles)
+      contour.triangles.push_back({numbers[places[0]], numbers[places[1]], numbers[places[2]]});
+  }
+  clip_contour(contour, diamonds_.data_box(), diamonds_.spacing());
+  return contour;
 }
 
 template <class Sample>

@@ -6,10 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "isosurface/contour/contour_clip.h"
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
-#include "isosurface/view/joined_edges.h"
 
 namespace adamas {
 
@@ -350,26 +348,6 @@ void PagedFrames<Sample>::set_apart(std::uint64_t id, Contour contour) {
   for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(maker_.normals().of(point));
   apart.missing = maker_.normals().take_missing();
   apart.contour = std::move(contour);
-}
-
-template <class Sample>
-Contour PagedFrames<Sample>::border() const {
-  Contour contour;
-  JoinedEdges edges(contour);
-  std::vector<std::uint32_t> numbers;
-  for (const ViewedPage* const page : chunks_) {
-    const PageChunk& chunk = *page->chunk;
-    // The triangles name edges by their places.
-    numbers.resize(std::numeric_limits<PageChunk::EdgePlace>::max());
-    for (std::size_t n = 0; n < chunk.border.edges.size(); ++n) {
-      const EdgePoint point = maker_.edge_point(chunk, chunk.border.edges[n], chunk.border.parameters[n]);
-      numbers[chunk.border.edges[n]] = edges.number(point, maker_.position(point));
-    }
-    for (const auto& places : chunk.border.triangles)
-      contour.triangles.push_back({numbers[places[0]], numbers[places[1]], numbers[places[2]]});
-  }
-  clip_contour(contour, diamonds_.data_box(), diamonds_.spacing());
-  return contour;
 }
 
 template <class Sample>
