@@ -94,14 +94,18 @@ Contour PagedFrames<Sample>::contour() const {
 template std::vector<std::vector<Vec3>> PagedFrames<std::uint8_t>::cells_in(const Plane&);
 template std::optional<double> PagedFrames<std::uint8_t>::error_at(const Vec3&);
 template Contour PagedFrames<std::uint8_t>::contour() const;
+template Contour PagedFrames<std::uint8_t>::border() const;
 template std::vector<std::vector<Vec3>> PagedFrames<std::uint16_t>::cells_in(const Plane&);
 template std::optional<double> PagedFrames<std::uint16_t>::error_at(const Vec3&);
 template Contour PagedFrames<std::uint16_t>::contour() const;
+template Contour PagedFrames<std::uint16_t>::border() const;
 template std::vector<std::vector<Vec3>> PagedFrames<std::int16_t>::cells_in(const Plane&);
 template std::optional<double> PagedFrames<std::int16_t>::error_at(const Vec3&);
 template Contour PagedFrames<std::int16_t>::contour() const;
+template Contour PagedFrames<std::int16_t>::border() const;
 template std::vector<std::vector<Vec3>> PagedFrames<float>::cells_in(const Plane&);
 template std::optional<double> PagedFrames<float>::error_at(const Vec3&);
 template Contour PagedFrames<float>::contour() const;
+template Contour PagedFrames<float>::border() const;
 
 }  // namespace adamas
