@@ -56,6 +56,16 @@ struct Differences {
   }
 };
 
+/// Whether a page's own points have the samples of the step before.
+template <class Word>
+bool is_as_before(const PageShape& shape, const PagePoints<Word>& samples,
+                  std::span<const EarlierPage<Word>> before) {
+  bool same = !before.empty();
+  for_each_own_place(shape,
+                     [&](std::size_t place) { same = same && samples[place] == before[0].samples[place]; });
+  return same;
+}
+
 /// The order that has the fewest bits, and its differences. There is one.
 template <class Word>
 int best_differences(const PageShape& shape, const typename SampleCodec<Word>::Around& around,
@@ -83,7 +93,7 @@ template <class Word>
 void TimeSurvey<Word>::add(const PageShape& shape, const Around& around, const Samples& samples,
                            std::span<const EarlierPage<Word>> before) {
   in_space_->add(shape, around, samples);
-  if (!differences_ || before.empty()) return;
+  if (!differences_ || before.empty() || is_as_before(shape, samples, before)) return;
   Differences<Word> best;
   best_differences<Word>(shape, around, samples, before, best);
   differences_->add(shape, best.around, best.samples);
@@ -111,6 +121,11 @@ void TimeCodec<Word>::encode(const PageShape& shape, const Around& around, const
   in_space_->encode_with(shape, around, samples, out, along);
   // Nothing is shorter than a page that is as predicted.
   if (!differences_ || before.empty() || out.size() == begin + 1) return;
+  if (is_as_before(shape, samples, before)) {
+    out.resize(begin);
+    out.push_back(kAsBefore);
+    return;
+  }
   Differences<Word> best;
   const int order = best_differences<Word>(shape, around, samples, before, best);
   std::vector<std::byte> in_time;
@@ -128,6 +143,11 @@ bool TimeCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape& 
   const int order = time_order(bytes);
   if (order == 0) return in_space_->decode_with(bytes, shape, around, samples, along);
   if (!differences_ || static_cast<std::size_t>(order) > before.size()) return false;
+  if (bytes.size() == 1 && bytes[0] == kAsBefore) {
+    for_each_own_place(shape, [&](std::size_t place) { samples[place] = before[0].samples[place]; });
+    along.fill(std::byte{0});
+    return true;
+  }
   std::vector<std::byte> coded(bytes.begin(), bytes.end());
   coded[0] &= std::byte{3};
   const Differences<Word> of(order, shape, before, around, nullptr);

@@ -17,6 +17,10 @@ namespace adamas {
 // are words modulo 2^bits, so that nothing is lost, and coded in space in turn. The first byte of a coded
 // page has the order of its differences, from 0 to 2, above the two bits of its kind.
 
+/// The only byte of a page whose own points have the samples of the step before: of order 1, and of a kind
+/// that differences do not have.
+inline constexpr std::byte kAsBefore{3 | 1 << 2};
+
 /// Every so many steps, from the first one on, pages are coded in space alone.
 inline constexpr std::uint32_t kWholeSteps = 8;
 

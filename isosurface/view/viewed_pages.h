@@ -12,6 +12,7 @@
 #include "core/lattice/lattice_map.h"
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/storage/missing_page.h"
+#include "isosurface/storage/still_pages.h"
 #include "isosurface/view/crossed_page.h"
 #include "isosurface/view/page_chunk.h"
 #include "isosurface/view/page_view.h"
@@ -156,8 +157,11 @@ class ViewedPages {
   [[nodiscard]] Depths depths_of(int view_class) const;
 
   ViewedPage& page(int lod, LatticePoint block);
-  /// Forgets what is known of a page for another step.
+  /// Forgets what is known of a page for another step, unless nothing has changed there.
   void renew(ViewedPage& page);
+  /// Whether all samples and bounds that matter on a page are at the present step what they were when it was
+  /// renewed last.
+  [[nodiscard]] bool is_still(const ViewedPage& page);
   /// Sets candidates_ to the pages of an LOD on which diamonds may be split, since coarser ones may.
   void find_candidates(int lod);
   void add_candidate(int lod, LatticePoint block);
@@ -214,6 +218,7 @@ class ViewedPages {
 
   ViewedDiamonds<Sample>& diamonds_;
   CrossedPageReader<Sample> reader_;
+  StillPages still_;
   std::size_t memory_, bytes_ = 0;
   std::vector<LodPlaces> places_;  ///< by LOD
   std::deque<ViewedPage> pages_;
