@@ -1,14 +1,13 @@
 // Volumes that libraries read in a child process: HDF5 and legacy VTK.
 
-#define H5_USE_110_API
-#include <hdf5.h>
-
+#include "tests/io/hdf5_file.h"
 #include "tests/io/volume_files.h"
 
 namespace adamas {
 namespace {
 
 using test::bytes_of_values;
+using test::Hdf5File;
 using test::message_of_volume;
 using test::put_bytes;
 using test::read_numbers;
@@ -31,47 +30,6 @@ std::vector<Hdf5Type> hdf5_types() {
           {StoredType::kFloat32, H5T_NATIVE_FLOAT, H5T_IEEE_F32LE, H5T_IEEE_F32BE},
           {StoredType::kFloat64, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, H5T_IEEE_F64BE}};
 }
-
-/// An HDF5 file that is being written.
-class Hdf5File {
- public:
-  explicit Hdf5File(const std::filesystem::path& path)
-      : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)) {}
-  ~Hdf5File() { H5Fclose(file_); }
-  Hdf5File(const Hdf5File&) = delete;
-  Hdf5File& operator=(const Hdf5File&) = delete;
-
-  /// Nothing is written where there are no values; `chunk` of 0: contiguous.
-  void add(const std::string& name, const std::vector<hsize_t>& size, hid_t stored, hid_t memory,
-           const void* values, hsize_t chunk = 0, const std::vector<double>& element = {}) {
-    const hid_t links = H5Pcreate(H5P_LINK_CREATE), how = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_create_intermediate_group(links, 1);
-    if (chunk > 0) {
-      const std::vector<hsize_t> chunks(size.size(), chunk);
-      H5Pset_chunk(how, static_cast<int>(size.size()), chunks.data());
-      H5Pset_deflate(how, 6);
-    }
-    const hid_t space = H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr);
-    const hid_t set = H5Dcreate2(file_, name.c_str(), stored, space, links, how, H5P_DEFAULT);
-    if (values != nullptr) H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-    if (!element.empty()) {
-      const hsize_t three = element.size();
-      const hid_t line = H5Screate_simple(1, &three, nullptr);
-      const hid_t attribute =
-          H5Acreate2(set, "element_size_um", H5T_IEEE_F64LE, line, H5P_DEFAULT, H5P_DEFAULT);
-      H5Awrite(attribute, H5T_NATIVE_DOUBLE, element.data());
-      H5Aclose(attribute);
-      H5Sclose(line);
-    }
-    H5Dclose(set);
-    H5Sclose(space);
-    H5Pclose(how);
-    H5Pclose(links);
-  }
-
- private:
-  hid_t file_;
-};
 
 TEST(Hdf5Volume, EveryTypeInEitherByteOrderAndInChunks) {
   const test::Scratch scratch;
