@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/base/error.h"
+#include "core/io/hdf5_handle.h"
 
 namespace adamas {
 

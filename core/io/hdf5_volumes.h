@@ -1,10 +1,12 @@
 #pragma once
 
+#define H5_USE_110_API
+#include <hdf5.h>
+
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/io/hdf5_handle.h"
 #include "core/io/stored_type.h"
 
 namespace adamas {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/io/hdf5_handle.h"
 #include "core/io/hdf5_volumes.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"

@@ -4,14 +4,14 @@
 #include <limits>
 
 #include "program.h"
-#include "tests/io/hdf5_file.h"
+#include "tests/support/hdf5_file.h"
 
 namespace adamas::test {
 namespace {
 
 class FileSeries : public ProgramTest {
  protected:
-  static constexpr hsize_t kSamples = 4 * 3 * 2;
+  static constexpr std::uint64_t kSamples = 4 * 3 * 2;
 
   /// The samples of a step, which no other step has.
   static std::vector<std::uint8_t> samples(int step) {
@@ -44,7 +44,7 @@ class FileSeries : public ProgramTest {
     ASSERT_EQ(std::system(("gzip -k '" + (folder() / name).string() + "'").c_str()), 0);
   }
   static void add(Hdf5File& file, const std::string& name, int step) {
-    file.add(name, {2, 3, 4}, H5T_STD_U8LE, H5T_NATIVE_UINT8, samples(step).data());
+    file.add(name, {2, 3, 4}, StoredType::kUint8, samples(step).data());
   }
 
   [[nodiscard]] std::vector<double> times(const std::string& store) const {
@@ -123,7 +123,7 @@ TEST_F(FileSeries, MembersOfAGroupInNaturalOrder) {
     for (const int step : {10, 9, 2}) add(file, "run/step" + std::to_string(step), step % 6);
     add(file, "other", 5);
     const std::vector<std::uint8_t> line(5);
-    file.add("run/x", {5}, H5T_STD_U8LE, H5T_NATIVE_UINT8, line.data());
+    file.add("run/x", {5}, StoredType::kUint8, line.data());
   }
   run_well({"store", "a.h5", "--array", "run", "-o", "a.adm"});
   expect_steps("a.adm", {2, 3, 4});
@@ -169,8 +169,8 @@ TEST_F(FileSeries, TheFirstOfFourAxesIsTime) {
     const auto one = samples(step);
     all.insert(all.end(), one.begin(), one.end());
   }
-  for (const hsize_t chunk : {0, 2}) {
-    Hdf5File(folder() / "a.h5").add("all", {5, 2, 3, 4}, H5T_STD_U8LE, H5T_NATIVE_UINT8, all.data(), chunk);
+  for (const std::uint64_t chunk : {0, 2}) {
+    Hdf5File(folder() / "a.h5").add("all", {5, 2, 3, 4}, StoredType::kUint8, all.data(), chunk);
     run_well({"store", "a.h5", "-o", "a.adm"});
     expect_steps("a.adm", {0, 1, 2, 3, 4});
     run_well({"store", "a.h5", "--time", "3", "-o", "one.adm"});
@@ -180,7 +180,7 @@ TEST_F(FileSeries, TheFirstOfFourAxesIsTime) {
   expect_failure({"slice", "a.h5", "--plane", "z=0", "-o", "s.png"}, {"a.h5: all", "--time (0 to 4)"});
   {
     Hdf5File file(folder() / "t.h5");
-    file.add("all", {5, 2, 3, 4}, H5T_STD_U8LE, H5T_NATIVE_UINT8, all.data());
+    file.add("all", {5, 2, 3, 4}, StoredType::kUint8, all.data());
     file.add_numbers("all", "time", {0, 0.5, 1, 7, 8});
   }
   run_well({"store", "t.h5", "--array", "all", "-o", "a.adm"});
@@ -192,9 +192,9 @@ TEST_F(FileSeries, OtherGridsAndDamageAreToldByName) {
     Hdf5File file(folder() / "a.h5");
     add(file, "run/s0", 0);
     const auto bytes = samples(1);
-    file.add("run/s1", {4, 3, 2}, H5T_STD_U8LE, H5T_NATIVE_UINT8, bytes.data());
-    file.add("empty/s0", {2, 3, 4}, H5T_STD_U8LE, H5T_NATIVE_UINT8, nullptr);
-    file.add("flat/s0", {3, 4}, H5T_STD_U8LE, H5T_NATIVE_UINT8, bytes.data());
+    file.add("run/s1", {4, 3, 2}, StoredType::kUint8, bytes.data());
+    file.add("empty/s0", {2, 3, 4}, StoredType::kUint8, nullptr);
+    file.add("flat/s0", {3, 4}, StoredType::kUint8, bytes.data());
   }
   expect_failure({"store", "a.h5", "--array", "run", "-o", "b.adm"},
                  {"a.h5: run/s1", "4 x 3 x 2 uint8", "run/s0", "found 2 x 3 x 4"});

@@ -1,7 +1,10 @@
 // Volumes that libraries read in a child process: HDF5 and legacy VTK.
 
-#include "tests/io/hdf5_file.h"
+#define H5_USE_110_API
+#include <hdf5.h>
+
 #include "tests/io/volume_files.h"
+#include "tests/support/hdf5_file.h"
 
 namespace adamas {
 namespace {
@@ -13,38 +16,23 @@ using test::put_bytes;
 using test::read_numbers;
 using test::says;
 
-struct Hdf5Type {
-  StoredType type;
-  hid_t memory, little, big;
-};
-
-std::vector<Hdf5Type> hdf5_types() {
-  return {{StoredType::kInt8, H5T_NATIVE_INT8, H5T_STD_I8LE, H5T_STD_I8BE},
-          {StoredType::kUint8, H5T_NATIVE_UINT8, H5T_STD_U8LE, H5T_STD_U8BE},
-          {StoredType::kInt16, H5T_NATIVE_INT16, H5T_STD_I16LE, H5T_STD_I16BE},
-          {StoredType::kUint16, H5T_NATIVE_UINT16, H5T_STD_U16LE, H5T_STD_U16BE},
-          {StoredType::kInt32, H5T_NATIVE_INT32, H5T_STD_I32LE, H5T_STD_I32BE},
-          {StoredType::kUint32, H5T_NATIVE_UINT32, H5T_STD_U32LE, H5T_STD_U32BE},
-          {StoredType::kInt64, H5T_NATIVE_INT64, H5T_STD_I64LE, H5T_STD_I64BE},
-          {StoredType::kUint64, H5T_NATIVE_UINT64, H5T_STD_U64LE, H5T_STD_U64BE},
-          {StoredType::kFloat32, H5T_NATIVE_FLOAT, H5T_IEEE_F32LE, H5T_IEEE_F32BE},
-          {StoredType::kFloat64, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, H5T_IEEE_F64BE}};
-}
-
 TEST(Hdf5Volume, EveryTypeInEitherByteOrderAndInChunks) {
   const test::Scratch scratch;
-  for (const Hdf5Type& t : hdf5_types()) {
-    visit_stored_type(t.type, [&]<class T>(T) {
+  for (const StoredType type : test::kStoredTypes) {
+    visit_stored_type(type, [&]<class T>(T) {
       const auto values = test::typical_values<T>();
-      for (const hid_t stored : {t.little, t.big}) {
-        for (const hsize_t chunk : {0, 1, 2}) {
-          Hdf5File(scratch / "a.h5")
-              .add("group/samples", {2, 2, 3}, stored, t.memory, values.data(), chunk, {3, 2, 0.5});
+      for (const bool big : {false, true}) {
+        for (const std::uint64_t chunk : {0, 1, 2}) {
+          {
+            Hdf5File file(scratch / "a.h5");
+            file.add("group/samples", {2, 2, 3}, type, values.data(), chunk, big);
+            file.add_numbers("group/samples", "element_size_um", {3, 2, 0.5});
+          }
           VolumeReader reader = open_volume(scratch / "a.h5");
           EXPECT_EQ(reader.grid().dimensions, (std::array<std::uint64_t, 3>{3, 2, 2}));
           EXPECT_EQ(reader.grid().spacing, (Vec3{0.5, 2, 3}));
-          EXPECT_EQ(reader.grid().type, sample_type_for(t.type));
-          EXPECT_EQ(read_numbers(reader), test::as_doubles(values)) << stored_name(t.type) << chunk;
+          EXPECT_EQ(reader.grid().type, sample_type_for(type));
+          EXPECT_EQ(read_numbers(reader), test::as_doubles(values)) << stored_name(type) << chunk;
         }
       }
     });
@@ -57,11 +45,11 @@ TEST(Hdf5Volume, ChosenByName) {
   const std::vector<std::uint8_t> second(12, 7);
   {
     Hdf5File file(scratch / "a");
-    file.add("first", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, first.data());
-    file.add("deep/second", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, second.data());
-    file.add("flat", {4, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, second.data());
-    file.add("empty", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, nullptr);
-    file.add("endless", {1u << 20, 1u << 20, 1u << 10}, H5T_STD_U8LE, H5T_NATIVE_UINT8, nullptr, 16);
+    file.add("first", {2, 2, 3}, StoredType::kUint8, first.data());
+    file.add("deep/second", {2, 2, 3}, StoredType::kUint8, second.data());
+    file.add("flat", {4, 3}, StoredType::kUint8, second.data());
+    file.add("empty", {2, 2, 3}, StoredType::kUint8, nullptr);
+    file.add("endless", {1u << 20, 1u << 20, 1u << 10}, StoredType::kUint8, nullptr, 16);
   }
   VolumeReader reader = open_volume(scratch / "a", {"deep/second", {}});
   EXPECT_EQ(read_numbers(reader), std::vector<double>(12, 7));
@@ -81,7 +69,7 @@ TEST(Hdf5Volume, MoreSamplesThanAFileCanHold) {
     // One chunk of very many is there.
     Hdf5File file(scratch / "a.h5");
     const std::uint8_t value = 1;
-    file.add("small", {1, 1, 1}, H5T_STD_U8LE, H5T_NATIVE_UINT8, &value);
+    file.add("small", {1, 1, 1}, StoredType::kUint8, &value);
   }
   const hid_t file = H5Fopen((scratch / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hsize_t size[] = {1u << 20, 1u << 20, 1u << 10}, chunk[] = {4, 4, 4}, one[] = {1, 1, 1},
@@ -116,7 +104,7 @@ class Impatient final : public Progress {
 TEST(Hdf5Volume, CanBeCancelled) {
   const test::Scratch scratch, unpacked;
   const std::vector<std::uint8_t> values(64'000'000);
-  Hdf5File(scratch / "a.h5").add("v", {400, 400, 400}, H5T_STD_U8LE, H5T_NATIVE_UINT8, values.data(), 100);
+  Hdf5File(scratch / "a.h5").add("v", {400, 400, 400}, StoredType::kUint8, values.data(), 100);
   Impatient progress;
   EXPECT_THROW(open_volume(scratch / "a.h5", {{}, unpacked.folder()}, progress), Cancelled);
   EXPECT_EQ(unpacked.entries(), 0);
@@ -126,7 +114,7 @@ TEST(Hdf5Volume, CanBeCancelled) {
 TEST(Hdf5Volume, TruncationAndOtherBytesAreErrors) {
   const test::Scratch scratch;
   const auto values = test::typical_values<std::uint16_t>();
-  Hdf5File(scratch / "a.h5").add("v", {2, 2, 3}, H5T_STD_U16LE, H5T_NATIVE_UINT16, values.data(), 2);
+  Hdf5File(scratch / "a.h5").add("v", {2, 2, 3}, StoredType::kUint16, values.data(), 2);
   const auto size = std::filesystem::file_size(scratch / "a.h5");
   test::expect_every_truncation_is_an_error(scratch / "a.h5", scratch / "a.h5", size, 29);
   const std::string whole = test::bytes_of(scratch / "a.h5");
