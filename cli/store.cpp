@@ -22,7 +22,7 @@ struct Options {
   std::vector<std::string> inputs;
   VolumeInput input;
   std::string coding = "interpolation", block_steps = "32", smoothing, output;
-  bool gradients = false, append = false;
+  bool gradients = false, append = false, no_time_smoothing = false;
 };
 
 double ratio(std::uint64_t before, std::uint64_t after) {
@@ -65,6 +65,11 @@ StoreOptions store_options(const Options& options) {
   store.gradients = options.gradients;
   if (options.smoothing == "none") store.smoothing.reset();
   if (options.smoothing == "first") store.smoothing->constrained_rounds = 0;
+  if (options.no_time_smoothing) {
+    if (!options.gradients || !store.smoothing || !store.smoothing->is_along_time())
+      wrong_usage("--no-time-smoothing: expected with --gradients that are smoothed by both phases");
+    store.smoothing->time_rounds = 0;
+  }
   if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
   const std::size_t block_steps = parse_count("--block-steps", options.block_steps, 1);
   if (block_steps > kMostBlockSteps)
@@ -164,6 +169,10 @@ void add_store(const Command& app, Session& session) {
           "How gradients are smoothed: not at all; by the first phase, which also fills regions where "
           "nothing changes; or by both (default)")
       .one_of({"none", "first", "both"});
+  command.add_flag(
+      "--no-time-smoothing", options->no_time_smoothing,
+      "Of a series: smooth the gradients of each step in space alone. Otherwise those smoothed by "
+      "both phases are smoothed along time too, within a block of steps");
   command
       .add_option("--block-steps", options->block_steps,
                   "Of a series: how many steps a page has side by side in the file. Playing goes fast where "

@@ -132,6 +132,26 @@ TEST_F(SeriesStores, WrongUsage) {
   expect_failure(store({file(0), "missing.raw"}, "b.adm"), {"missing.raw"});
 }
 
+TEST_F(SeriesStores, GradientsAreSmoothedAlongTimeUnlessToldOtherwise) {
+  run_well(store({"s_%d.raw"}, "time.adm", {"--gradients"}));
+  run_well(store({"s_%d.raw"}, "space.adm", {"--gradients", "--no-time-smoothing"}));
+  EXPECT_NE(read("time.adm"), read("space.adm"));
+  run_well({"verify", "time.adm", "-q"});
+  expect_step("time.adm", 3);
+  // Of one step, or of blocks of one, there is no time.
+  run_well(store({file(2)}, "a.adm", {"--gradients"}));
+  run_well(store({file(2)}, "b.adm", {"--gradients", "--no-time-smoothing"}));
+  EXPECT_EQ(read("a.adm"), read("b.adm"));
+  run_well(store({"s_%d.raw"}, "a.adm", {"--gradients", "--block-steps", "1"}));
+  run_well(store({"s_%d.raw"}, "b.adm", {"--gradients", "--block-steps", "1", "--no-time-smoothing"}));
+  EXPECT_EQ(read("a.adm"), read("b.adm"));
+  expect_wrong_usage(store({file(0)}, "x.adm", {"--no-time-smoothing"}),
+                     {"--no-time-smoothing", "--gradients"});
+  expect_wrong_usage(
+      store({file(0)}, "x.adm", {"--gradients", "--smoothing", "first", "--no-time-smoothing"}),
+      {"--no-time-smoothing", "both phases"});
+}
+
 TEST_F(SeriesStores, StepsOnAnotherGridAreRefused) {
   run_well(store({file(0)}, "a.adm"));
   run_well({"restore", "a.adm", "-o", "a.vti", "-q"});
