@@ -1,11 +1,15 @@
 #include "isosurface/storage/restore.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/ome_zarr.h"
 #include "cli/option_values.h"
 #include "cli/store_options.h"
 #include "cli/usage_error.h"
@@ -13,6 +17,7 @@
 #include "core/data/volume_placement.h"
 #include "core/io/input_file.h"
 #include "core/io/series_file.h"
+#include "core/io/zarr_array.h"
 
 namespace adamas {
 
@@ -21,11 +26,12 @@ namespace {
 struct Options {
   StoreInput input;
   std::string level = "0", region, steps, output;
+  bool overwrite = false;
 };
 
 /// What is restored of each step.
 struct Wanted {
-  RestoredPart part;
+  std::vector<RestoredPart> levels;  ///< one, but for the pyramid of a .zarr
   std::size_t memory = 0;
 };
 
@@ -48,74 +54,149 @@ std::pair<std::uint32_t, std::uint32_t> wanted_steps(const Options& options, con
   return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
 }
 
-std::size_t write_step(const std::string& output, StoreFile& file, std::uint32_t step, const Wanted& wanted,
-                       PageCounts& counts, Session& session) {
+std::size_t write_step(const Options& options, StoreFile& file, const Wanted& wanted, PageCounts& counts,
+                       Session& session) {
+  const std::uint32_t step = wanted_step(options.input, file, session);
   return write_volume_output(
-      output, wanted.part.grid, "samples",
+      options.output, wanted.levels.front().grid, "samples",
       [&](const PlaneSink& sink) {
-        counts += restore(file, step, wanted.part, wanted.memory, sink, session.console);
+        counts = restore(file, step, wanted.levels.front(), wanted.memory, sink, session.console);
       },
       session);
 }
 
-/// Writes F.pvd and F_0000.vti, F_0001.vti, ... beside it.
-std::size_t write_steps(const Options& options, StoreFile& file, const Wanted& wanted, PageCounts& counts,
-                        Session& session) {
-  const auto [first, last] = wanted_steps(options, file, session);
-  const std::filesystem::path list = options.output;
-  const std::vector<double> times = file.times();
-  std::vector<SeriesEntry> entries;
-  for (std::uint32_t step = first; step <= last; ++step) {
-    const std::string name = step_file(list, step, ".vti");
-    entries.push_back({times[step], name});
-    session.outputs.declare("-o", (list.parent_path() / name).string(), {".vti"});
+/// F.pvd and F_0000.vti, F_0001.vti, ... beside it.
+class PvdSeries {
+ public:
+  PvdSeries(const Options& options, StoreFile& file, const Wanted& wanted, Session& session)
+      : list_(options.output), file_(file), wanted_(wanted), session_(session) {
+    const auto [first, last] = wanted_steps(options, file, session);
+    all_ = {first, last};
+    const std::vector<double> times = file.times();
+    for (std::uint32_t step = first; step <= last; ++step) {
+      entries_.push_back({times[step], step_file(list_, step, ".vti")});
+      session.outputs.declare("-o", path(step), {".vti"});
+    }
   }
-  std::size_t bytes = 0;
-  for (std::uint32_t step = first; step <= last; ++step)
-    bytes += write_step((list.parent_path() / entries[step - first].file).string(), file, step, wanted,
-                        counts, session);
-  session.outputs.write(options.output, [&](const auto& path) { write_series(path, entries); });
-  return bytes + session.outputs.bytes(options.output);
-}
 
-void run(const Options& options, Session& session) {
-  const bool is_series = file_extension(options.output) == ".pvd";
-  if (is_series) {
-    session.outputs.declare("-o", options.output, {".pvd"});
-  } else {
-    declare_volume_output(options.output, session.outputs);
+  /// Returns the bytes that were written.
+  std::size_t write(PageCounts& counts) {
+    const RestoredPart& part = wanted_.levels.front();
+    for (StepRange rest = all_; rest.first <= all_.last;) {
+      const StepRange some = restored_together(rest, restored_slab_bytes(part), wanted_.memory);
+      sinks_.clear();
+      write(some, counts);
+      rest.first = some.last + 1;
+    }
+    const std::string list = list_.string();
+    session_.outputs.write(list, [this](const auto& path) { write_series(path, entries_); });
+    return bytes_ + session_.outputs.bytes(list);
   }
-  const std::size_t memory = store_memory(options.input);
-  const std::unique_ptr<StoreFile> file = open_store(options.input, session);
+
+ private:
+  [[nodiscard]] std::string path(std::uint32_t step) const {
+    return (list_.parent_path() / entries_[step - all_.first].file).string();
+  }
+
+  /// Opens the files of some steps one within another, and writes to all of them when the last is open.
+  void write(const StepRange& some, PageCounts& counts) {
+    const auto step = some.first + static_cast<std::uint32_t>(sinks_.size());
+    const RestoredPart& part = wanted_.levels.front();
+    if (step > some.last) {
+      const auto sink = [this, &some](std::uint32_t n, std::span<const std::byte> plane) {
+        sinks_[n - some.first](plane);
+      };
+      counts += restore_steps(file_, some, part, wanted_.memory, sink, session_.console);
+      return;
+    }
+    const auto make = [&](const PlaneSink& sink) {
+      sinks_.push_back(sink);
+      write(some, counts);
+    };
+    bytes_ += write_volume_output(path(step), part.grid, "samples", make, session_);
+  }
+
+  std::filesystem::path list_;
+  StoreFile& file_;
+  const Wanted& wanted_;
+  Session& session_;
+  StepRange all_;
+  std::vector<SeriesEntry> entries_;
+  std::vector<PlaneSink> sinks_;  ///< of the files that are open
+  std::size_t bytes_ = 0;
+};
+
+/// What the options ask for.
+Wanted find_wanted(const Options& options, const StoreFile& file, Session& session) {
+  const VolumeGrid& volume = file.header().grid;
   std::optional<Box3> region;
   if (!options.region.empty()) {
-    const FrameRegion found =
-        region_in_frame(file->header().grid, to_box(parse_bounds("--region", options.region)));
+    const FrameRegion found = region_in_frame(volume, to_box(parse_bounds("--region", options.region)));
     region = found.box;
     if (!found.sides.empty())
       session.console.note("{}: its axes run aslant: the samples round the region, in a box along them",
                            options.input.path);
   }
   const int level = static_cast<int>(std::min<std::size_t>(parse_count("--level", options.level, 0), 99));
-  const Wanted wanted{restored_part(file->header().grid, level, region, options.input.path), memory};
-  const RestoredPart& part = wanted.part;
-  PageCounts counts;
-  if (!is_series && !options.steps.empty())
-    wrong_usage("--steps: expected a series as well, -o F.pvd, found '-o {}'", options.output);
-  const std::size_t bytes =
-      is_series ? write_steps(options, *file, wanted, counts, session)
-                : write_step(options.output, *file, wanted_step(options.input, *file, session), wanted,
-                             counts, session);
+  // A coarser level would not be faster to look at than one of a single chunk.
+  const std::uint64_t enough =
+      is_zarr(options.output) ? ZarrArray::kSide : std::numeric_limits<std::uint64_t>::max();
+  return {restored_levels(volume, level, region, enough, options.input.path), store_memory(options.input)};
+}
+
+ZarrContent zarr_content(const Options& options, const StoreFile& file, const Wanted& wanted,
+                         Session& session) {
+  const auto [first, last] = wanted_steps(options, file, session);
+  const bool is_series = options.input.step.empty() && file.steps() > 1;
+  return {wanted.levels, {first, last}, is_series, wanted.memory};
+}
+
+void report(const Wanted& wanted, std::size_t bytes, const PageCounts& counts, bool is_pyramid,
+            Session& session) {
+  const RestoredPart& part = wanted.levels.front();
   const auto [nx, ny, nz] = part.grid.dimensions;
   session.console.print("{} x {} x {} samples, {}, {}\n", nx, ny, nz, sample_name(part.grid.type),
                         bytes_text(static_cast<double>(bytes)));
   Figures figures{{"samples", part.grid.samples()},
                   {"dimensions", part.grid.dimensions},
                   {"type", sample_name(part.grid.type)},
-                  {"level", level}};
+                  {"level", part.lod}};
+  if (is_pyramid) figures["levels"] = wanted.levels.size();
   add_page_counts(counts, figures);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+}
+
+void run(const Options& options, Session& session) {
+  const bool is_series = file_extension(options.output) == ".pvd";
+  std::optional<OmeZarr> zarr;
+  if (options.overwrite && !is_zarr(options.output))
+    wrong_usage("--overwrite: expected a folder, -o F.zarr, found '-o {}'", options.output);
+  if (!is_series && !is_zarr(options.output) && !options.steps.empty())
+    wrong_usage("--steps: expected a series as well, -o F.pvd or F.zarr, found '-o {}'", options.output);
+  if (is_zarr(options.output)) {
+    zarr.emplace(options.output, options.overwrite);
+    zarr->check_apart(options.input.path);
+  } else if (is_series) {
+    session.outputs.declare("-o", options.output, {".pvd"});
+  } else {
+    declare_volume_output(options.output, session.outputs);
+  }
+  const std::unique_ptr<StoreFile> file = open_store(options.input, session);
+  const Wanted wanted = find_wanted(options, *file, session);
+  PageCounts counts;
+  std::size_t bytes = 0;
+  if (zarr) {
+    bytes = zarr->write(*file, zarr_content(options, *file, wanted, session), counts, session);
+  } else if (is_series) {
+    bytes = PvdSeries(options, *file, wanted, session).write(counts);
+  } else {
+    bytes = write_step(options, *file, wanted, counts, session);
+  }
+  // Each part of the work has counted those of the whole file.
+  counts.bytes = file->bytes_read();
+  report(wanted, bytes, counts, zarr.has_value(), session);
+  if (zarr) zarr->commit();
   session.outputs.commit();
 }
 
@@ -132,15 +213,19 @@ void add_restore(const Command& app, Session& session) {
       .show_default();
   command.add_option("--region", options->region, "Only the samples in a box").type_name("x0,x1,y0,y1,z0,z1");
   add_step_option(command, options->input);
-  command.add_option("--steps", options->steps, "Of a series written as .pvd: only the steps from A to B")
+  command
+      .add_option("--steps", options->steps,
+                  "Of a series written as .pvd or .zarr: only the steps from A to B")
       .type_name("A,B");
   command
       .add_option(
           "-o,--output", options->output,
           "The volume: .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw "
-          "alone; of a series also .pvd, with a .vti of each step beside it")
+          "alone; of a series also .pvd, with a .vti of each step beside it. Or .zarr, a folder: volumes and "
+          "series with their coarser levels, as OME-Zarr 0.4")
       .required()
       .type_name("FILE");
+  command.add_flag("--overwrite", options->overwrite, "Of .zarr: replace the folder if it is there");
 }
 
 }  // namespace adamas

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -8,11 +7,10 @@
 #include "cli/data_summary.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
+#include "cli/stored_steps.h"
 #include "cli/usage_error.h"
 #include "cli/volume_options.h"
-#include "core/io/input_file.h"
 #include "core/io/input_formats.h"
-#include "core/io/series_file.h"
 #include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
 
@@ -24,112 +22,14 @@ struct Options {
   std::vector<std::string> inputs;
   VolumeInput input;
   std::string coding = "interpolation", block_steps = "32", smoothing, output;
-  bool gradients = false, append = false;
-};
-
-/// Reads planes for the builder, which asks for some of them twice, and counts the samples that are no finite
-/// numbers.
-class PlaneReader {
- public:
-  explicit PlaneReader(VolumeReader& reader) : reader_(reader), counted_(reader.grid().dimensions[2]) {}
-
-  void read(std::uint64_t k, std::span<std::byte> samples) {
-    reader_.read_plane(k, samples);
-    if (reader_.grid().type != SampleType::kFloat32 || counted_[k]) return;
-    counted_[k] = true;
-    for (std::size_t at = 0; at < samples.size(); at += sizeof(float)) {
-      float value = 0;
-      std::memcpy(&value, samples.data() + at, sizeof(value));
-      infinite_ += std::isfinite(value) ? 0 : 1;
-    }
-  }
-  [[nodiscard]] std::uint64_t infinite() const { return infinite_; }
-
- private:
-  VolumeReader& reader_;
-  std::vector<bool> counted_;
-  std::uint64_t infinite_ = 0;
-};
-
-/// Says in what a step's grid is another than that of others.
-[[noreturn]] void refuse_grid(const std::string& path, const VolumeGrid& found, const std::string& first,
-                              const VolumeGrid& wanted) {
-  const auto text = [](const VolumeGrid& grid) {
-    return fmt::format("{} x {} x {} {}", grid.dimensions[0], grid.dimensions[1], grid.dimensions[2],
-                       sample_name(grid.type));
-  };
-  if (text(found) != text(wanted))
-    fail("{}: expected {} samples as {} has, found {}", path, text(wanted), first, text(found));
-  fail("{}: expected the place, spacing and scale of the samples of {}, found others", path, first);
-}
-
-/// A step that is being read.
-struct OpenStep {
-  explicit OpenStep(VolumeReader from) : reader(std::move(from)) {}
-
-  VolumeReader reader;
-  PlaneReader planes{reader};
-};
-
-/// Steps of a series, opened one after another as they are asked for. All have the grid of the first.
-class Steps {
- public:
-  Steps(const Options& options, std::vector<SeriesEntry> entries, Session& session)
-      : options_(options), entries_(std::move(entries)), session_(session) {
-    open(0);
-    grid_ = step_->reader.grid();
-  }
-
-  [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
-  [[nodiscard]] std::vector<double> times() const {
-    std::vector<double> times;
-    for (const SeriesEntry& entry : entries_) times.push_back(entry.time);
-    return times;
-  }
-  PlaneSource planes(std::uint32_t n) {
-    if (n != opened_) open(n);
-    return [this](std::uint64_t k, std::span<std::byte> samples) { step_->planes.read(k, samples); };
-  }
-  /// Takes in what there is to say of the last step.
-  void close() {
-    if (step_ == nullptr) return;
-    input_bytes_ += step_->reader.source().sample_file_bytes();
-    if (const std::string note = step_->reader.note(); !note.empty()) session_.console.note("{}", note);
-    const std::uint64_t infinite = step_->planes.infinite();
-    if (infinite > 0)
-      session_.console.note("{}: {} not finite: surfaces have holes there", entries_[opened_].file,
-                            infinite == 1 ? "1 sample is" : fmt::format("{} samples are", infinite));
-    step_.reset();
-  }
-  [[nodiscard]] std::uint64_t input_bytes() const { return input_bytes_; }
-  [[nodiscard]] std::size_t count() const { return entries_.size(); }
-
- private:
-  void open(std::uint32_t n) {
-    close();
-    VolumeInput input = options_.input;
-    input.path = entries_[n].file;
-    step_ = std::make_unique<OpenStep>(open_volume_input(input, session_, true));
-    opened_ = n;
-    const VolumeGrid& grid = step_->reader.grid();
-    check_volume_dimensions(input.path, grid);
-    if (n > 0 && grid != grid_) refuse_grid(input.path, grid, entries_.front().file, grid_);
-  }
-
-  const Options& options_;
-  std::vector<SeriesEntry> entries_;
-  Session& session_;
-  VolumeGrid grid_;
-  std::unique_ptr<OpenStep> step_;
-  std::uint32_t opened_ = 0;
-  std::uint64_t input_bytes_ = 0;
+  bool gradients = false, append = false, no_time_smoothing = false;
 };
 
 double ratio(std::uint64_t before, std::uint64_t after) {
   return after > 0 ? static_cast<double>(before) / static_cast<double>(after) : 0;
 }
 
-void report(const Steps& steps, const StoreFigures& store, Session& session) {
+void report(const StoredSteps& steps, const StoreFigures& store, Session& session) {
   Console& console = session.console;
   const VolumeGrid& grid = steps.grid();
   const auto [nx, ny, nz] = grid.dimensions;
@@ -165,6 +65,11 @@ StoreOptions store_options(const Options& options) {
   store.gradients = options.gradients;
   if (options.smoothing == "none") store.smoothing.reset();
   if (options.smoothing == "first") store.smoothing->constrained_rounds = 0;
+  if (options.no_time_smoothing) {
+    if (!options.gradients || !store.smoothing || !store.smoothing->is_along_time())
+      wrong_usage("--no-time-smoothing: expected with --gradients that are smoothed by both phases");
+    store.smoothing->time_rounds = 0;
+  }
   if (!options.input.scratch.empty()) store.scratch = options.input.scratch;
   const std::size_t block_steps = parse_count("--block-steps", options.block_steps, 1);
   if (block_steps > kMostBlockSteps)
@@ -173,61 +78,57 @@ StoreOptions store_options(const Options& options) {
   return store;
 }
 
-/// The steps that are to be added to a store: of those that have times the later ones, others at the times
-/// behind its last one.
-std::vector<SeriesEntry> later_steps(std::vector<SeriesEntry> entries, bool have_times, double last) {
-  if (have_times) {
-    std::erase_if(entries, [last](const SeriesEntry& entry) { return entry.time <= last; });
-    return entries;
+/// The steps that are to be added to a store: of those that have times the later ones, others behind its last
+/// one, which is at the time `last`.
+std::vector<InputStep> later_steps(InputSteps input, double last) {
+  std::vector<InputStep>& steps = input.steps;
+  if (input.times == StepTimes::kAbsolute) {
+    std::erase_if(steps, [last](const InputStep& step) { return step.time <= last; });
+  } else {
+    const bool spaced = input.times == StepTimes::kSpaced;
+    const double first = spaced ? last + steps[1].time - steps[0].time : std::floor(last) + 1;
+    for (InputStep& step : steps) step.time += first;
   }
-  for (SeriesEntry& entry : entries) entry.time += std::floor(last) + 1;
-  return entries;
+  return std::move(steps);
 }
 
-void append(const Options& options, std::vector<SeriesEntry> entries, Session& session) {
+void append(const Options& options, InputSteps input, Session& session) {
   const StoreOptions store = store_options(options);
-  const bool have_times = file_extension(options.inputs[0]) == ".pvd";
   VolumeGrid grid;
+  std::vector<InputStep> later;
   {
     const StoreFile file(options.output);
     grid = file.header().grid;
-    const std::size_t given = entries.size();
-    entries = later_steps(std::move(entries), have_times, file.times().back());
-    if (entries.size() < given)
+    const std::size_t given = input.steps.size();
+    later = later_steps(std::move(input), file.times().back());
+    if (later.size() < given)
       session.console.note("{}: {} of {} steps are not later than the last one of {}", options.inputs[0],
-                           given - entries.size(), given, options.output);
+                           given - later.size(), given, options.output);
   }
-  if (entries.empty()) return;
-  const std::string first = entries.front().file;
-  Steps steps(options, std::move(entries), session);
+  if (later.empty()) return;
+  const std::string first = later.front().name;
+  StoredSteps steps(std::move(later), session);
   if (steps.grid() != grid) refuse_grid(first, steps.grid(), options.output, grid);
-  const SeriesSource series{grid, steps.times(), [&steps](std::uint32_t step) { return steps.planes(step); }};
-  const StoreFigures figures = append_series(options.output, series, store, session.console);
+  const StoreFigures figures = append_series(options.output, steps.source(), store, session.console);
   steps.close();
   report(steps, figures, session);
 }
 
 void run(const Options& options, Session& session) {
-  std::vector<SeriesEntry> entries;
-  if (!options.input.stack) entries = find_series(options.inputs);
-  if (options.input.stack && options.inputs.size() > 1)
-    wrong_usage("--stack: expected one pattern, found {} inputs", options.inputs.size());
-  if (entries.empty()) entries = {{0, options.inputs[0]}};
+  InputSteps input = find_input_steps(options.inputs, options.input);
   std::error_code unknown;
   if (options.append && std::filesystem::exists(options.output, unknown)) {
     // The store is input and output: it stays whole, whatever becomes of what is added.
-    append(options, std::move(entries), session);
+    append(options, std::move(input), session);
     session.outputs.commit();
     return;
   }
   session.outputs.declare("-o", options.output, {".adm"});
   const StoreOptions store = store_options(options);
-  Steps steps(options, std::move(entries), session);
-  const SeriesSource series{steps.grid(), steps.times(),
-                            [&steps](std::uint32_t step) { return steps.planes(step); }};
+  StoredSteps steps(std::move(input.steps), session);
   StoreFigures figures;
   session.outputs.write(options.output, [&](const auto& path) {
-    figures = build_series(path, options.output, series, store, session.console);
+    figures = build_series(path, options.output, steps.source(), store, session.console);
   });
   steps.close();
   report(steps, figures, session);
@@ -247,7 +148,9 @@ void add_store(const Command& app, Session& session) {
           "input", options->inputs,
           "The volume: " + list_volume_endings("or") +
               "; with --dimensions a raw file, with --stack a pattern of its slices. Or a series: several "
-              "volumes, a pattern of their names in quotes, as \"run_%04d.vti\", or a .pvd")
+              "volumes, a pattern of their names in quotes, as \"run_%04d.vti\", a .pvd, a NIfTI of several "
+              "times, or "
+              "with --array a group of HDF5 or a data set along four axes, the first of which is time")
       .required()
       .type_name("FILE...");
   add_volume_options(command, options->input, "--origin,--first-sample");
@@ -266,6 +169,10 @@ void add_store(const Command& app, Session& session) {
           "How gradients are smoothed: not at all; by the first phase, which also fills regions where "
           "nothing changes; or by both (default)")
       .one_of({"none", "first", "both"});
+  command.add_flag(
+      "--no-time-smoothing", options->no_time_smoothing,
+      "Of a series: smooth the gradients of each step in space alone. Otherwise those smoothed by "
+      "both phases are smoothed along time too, within a block of steps");
   command
       .add_option("--block-steps", options->block_steps,
                   "Of a series: how many steps a page has side by side in the file. Playing goes fast where "
@@ -274,7 +181,8 @@ void add_store(const Command& app, Session& session) {
       .show_default();
   command.add_flag(
       "--append", options->append,
-      "Add the steps behind the last one of OUTPUT, if it is there. Of a .pvd these are the later ones");
+      "Add the steps behind the last one of OUTPUT, if it is there. Where the input says the time of each, "
+      "as a .pvd, these are the later ones");
   command.add_option("-o,--output", options->output, "The store (.adm)").required().type_name("FILE");
 }
 

@@ -101,7 +101,7 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool 
     return open_volume_stack(files, spacing, origin, {{}, input.scratch, {}}, session.console);
   }
   check_array(input);
-  VolumeOptions options{input.array, input.scratch, {}, keep_scale};
+  VolumeOptions options{input.array, input.scratch, {}, keep_scale, input.all_times};
   if (!input.time.empty()) options.time = parse_count("--time", input.time, 0);
   return open_volume(input.path, options, session.console);
 }
@@ -187,7 +187,8 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
       .group("Input");
   command
       .add_option("--time", input.time,
-                  "Of a file with several times (NIfTI, a stored series): the number of one, from 0 on")
+                  "Of a file with several times (NIfTI, HDF5 along four axes, a stored series): the number "
+                  "of one, from 0 on")
       .type_name("N")
       .group("Input");
   command

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,6 +23,7 @@ struct VolumeInput {
   bool stack = false;
   std::string array, scratch;
   std::string dimensions, type, spacing, origin, endian, header_bytes, time;
+  std::shared_ptr<UnpackedTimes> all_times;  ///< as of VolumeOptions; mostly null
 
   /// The first option given that only a volume can mean, for messages; empty where there is none.
   [[nodiscard]] std::string option() const;

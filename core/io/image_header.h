@@ -48,6 +48,7 @@ struct ImageHeader {
   std::string active;           ///< the name of the array that is shown where none is named; mostly empty
   std::uint64_t times = 1;      ///< how many times there are; the arrays are those of the first, and
   std::uint64_t time_step = 0;  ///< so many bytes lie between the beginnings of one and of the next
+  double time_spacing = 1;      ///< between them, in seconds where the header says a unit of time
   /// Texts with a zero behind each, as of GridFile::material_names; how many bytes they are is not set.
   std::optional<VolumeSource> material_names;
 };

@@ -12,6 +12,7 @@
 #include "core/io/grid_file.h"
 #include "core/io/image_header.h"
 #include "core/io/volume_reader.h"
+#include "core/io/volume_series.h"
 
 namespace adamas {
 
@@ -41,6 +42,8 @@ struct InputFormat {
   /// Finds the samples of a volume, where there is no header; null: no volumes.
   VolumeSource (*find_volume)(const std::filesystem::path& path, const VolumeOptions& options,
                               Progress& progress) = nullptr;
+  /// The series of volumes that the file holds (find_volume_series); null where it never holds one.
+  VolumeSeries (*find_series)(const std::filesystem::path& path, const std::string& array) = nullptr;
   /// The files beside it that a header names or means, whether they exist or not; null where it cannot.
   std::vector<std::filesystem::path> (*referred_files)(const std::filesystem::path& path) = nullptr;
   bool several_arrays = false;  ///< whether a file may have several, of which a volume is one by its name

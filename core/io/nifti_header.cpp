@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string>
 #include <type_traits>
 
 #include "core/base/error.h"
@@ -99,6 +101,7 @@ NiftiHeader parse_version(std::string_view text, bool big_endian, const std::str
   header.intercept = real(V::kIntercept);
   header.qform_code = static_cast<int>(number<typename V::Code>(text, V::kQcode, big_endian));
   header.sform_code = static_cast<int>(number<typename V::Code>(text, V::kScode, big_endian));
+  header.units = static_cast<int>(number<typename V::Units>(text, V::kUnits, big_endian));
   return header;
 }
 
@@ -184,6 +187,19 @@ std::optional<GridAxes> NiftiHeader::axes() const {
 double NiftiHeader::spacing(int axis) const {
   const double step = std::abs(pixdim[static_cast<std::size_t>(axis) + 1]);
   return step > 0 && std::isfinite(step) ? step : 1;
+}
+
+double NiftiHeader::time_spacing() const {
+  double step = pixdim[4];
+  if (!(step > 0 && std::isfinite(step))) return 1;
+  // A number in single precision stands for the shortest decimal one that it is nearest to.
+  if (static_cast<double>(static_cast<float>(step)) == step) {
+    const std::string text = fmt::format("{}", static_cast<float>(step));
+    std::from_chars(text.data(), text.data() + text.size(), step);
+  }
+  constexpr int kTimeUnits = 0x38, kMilliseconds = 16, kMicroseconds = 24;
+  const int unit = units & kTimeUnits;
+  return unit == kMilliseconds ? step / 1e3 : unit == kMicroseconds ? step / 1e6 : step;
 }
 
 std::optional<StoredType> NiftiHeader::type() const {

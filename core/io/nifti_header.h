@@ -29,6 +29,7 @@ struct NiftiHeader {
   double offset = 0;  ///< of the samples
   double slope = 0, intercept = 0;
   int qform_code = 0, sform_code = 0;
+  int units = 0;  ///< of lengths and times
   std::array<double, 3> quaternion{}, qoffset{};
   std::array<std::array<double, 4>, 3> srow{};
 
@@ -40,6 +41,8 @@ struct NiftiHeader {
   [[nodiscard]] std::optional<GridAxes> axes() const;
   /// Length of a step along an axis by pixdim.
   [[nodiscard]] double spacing(int axis) const;
+  /// From one time to the next by pixdim: in seconds where the unit is one of time; 1 where nothing says.
+  [[nodiscard]] double time_spacing() const;
   /// Nothing for a type of other things than numbers.
   [[nodiscard]] std::optional<StoredType> type() const;
   /// Numbers per sample: more than one of colours and of complex numbers.

@@ -89,6 +89,7 @@ class Parser {
     }
     source_.file = path_;
     if (!header_.single) set_image_file();
+    image_.time_spacing = header_.time_spacing();
     image_.time_step = source_.grid.samples() * stored_bytes(source_.stored) * header_.components();
     const bool packed = file_extension(source_.file).ends_with(".gz");
     (packed ? source_.skip_bytes : source_.header_bytes) = static_cast<std::uint64_t>(offset);
@@ -137,6 +138,22 @@ ImageHeader read_image(const std::filesystem::path& path) {
   return nifti_image(read_nifti_header(header), header);
 }
 
+VolumeSeries find_series(const std::filesystem::path& path, const std::string& array) {
+  // Pictures of high dynamic range end in .hdr too.
+  if (read_beginning(path).starts_with("#?")) return {};
+  const ImageHeader header = read_image(path);
+  if (header.times <= 1) return {};
+  if (header.times > kMostVolumeSteps)
+    fail("{}: expected at most {} times, found {}", header.name, kMostVolumeSteps, header.times);
+  // A file that is cut off is told of before its first times are read.
+  const VolumeSource last = volume_of(header, array, header.times - 1);
+  if (!last.packed()) static_cast<void>(VolumeReader(last));
+  VolumeSeries series{{}, StepTimes::kSpaced};
+  for (std::uint64_t n = 0; n < header.times; ++n)
+    series.steps.push_back({static_cast<double>(n) * header.time_spacing, {}, n});
+  return series;
+}
+
 /// Pictures of high dynamic range end in .hdr too.
 GridFile read_grid(const std::filesystem::path& path) {
   const bool picture = file_extension(path) == ".hdr" && read_beginning(path).starts_with("#?");
@@ -169,6 +186,7 @@ InputFormat nifti_format() {
           .shown_by = is_nifti,
           .read_header = read_image,
           .read_grid = read_grid,
+          .find_series = find_series,
           .referred_files = others_of_pair,
           .several_times = true};
 }

@@ -48,6 +48,8 @@ void send(const ReaderRequest& request, ByteSink& sink) {
   sink.put(request.array);
   sink.put(request.spacing);
   sink.put(request.origin);
+  sink.put(request.time.has_value());
+  sink.put(request.time.value_or(0));
   sink.finish();
 }
 
@@ -65,6 +67,9 @@ ReaderRequest receive(ByteSource& source) {
   request.array = source.get_string();
   request.spacing = source.get<Vec3>();
   request.origin = source.get<Vec3>();
+  const bool has_time = source.get<bool>();
+  const auto time = source.get<std::uint64_t>();
+  if (has_time) request.time = time;
   source.expect_end();
   return request;
 }
@@ -81,6 +86,8 @@ void run_reader(const ReaderRequest& request, ByteSink& sink) {
       return send_grid_volume(request, sink);
     case LibraryReader::kHdf5Volume:
       return send_hdf5_volume(request, sink);
+    case LibraryReader::kHdf5Steps:
+      return send_hdf5_steps(request, sink);
     case LibraryReader::kStackVolume:
       return send_stack_volume(request, sink);
   }

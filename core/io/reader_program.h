@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,19 @@ enum class LibraryReader : std::uint8_t {
   kPolygons,     ///< a surface by CGAL
   kGridVolume,   ///< a volume on a grid by VTK
   kHdf5Volume,   ///< a volume by HDF5
+  kHdf5Steps,    ///< which volumes of HDF5 are the steps of a series
   kStackVolume,  ///< pictures, one plane each, by libtiff and libpng
 };
 
 /// What a reader is asked for.
 struct ReaderRequest {
   LibraryReader reader = LibraryReader::kGrid;
-  std::string name{};                ///< begins messages
-  std::uint64_t input_bytes = 0;     ///< of all files: more of them may take longer
-  std::vector<std::string> paths{};  ///< the one file, or those of a stack
-  std::string array{};               ///< of a volume: the name of one, or empty
-  Vec3 spacing{1, 1, 1}, origin{};   ///< of a stack
+  std::string name{};                   ///< begins messages
+  std::uint64_t input_bytes = 0;        ///< of all files: more of them may take longer
+  std::vector<std::string> paths{};     ///< the one file, or those of a stack
+  std::string array{};                  ///< of a volume: the name of one, or empty
+  Vec3 spacing{1, 1, 1}, origin{};      ///< of a stack
+  std::optional<std::uint64_t> time{};  ///< of a volume of several times: which
 };
 
 /// The environment variable that says where adamas-reader is.
@@ -50,6 +53,7 @@ void send_mesh(const ReaderRequest& request, ByteSink& sink);
 void send_polygons(const ReaderRequest& request, ByteSink& sink);
 void send_grid_volume(const ReaderRequest& request, ByteSink& sink);
 void send_hdf5_volume(const ReaderRequest& request, ByteSink& sink);
+void send_hdf5_steps(const ReaderRequest& request, ByteSink& sink);
 void send_stack_volume(const ReaderRequest& request, ByteSink& sink);
 
 }  // namespace adamas

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/io/reader_program.h"
 #include "core/io/volume_reader.h"
+#include "core/io/volume_series.h"
 
 namespace adamas {
 
@@ -43,9 +44,11 @@ class ImportSink {
 VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& options, Progress& progress);
 
 /// Of HDF5: the data set that `options.array` names, or the only one with numbers along three axes, the
-/// slowest being z. Its attribute "element_size_um" gives the spacing (z, y, x), as ilastik and Fiji write
-/// it.
+/// slowest being z, or the time `options.time` of one along four, the slowest being time. Its attribute
+/// "element_size_um" gives the spacing (z, y, x), as ilastik and Fiji write it.
 VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions& options, Progress& progress);
+/// find_volume_series of HDF5, which a child process reads too.
+VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::string& array);
 /// Of what VTK reads on an image grid: the point array that `options.array` names, or the only one with one
 /// value per sample.
 VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions& options, Progress& progress);

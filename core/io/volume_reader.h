@@ -71,12 +71,19 @@ class VolumeReader {
   double greatest_change_ = 0;
 };
 
+/// Of a compressed file with several times: the samples of all, unpacked.
+struct UnpackedTimes {
+  std::shared_ptr<const FileHandle> samples;  ///< null before the first volume is opened
+};
+
 struct VolumeOptions {
   std::string array;                     ///< of a file with several: the name of one
   std::filesystem::path scratch_folder;  ///< for unpacked samples; empty: the system's for temporary files
-  std::optional<std::uint64_t> time{};   ///< of a file with several (NIfTI): the number of one, from 0 on
+  std::optional<std::uint64_t> time{};   ///< of a file with several (NIfTI, HDF5): which, from 0 on
   /// Whole numbers with a scale (NIfTI) stay as they are, with VolumeGrid::slope; else they become floats.
   bool keep_scale = false;
+  /// Where several times of one file are opened one after another: shared by all these calls.
+  std::shared_ptr<UnpackedTimes> all_times{};
 };
 
 /// Opens a volume of one value per sample, of the format that the name ends in or, where that says nothing,

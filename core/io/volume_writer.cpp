@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <string_view>
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
-#include "core/io/stored_type.h"
+#include "core/io/sample_values.h"
 #include "core/io/volume_headers.h"
 
 namespace adamas {
@@ -104,7 +103,7 @@ VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& 
 void VolumeWriter::write_plane(std::span<const std::byte> samples) {
   ADAMAS_ASSERT(samples.size() == grid_.plane_bytes() && planes_ < grid_.dimensions[2]);
   if (writes_values_) {
-    find_values(samples);
+    find_values(grid_, samples, values_);
     samples = std::as_bytes(std::span(values_));
   }
   if (gzip_) {
@@ -113,17 +112,6 @@ void VolumeWriter::write_plane(std::span<const std::byte> samples) {
     (data_ ? data_ : header_)->write(samples.data(), samples.size());
   }
   ++planes_;
-}
-
-void VolumeWriter::find_values(std::span<const std::byte> samples) {
-  visit_stored_type(stored_type(grid_.type), [&]<class Sample>(Sample) {
-    values_.resize(samples.size() / sizeof(Sample));
-    for (std::size_t n = 0; n < values_.size(); ++n) {
-      Sample sample;
-      std::memcpy(&sample, samples.data() + n * sizeof(Sample), sizeof(Sample));
-      values_[n] = static_cast<float>(grid_.value(static_cast<double>(sample)));
-    }
-  });
 }
 
 void VolumeWriter::finish() {

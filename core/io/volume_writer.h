@@ -50,8 +50,6 @@ class VolumeWriter {
   void finish();
 
  private:
-  void find_values(std::span<const std::byte> samples);
-
   VolumeGrid grid_;  ///< of the planes that come
   bool writes_values_ = false;
   std::vector<float> values_;  ///< of a plane

@@ -5,7 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/scratch_file.h"
 #include "isosurface/gradients/plane_gradients.h"
+#include "isosurface/gradients/series_codes.h"
 #include "isosurface/gradients/smoothed_codes.h"
 #include "isosurface/gradients/three_planes.h"
 #include "isosurface/volume/samples.h"
@@ -85,20 +87,32 @@ class LodCodes {
   std::int32_t next_ = 0;  ///< the LOD's plane that is taken next
 };
 
+/// The pages of all LODs of one volume, from planes of codes in ascending order.
+class CodePages {
+ public:
+  explicit CodePages(const VolumeGrid& grid) : grid_(grid.dimensions) {
+    for (int lod = 0; lod <= grid_.top(); ++lod) lods_.emplace_back(grid_, lod);
+  }
+
+  void add(const std::vector<OctahedralCode>& codes, const GradientPageSink& sink) {
+    for (LodCodes& lod : lods_) lod.add(next_, codes, *page_, sink);
+    ++next_;
+  }
+
+ private:
+  PageGrid grid_;
+  std::vector<LodCodes> lods_;
+  std::unique_ptr<Page<std::uint16_t>> page_ = std::make_unique<Page<std::uint16_t>>();
+  std::int32_t next_ = 0;
+};
+
 }  // namespace
 
 template <class Sample>
 void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageSink& sink,
                     const GradientPageOptions& options, Progress& progress) {
-  const PageGrid pages(grid.dimensions);
-  std::vector<LodCodes> lods;
-  for (int lod = 0; lod <= pages.top(); ++lod) lods.emplace_back(pages, lod);
-  const auto page = std::make_unique<Page<std::uint16_t>>();
-  std::int32_t k = 0;
-  const auto take = [&](const std::vector<OctahedralCode>& codes) {
-    for (LodCodes& lod : lods) lod.add(k, codes, *page, sink);
-    ++k;
-  };
+  CodePages pages(grid);
+  const auto take = [&](const std::vector<OctahedralCode>& codes) { pages.add(codes, sink); };
   if (options.smoothing) {
     smoothed_codes<Sample>(grid, planes, options, take, progress);
     return;
@@ -114,6 +128,22 @@ void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const Gra
       progress);
 }
 
+template <class Sample>
+void series_gradient_pages(const VolumeGrid& grid, std::span<const RowSource> steps,
+                           const SeriesGradientSink& sink, const GradientPageOptions& options,
+                           Progress& progress) {
+  ScratchFile file(options.scratch);
+  series_codes<Sample>(grid, steps, options, file, progress);
+  std::vector<OctahedralCode> codes(grid.plane_samples());
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    CodePages pages(grid);
+    for (std::uint64_t k = 0; k < grid.dimensions[2]; ++k) {
+      file.read(CodePlaces{grid}(n, k, 0), std::as_writable_bytes(std::span(codes)));
+      pages.add(codes, [&](const PageId& id, const Page<std::uint16_t>& page) { sink(n, id, page); });
+    }
+  }
+}
+
 template void gradient_pages<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
                                            const GradientPageOptions&, Progress&);
 template void gradient_pages<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
@@ -123,4 +153,15 @@ template void gradient_pages<std::int16_t>(const VolumeGrid&, const PlaneSource&
 template void gradient_pages<float>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
                                     const GradientPageOptions&, Progress&);
 
+template void series_gradient_pages<std::uint8_t>(const VolumeGrid&, std::span<const RowSource>,
+                                                  const SeriesGradientSink&, const GradientPageOptions&,
+                                                  Progress&);
+template void series_gradient_pages<std::uint16_t>(const VolumeGrid&, std::span<const RowSource>,
+                                                   const SeriesGradientSink&, const GradientPageOptions&,
+                                                   Progress&);
+template void series_gradient_pages<std::int16_t>(const VolumeGrid&, std::span<const RowSource>,
+                                                  const SeriesGradientSink&, const GradientPageOptions&,
+                                                  Progress&);
+template void series_gradient_pages<float>(const VolumeGrid&, std::span<const RowSource>,
+                                           const SeriesGradientSink&, const GradientPageOptions&, Progress&);
 }  // namespace adamas

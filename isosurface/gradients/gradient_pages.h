@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "adamas/progress.h"
 #include "adamas/volume.h"
@@ -19,6 +20,11 @@ namespace adamas {
 /// Takes one page, of which only `samples` are set: to the OctahedralCode of each point, its first byte
 /// lowest.
 using GradientPageSink = std::function<void(const PageId&, const Page<std::uint16_t>&)>;
+
+/// The same of a step of a series.
+using SeriesGradientSink = std::function<void(std::size_t step, const PageId&, const Page<std::uint16_t>&)>;
+/// Fills samples of plane k from a row on, whole rows of them.
+using RowSource = std::function<void(std::uint64_t k, std::uint64_t row, std::span<std::byte> samples)>;
 
 /// How gradients are made into pages.
 struct GradientPageOptions {
@@ -41,5 +47,14 @@ struct GradientPageOptions {
 template <class Sample>
 void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageSink& sink,
                     const GradientPageOptions& options, Progress& progress = SilentProgress::instance());
+
+/// The same of the steps of a series, one after another, smoothed along time too (SeriesSmoother); the
+/// options have a smoothing that is_along_time(). Rows are read for all steps side by side: all once for the
+/// scale, and once more, with some beside, for each strip of rows whose smoothing fits the memory. Directions
+/// lie on the scratch disk meanwhile, two bytes for each sample of each step.
+template <class Sample>
+void series_gradient_pages(const VolumeGrid& grid, std::span<const RowSource> steps,
+                           const SeriesGradientSink& sink, const GradientPageOptions& options,
+                           Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

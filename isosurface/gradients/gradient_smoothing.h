@@ -2,33 +2,18 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <span>
-#include <vector>
+#include <utility>
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "isosurface/gradients/gradient_estimator.h"
-#include "isosurface/gradients/smoothing_round.h"
+#include "isosurface/gradients/smoothing_rounds.h"
 
 namespace adamas {
 
-struct GradientSmoothingOptions {
-  int free_rounds = 4;         ///< of the first phase
-  int constrained_rounds = 8;  ///< of the second
-  /// How far the second phase may take a gradient whose length is the root mean square: K of the paper, as a
-  /// part of the mean square. Longer ones may go less far, in inverse proportion.
-  double freedom = 0.25;
-
-  /// A gradient depends on none that is farther away than this along an axis.
-  [[nodiscard]] std::size_t rounds() const {
-    return static_cast<std::size_t>(free_rounds) + static_cast<std::size_t>(constrained_rounds);
-  }
-};
-
-/// Smooths a block of gradients that comes plane by plane, as smooth_gradients does, to the bit: every round
-/// is one plane behind the one before, so that no more than some planes are held.
+/// Smooths a block of gradients that comes plane by plane, as smooth_gradients does, to the bit.
 class GradientSmoother {
  public:
   /// Takes smoothed planes, in ascending order.
@@ -36,36 +21,23 @@ class GradientSmoother {
 
   /// `scale`: of the whole volume. Planes have ni x nj gradients, i running fastest.
   GradientSmoother(const GradientScale& scale, std::size_t ni, std::size_t nj,
-                   const GradientSmoothingOptions& options, Sink sink);
+                   const GradientSmoothingOptions& options, Sink sink)
+      : rounds_(scale, ni, nj, options), sink_(std::move(sink)) {}
 
   /// Takes the next plane, of finite gradients.
   void add(std::span<const Gradient> plane);
   /// Hands over the planes that are left.
   void finish();
 
-  /// Bytes that it takes for each gradient of a plane.
-  static std::size_t bytes(const GradientSmoothingOptions& options);
-
  private:
   /// Takes a plane through the rounds from `first` on, as far as it gets.
-  void run(std::size_t first, std::span<const Gradient> plane);
-  /// Calls fn(update) with what round n makes of averages.
-  template <class Fn>
-  void with_update(std::size_t n, Fn&& fn);
-  /// Keeps what the first phase has made of the next plane, for the second.
-  void keep_anchors(std::span<const Gradient> plane);
+  void run(std::size_t first, std::span<const Gradient> plane) {
+    if (rounds_.push(first, rounds_.count(), plane)) sink_(plane);
+  }
 
-  GradientSmoothingOptions options_;
-  double least_square_, most_;  ///< `most_`: what |g| |a - g| may be in the second phase
+  SmoothingRounds rounds_;
   Sink sink_;
-  std::vector<SmoothingRound> rounds_;
-  std::vector<std::size_t> finished_;             ///< how many planes each round has handed over
-  std::array<std::vector<Gradient>, 2> results_;  ///< of rounds of even and of odd number
-  std::size_t added_ = 0, anchored_ = 0;          ///< planes
-  /// Whether gradients were degenerate at first, and what holds them in the second phase: zero where they
-  /// were, and nothing does. Plane k is at k modulo the number of planes.
-  std::vector<std::vector<std::uint8_t>> degenerate_;
-  std::vector<std::vector<Gradient>> anchors_;
+  bool empty_ = true;
 };
 
 /// Smooths the gradients of a block of samples, i running fastest, in place (D 4.3.3). A gradient is

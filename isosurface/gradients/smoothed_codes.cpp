@@ -13,9 +13,6 @@ namespace adamas {
 
 namespace {
 
-/// Sums of 64 gradients of this length are finite.
-constexpr float kGreatest = 1e36F;
-
 /// Rows [begin, end) of all planes.
 struct Strip {
   std::size_t begin, end;
@@ -59,7 +56,7 @@ class CodeSmoother {
  private:
   /// How many rows are smoothed at a time.
   [[nodiscard]] std::size_t strip_rows() const {
-    const std::size_t fit = options_.memory / (GradientSmoother::bytes(*options_.smoothing) * nx_);
+    const std::size_t fit = options_.memory / (SmoothingRounds::bytes(*options_.smoothing) * nx_);
     const std::size_t beside = options_.smoothing->rounds();
     if (fit >= ny_) return ny_;
     return fit > 3 * beside ? fit - 2 * beside : std::max<std::size_t>(beside, 1);
@@ -74,7 +71,8 @@ class CodeSmoother {
         [&](const std::array<const Sample*, 3>& three) {
           gradients(three, std::span(plane));
           for (Gradient& g : plane) {
-            for (float& component : g) component = std::clamp(component, -kGreatest, kGreatest);
+            for (float& component : g)
+              component = std::clamp(component, -kGreatestGradient, kGreatestGradient);
           }
           fn(std::span<const Gradient>(plane));
         },

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <string>
-#include <vector>
+#include <tuple>
+#include <utility>
 
 #include "core/base/error.h"
+#include "isosurface/storage/step_pages.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -21,12 +21,11 @@ struct BlockSpan {
         end(std::min(last, PageGrid::kSide * block + PageGrid::kSide - 1)) {}
 };
 
-/// The bytes of the pages that restoring a part needs at a time: one row of pages of its LOD, each of which
-/// is needed once, and a few rows of coarser ones. They count twice, since pages leave a cache in no strict
-/// order. Those of the steps that the step is coded with are needed at the same time.
+/// The bytes of the pages that restoring a part of a step needs at a time: one row of pages of its LOD, each
+/// of which is needed once, and a few rows of coarser ones. They count twice, since pages leave a cache in no
+/// strict order.
 template <class Word>
-std::size_t working_set(const PageGrid& grid, std::uint32_t step, const RestoredPart& part) {
-  const std::size_t steps = 1 + step % kWholeSteps;
+std::size_t working_set_of_step(const PageGrid& grid, const RestoredPart& part) {
   std::size_t pages = 0;
   for (int lod = part.lod; lod <= grid.top(); ++lod) {
     const auto along = [&](int axis) {
@@ -35,43 +34,57 @@ std::size_t working_set(const PageGrid& grid, std::uint32_t step, const Restored
     };
     pages += lod == part.lod ? along(0) : 3 * along(0) * along(1);
   }
-  return 2 * steps * pages * sizeof(PageSamples<Word>);
+  return 2 * pages * sizeof(PageSamples<Word>);
 }
 
+/// Some steps side by side.
 template <class Sample>
 class Restorer {
  public:
   using Word = OrderedWord<Sample>;
 
-  Restorer(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory)
-      : file_(file),
-        part_(part),
-        pages_(file, step, std::min(memory, working_set<Word>(file.grid(), step, part))) {}
+  Restorer(StoreFile& file, const StepRange& range, const RestoredPart& part, std::size_t memory)
+      : file_(file), part_(part), pages_(file, std::min(memory, working_set(file.grid(), range, part))) {
+    for (std::uint32_t step = range.first; step <= range.last; ++step)
+      steps_.push_back({&pages_.at(step), std::vector<Sample>(PageGrid::kSide * part.grid.plane_samples())});
+  }
 
-  PageCounts run(const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
+  PageCounts run(const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
+                 Progress& progress) {
     const std::size_t plane = part_.grid.plane_samples();
-    std::vector<Sample> planes(PageGrid::kSide * plane);
     constexpr std::int32_t kSide = PageGrid::kSide;
     for (std::int32_t block = part_.first.k / kSide; block <= part_.last.k / kSide; ++block) {
       const BlockSpan z(block, part_.first.k, part_.last.k);
       const double planes_done = z.begin - part_.first.k;
       for (std::int32_t y = part_.first.j / kSide; y <= part_.last.j / kSide; ++y) {
         progress.step("restoring", planes_done / (part_.last.k - part_.first.k + 1));
-        for (std::int32_t x = part_.first.i / kSide; x <= part_.last.i / kSide; ++x)
-          copy({part_.lod, {x, y, block}}, z.begin, planes);
+        for (Step& step : steps_) copy_row(step, {0, y, block}, z.begin);
       }
-      for (std::int32_t k = z.begin; k <= z.end; ++k) {
-        const auto at = static_cast<std::size_t>(k - z.begin) * plane;
-        sink(std::as_bytes(std::span(planes).subspan(at, plane)));
+      for (const Step& step : steps_) {
+        for (std::int32_t k = z.begin; k <= z.end; ++k) {
+          const auto at = static_cast<std::size_t>(k - z.begin) * plane;
+          sink(step.pages->step(), std::as_bytes(std::span(step.planes).subspan(at, plane)));
+        }
       }
     }
     return pages_.counts();
   }
 
  private:
+  struct Step {
+    StoredPages<Word>* pages;
+    std::vector<Sample> planes;  ///< of a row of blocks along k
+  };
+
+  void copy_row(Step& step, LatticePoint block, std::int32_t base) {
+    const std::int32_t end = part_.last.i / PageGrid::kSide;
+    for (block.i = part_.first.i / PageGrid::kSide; block.i <= end; ++block.i)
+      copy(*step.pages, {part_.lod, block}, base, step.planes);
+  }
+
   /// Copies what a page has of the part to the planes, the first of which is k = `base`.
-  void copy(const PageId& id, std::int32_t base, std::vector<Sample>& planes) {
-    const PageSamples<Word>* page = pages_.samples(id);
+  void copy(StoredPages<Word>& pages, const PageId& id, std::int32_t base, std::vector<Sample>& planes) {
+    const PageSamples<Word>* page = pages.samples(id);
     if (page == nullptr)
       fail("{}: {} is damaged, or one that it is predicted from", file_.name(), page_name(id));
     const BlockSpan x(id.block.i, part_.first.i, part_.last.i), y(id.block.j, part_.first.j, part_.last.j),
@@ -88,10 +101,49 @@ class Restorer {
     }
   }
 
+  static std::size_t working_set(const PageGrid& grid, const StepRange& range, const RestoredPart& part) {
+    // The first one needs those that it is coded with too.
+    const std::size_t steps = range.last - range.first + 1 + range.first % kWholeSteps;
+    return steps * working_set_of_step<Word>(grid, part);
+  }
+
   StoreFile& file_;
   RestoredPart part_;
-  StoredPages<Word> pages_;
+  StepPages<Word> pages_;
+  std::vector<Step> steps_;
 };
+
+/// Along one axis of a part: its first and its last sample, in units of 2^lod; none where it is empty.
+std::pair<std::int32_t, std::int32_t> samples_within(double low, double high, std::int32_t last) {
+  // A sample on the region's border counts, whatever its place was rounded to.
+  constexpr double kSlack = 1e-9;
+  const double end = last;
+  return {static_cast<std::int32_t>(std::clamp(std::ceil(low - kSlack), 0.0, end + 1)),
+          static_cast<std::int32_t>(std::clamp(std::floor(high + kSlack), -1.0, end))};
+}
+
+/// The part, with the first axis along which it has no sample; 3 where it has.
+std::pair<RestoredPart, int> find_part(const VolumeGrid& volume, int lod, const std::optional<Box3>& region) {
+  RestoredPart part;
+  part.lod = lod;
+  part.grid = volume;
+  Vec3 first = volume.origin;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double step = std::ldexp(volume.spacing[axis], lod);
+    part.last[axis] = static_cast<std::int32_t>(volume.dimensions[a] - 1) >> lod;
+    if (region)
+      std::tie(part.first[axis], part.last[axis]) =
+          samples_within((region->min[axis] - volume.origin[axis]) / step,
+                         (region->max[axis] - volume.origin[axis]) / step, part.last[axis]);
+    if (part.first[axis] > part.last[axis]) return {part, axis};
+    part.grid.dimensions[a] = static_cast<std::uint64_t>(part.last[axis] - part.first[axis] + 1);
+    first[axis] += part.first[axis] * step;
+    part.grid.spacing[axis] = step;
+  }
+  part.grid.origin = volume.in_space(first);
+  return {part, 3};
+}
 
 }  // namespace
 
@@ -100,37 +152,51 @@ RestoredPart restored_part(const VolumeGrid& volume, int lod, const std::optiona
   const PageGrid pages(volume.dimensions);
   if (lod < 0 || lod > pages.top())
     fail("{}: expected a level from 0 to {}, found {}", name, pages.top(), lod);
-  RestoredPart part;
-  part.lod = lod;
-  part.grid = volume;
-  Vec3 first = volume.origin;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double step = std::ldexp(volume.spacing[axis], lod);
-    part.last[axis] = pages.last()[axis] >> lod;
-    if (region) {
-      // A sample on the region's border counts, whatever its place was rounded to.
-      constexpr double kSlack = 1e-9;
-      const double low = (region->min[axis] - volume.origin[axis]) / step - kSlack;
-      const double high = (region->max[axis] - volume.origin[axis]) / step + kSlack;
-      const double end = part.last[axis];
-      part.first[axis] = static_cast<std::int32_t>(std::clamp(std::ceil(low), 0.0, end + 1));
-      part.last[axis] = static_cast<std::int32_t>(std::clamp(std::floor(high), -1.0, end));
-      if (part.first[axis] > part.last[axis])
-        fail("{}: expected a region with samples of level {}, found none along {}", name, lod, "xyz"[axis]);
-    }
-    const auto a = static_cast<std::size_t>(axis);
-    part.grid.dimensions[a] = static_cast<std::uint64_t>(part.last[axis] - part.first[axis] + 1);
-    first[axis] += part.first[axis] * step;
-    part.grid.spacing[axis] = step;
-  }
-  part.grid.origin = volume.in_space(first);
+  const auto [part, empty] = find_part(volume, lod, region);
+  if (empty < 3)
+    fail("{}: expected a region with samples of level {}, found none along {}", name, lod, "xyz"[empty]);
   return part;
+}
+
+std::vector<RestoredPart> restored_levels(const VolumeGrid& volume, int lod,
+                                          const std::optional<Box3>& region, std::uint64_t enough,
+                                          const std::string& name) {
+  const int top = PageGrid(volume.dimensions).top();
+  std::vector<RestoredPart> levels{restored_part(volume, lod, region, name)};
+  while (levels.back().lod < top) {
+    const auto& n = levels.back().grid.dimensions;
+    if (*std::max_element(n.begin(), n.end()) <= enough) break;
+    const auto [part, empty] = find_part(volume, levels.back().lod + 1, region);
+    if (empty < 3) break;
+    levels.push_back(part);
+  }
+  return levels;
 }
 
 PageCounts restore(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory,
                    const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
+  return restore_steps(
+      file, {step, step}, part, memory,
+      [&sink](std::uint32_t, std::span<const std::byte> plane) { sink(plane); }, progress);
+}
+
+StepRange restored_together(const StepRange& steps, std::uint64_t bytes_each, std::size_t memory) {
+  const std::uint64_t room = std::max<std::uint64_t>(1, memory / std::max<std::uint64_t>(1, bytes_each));
+  const std::uint64_t end =
+      std::min<std::uint64_t>(steps.first / kWholeSteps * kWholeSteps + kWholeSteps, steps.first + room);
+  return {steps.first, std::min(steps.last, static_cast<std::uint32_t>(end - 1))};
+}
+
+std::uint64_t restored_slab_bytes(const RestoredPart& part) {
+  return PageGrid::kSide * part.grid.plane_bytes();
+}
+
+PageCounts restore_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
+                         std::size_t memory,
+                         const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
+                         Progress& progress) {
   return with_sample_type(part.grid.type, [&](auto sample) {
-    return Restorer<decltype(sample)>(file, step, part, memory).run(sink, progress);
+    return Restorer<decltype(sample)>(file, steps, part, memory).run(sink, progress);
   });
 }
 

@@ -19,6 +19,7 @@
 #include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/storage/page_coding.h"
 #include "isosurface/storage/page_payload.h"
+#include "isosurface/storage/sample_spool.h"
 #include "isosurface/storage/scratch_pages.h"
 #include "isosurface/storage/step_pages.h"
 #include "isosurface/storage/store_file.h"
@@ -73,8 +74,7 @@ class StoreBuilder {
                  std::uint32_t first, StoreFile* file, StoreFigures& figures) {
     first_ = first;
     open_earlier(file);
-    const std::size_t memory = kMemory / (end - begin);
-    for (std::uint32_t step = begin; step < end; ++step) prepare(series.planes(step), memory);
+    prepare_steps(series, begin, end, kMemory / (end - begin));
     ranks_ = census_.ranks();
     numbers_ = page_numbers(grid_);
     look_at_coarse();
@@ -106,9 +106,31 @@ class StoreBuilder {
     std::reverse(earlier_.begin(), earlier_.end());
   }
 
+  /// `memory`: of scratch pages, for each step.
+  void prepare_steps(const SeriesSource& series, std::uint32_t begin, std::uint32_t end, std::size_t memory) {
+    const bool in_time =
+        options_.gradients && options_.smoothing && options_.smoothing->is_along_time() && end - begin > 1;
+    std::optional<SampleSpool> spool;
+    if (in_time) spool.emplace(options_.scratch, volume_);
+    for (std::uint32_t step = begin; step < end; ++step) {
+      const PlaneSource planes = series.planes(step);
+      prepare(in_time ? spool->add(planes) : planes, memory);
+      if (options_.gradients && !in_time) find_gradients(planes);
+    }
+    if (!in_time) return;
+    const std::vector<RowSource> rows = spool->rows();
+    const auto put = [this](std::size_t step, const PageId& id, const Page<std::uint16_t>& page) {
+      steps_[step].gradients->put(id, page);
+    };
+    series_gradient_pages<Sample>(volume_, rows, put, gradient_options(), progress_);
+  }
+
   void prepare(const PlaneSource& planes, std::size_t memory) {
     Step& step = steps_.emplace_back();
     step.pages = std::make_unique<ScratchPages<Word>>(options_.scratch, grid_, memory);
+    if (options_.gradients)
+      step.gradients =
+          std::make_unique<ScratchPages<std::uint16_t>>(options_.scratch, grid_, memory, PageParts::kSamples);
     preprocess<Sample>(
         volume_, planes,
         [&](const PageId& id, const Page<Word>& page) {
@@ -117,16 +139,21 @@ class StoreBuilder {
           step.pages->put(id, page);
         },
         progress_);
-    if (!options_.gradients) return;
-    step.gradients =
-        std::make_unique<ScratchPages<std::uint16_t>>(options_.scratch, grid_, memory, PageParts::kSamples);
+  }
+
+  [[nodiscard]] GradientPageOptions gradient_options() const {
     GradientPageOptions options;
     options.smoothing = options_.smoothing;
     options.scratch = options_.scratch;
+    return options;
+  }
+  /// Of the last step.
+  void find_gradients(const PlaneSource& planes) {
+    Step& step = steps_.back();
     gradient_pages<Sample>(
         volume_, planes,
-        [&](const PageId& id, const Page<std::uint16_t>& page) { step.gradients->put(id, page); }, options,
-        progress_);
+        [&](const PageId& id, const Page<std::uint16_t>& page) { step.gradients->put(id, page); },
+        gradient_options(), progress_);
   }
 
   [[nodiscard]] SampleCoding coding() const {

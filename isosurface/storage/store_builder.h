@@ -20,10 +20,12 @@ namespace adamas {
 struct StoreOptions {
   SampleCoding coding = SampleCoding::kInterpolation;
   /// Where scratch data of up to four times the input may lie, and four bytes more for each sample's
-  /// gradient.
+  /// gradient; six, and the samples once more, where gradients are smoothed along time. Of a series all steps
+  /// of a block lie there.
   std::filesystem::path scratch = std::filesystem::temp_directory_path();
   bool gradients = false;  ///< whether the directions of samples' gradients are kept
-  /// How these are smoothed first; none: not at all.
+  /// How these are smoothed first; none: not at all. Along time the steps of a block are smoothed, of each
+  /// block by itself.
   std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
   /// How many steps of a series are in a block, page by page, from 1 to kMostBlockSteps: reading a page's
   /// next steps goes fast where they are many, reading one step where they are few.

@@ -63,6 +63,21 @@ TEST_F(SeriesStores, ThereAndBackByPvd) {
   EXPECT_EQ(info("c.adm")["times"], (std::vector<double>{1, 2, 3}));
 }
 
+/// Steps that are restored together begin anywhere, and are as many as there is room for.
+TEST_F(SeriesStores, StepsAreRestoredTogetherOrAlone) {
+  std::vector<std::string> inputs;
+  for (int step = 0; step < 19; ++step) inputs.push_back(file(step % 5));
+  run_well(store(inputs, "a.adm"));
+  for (const std::string memory : {"256M", "4K", "1"}) {
+    run_well({"restore", "a.adm", "--steps", "3,18", "--memory", memory, "-o", "back.pvd", "-q"});
+    for (int step = 3; step < 19; ++step) {
+      const std::string name = (step < 10 ? "back_000" : "back_00") + std::to_string(step) + ".vti";
+      const std::string bytes = read(name);
+      EXPECT_NE(bytes.find(samples(step % 5)), std::string::npos) << name << " with " << memory;
+    }
+  }
+}
+
 TEST_F(SeriesStores, StepsAreAdded) {
   run_well(store({file(0), file(1)}, "a.adm", {"--append"}));
   for (const int step : {2, 3, 4}) run_well(store({file(step)}, "a.adm", {"--append"}));
@@ -115,6 +130,26 @@ TEST_F(SeriesStores, WrongUsage) {
   write("short.raw", "123");
   expect_failure(store({file(0), "short.raw"}, "b.adm"), {"short.raw"});
   expect_failure(store({file(0), "missing.raw"}, "b.adm"), {"missing.raw"});
+}
+
+TEST_F(SeriesStores, GradientsAreSmoothedAlongTimeUnlessToldOtherwise) {
+  run_well(store({"s_%d.raw"}, "time.adm", {"--gradients"}));
+  run_well(store({"s_%d.raw"}, "space.adm", {"--gradients", "--no-time-smoothing"}));
+  EXPECT_NE(read("time.adm"), read("space.adm"));
+  run_well({"verify", "time.adm", "-q"});
+  expect_step("time.adm", 3);
+  // Of one step, or of blocks of one, there is no time.
+  run_well(store({file(2)}, "a.adm", {"--gradients"}));
+  run_well(store({file(2)}, "b.adm", {"--gradients", "--no-time-smoothing"}));
+  EXPECT_EQ(read("a.adm"), read("b.adm"));
+  run_well(store({"s_%d.raw"}, "a.adm", {"--gradients", "--block-steps", "1"}));
+  run_well(store({"s_%d.raw"}, "b.adm", {"--gradients", "--block-steps", "1", "--no-time-smoothing"}));
+  EXPECT_EQ(read("a.adm"), read("b.adm"));
+  expect_wrong_usage(store({file(0)}, "x.adm", {"--no-time-smoothing"}),
+                     {"--no-time-smoothing", "--gradients"});
+  expect_wrong_usage(
+      store({file(0)}, "x.adm", {"--gradients", "--smoothing", "first", "--no-time-smoothing"}),
+      {"--no-time-smoothing", "both phases"});
 }
 
 TEST_F(SeriesStores, StepsOnAnotherGridAreRefused) {

@@ -4,89 +4,35 @@
 #include <hdf5.h>
 
 #include "tests/io/volume_files.h"
+#include "tests/support/hdf5_file.h"
 
 namespace adamas {
 namespace {
 
 using test::bytes_of_values;
+using test::Hdf5File;
 using test::message_of_volume;
 using test::put_bytes;
 using test::read_numbers;
 using test::says;
 
-struct Hdf5Type {
-  StoredType type;
-  hid_t memory, little, big;
-};
-
-std::vector<Hdf5Type> hdf5_types() {
-  return {{StoredType::kInt8, H5T_NATIVE_INT8, H5T_STD_I8LE, H5T_STD_I8BE},
-          {StoredType::kUint8, H5T_NATIVE_UINT8, H5T_STD_U8LE, H5T_STD_U8BE},
-          {StoredType::kInt16, H5T_NATIVE_INT16, H5T_STD_I16LE, H5T_STD_I16BE},
-          {StoredType::kUint16, H5T_NATIVE_UINT16, H5T_STD_U16LE, H5T_STD_U16BE},
-          {StoredType::kInt32, H5T_NATIVE_INT32, H5T_STD_I32LE, H5T_STD_I32BE},
-          {StoredType::kUint32, H5T_NATIVE_UINT32, H5T_STD_U32LE, H5T_STD_U32BE},
-          {StoredType::kInt64, H5T_NATIVE_INT64, H5T_STD_I64LE, H5T_STD_I64BE},
-          {StoredType::kUint64, H5T_NATIVE_UINT64, H5T_STD_U64LE, H5T_STD_U64BE},
-          {StoredType::kFloat32, H5T_NATIVE_FLOAT, H5T_IEEE_F32LE, H5T_IEEE_F32BE},
-          {StoredType::kFloat64, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, H5T_IEEE_F64BE}};
-}
-
-/// An HDF5 file that is being written.
-class Hdf5File {
- public:
-  explicit Hdf5File(const std::filesystem::path& path)
-      : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)) {}
-  ~Hdf5File() { H5Fclose(file_); }
-  Hdf5File(const Hdf5File&) = delete;
-  Hdf5File& operator=(const Hdf5File&) = delete;
-
-  /// Nothing is written where there are no values; `chunk` of 0: contiguous.
-  void add(const std::string& name, const std::vector<hsize_t>& size, hid_t stored, hid_t memory,
-           const void* values, hsize_t chunk = 0, const std::vector<double>& element = {}) {
-    const hid_t links = H5Pcreate(H5P_LINK_CREATE), how = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_create_intermediate_group(links, 1);
-    if (chunk > 0) {
-      const std::vector<hsize_t> chunks(size.size(), chunk);
-      H5Pset_chunk(how, static_cast<int>(size.size()), chunks.data());
-      H5Pset_deflate(how, 6);
-    }
-    const hid_t space = H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr);
-    const hid_t set = H5Dcreate2(file_, name.c_str(), stored, space, links, how, H5P_DEFAULT);
-    if (values != nullptr) H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-    if (!element.empty()) {
-      const hsize_t three = element.size();
-      const hid_t line = H5Screate_simple(1, &three, nullptr);
-      const hid_t attribute =
-          H5Acreate2(set, "element_size_um", H5T_IEEE_F64LE, line, H5P_DEFAULT, H5P_DEFAULT);
-      H5Awrite(attribute, H5T_NATIVE_DOUBLE, element.data());
-      H5Aclose(attribute);
-      H5Sclose(line);
-    }
-    H5Dclose(set);
-    H5Sclose(space);
-    H5Pclose(how);
-    H5Pclose(links);
-  }
-
- private:
-  hid_t file_;
-};
-
 TEST(Hdf5Volume, EveryTypeInEitherByteOrderAndInChunks) {
   const test::Scratch scratch;
-  for (const Hdf5Type& t : hdf5_types()) {
-    visit_stored_type(t.type, [&]<class T>(T) {
+  for (const StoredType type : test::kStoredTypes) {
+    visit_stored_type(type, [&]<class T>(T) {
       const auto values = test::typical_values<T>();
-      for (const hid_t stored : {t.little, t.big}) {
-        for (const hsize_t chunk : {0, 1, 2}) {
-          Hdf5File(scratch / "a.h5")
-              .add("group/samples", {2, 2, 3}, stored, t.memory, values.data(), chunk, {3, 2, 0.5});
+      for (const bool big : {false, true}) {
+        for (const std::uint64_t chunk : {0, 1, 2}) {
+          {
+            Hdf5File file(scratch / "a.h5");
+            file.add("group/samples", {2, 2, 3}, type, values.data(), chunk, big);
+            file.add_numbers("group/samples", "element_size_um", {3, 2, 0.5});
+          }
           VolumeReader reader = open_volume(scratch / "a.h5");
           EXPECT_EQ(reader.grid().dimensions, (std::array<std::uint64_t, 3>{3, 2, 2}));
           EXPECT_EQ(reader.grid().spacing, (Vec3{0.5, 2, 3}));
-          EXPECT_EQ(reader.grid().type, sample_type_for(t.type));
-          EXPECT_EQ(read_numbers(reader), test::as_doubles(values)) << stored_name(t.type) << chunk;
+          EXPECT_EQ(reader.grid().type, sample_type_for(type));
+          EXPECT_EQ(read_numbers(reader), test::as_doubles(values)) << stored_name(type) << chunk;
         }
       }
     });
@@ -99,11 +45,11 @@ TEST(Hdf5Volume, ChosenByName) {
   const std::vector<std::uint8_t> second(12, 7);
   {
     Hdf5File file(scratch / "a");
-    file.add("first", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, first.data());
-    file.add("deep/second", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, second.data());
-    file.add("flat", {4, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, second.data());
-    file.add("empty", {2, 2, 3}, H5T_STD_U8LE, H5T_NATIVE_UINT8, nullptr);
-    file.add("endless", {1u << 20, 1u << 20, 1u << 10}, H5T_STD_U8LE, H5T_NATIVE_UINT8, nullptr, 16);
+    file.add("first", {2, 2, 3}, StoredType::kUint8, first.data());
+    file.add("deep/second", {2, 2, 3}, StoredType::kUint8, second.data());
+    file.add("flat", {4, 3}, StoredType::kUint8, second.data());
+    file.add("empty", {2, 2, 3}, StoredType::kUint8, nullptr);
+    file.add("endless", {1u << 20, 1u << 20, 1u << 10}, StoredType::kUint8, nullptr, 16);
   }
   VolumeReader reader = open_volume(scratch / "a", {"deep/second", {}});
   EXPECT_EQ(read_numbers(reader), std::vector<double>(12, 7));
@@ -123,7 +69,7 @@ TEST(Hdf5Volume, MoreSamplesThanAFileCanHold) {
     // One chunk of very many is there.
     Hdf5File file(scratch / "a.h5");
     const std::uint8_t value = 1;
-    file.add("small", {1, 1, 1}, H5T_STD_U8LE, H5T_NATIVE_UINT8, &value);
+    file.add("small", {1, 1, 1}, StoredType::kUint8, &value);
   }
   const hid_t file = H5Fopen((scratch / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hsize_t size[] = {1u << 20, 1u << 20, 1u << 10}, chunk[] = {4, 4, 4}, one[] = {1, 1, 1},
@@ -158,7 +104,7 @@ class Impatient final : public Progress {
 TEST(Hdf5Volume, CanBeCancelled) {
   const test::Scratch scratch, unpacked;
   const std::vector<std::uint8_t> values(64'000'000);
-  Hdf5File(scratch / "a.h5").add("v", {400, 400, 400}, H5T_STD_U8LE, H5T_NATIVE_UINT8, values.data(), 100);
+  Hdf5File(scratch / "a.h5").add("v", {400, 400, 400}, StoredType::kUint8, values.data(), 100);
   Impatient progress;
   EXPECT_THROW(open_volume(scratch / "a.h5", {{}, unpacked.folder()}, progress), Cancelled);
   EXPECT_EQ(unpacked.entries(), 0);
@@ -168,7 +114,7 @@ TEST(Hdf5Volume, CanBeCancelled) {
 TEST(Hdf5Volume, TruncationAndOtherBytesAreErrors) {
   const test::Scratch scratch;
   const auto values = test::typical_values<std::uint16_t>();
-  Hdf5File(scratch / "a.h5").add("v", {2, 2, 3}, H5T_STD_U16LE, H5T_NATIVE_UINT16, values.data(), 2);
+  Hdf5File(scratch / "a.h5").add("v", {2, 2, 3}, StoredType::kUint16, values.data(), 2);
   const auto size = std::filesystem::file_size(scratch / "a.h5");
   test::expect_every_truncation_is_an_error(scratch / "a.h5", scratch / "a.h5", size, 29);
   const std::string whole = test::bytes_of(scratch / "a.h5");

@@ -97,7 +97,7 @@ TEST(SmoothedGradients, StripsAreTheWholeVolume) {
       options.smoothing = way;
       ASSERT_EQ(volume.in_strips(options), whole);
       // The fewest rows at a time, and some more.
-      const std::size_t row = GradientSmoother::bytes(way) * dimensions[0];
+      const std::size_t row = SmoothingRounds::bytes(way) * dimensions[0];
       for (const std::size_t rows : {std::size_t{0}, 3 * way.rounds() + 1, 3 * way.rounds() + 8}) {
         options.memory = rows * row;
         ASSERT_EQ(volume.in_strips(options), whole) << dimensions[1] << " rows, " << rows << " at a time";
@@ -109,7 +109,7 @@ TEST(SmoothedGradients, StripsAreTheWholeVolume) {
 TEST(SmoothedGradients, AreTheSameOnAnyNumberOfThreads) {
   const Volume volume = rough({120, 160, 20});
   GradientPageOptions options;
-  options.memory = std::size_t{60} * 120 * GradientSmoother::bytes({});
+  options.memory = std::size_t{60} * 120 * SmoothingRounds::bytes({});
   std::vector<std::vector<OctahedralCode>> found;
   for (const unsigned threads : {1u, 2u, 5u}) {
     set_thread_limit(threads);
@@ -125,7 +125,7 @@ TEST(SmoothedGradients, PlanesComeOnceForTheScaleAndOnceForEachStrip) {
   const Volume volume = rough({9, 100, 11});
   for (const std::size_t rows : {100, 62, 50}) {
     GradientPageOptions options;
-    options.memory = rows * 9 * GradientSmoother::bytes({});
+    options.memory = rows * 9 * SmoothingRounds::bytes({});
     std::map<std::uint64_t, std::size_t> reads;
     std::uint64_t before = 0;
     smoothed_codes<float>(

@@ -1,0 +1,172 @@
+#include "cli/ome_zarr.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+
+#include "cli/usage_error.h"
+#include "core/base/text.h"
+#include "core/io/input_file.h"
+#include "core/io/sample_values.h"
+#include "core/io/zarr_array.h"
+
+namespace adamas {
+
+namespace {
+
+/// The path without a slash at its end.
+std::filesystem::path folder_path(const std::string& path) {
+  const std::filesystem::path folder(path);
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+/// F of F.zarr and F.ome.zarr.
+std::string zarr_name(const std::filesystem::path& path) {
+  std::string name = file_stem(path);
+  if (file_extension(name) == ".ome") name = file_stem(name);
+  return visible_text(name);
+}
+
+/// The time from one step to the next where all are evenly spaced but for round-off; nothing otherwise.
+std::optional<double> even_spacing(const std::vector<double>& times) {
+  if (times.size() < 2) return 1;
+  constexpr double kRoundOff = 1e-9;
+  const double all = times.back() - times.front(), each = all / static_cast<double>(times.size() - 1);
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    const double even = times.front() + static_cast<double>(n) * each;
+    if (!(std::abs(times[n] - even) <= kRoundOff * all)) return {};
+  }
+  if (!(each > 0)) return {};
+  return each;
+}
+
+/// Where the array's index of time is 0, and what each step adds.
+struct TimeScale {
+  double spacing = 1, first = 0;
+};
+
+Figures transformations(const RestoredPart& part, const VolumeGrid& volume,
+                        const std::optional<TimeScale>& time) {
+  Figures scale = Figures::array(), translation = Figures::array();
+  if (time) {
+    scale.push_back(time->spacing);
+    translation.push_back(time->first);
+  }
+  for (const int axis : {2, 1, 0}) {
+    scale.push_back(part.grid.spacing[axis]);
+    translation.push_back(volume.origin[axis] + part.first[axis] * part.grid.spacing[axis]);
+  }
+  return {{{"type", "scale"}, {"scale", scale}}, {{"type", "translation"}, {"translation", translation}}};
+}
+
+Figures axes(bool is_series) {
+  Figures all = Figures::array();
+  if (is_series) all.push_back({{"name", "t"}, {"type", "time"}});
+  for (const char* name : {"z", "y", "x"}) all.push_back({{"name", name}, {"type", "space"}});
+  return all;
+}
+
+/// What NGFF has no words for.
+Figures own_attributes(const VolumeGrid& volume, const std::vector<double>& times) {
+  Figures directions = Figures::array();
+  for (const Vec3& direction : volume.directions)
+    directions.push_back({direction.x, direction.y, direction.z});
+  Figures own{{"directions", directions}};
+  if (!volume.space.empty()) own["space"] = volume.space;
+  if (!times.empty()) own["times"] = times;
+  return own;
+}
+
+}  // namespace
+
+bool is_zarr(const std::string& path) { return file_extension(folder_path(path)) == ".zarr"; }
+
+OmeZarr::OmeZarr(const std::string& path, bool overwrite)
+    : folder_(folder_path(path), overwrite, {".zgroup", ".zattrs"}) {}
+
+void OmeZarr::check_apart(const std::string& input) const {
+  std::error_code code;
+  const auto within = std::filesystem::relative(input, folder_.path(), code);
+  if (!code && !within.empty() && *within.begin() != "..")
+    wrong_usage("-o: expected a folder without the input, found {} in {}", input, folder_.path().string());
+}
+
+void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content, Session& session) const {
+  const VolumeGrid& volume = file.header().grid;
+  const std::string name = folder_.path().string();
+  std::vector<double> times;
+  std::optional<TimeScale> time;
+  if (content.is_series) {
+    const std::vector<double> all = file.times();
+    times.assign(all.begin() + content.steps.first, all.begin() + content.steps.last + 1);
+    const std::optional<double> spacing = even_spacing(times);
+    time = spacing ? TimeScale{*spacing, times.front()} : TimeScale{};
+    if (!spacing)
+      session.console.note("{}: the times of steps are uneven: its scale counts steps, .zattrs has the times",
+                           name);
+  }
+  if (!volume.is_straight())
+    session.console.note(
+        "{}: axes do not run along x, y and z, which OME-Zarr has no words for: .zattrs has their directions",
+        name);
+  Figures datasets = Figures::array();
+  for (std::size_t n = 0; n < content.levels.size(); ++n)
+    datasets.push_back({{"path", std::to_string(n)},
+                        {"coordinateTransformations", transformations(content.levels[n], volume, time)}});
+  const Figures multiscale{{"version", "0.4"},
+                           {"name", zarr_name(folder_.path())},
+                           {"axes", axes(content.is_series)},
+                           {"datasets", datasets},
+                           {"type", "nearest"}};
+  write_figures(folder_.file(".zgroup"), Figures::object({{"zarr_format", 2}}));
+  write_figures(folder_.file(".zattrs"), Figures::object({{"multiscales", Figures::array({multiscale})},
+                                                          {"adamas", own_attributes(volume, times)}}));
+}
+
+std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, std::size_t level,
+                                 PageCounts& counts, Session& session) const {
+  const RestoredPart& part = content.levels[level];
+  VolumeGrid grid = part.grid;
+  if (grid.is_scaled()) grid.type = SampleType::kFloat32;
+  const StepRange all = content.steps;
+  std::optional<std::uint64_t> count;
+  if (content.is_series) count = all.last - all.first + 1;
+  ZarrArray array(folder_.file(std::to_string(level)), grid, count);
+  std::vector<float> values;
+  for (StepRange rest = all; rest.first <= all.last;) {
+    const StepRange some =
+        restored_together(rest, array.slab_bytes() + restored_slab_bytes(part), content.memory);
+    std::vector<ZarrArray::Step> steps;
+    for (std::uint32_t step = some.first; step <= some.last; ++step)
+      steps.emplace_back(array, step - all.first);
+    const auto sink = [&](std::uint32_t step, std::span<const std::byte> plane) {
+      if (part.grid.is_scaled()) {
+        find_values(part.grid, plane, values);
+        plane = std::as_bytes(std::span(values));
+      }
+      steps[step - some.first].write_plane(plane);
+    };
+    counts += restore_steps(file, some, part, content.memory, sink, session.console);
+    rest.first = some.last + 1;
+  }
+  return array.bytes();
+}
+
+std::size_t OmeZarr::write(StoreFile& file, const ZarrContent& content, PageCounts& counts,
+                           Session& session) const {
+  const VolumeGrid& volume = file.header().grid;
+  if (volume.is_scaled())
+    session.console.note("{}: values, {:.9g} times the samples plus {:.9g}, are written as float32",
+                         folder_.path().string(), volume.slope, volume.intercept);
+  std::size_t bytes = 0;
+  folder_.fill([&] {
+    write_attributes(file, content, session);
+    for (std::size_t level = 0; level < content.levels.size(); ++level)
+      bytes += write_level(file, content, level, counts, session);
+  });
+  return bytes;
+}
+
+}  // namespace adamas

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/figures.h"
+#include "cli/output_folder.h"
+#include "isosurface/storage/restore.h"
+
+namespace adamas {
+
+/// Whether a name is that of a folder F.zarr, also with a slash behind it.
+bool is_zarr(const std::string& path);
+
+/// What is written as OME-Zarr.
+struct ZarrContent {
+  std::vector<RestoredPart> levels;  ///< the first is the finest
+  StepRange steps;
+  bool is_series = false;  ///< whether there is an axis of time
+  std::size_t memory = 0;  ///< for decoded pages, and again for the slabs of steps that are made together
+};
+
+/// Samples of a store as OME-Zarr 0.4: a folder F.zarr whose arrays are levels. Throws Error as restore()
+/// does and where something cannot be written.
+class OmeZarr {
+ public:
+  /// Throws Error where the folder cannot be made (OutputFolder).
+  OmeZarr(const std::string& path, bool overwrite);
+  /// Throws UsageError where a file lies in the folder, which would be replaced with it.
+  void check_apart(const std::string& input) const;
+
+  /// Returns the bytes that were written.
+  std::size_t write(StoreFile& file, const ZarrContent& content, PageCounts& counts, Session& session) const;
+  void commit() { folder_.commit(); }
+
+ private:
+  std::size_t write_level(StoreFile& file, const ZarrContent& content, std::size_t level, PageCounts& counts,
+                          Session& session) const;
+  void write_attributes(const StoreFile& file, const ZarrContent& content, Session& session) const;
+
+  OutputFolder folder_;
+};
+
+}  // namespace adamas

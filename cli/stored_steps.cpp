@@ -1,0 +1,136 @@
+#include "cli/stored_steps.h"
+
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "cli/usage_error.h"
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/series_file.h"
+
+namespace adamas {
+
+namespace {
+
+/// The series that the file of some options is; no steps where it is none, or one of its volumes is named.
+InputSteps steps_of_file(const VolumeInput& options) {
+  if (!options.time.empty() || !options.dimensions.empty()) return {};
+  const VolumeSeries series = find_volume_series(options.path, options.array);
+  InputSteps result{{}, series.times};
+  const auto unpacked = std::make_shared<UnpackedTimes>();
+  for (const VolumeStep& step : series.steps) {
+    InputStep input{step.time, options.path, options};
+    input.input.all_times = unpacked;
+    input.input.array = step.array;
+    if (!step.array.empty()) input.name += ": " + step.array;
+    if (step.number) {
+      input.input.time = std::to_string(*step.number);
+      input.name += ": time " + input.input.time;
+    }
+    result.steps.push_back(std::move(input));
+  }
+  return result;
+}
+
+}  // namespace
+
+InputSteps find_input_steps(const std::vector<std::string>& inputs, const VolumeInput& options) {
+  if (options.stack && inputs.size() > 1)
+    wrong_usage("--stack: expected one pattern, found {} inputs", inputs.size());
+  InputSteps result;
+  VolumeInput input = options;
+  if (!options.stack) {
+    for (const SeriesEntry& entry : find_series(inputs)) {
+      input.path = entry.file;
+      result.steps.push_back({entry.time, entry.file, input});
+    }
+    if (inputs.size() == 1 && file_extension(inputs[0]) == ".pvd") result.times = StepTimes::kAbsolute;
+  }
+  if (!result.steps.empty()) return result;
+  input.path = inputs[0];
+  if (!options.stack) result = steps_of_file(input);
+  if (result.steps.empty()) result.steps = {{0, input.path, input}};
+  return result;
+}
+
+void refuse_grid(const std::string& name, const VolumeGrid& found, const std::string& first,
+                 const VolumeGrid& wanted) {
+  const auto text = [](const VolumeGrid& grid) {
+    return fmt::format("{} x {} x {} {}", grid.dimensions[0], grid.dimensions[1], grid.dimensions[2],
+                       sample_name(grid.type));
+  };
+  if (text(found) != text(wanted))
+    fail("{}: expected {} samples as {} has, found {}", name, text(wanted), first, text(found));
+  fail("{}: expected the place, spacing and scale of the samples of {}, found others", name, first);
+}
+
+/// A step that is being read: planes for the builder, which asks for some of them twice. Counts the samples
+/// that are no finite numbers.
+class StoredSteps::Open {
+ public:
+  explicit Open(VolumeReader reader) : reader_(std::move(reader)), counted_(reader_.grid().dimensions[2]) {}
+
+  void read(std::uint64_t k, std::span<std::byte> samples) {
+    reader_.read_plane(k, samples);
+    if (reader_.grid().type != SampleType::kFloat32 || counted_[k]) return;
+    counted_[k] = true;
+    for (std::size_t at = 0; at < samples.size(); at += sizeof(float)) {
+      float value = 0;
+      std::memcpy(&value, samples.data() + at, sizeof(value));
+      infinite_ += std::isfinite(value) ? 0 : 1;
+    }
+  }
+  [[nodiscard]] const VolumeReader& reader() const { return reader_; }
+  [[nodiscard]] std::uint64_t infinite() const { return infinite_; }
+
+ private:
+  VolumeReader reader_;
+  std::vector<bool> counted_;
+  std::uint64_t infinite_ = 0;
+};
+
+StoredSteps::StoredSteps(std::vector<InputStep> steps, Session& session)
+    : steps_(std::move(steps)), session_(session) {
+  open(0);
+  grid_ = open_->reader().grid();
+}
+
+StoredSteps::~StoredSteps() = default;
+
+SeriesSource StoredSteps::source() {
+  SeriesSource series{grid_, {}, [this](std::uint32_t n) -> PlaneSource {
+                        if (n != opened_) open(n);
+                        return [this](std::uint64_t k, std::span<std::byte> samples) {
+                          open_->read(k, samples);
+                        };
+                      }};
+  for (const InputStep& step : steps_) series.times.push_back(step.time);
+  return series;
+}
+
+void StoredSteps::close() {
+  if (open_ == nullptr) return;
+  input_bytes_ += open_->reader().source().sample_file_bytes();
+  // Of the times of one file there is mostly the same to say.
+  const std::string note = open_->reader().note();
+  if (!note.empty() && note != last_note_) session_.console.note("{}", note);
+  last_note_ = note;
+  const std::uint64_t infinite = open_->infinite();
+  if (infinite > 0)
+    session_.console.note("{}: {} not finite: surfaces have holes there", steps_[opened_].name,
+                          infinite == 1 ? "1 sample is" : fmt::format("{} samples are", infinite));
+  open_.reset();
+}
+
+void StoredSteps::open(std::uint32_t n) {
+  close();
+  const InputStep& step = steps_[n];
+  open_ = std::make_unique<Open>(open_volume_input(step.input, session_, true));
+  opened_ = n;
+  const VolumeGrid& grid = open_->reader().grid();
+  check_volume_dimensions(step.name, grid);
+  if (n > 0 && grid != grid_) refuse_grid(step.name, grid, steps_.front().name, grid_);
+}
+
+}  // namespace adamas

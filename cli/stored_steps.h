@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/volume_options.h"
+#include "core/io/volume_series.h"
+#include "isosurface/storage/store_builder.h"
+
+namespace adamas {
+
+/// A step that is to be stored: the volume that it is, and what messages call it.
+struct InputStep {
+  double time = 0;
+  std::string name;
+  VolumeInput input;
+};
+
+/// The steps that the inputs of `store` stand for.
+struct InputSteps {
+  std::vector<InputStep> steps;
+  StepTimes times = StepTimes::kCounted;
+};
+
+/// Those of several files, of a pattern or a list (find_series), or of the series that one file is
+/// (find_volume_series), unless an option says which time of it; else the one volume. Throws UsageError and
+/// Error.
+InputSteps find_input_steps(const std::vector<std::string>& inputs, const VolumeInput& options);
+
+/// Says in what a step's grid is another than that of others.
+[[noreturn]] void refuse_grid(const std::string& name, const VolumeGrid& found, const std::string& first,
+                              const VolumeGrid& wanted);
+
+/// Steps of a series, opened one after another as they are asked for. All have the grid of the first; Throws
+/// Error where one has not.
+class StoredSteps {
+ public:
+  StoredSteps(std::vector<InputStep> steps, Session& session);
+  ~StoredSteps();
+  StoredSteps(const StoredSteps&) = delete;
+  StoredSteps& operator=(const StoredSteps&) = delete;
+
+  [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
+  /// What a store is built of; this has to outlive it.
+  [[nodiscard]] SeriesSource source();
+  /// Takes in what there is to say of the last step.
+  void close();
+  [[nodiscard]] std::uint64_t input_bytes() const { return input_bytes_; }
+  [[nodiscard]] std::size_t count() const { return steps_.size(); }
+
+ private:
+  class Open;
+  void open(std::uint32_t n);
+
+  std::vector<InputStep> steps_;
+  Session& session_;
+  VolumeGrid grid_;
+  std::unique_ptr<Open> open_;
+  std::uint32_t opened_ = 0;
+  std::uint64_t input_bytes_ = 0;
+  std::string last_note_;
+};
+
+}  // namespace adamas

@@ -1,0 +1,92 @@
+#include "core/io/hdf5_volumes.h"
+
+#include <array>
+
+#include "core/base/error.h"
+#include "core/io/hdf5_handle.h"
+
+namespace adamas {
+
+namespace {
+
+/// No more than are worth listing.
+constexpr std::size_t kMostListed = 8;
+
+struct Listing {
+  int axes = 3;
+  std::vector<std::string> names;
+};
+
+/// The names of all data sets of numbers along so many axes.
+std::vector<std::string> find_sets(hid_t file, int axes) {
+  Listing listing{axes, {}};
+  const auto add = [](hid_t root, const char* name, const H5O_info_t* info, void* found) -> herr_t {
+    auto& list = *static_cast<Listing*>(found);
+    if (info->type == H5O_TYPE_DATASET && hdf5_axes(root, name) == list.axes) list.names.emplace_back(name);
+    return list.names.size() < kMostListed ? 0 : 1;
+  };
+  H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, add, &listing);
+  return listing.names;
+}
+
+}  // namespace
+
+std::optional<StoredType> hdf5_stored_type(hid_t type) {
+  const std::size_t bytes = H5Tget_size(type);
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind == H5T_FLOAT) return bytes <= 4 ? StoredType::kFloat32 : StoredType::kFloat64;
+  if (kind != H5T_INTEGER) return {};
+  const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
+  if (bytes == 1) return is_signed ? StoredType::kInt8 : StoredType::kUint8;
+  if (bytes == 2) return is_signed ? StoredType::kInt16 : StoredType::kUint16;
+  if (bytes == 4) return is_signed ? StoredType::kInt32 : StoredType::kUint32;
+  return is_signed ? StoredType::kInt64 : StoredType::kUint64;
+}
+
+hid_t hdf5_memory_type(StoredType type) {
+  const std::array<hid_t, 10> types{H5T_NATIVE_INT8,  H5T_NATIVE_UINT8,  H5T_NATIVE_INT16, H5T_NATIVE_UINT16,
+                                    H5T_NATIVE_INT32, H5T_NATIVE_UINT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64,
+                                    H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE};
+  return types[static_cast<std::size_t>(type)];
+}
+
+int hdf5_axes(hid_t place, const char* name) {
+  const Hdf5Handle set(H5Dopen2(place, name, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle space(set.good() ? H5Dget_space(set.id()) : -1, H5Sclose);
+  const Hdf5Handle type(set.good() ? H5Dget_type(set.id()) : -1, H5Tclose);
+  if (!space.good() || !type.good() || !hdf5_stored_type(type.id())) return 0;
+  const int axes = H5Sget_simple_extent_ndims(space.id());
+  return axes > 0 ? axes : 0;
+}
+
+std::string choose_hdf5_set(const std::string& name, hid_t file, const std::string& wanted) {
+  std::vector<std::string> found = find_sets(file, 3);
+  if (found.empty()) found = find_sets(file, 4);
+  std::string names;
+  for (const std::string& one : found) names += (names.empty() ? "'" : ", '") + one + "'";
+  if (!wanted.empty()) {
+    // The root is there without a link to it.
+    if (wanted == "/" || H5Lexists(file, wanted.c_str(), H5P_DEFAULT) > 0) return wanted;
+    fail("{}: expected a data set '{}', found {}", name, wanted,
+         names.empty() ? "none of three axes" : names);
+  }
+  if (found.empty()) fail("{}: expected a data set of numbers along three axes, found none", name);
+  if (found.size() == kMostListed) names += ", ...";
+  if (found.size() > 1) fail("{}: expected the name of a data set, found {}", name, names);
+  return found.front();
+}
+
+std::vector<double> hdf5_times(hid_t set) {
+  constexpr hssize_t kMost = hssize_t{1} << 24;
+  if (H5Aexists(set, "time") <= 0) return {};
+  const Hdf5Handle attribute(H5Aopen(set, "time", H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(attribute.good() ? H5Aget_space(attribute.id()) : -1, H5Sclose);
+  const Hdf5Handle type(attribute.good() ? H5Aget_type(attribute.id()) : -1, H5Tclose);
+  const hssize_t count = space.good() ? H5Sget_simple_extent_npoints(space.id()) : 0;
+  if (!type.good() || !hdf5_stored_type(type.id()) || count < 1 || count > kMost) return {};
+  std::vector<double> times(static_cast<std::size_t>(count));
+  if (H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, times.data()) < 0) return {};
+  return times;
+}
+
+}  // namespace adamas

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "adamas/volume.h"
+
+namespace adamas {
+
+/// The values (VolumeGrid::value) that samples of a grid's type stand for.
+void find_values(const VolumeGrid& grid, std::span<const std::byte> samples, std::vector<float>& values);
+
+}  // namespace adamas

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "adamas/volume.h"
+
+namespace adamas {
+
+/// An array of a Zarr store, version 2 of the format: a folder with `.zarray` and a file for each chunk,
+/// which is t/z/y/x of a series and z/y/x of a volume. A chunk has one step and at most 64 samples along each
+/// axis, least byte first, x fastest, as a zlib stream; beyond the volume it has zeros. Equal samples give
+/// equal bytes.
+class ZarrArray {
+ public:
+  static constexpr std::uint64_t kSide = 64;
+
+  /// Makes the folder, in one that is there, and writes `.zarray`. `steps`: of a series. Throws Error where
+  /// they cannot be written.
+  ZarrArray(std::filesystem::path folder, const VolumeGrid& grid, std::optional<std::uint64_t> steps);
+
+  [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
+  /// Of the files that are written.
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  /// Of the planes that are held until chunks have all of theirs.
+  [[nodiscard]] std::uint64_t slab_bytes() const { return chunk_[2] * grid_.plane_bytes(); }
+
+  /// One step, which takes its planes in ascending order. Several may be written at the same time.
+  class Step {
+   public:
+    /// `step`: from 0 on; 0 of a volume. The array must outlive this.
+    Step(ZarrArray& array, std::uint64_t step) : array_(array), step_(step) {}
+    /// Throws Error where a chunk cannot be written.
+    void write_plane(std::span<const std::byte> samples);
+
+   private:
+    ZarrArray& array_;
+    std::uint64_t step_;
+    std::uint64_t planes_ = 0;     ///< that were taken
+    std::vector<std::byte> slab_;  ///< those of which chunks are not written
+  };
+
+ private:
+  void write_header() const;
+  /// The chunks of some planes, the first of which begins a chunk.
+  void write_slab(std::uint64_t step, std::uint64_t first, std::span<const std::byte> planes);
+  [[nodiscard]] std::vector<std::byte> chunk(std::uint64_t x, std::uint64_t y,
+                                             std::span<const std::byte> planes) const;
+
+  std::filesystem::path folder_;
+  VolumeGrid grid_;
+  std::optional<std::uint64_t> steps_;
+  std::array<std::uint64_t, 3> chunk_{};  ///< samples along x, y and z
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace adamas

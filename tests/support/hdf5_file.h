@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/io/stored_type.h"
+
+namespace adamas::test {
+
+/// An HDF5 file that is being written.
+class Hdf5File {
+ public:
+  explicit Hdf5File(const std::filesystem::path& path);
+  ~Hdf5File();
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
+
+  /// A data set of so many numbers along its axes, the slowest first, in groups that its name says. Nothing
+  /// is written where there are no values; `chunk` of 0: contiguous.
+  void add(const std::string& name, const std::vector<std::uint64_t>& size, StoredType type,
+           const void* values, std::uint64_t chunk = 0, bool big_endian = false);
+  /// An attribute of a data set.
+  void add_numbers(const std::string& name, const char* attribute, const std::vector<double>& numbers);
+
+ private:
+  std::int64_t file_;
+};
+
+}  // namespace adamas::test
