@@ -11,6 +11,7 @@
 #include "core/picture/colour_map.h"
 #include "core/picture/ticks.h"
 #include "viewer/scene/camera_control.h"
+#include "viewer/window/step_panel.h"
 
 namespace adamas {
 
@@ -245,7 +246,7 @@ void show_camera(ViewSession& session, PanelState& panels) {
   ImGui::SameLine();
   if (ImGui::Button(session.is_recording() ? "End recording" : "Record")) session.act(Action::kRecord);
   ImGui::SameLine();
-  if (ImGui::Button(session.is_playing() ? "Stop" : "Play")) session.act(Action::kPlay);
+  if (ImGui::Button(session.is_playing() ? "Stop" : "Play")) session.act(Action::kPlayCamera);
   if (session.path().size() > 1 && !session.is_recording()) {
     ImGui::SameLine();
     if (ImGui::Button("Save path")) panels.wants_path_saved = true;
@@ -352,6 +353,7 @@ void show_panels(ViewSession& session, Input& input, PanelState& panels) {
   show_help(session);
   show_picked(session, input);
   if (!session.has_panels) return;
+  show_step_panel(session);
   const float height = ImGui::GetIO().DisplaySize.y;
   ImGui::SetNextWindowPos({0.6F * em(), 0.6F * em()}, ImGuiCond_Once);
   ImGui::SetNextWindowSizeConstraints({18 * em(), 4 * em()},
