@@ -85,6 +85,8 @@ TEST_F(SeriesSessions, ShowAtEachStepWhatAFileThatIsOpenedThereShows) {
         const auto fresh = session_at(step, true, is_coloured);
         EXPECT_TRUE(are_same(parts, finished(*fresh)));
         EXPECT_FALSE(are_same(parts, last)) << "waves travel";
+        EXPECT_EQ(session->shown_field()->range, fresh->shown_field()->range)
+            << "colours mean the same in all steps";
         last = parts;
         const Vec3 place{11.3, 20.8, 7.6};
         const auto value = session->documents()[0]->at(place, session->state().documents[0], 0).value;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "core/geometry/vec3.h"
 #include "isosurface/view/viewpoint.h"
 #include "viewer/scene/view_state.h"
@@ -27,5 +30,7 @@ Viewpoint with_projection(const Viewpoint& viewpoint, bool is_parallel);
 /// Between two viewpoints, 0 <= t <= 1: the eye on an arc round the target, directions turned, distances in
 /// proportion.
 Viewpoint between(const Viewpoint& from, const Viewpoint& to, double t);
+/// Along some viewpoints, from the first to the last, in so many frames; one frame alone is the first.
+std::vector<Viewpoint> spread(const std::vector<Viewpoint>& path, std::size_t frames);
 
 }  // namespace adamas

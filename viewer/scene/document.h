@@ -25,8 +25,8 @@ struct DocumentFacts {
   std::vector<Colour> material_colours;
   std::vector<std::string> fields;       ///< that colours may show
   bool has_isovalues = false;            ///< a store, whose surfaces are chosen
-  std::array<double, 2> value_range{};   ///< of a store's samples, of the step that was opened
-  std::vector<std::uint64_t> histogram;  ///< of some of them, in equal parts of the range
+  std::array<double, 2> value_range{};   ///< of a store's samples, in all steps
+  std::vector<std::uint64_t> histogram;  ///< of some of the step that was opened, in equal parts of the range
   std::vector<double> times;             ///< of a store's steps, one or several; none of other files
 };
 

@@ -32,6 +32,12 @@ Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
   return result;
 }
 
+/// Of all steps, so that colours mean the same in each.
+std::array<double, 2> range_of(const std::vector<double>& some, VolumeValues& values) {
+  const auto [least, greatest] = std::ranges::minmax(some);
+  return values.extended_by_steps({least, greatest});
+}
+
 class StoreDocument final : public Document {
  public:
   StoreDocument(const std::string& path, const DocumentOptions& options)
@@ -57,8 +63,7 @@ class StoreDocument final : public Document {
     facts_.fields = {std::filesystem::path(options.colour_by).filename().string()};
     const std::vector<double> some = colours->some();
     if (some.empty()) fail("{}: expected finite samples to colour by, found none", options.colour_by);
-    const auto [least, greatest] = std::ranges::minmax(some);
-    colour_range_ = {least, greatest};
+    colour_range_ = range_of(some, *colours);
   }
 
   [[nodiscard]] const DocumentFacts& facts() const override { return facts_; }
@@ -192,8 +197,8 @@ class StoreDocument final : public Document {
     const std::vector<double> some = values_->some();
     facts_.histogram.assign(kHistogramParts, 0);
     if (some.empty()) return;
-    const auto [least, greatest] = std::ranges::minmax(some);
-    facts_.value_range = {least, greatest};
+    facts_.value_range = range_of(some, *values_);
+    const auto [least, greatest] = facts_.value_range;
     const double width = greatest > least ? greatest - least : 1;
     for (const double value : some) {
       const auto part = static_cast<std::size_t>((value - least) / width * kHistogramParts);

@@ -67,6 +67,22 @@ class ValuesOf final : public VolumeValues {
     return values;
   }
 
+  [[nodiscard]] std::array<double, 2> extended_by_steps(std::array<double, 2> range) override {
+    const PageGrid& pages = file_.grid();
+    if (file_.steps() == 1 || pages.depth() == 0) return range;
+    for (std::uint32_t step = 0; step < file_.steps(); ++step) {
+      const std::optional<PageEntry> all = file_.entry(step, {pages.top(), {0, 0, 0}});
+      // The words of an empty range are no numbers.
+      if (!all || all->low > all->high) continue;
+      for (const auto word : {all->low, all->high}) {
+        const auto sample = from_ordered<Sample>(static_cast<OrderedWord<Sample>>(word));
+        const double value = file_.header().grid.value(static_cast<double>(sample));
+        if (std::isfinite(value)) range = {std::min(range[0], value), std::max(range[1], value)};
+      }
+    }
+    return range;
+  }
+
   [[nodiscard]] int coarsest() const override { return std::max(0, samples_.lods() - 1); }
   [[nodiscard]] std::uint32_t steps() const override { return file_.steps(); }
   void set_step(std::uint32_t step) override {
