@@ -354,11 +354,11 @@ void show_panels(ViewSession& session, Input& input, PanelState& panels) {
   show_picked(session, input);
   if (!session.has_panels) return;
   show_step_panel(session);
-  const float height = ImGui::GetIO().DisplaySize.y;
+  const float height = ImGui::GetIO().DisplaySize.y - step_panel_height(session);
+  const float most = std::max(4 * em(), height - 8 * em());
   ImGui::SetNextWindowPos({0.6F * em(), 0.6F * em()}, ImGuiCond_Once);
-  ImGui::SetNextWindowSizeConstraints({18 * em(), 4 * em()},
-                                      {40 * em(), std::max(4 * em(), height - 8 * em())});
-  ImGui::SetNextWindowSize({22 * em(), std::max(4 * em(), height - 8 * em())}, ImGuiCond_Once);
+  ImGui::SetNextWindowSizeConstraints({18 * em(), 4 * em()}, {40 * em(), most});
+  ImGui::SetNextWindowSize({22 * em(), most}, ImGuiCond_Once);
   ImGui::Begin("adamas", nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PushItemWidth(0.6F * ImGui::GetContentRegionAvail().x);
   for (std::size_t n = 0; n < session.documents().size(); ++n) {
