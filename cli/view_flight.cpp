@@ -14,6 +14,11 @@ namespace {
 std::vector<Viewpoint> path_of(const ViewOptions& options, const PictureSize& size, const ViewSession& view) {
   // A state has a viewpoint of its own.
   if (options.path.empty() && !options.state.empty()) return {view.state().viewpoint};
+  if (options.path == "bookmarks") {
+    std::vector<Viewpoint> path = view.bookmarked();
+    if (path.empty()) wrong_usage("--camera-path bookmarks: expected a --state with bookmarks, found none");
+    return path;
+  }
   // A series moves by itself.
   const char* const otherwise = options.steps.empty() ? "orbit:36" : "orbit:1";
   return flight(options.path.empty() ? otherwise : options.path, view.box(), size.width, size.height);
@@ -23,19 +28,19 @@ std::vector<Viewpoint> path_of(const ViewOptions& options, const PictureSize& si
 
 std::vector<FlightFrame> flight_frames(const ViewOptions& options, const PictureSize& size,
                                        const ViewSession& view) {
-  std::vector<Viewpoint> path = path_of(options, size, view);
+  const std::vector<Viewpoint> path = path_of(options, size, view);
   std::vector<FlightFrame> frames;
   const auto steps = steps_of(options);
   if (steps) {
     const auto [first, last] = *steps;
     if (last >= view.times().size())
       wrong_usage("--steps: expected steps below {}, found '{}'", view.times().size(), options.steps);
-    path = spread(path, last - first + 1);
+    const std::size_t count = last - first + 1;
+    for (std::size_t n = 0; n < count; ++n)
+      frames.push_back({along(path, n, count), first + static_cast<std::uint32_t>(n)});
+    return frames;
   }
-  for (const Viewpoint& viewpoint : path) {
-    frames.push_back({viewpoint, std::nullopt});
-    if (steps) frames.back().step = static_cast<std::uint32_t>((*steps)[0] + frames.size() - 1);
-  }
+  for (const Viewpoint& viewpoint : path) frames.push_back({viewpoint, std::nullopt});
   return frames;
 }
 

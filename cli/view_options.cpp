@@ -191,11 +191,11 @@ void add_offscreen_options(const Command& command, ViewOptions& options) {
   command.add_flag("--offscreen", options.offscreen,
                    "Draw without a window: by a graphics device, or the processor");
   command
-      .add_option(
-          "--camera-path", options.path,
-          "orbit:N: once round the data in N frames (default orbit:36); or a file with a viewpoint on each "
-          "line: eye, target and upward direction, nine numbers")
-      .type_name("orbit:N|FILE");
+      .add_option("--camera-path", options.path,
+                  "orbit:N: once round the data in N frames (default orbit:36); a file with a viewpoint on "
+                  "each line: "
+                  "eye, target and upward direction, nine numbers; or bookmarks: those of --state")
+      .type_name("orbit:N|FILE|bookmarks");
   command.add_option("--frames", options.frames, "The folder of the pictures: frame0001.png and so on")
       .type_name("DIR");
   command

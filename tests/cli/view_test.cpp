@@ -166,6 +166,35 @@ TEST_F(ViewCommand, ShowsAFrameOfEachStepWhileTheCameraMoves) {
   ASSERT_EQ(view({"--steps", "0,4", "--frames", "still"}).status, 0);
   ASSERT_EQ(view({"--step", "4", "--camera-path", "orbit:1", "--frames", "four"}).status, 0);
   EXPECT_TRUE(read("still/frame0005.png") == read("four/frame0001.png"));
+  // The bookmarks of a state are such a path, too, and the state's step is what is seen without another one.
+  const auto viewpoint = [](const char* eye) {
+    return fmt::format(
+        R"({{"eye": [{}], "target": [19.5, 19.5, 19.5], "up": [0, 0, 1], "angle": 0.52, "height": 0, "near": 1}})",
+        eye);
+  };
+  const std::string near = viewpoint("100, 20, 30"), far = viewpoint("25, -65, 18");
+  write(
+      "state.json",
+      fmt::format(
+          R"({{"viewpoint": {0}, "camera": "fly", "shading": "lit", "colour_map": "grey", "edges": false, "axes": true,
+                "colour_bar": true, "box": true, "leaves_out_hidden": false, "pixels": 1, "max_triangles": 500000,
+                "cut": {{"on": false, "origin": [0, 0, 0], "normal": [1, 0, 0], "cuts_away": true, "section": true}},
+                "bookmarks": [{{"name": "a", "viewpoint": {1}}}, {{"name": "b", "viewpoint": {0}}}],
+                "documents": [{{"surfaces": [], "hidden": [], "field": "", "step": 3}}]}})",
+          far, near));
+  const std::vector<std::string> state{"--state", "state.json", "--frames", "marks", "--overwrite"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), state.begin(), state.end());
+    const RunResult drawn = view(more);
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+  };
+  with({"--camera-path", "bookmarks", "--steps", "1,3"});
+  const std::string third = read("marks/frame0003.png");
+  EXPECT_FALSE(read("marks/frame0001.png") == third);
+  with({});
+  EXPECT_TRUE(read("marks/frame0001.png") == third);
+  with({"--step", "1"});
+  EXPECT_FALSE(read("marks/frame0001.png") == third);
   const auto refused = [&](const std::vector<std::string>& more, const char* message) {
     const RunResult other = view(more);
     EXPECT_EQ(other.status, 2);
@@ -176,6 +205,7 @@ TEST_F(ViewCommand, ShowsAFrameOfEachStepWhileTheCameraMoves) {
   refused({"--steps", "1,3", "--step", "2", "--json", "g.json"}, "expected no --step beside it");
   refused({"--frame-rate", "5", "--json", "g.json"}, "--frame-rate: expected a --film");
   refused({"--film", "film.png"}, "--film");
+  refused({"--camera-path", "bookmarks", "--json", "g.json"}, "expected a --state with bookmarks");
   const RunResult film = view({"--steps", "0,4", "--film", "film.gif", "--frame-rate", "5"});
   if (film.err.find("expected the program ffmpeg") == std::string::npos) {
     EXPECT_EQ(film.status, 0) << film.err;

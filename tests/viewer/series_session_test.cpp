@@ -152,6 +152,32 @@ TEST_F(SeriesSessions, PlayStepAfterStep) {
   EXPECT_EQ(session->step(), 1u);
 }
 
+TEST_F(SeriesSessions, TakeTheCameraAlongTheBookmarks) {
+  const auto session = session_at(0, true);
+  session->act(Action::kBookmark);
+  const Viewpoint first = session->state().viewpoint;
+  session->act(Action::kViewFront);
+  session->act(Action::kBookmark);
+  const Viewpoint last = session->state().viewpoint;
+  session->has_keyed_camera = true;
+  session->advance(1);
+  EXPECT_EQ(session->state().viewpoint, last) << "nothing plays";
+  session->clock().pace() = {10, Repeat::kOnce, false, 0};
+  session->play_steps();
+  std::vector<Viewpoint> seen;
+  while (session->clock().is_playing()) {
+    session->advance(0.1);
+    if (session->clock().is_playing()) seen.push_back(session->state().viewpoint);
+  }
+  ASSERT_EQ(seen.size(), kSteps - 1);
+  EXPECT_EQ(seen.back(), last);
+  double before = 0;
+  for (const Viewpoint& each : seen) {
+    EXPECT_GT(distance(each.eye, first.eye), before);
+    before = distance(each.eye, first.eye);
+  }
+}
+
 TEST_F(SeriesSessions, TellOfAStepThatIsDamagedAndGoOn) {
   build(path, 10, 3);
   {

@@ -160,16 +160,12 @@ Viewpoint between(const Viewpoint& from, const Viewpoint& to, double t) {
   return result;
 }
 
-std::vector<Viewpoint> spread(const std::vector<Viewpoint>& path, std::size_t frames) {
-  std::vector<Viewpoint> result;
-  const std::size_t parts = std::max<std::size_t>(1, frames - 1);
-  for (std::size_t n = 0; n < frames; ++n) {
-    // In whole numbers, so that frames that meet with a viewpoint are that viewpoint.
-    const std::size_t way = n * (path.size() - 1), below = way / parts;
-    const double part = static_cast<double>(way % parts) / static_cast<double>(parts);
-    result.push_back(between(path[below], path[std::min(below + 1, path.size() - 1)], part));
-  }
-  return result;
+Viewpoint along(const std::vector<Viewpoint>& path, std::size_t frame, std::size_t frames) {
+  const std::size_t parts = std::max<std::size_t>(2, frames) - 1;
+  // In whole numbers, so that frames that meet with a viewpoint are that viewpoint.
+  const std::size_t way = frame * (path.size() - 1), below = way / parts;
+  const double part = static_cast<double>(way % parts) / static_cast<double>(parts);
+  return between(path[below], path[std::min(below + 1, path.size() - 1)], part);
 }
 
 }  // namespace adamas

@@ -30,7 +30,8 @@ Viewpoint with_projection(const Viewpoint& viewpoint, bool is_parallel);
 /// Between two viewpoints, 0 <= t <= 1: the eye on an arc round the target, directions turned, distances in
 /// proportion.
 Viewpoint between(const Viewpoint& from, const Viewpoint& to, double t);
-/// Along some viewpoints, from the first to the last, in so many frames; one frame alone is the first.
-std::vector<Viewpoint> spread(const std::vector<Viewpoint>& path, std::size_t frames);
+/// Where a frame of so many is, from 0 on, along some viewpoints: from the first one in the first frame to
+/// the last one in the last frame.
+Viewpoint along(const std::vector<Viewpoint>& path, std::size_t frame, std::size_t frames);
 
 }  // namespace adamas

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "viewer/scene/camera_control.h"
 #include "viewer/scene/view_session.h"
 
 namespace adamas {
@@ -57,6 +58,12 @@ bool ViewSession::is_ready(std::uint32_t step) const {
   });
 }
 
+std::vector<Viewpoint> ViewSession::bookmarked() const {
+  std::vector<Viewpoint> path;
+  for (const Bookmark& each : state_.bookmarks) path.push_back(sized_as(each.viewpoint, state_.viewpoint));
+  return path;
+}
+
 void ViewSession::play_steps() {
   if (clock_.is_playing()) {
     clock_.pause();
@@ -83,6 +90,8 @@ void ViewSession::advance_steps(double seconds) {
   if (times().size() < 2) return;
   const std::vector<std::uint32_t> next = clock_.following(step(), 1);
   set_step(clock_.advance(step(), seconds, next.empty() || is_ready(next[0])));
+  if (has_keyed_camera && clock_.is_playing() && state_.bookmarks.size() > 1)
+    state_.viewpoint = along(bookmarked(), step(), times().size());
   const std::vector<std::uint32_t> expected = clock_.following(step(), kStepsAhead);
   for (const auto& document : documents_) document->expect(expected);
 }

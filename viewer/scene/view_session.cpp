@@ -55,7 +55,11 @@ void ViewSession::restore(const ViewState& state) {
   for (std::size_t n = 0; n < documents_.size(); ++n) {
     const DocumentFacts& facts = documents_[n]->facts();
     DocumentState& document = state_.documents[n];
-    if (facts.has_isovalues && document.surfaces.empty()) document = first[n];
+    if (facts.has_isovalues && document.surfaces.empty()) {
+      const std::uint32_t step = document.step;
+      document = first[n];
+      document.step = step;
+    }
     if (!facts.has_isovalues) document.surfaces.clear();
     std::erase_if(document.hidden, [&](const std::string& material) {
       return std::ranges::find(facts.materials, material) == facts.materials.end();

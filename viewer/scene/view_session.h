@@ -85,6 +85,12 @@ class ViewSession {
   [[nodiscard]] StepClock& clock() { return clock_; }
   [[nodiscard]] const StepClock& clock() const { return clock_; }
 
+  /// The viewpoints of the bookmarks, for pictures of the present size.
+  [[nodiscard]] std::vector<Viewpoint> bookmarked() const;
+  /// Whether the camera goes along these, from the first in the first step to the last in the last one, while
+  /// steps are played.
+  bool has_keyed_camera = false;
+
   /// Where the handle of the plane is: the place of it that is nearest to the middle of the data.
   [[nodiscard]] Vec3 cut_handle() const;
   /// Moves the plane along its normal, as the mouse moved its handle.

@@ -80,6 +80,10 @@ void show_step_panel(ViewSession& session) {
   ImGui::SameLine();
   show_pace(session.clock().pace());
   ImGui::SameLine();
+  if (session.state().bookmarks.size() > 1) {
+    ImGui::Checkbox("along bookmarks", &session.has_keyed_camera);
+    ImGui::SameLine();
+  }
   const std::uint32_t step = session.step();
   const std::string text =
       fmt::format("step {} of 0 to {}, time {}{}", step, session.times().size() - 1,
