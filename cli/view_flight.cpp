@@ -33,6 +33,7 @@ std::vector<FlightFrame> flight_frames(const ViewOptions& options, const Picture
   const auto steps = steps_of(options);
   if (steps) {
     const auto [first, last] = *steps;
+    if (view.times().size() < 2) wrong_usage("--steps: expected a stored series, found none");
     if (last >= view.times().size())
       wrong_usage("--steps: expected steps below {}, found '{}'", view.times().size(), options.steps);
     const std::size_t count = last - first + 1;

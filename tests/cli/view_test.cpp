@@ -314,6 +314,8 @@ TEST_F(ViewCommand, TellsWhatIsWrong) {
   };
   expect({"view", "b.adm", "--isovalue", "80.5", "--json", "f.json"}, 2, "expected --offscreen");
   expect({"view", "b.adm", "--isovalue", "80.5", "--offscreen"}, 2, "expected --frames, --film or --json");
+  expect({"view", "b.adm", "--offscreen", "--steps", "0,1", "--json", "f.json"}, 2,
+         "--steps: expected a stored series, found none");
   expect(with({"--size", "4,4"}), 2, "from 16 to 8192");
   expect(with({"--pixels", "0"}), 2, "--pixels");
   expect(with({"--frame-time", "-1"}), 2, "--frame-time: expected milliseconds from 0");
