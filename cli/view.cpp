@@ -5,12 +5,9 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/output_folder.h"
 #include "cli/store_options.h"
-#include "cli/view_options.h"
+#include "cli/view_flight.h"
 #include "core/io/input_file.h"
-#include "core/picture/canvas.h"
-#include "isosurface/view/flight.h"
 #include "viewer/scene/remembered_states.h"
 #include "viewer/scene/view_session.h"
 #include "viewer/window/offscreen_pictures.h"
@@ -31,7 +28,9 @@ DocumentOptions document_options(const ViewOptions& options) {
 
 /// Says which step of a series is what is seen, where that was not asked for.
 void note_steps(const std::string& path, const ViewOptions& options, Console& console) {
-  if (!is_store(path) || !options.step.empty()) return;
+  const bool is_asked_for = !options.step.empty() || !options.steps.empty() || !options.state.empty();
+  // A window has a slider.
+  if (!is_store(path) || is_asked_for || !options.offscreen) return;
   if (const std::uint32_t steps = StoreFile(path).steps(); steps > 1)
     console.note("{}: the first of {} steps; --step says which", path, steps);
 }
@@ -62,8 +61,6 @@ void restore_state(const ViewOptions& options, ViewSession& view) {
   }
 }
 
-std::string frame_name(std::size_t n) { return fmt::format("frame{:04}.png", n + 1); }
-
 Figures figures_of(const OffscreenPictures& pictures) {
   const UpdateReport& report = pictures.report();
   const DrawFigures& drawn = pictures.drawn();
@@ -82,23 +79,23 @@ Figures figures_of(const OffscreenPictures& pictures) {
           {"draw_seconds", pictures.draw_seconds()}};
 }
 
-/// Draws the frames into the folder, where there is one.
-Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& view,
-            const OutputFolder* folder, Session& session) {
-  // A state has a viewpoint of its own.
-  const bool has_path = !options.path.empty() || options.state.empty();
-  const std::vector<Viewpoint> path =
-      has_path ? flight(options.path.empty() ? "orbit:36" : options.path, view.box(), size.width, size.height)
-               : std::vector{view.state().viewpoint};
+/// Draws the frames.
+Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& view, FlightOutput& output,
+            Session& session) {
+  const std::vector<FlightFrame> path = flight_frames(options, size, view);
   OffscreenPictures pictures(view, size.width, size.height);
   Figures all = Figures::array();
   double seconds = 0, largest = 0;
   std::uint64_t most = 0;
   for (std::size_t n = 0; n < path.size(); ++n) {
     session.console.step("flying", static_cast<double>(n) / static_cast<double>(path.size()));
-    const Raster raster = pictures.draw(path[n]);
-    if (folder != nullptr) folder->fill([&] { write_png(folder->file(frame_name(n)), raster); });
+    if (path[n].step) view.set_step(*path[n].step);
+    output.add(pictures.draw(path[n].viewpoint));
     all.push_back(figures_of(pictures));
+    if (view.times().size() > 1) {
+      all.back()["step"] = view.step();
+      all.back()["time"] = view.times()[view.step()];
+    }
     seconds += pictures.report().seconds + pictures.draw_seconds();
     largest = std::max(largest, pictures.report().largest_error_pixels);
     most = std::max(most, pictures.report().triangles);
@@ -115,20 +112,19 @@ Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& vi
 
 void run_offscreen(const ViewOptions& options, Session& session) {
   const PictureSize size = picture_size(options, {1024, 768});
-  std::optional<OutputFolder> folder;
-  if (!options.frames.empty())
-    folder.emplace(options.frames, options.overwrite, std::initializer_list<const char*>{"frame0001.png"});
+  FlightOutput output(options, size, session.outputs);
   ViewSession view(size.width, size.height);
   open_files(options, view, session);
   restore_state(options, view);
   apply_view_options(options, view);
-  Figures figures = fly(options, size, view, folder ? &*folder : nullptr, session);
+  Figures figures = fly(options, size, view, output, session);
   PageCounts counts;
   for (const auto& document : view.documents()) counts += document->page_counts();
   add_page_counts(counts, figures);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
-  if (folder) folder->commit();
+  output.finish();
+  output.commit();
   session.outputs.commit();
 }
 

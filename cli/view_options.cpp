@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <sstream>
 
@@ -190,13 +191,22 @@ void add_offscreen_options(const Command& command, ViewOptions& options) {
   command.add_flag("--offscreen", options.offscreen,
                    "Draw without a window: by a graphics device, or the processor");
   command
-      .add_option(
-          "--camera-path", options.path,
-          "orbit:N: once round the data in N frames (default orbit:36); or a file with a viewpoint on each "
-          "line: eye, target and upward direction, nine numbers")
-      .type_name("orbit:N|FILE");
+      .add_option("--camera-path", options.path,
+                  "orbit:N: once round the data in N frames (default orbit:36); a file with a viewpoint on "
+                  "each line: "
+                  "eye, target and upward direction, nine numbers; or bookmarks: those of --state")
+      .type_name("orbit:N|FILE|bookmarks");
   command.add_option("--frames", options.frames, "The folder of the pictures: frame0001.png and so on")
       .type_name("DIR");
+  command
+      .add_option("--steps", options.steps,
+                  "Of a stored series: a frame of each step from A to B, while the camera goes along "
+                  "--camera-path (default: it stands still)")
+      .type_name("A,B");
+  command.add_option("--film", options.film, "The frames as a film, by the program ffmpeg")
+      .type_name("F.mp4|F.webm|F.gif");
+  command.add_option("--frame-rate", options.frame_rate, "Frames of a film per second (default 10)")
+      .type_name("N");
   command.add_flag("--overwrite", options.overwrite, "Replace a folder of frames that is there");
   command.add_option("--size", options.size, "Width and height of the window or the pictures")
       .type_name("W,H");
@@ -226,6 +236,21 @@ PictureSize picture_size(const ViewOptions& options, const PictureSize& otherwis
   return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
 }
 
+std::optional<std::array<std::uint32_t, 2>> steps_of(const ViewOptions& options) {
+  if (options.steps.empty()) return std::nullopt;
+  const std::vector<double> numbers = parse_numbers("--steps", options.steps, 2);
+  const bool are_steps =
+      std::ranges::all_of(numbers, [](double n) { return n >= 0 && n < kMostSteps && n == std::floor(n); });
+  if (!are_steps || numbers[0] > numbers[1])
+    wrong_usage("--steps: expected two steps A,B with A up to B, found '{}'", options.steps);
+  return std::array{static_cast<std::uint32_t>(numbers[0]), static_cast<std::uint32_t>(numbers[1])};
+}
+
+double film_rate(const ViewOptions& options) {
+  constexpr double kRate = 10;
+  return options.frame_rate.empty() ? kRate : parse_positive("--frame-rate", options.frame_rate);
+}
+
 bool waits_for_pages(const ViewOptions& options) {
   return options.paging.empty() ? options.offscreen : options.paging == "wait";
 }
@@ -243,13 +268,21 @@ void check_view_options(const ViewOptions& options, const Session& session) {
   if (!options.step.empty() && parse_count("--step", options.step, 0) >= kMostSteps)
     wrong_usage("--step: expected less than {}, found {}", kMostSteps, options.step);
   static_cast<void>(frame_milliseconds(options));
-  if (options.offscreen && options.frames.empty() && session.json.empty())
-    wrong_usage("expected --frames or --json, found no output");
+  static_cast<void>(steps_of(options));
+  static_cast<void>(film_rate(options));
+  if (!options.steps.empty() && !options.step.empty())
+    wrong_usage("--steps: expected no --step beside it, found '{}'", options.step);
+  if (!options.frame_rate.empty() && options.film.empty())
+    wrong_usage("--frame-rate: expected a --film beside it, found none");
+  if (options.offscreen && options.frames.empty() && options.film.empty() && session.json.empty())
+    wrong_usage("expected --frames, --film or --json, found no output");
   if (options.offscreen) return;
-  const char* unused = !options.frames.empty() ? "--frames"
-                       : !session.json.empty() ? "--json"
-                       : !options.path.empty() ? "--camera-path"
-                                               : nullptr;
+  const char* unused = !options.frames.empty()  ? "--frames"
+                       : !options.film.empty()  ? "--film"
+                       : !options.steps.empty() ? "--steps"
+                       : !session.json.empty()  ? "--json"
+                       : !options.path.empty()  ? "--camera-path"
+                                                : nullptr;
   if (unused != nullptr) wrong_usage("{}: expected --offscreen as well: a window writes no frames", unused);
 }
 
@@ -263,6 +296,8 @@ void apply_view_options(const ViewOptions& options, ViewSession& view) {
     state.shading = options.shading == "sphere" ? Shading::kSphere : Shading::kLit;
   if (!options.colour_map.empty()) state.colour_map = options.colour_map;
   if (options.edges) state.has_edges = true;
+  if (!options.step.empty())
+    view.set_step(static_cast<std::uint32_t>(parse_count("--step", options.step, 0)));
   if (options.occlusion) state.leaves_out_hidden = true;
   if (options.plain) state.has_axes = state.has_box = state.has_colour_bar = false;
   if (const std::optional<Plane> plane = plane_of(options)) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +14,9 @@ namespace adamas {
 /// The options of `adamas view` as they were given; empty where they were not.
 struct ViewOptions {
   std::vector<std::string> paths, isovalues, opacities, hidden;
-  std::string memory = "256M", step, colour_by, pixels, max_triangles, frame_time, paging, path, frames, size,
-              shading, field, range, colour_map, plane, origin, normal, state, culled_from;
+  std::string memory = "256M", step, steps, colour_by, pixels, max_triangles, frame_time, paging, path,
+              frames, size, shading, field, range, colour_map, plane, origin, normal, state, culled_from,
+              film, frame_rate;
   bool offscreen = false, overwrite = false, edges = false, plain = false, no_cut = false, no_section = false,
        occlusion = false, fresh = false;
 };
@@ -27,6 +31,10 @@ void add_view_options(const Command& command, ViewOptions& options);
 PictureSize picture_size(const ViewOptions& options, const PictureSize& otherwise);
 /// Looks at all that can be wrong with options, before long work.
 void check_view_options(const ViewOptions& options, const Session& session);
+/// The first and the last step of --steps; none where that was not given.
+std::optional<std::array<std::uint32_t, 2>> steps_of(const ViewOptions& options);
+/// Frames of a film in a second.
+double film_rate(const ViewOptions& options);
 /// Whether surfaces wait for the pages that they need.
 bool waits_for_pages(const ViewOptions& options);
 /// Brings what the options say into the state. Throws Error too where no file has such a field or material.

@@ -1,5 +1,7 @@
 // adamas view: frames of a flight, without a window.
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <set>
@@ -133,6 +135,84 @@ TEST_F(ViewCommand, ShowsTheStepThatIsAskedFor) {
   EXPECT_FALSE(read("first/frame0001.png") == read("half/frame0001.png"));
 }
 
+TEST_F(ViewCommand, ShowsAFrameOfEachStepWhileTheCameraMoves) {
+  std::string samples = read("ball.raw");
+  std::vector<std::string> all{"store"};
+  for (int step = 0; step < 5; ++step) {
+    // Cut off farther in from step to step.
+    for (std::size_t n = 0; n < samples.size(); ++n)
+      samples[n] = n % 40 < static_cast<std::size_t>(40 - 4 * step) ? samples[n] : '\0';
+    write(fmt::format("s{}.raw", step), samples);
+    all.push_back(fmt::format("s{}.raw", step));
+  }
+  all.insert(all.end(), {"--dimensions", "40", "--type", "uint8", "-o", "b.adm"});
+  run_well(all);
+  write("path.txt",
+        "100 20 30  19.5 19.5 19.5  0 0 1\n"
+        "25 -65 18  19.5 19.5 19.5  0 0 1\n");
+  const RunResult result =
+      view({"--steps", "1,3", "--camera-path", "path.txt", "--frames", "frames", "--json", "f.json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto frames = read_json("f.json")["frames"];
+  ASSERT_EQ(frames.size(), 3u);
+  for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ(frames[n]["step"], n + 1);
+  // The first and the last frame are those of the step alone, from the ends of the path.
+  ASSERT_EQ(view({"--step", "1", "--camera-path", "path.txt", "--frames", "one"}).status, 0);
+  ASSERT_EQ(view({"--step", "3", "--camera-path", "path.txt", "--frames", "three"}).status, 0);
+  EXPECT_TRUE(read("frames/frame0001.png") == read("one/frame0001.png"));
+  EXPECT_TRUE(read("frames/frame0003.png") == read("three/frame0002.png"));
+  EXPECT_FALSE(read("frames/frame0002.png") == read("frames/frame0003.png"));
+  // Without a path the camera stands still.
+  ASSERT_EQ(view({"--steps", "0,4", "--frames", "still"}).status, 0);
+  ASSERT_EQ(view({"--step", "4", "--camera-path", "orbit:1", "--frames", "four"}).status, 0);
+  EXPECT_TRUE(read("still/frame0005.png") == read("four/frame0001.png"));
+  // The bookmarks of a state are such a path, too, and the state's step is what is seen without another one.
+  const auto viewpoint = [](const char* eye) {
+    return fmt::format(
+        R"({{"eye": [{}], "target": [19.5, 19.5, 19.5], "up": [0, 0, 1], "angle": 0.52, "height": 0, "near": 1}})",
+        eye);
+  };
+  const std::string near = viewpoint("100, 20, 30"), far = viewpoint("25, -65, 18");
+  write(
+      "state.json",
+      fmt::format(
+          R"({{"viewpoint": {0}, "camera": "fly", "shading": "lit", "colour_map": "grey", "edges": false, "axes": true,
+                "colour_bar": true, "box": true, "leaves_out_hidden": false, "pixels": 1, "max_triangles": 500000,
+                "cut": {{"on": false, "origin": [0, 0, 0], "normal": [1, 0, 0], "cuts_away": true, "section": true}},
+                "bookmarks": [{{"name": "a", "viewpoint": {1}}}, {{"name": "b", "viewpoint": {0}}}],
+                "documents": [{{"surfaces": [], "hidden": [], "field": "", "step": 3}}]}})",
+          far, near));
+  const std::vector<std::string> state{"--state", "state.json", "--frames", "marks", "--overwrite"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), state.begin(), state.end());
+    const RunResult drawn = view(more);
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+  };
+  with({"--camera-path", "bookmarks", "--steps", "1,3"});
+  const std::string third = read("marks/frame0003.png");
+  EXPECT_FALSE(read("marks/frame0001.png") == third);
+  with({});
+  EXPECT_TRUE(read("marks/frame0001.png") == third);
+  with({"--step", "1"});
+  EXPECT_FALSE(read("marks/frame0001.png") == third);
+  const auto refused = [&](const std::vector<std::string>& more, const char* message) {
+    const RunResult other = view(more);
+    EXPECT_EQ(other.status, 2);
+    EXPECT_NE(other.err.find(message), std::string::npos) << other.err;
+  };
+  refused({"--steps", "3,5", "--json", "g.json"}, "--steps: expected steps below 5, found '3,5'");
+  refused({"--steps", "3,1", "--json", "g.json"}, "--steps: expected two steps A,B with A up to B");
+  refused({"--steps", "1,3", "--step", "2", "--json", "g.json"}, "expected no --step beside it");
+  refused({"--frame-rate", "5", "--json", "g.json"}, "--frame-rate: expected a --film");
+  refused({"--film", "film.png"}, "--film");
+  refused({"--camera-path", "bookmarks", "--json", "g.json"}, "expected a --state with bookmarks");
+  const RunResult film = view({"--steps", "0,4", "--film", "film.gif", "--frame-rate", "5"});
+  if (film.err.find("expected the program ffmpeg") == std::string::npos) {
+    EXPECT_EQ(film.status, 0) << film.err;
+    EXPECT_EQ(read("film.gif").substr(0, 4), "GIF8");
+  }
+}
+
 TEST_F(ViewCommand, ShowsSeveralSurfacesColoursAndStates) {
   const auto picture = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all{"--camera-path", "orbit:1", "--frames", "frames",
@@ -233,7 +313,9 @@ TEST_F(ViewCommand, TellsWhatIsWrong) {
     return all;
   };
   expect({"view", "b.adm", "--isovalue", "80.5", "--json", "f.json"}, 2, "expected --offscreen");
-  expect({"view", "b.adm", "--isovalue", "80.5", "--offscreen"}, 2, "expected --frames or --json");
+  expect({"view", "b.adm", "--isovalue", "80.5", "--offscreen"}, 2, "expected --frames, --film or --json");
+  expect({"view", "b.adm", "--offscreen", "--steps", "0,1", "--json", "f.json"}, 2,
+         "--steps: expected a stored series, found none");
   expect(with({"--size", "4,4"}), 2, "from 16 to 8192");
   expect(with({"--pixels", "0"}), 2, "--pixels");
   expect(with({"--frame-time", "-1"}), 2, "--frame-time: expected milliseconds from 0");

@@ -146,5 +146,24 @@ TEST(CameraControl, WaysBetweenViewpointsBeginAndEndThere) {
   }
 }
 
+TEST(CameraControl, GoesAlongViewpointsFromTheFirstToTheLast) {
+  std::vector<Viewpoint> path(4);
+  for (std::size_t n = 0; n < path.size(); ++n) {
+    path[n].eye = {static_cast<double>(n), -10, 2};
+    path[n].target = {static_cast<double>(n), 0, 0};
+    path[n].up = {0, 0, 1};
+  }
+  for (std::size_t n = 0; n < 4; ++n) {
+    EXPECT_EQ(along(path, n, 4), path[n]);
+    EXPECT_EQ(along({path[2]}, n, 4), path[2]);
+  }
+  EXPECT_EQ(along(path, 0, 1), path[0]);
+  EXPECT_EQ(along(path, 0, 2), path[0]);
+  EXPECT_EQ(along(path, 1, 2), path[3]);
+  for (std::size_t n = 0; n < 31; ++n)
+    EXPECT_NEAR(along(path, n, 31).eye.x, 0.1 * static_cast<double>(n), 1e-9);
+  EXPECT_EQ(along(path, 20, 31), path[2]) << "it goes through all of them";
+}
+
 }  // namespace
 }  // namespace adamas

@@ -125,6 +125,51 @@ def try_mouse_and_keys(window):
     window.settled()
 
 
+STEPS = 5
+
+
+def write_steps(folder):
+    """A ball that becomes smaller from step to step."""
+    names = []
+    for step in range(STEPS):
+        names.append(f"s{step}.raw")
+        middle, side = 12, range(25)
+        squares = ((i - middle) ** 2 + (j - middle) ** 2 + (k - middle) ** 2 for k in side for j in side for i in side)
+        with open(os.path.join(folder, names[-1]), "wb") as file:
+            file.write(bytes(max(0, int(200 - 12 * square ** 0.5 - 20 * step)) for square in squares))
+    return names
+
+
+def try_steps(window):
+    first = window.settled()
+    window.do("key", "End")
+    last = window.settled()
+    check(last != first, "End shows no other step")
+    window.do("key", "Home")
+    check(window.settled() == first, "the first step is not as it was")
+    window.do("key", "space")
+    wait_for(lambda: window.screenshot() not in (first, last), "the space bar plays nothing")
+    window.do("key", "space")
+    window.settled()
+    window.do("key", "Home")
+    window.do("key", "period")
+    second = window.settled()
+    check(second not in (first, last), "the second step is none")
+    window.do("key", "comma")
+    check(window.settled() == first, "there is no way back")
+    window.do("key", "period")
+
+
+def run_series(adamas_in_folder, open_window, folder):
+    adamas_in_folder("store", *write_steps(folder), "--dimensions", "25", "--type", "uint8", "-o", "steps.adm")
+    window = open_window("steps.adm", "--isovalue", "80")
+    try_steps(window)
+    window.end()
+    with open(os.path.join(folder, "state", "adamas", "view.json"), encoding="utf-8") as file:
+        state = json.load(file)[0]["state"]
+    check(state["documents"][0].get("step") == 1, "the step is not remembered")
+
+
 def run(adamas):
     with tempfile.TemporaryDirectory() as folder, Screen() as screen:
         def adamas_in_folder(*arguments):
@@ -147,6 +192,7 @@ def run(adamas):
         window.do("key", "e")
         window.settled()
         window.end()
+        run_series(adamas_in_folder, lambda *arguments: Window(adamas, screen, folder, *arguments), folder)
 
 
 def main():

@@ -30,18 +30,23 @@ enum class Action {
   kNextBookmark,
   kRecord,
   kPlay,
+  kPlayCamera,
+  kPreviousStep,
+  kNextStep,
+  kFirstStep,
+  kLastStep,
   kScreenshot,
   kQuit,
 };
 
 struct KeyBinding {
   Action action;
-  std::string_view key;  ///< as GLFW names it: a capital letter, a digit, "Enter", "Space", "F12", "Escape"
+  std::string_view key;  ///< as GLFW names it: a capital letter, a digit, "Enter", "Space", "Home", "F12"
   std::string_view what;
 };
 
 /// All keys, as the help shows them.
-inline constexpr std::array<KeyBinding, 25> kKeyBindings{{
+inline constexpr std::array<KeyBinding, 30> kKeyBindings{{
     {Action::kViewFront, "1", "View from the front, along y"},
     {Action::kViewRight, "3", "View from the right, against x"},
     {Action::kViewTop, "7", "View from above, against z"},
@@ -64,7 +69,12 @@ inline constexpr std::array<KeyBinding, 25> kKeyBindings{{
     {Action::kBookmark, "M", "Keep this view as a bookmark"},
     {Action::kNextBookmark, "N", "Go to the next bookmark"},
     {Action::kRecord, "R", "Begin or end recording the camera's path"},
-    {Action::kPlay, "Space", "Play the recorded path, or turn"},
+    {Action::kPlay, "Space", "Play the steps of a series, or the camera"},
+    {Action::kPlayCamera, "A", "Play the recorded path, or turn"},
+    {Action::kPreviousStep, ",", "The step before"},
+    {Action::kNextStep, ".", "The next step"},
+    {Action::kFirstStep, "Home", "The first step"},
+    {Action::kLastStep, "End", "The last step"},
     {Action::kScreenshot, "F12", "Screenshot"},
     {Action::kQuit, "Escape", "End"},
 }};

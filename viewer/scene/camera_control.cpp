@@ -160,4 +160,12 @@ Viewpoint between(const Viewpoint& from, const Viewpoint& to, double t) {
   return result;
 }
 
+Viewpoint along(const std::vector<Viewpoint>& path, std::size_t frame, std::size_t frames) {
+  const std::size_t parts = std::max<std::size_t>(2, frames) - 1;
+  // In whole numbers, so that frames that meet with a viewpoint are that viewpoint.
+  const std::size_t way = frame * (path.size() - 1), below = way / parts;
+  const double part = static_cast<double>(way % parts) / static_cast<double>(parts);
+  return between(path[below], path[std::min(below + 1, path.size() - 1)], part);
+}
+
 }  // namespace adamas

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "core/geometry/vec3.h"
 #include "isosurface/view/viewpoint.h"
 #include "viewer/scene/view_state.h"
@@ -27,5 +30,8 @@ Viewpoint with_projection(const Viewpoint& viewpoint, bool is_parallel);
 /// Between two viewpoints, 0 <= t <= 1: the eye on an arc round the target, directions turned, distances in
 /// proportion.
 Viewpoint between(const Viewpoint& from, const Viewpoint& to, double t);
+/// Where a frame of so many is, from 0 on, along some viewpoints: from the first one in the first frame to
+/// the last one in the last frame.
+Viewpoint along(const std::vector<Viewpoint>& path, std::size_t frame, std::size_t frames);
 
 }  // namespace adamas

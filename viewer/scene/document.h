@@ -25,8 +25,9 @@ struct DocumentFacts {
   std::vector<Colour> material_colours;
   std::vector<std::string> fields;       ///< that colours may show
   bool has_isovalues = false;            ///< a store, whose surfaces are chosen
-  std::array<double, 2> value_range{};   ///< of a store's samples
-  std::vector<std::uint64_t> histogram;  ///< of some of them, in equal parts of the range
+  std::array<double, 2> value_range{};   ///< of a store's samples, in all steps
+  std::vector<std::uint64_t> histogram;  ///< of some of the step that was opened, in equal parts of the range
+  std::vector<double> times;             ///< of a store's steps, one or several; none of other files
 };
 
 /// What the last update of a document came to.
@@ -50,6 +51,12 @@ struct Reading {
   bool is_pending = false;      ///< more of it is being worked out: it may be asked for again
 };
 
+/// Steps of a series near the one that was found last.
+struct StepsAhead {
+  std::vector<std::uint32_t> ready;  ///< whose pages are in memory, those that the last surfaces are made of
+  bool is_reading = false;           ///< more are on their way
+};
+
 /// An open file, as parts of pictures. What takes long goes on in a thread of its own: parts() never waits.
 class Document {
  public:
@@ -63,6 +70,9 @@ class Document {
   [[nodiscard]] virtual bool shows_surfaces_of(const DocumentState& state) const = 0;
   /// Waits until parts() gives what the state asks for, or there is a problem.
   virtual void finish(const ViewState& view, const DocumentState& state) = 0;
+  /// Which steps are expected to be wanted next, the next one first: their pages are read meanwhile.
+  virtual void expect(const std::vector<std::uint32_t>&) {}
+  [[nodiscard]] virtual StepsAhead steps_ahead() const { return {}; }
   [[nodiscard]] virtual UpdateReport report() const = 0;
   /// What reading a store has met with until the last update.
   [[nodiscard]] virtual PageCounts page_counts() const { return {}; }
@@ -78,7 +88,7 @@ class Document {
 struct DocumentOptions {
   std::size_t memory = std::size_t{256} << 20;  ///< bytes that decoded pages may take
   std::string colour_by;                        ///< another store, whose values colour surfaces; empty: none
-  /// Of a stored series: which step is seen, from 0 on; of `colour_by` too if that is a series.
+  /// Of a stored series: which step is seen first, from 0 on. A store of one step has that alone.
   std::uint32_t step = 0;
   /// Whether surfaces wait for the pages that they need. Otherwise they are coarser at first, and sharpen as
   /// pages come.

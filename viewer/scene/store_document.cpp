@@ -32,6 +32,12 @@ Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
   return result;
 }
 
+/// Of all steps, so that colours mean the same in each.
+std::array<double, 2> range_of(const std::vector<double>& some, VolumeValues& values) {
+  const auto [least, greatest] = std::ranges::minmax(some);
+  return values.extended_by_steps({least, greatest});
+}
+
 class StoreDocument final : public Document {
  public:
   StoreDocument(const std::string& path, const DocumentOptions& options)
@@ -40,6 +46,8 @@ class StoreDocument final : public Document {
         section_(path, options) {
     const VolumeGrid& grid = worker_.file().header().grid;
     check_two_samples(path, grid);
+    facts_.times = worker_.file().times();
+    if (facts_.times.size() > 1) first_step_ = options.step;
     facts_.name = path;
     facts_.summary = fmt::format("{} x {} x {} {}", grid.dimensions[0], grid.dimensions[1],
                                  grid.dimensions[2], sample_name(grid.type));
@@ -49,11 +57,13 @@ class StoreDocument final : public Document {
     if (options.colour_by.empty()) return;
     const std::unique_ptr<VolumeValues> colours =
         VolumeValues::open(options.colour_by, options.memory, options.step);
+    if (colours->steps() != 1 && colours->steps() != facts_.times.size())
+      fail("{}: expected one step or the {} of {}, found {}", options.colour_by, facts_.times.size(), path,
+           colours->steps());
     facts_.fields = {std::filesystem::path(options.colour_by).filename().string()};
     const std::vector<double> some = colours->some();
     if (some.empty()) fail("{}: expected finite samples to colour by, found none", options.colour_by);
-    const auto [least, greatest] = std::ranges::minmax(some);
-    colour_range_ = {least, greatest};
+    colour_range_ = range_of(some, *colours);
   }
 
   [[nodiscard]] const DocumentFacts& facts() const override { return facts_; }
@@ -93,7 +103,7 @@ class StoreDocument final : public Document {
 
   [[nodiscard]] bool shows_surfaces_of(const DocumentState& state) const override {
     const std::shared_ptr<const FoundSurfaces> found = worker_.found();
-    return found && found->wanted.isovalues == isovalues_of(state);
+    return found && found->step == state.step && found->wanted.isovalues == isovalues_of(state);
   }
 
   void finish(const ViewState& view, const DocumentState& state) override {
@@ -105,6 +115,13 @@ class StoreDocument final : public Document {
     }
     worker_.wait_for(all);
   }
+
+  void expect(const std::vector<std::uint32_t>& steps) override {
+    std::vector<std::uint32_t> known = steps;
+    std::erase_if(known, [&](std::uint32_t step) { return step >= facts_.times.size(); });
+    if (facts_.times.size() > 1) worker_.expect(known);
+  }
+  [[nodiscard]] StepsAhead steps_ahead() const override { return worker_.steps_ahead(); }
 
   [[nodiscard]] UpdateReport report() const override {
     const std::shared_ptr<const FoundSurfaces> found = worker_.found();
@@ -128,9 +145,9 @@ class StoreDocument final : public Document {
     return has_field ? colour_range_ : facts_.value_range;
   }
 
-  [[nodiscard]] Reading at(const Vec3& place, const DocumentState&, std::size_t surface) override {
+  [[nodiscard]] Reading at(const Vec3& place, const DocumentState& state, std::size_t surface) override {
     Reading reading;
-    const double value = values_->at(place);
+    const double value = value_at(place, state);
     if (!std::isnan(value)) reading.value = value;
     const auto there = worker_.error_at({surface, worker_.file().header().grid.in_frame(place)});
     reading.is_pending = !there.is_known;
@@ -143,13 +160,24 @@ class StoreDocument final : public Document {
     SurfaceState surface;
     surface.isovalue = first_isovalue();
     state.surfaces.push_back(surface);
+    state.step = first_step_;
     if (!facts_.fields.empty()) state.field = facts_.fields[0];
     return state;
   }
 
  private:
+  /// Of the step that is shown; NaN where it cannot be had.
+  double value_at(const Vec3& place, const DocumentState& state) {
+    const std::shared_ptr<const FoundSurfaces> found = worker_.found();
+    try {
+      values_->set_step(found ? found->step : state.step);
+      return values_->at(place);
+    } catch (const Error&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  }
   [[nodiscard]] StoreSection::Wanted wanted_section(const ViewState& view, const DocumentState& state) const {
-    return section_.wanted(view.cut.plane, view.viewpoint, !state.field.empty());
+    return section_.wanted(view.cut.plane, view.viewpoint, !state.field.empty(), state.step);
   }
   /// Asks for the section, and adds the one that there is.
   void add_section(const ViewState& view, const DocumentState& state, std::vector<DrawnPart>& parts) {
@@ -169,8 +197,8 @@ class StoreDocument final : public Document {
     const std::vector<double> some = values_->some();
     facts_.histogram.assign(kHistogramParts, 0);
     if (some.empty()) return;
-    const auto [least, greatest] = std::ranges::minmax(some);
-    facts_.value_range = {least, greatest};
+    facts_.value_range = range_of(some, *values_);
+    const auto [least, greatest] = facts_.value_range;
     const double width = greatest > least ? greatest - least : 1;
     for (const double value : some) {
       const auto part = static_cast<std::size_t>((value - least) / width * kHistogramParts);
@@ -223,6 +251,7 @@ class StoreDocument final : public Document {
         view.depths->viewpoint() == result.viewpoint)
       result.depths = view.depths;
     result.isovalues = isovalues_of(state);
+    result.step = state.step;
     if (view.has_edges && view.cut.has_section())
       result.cells_in = {view.cut.plane.origin, view.cut.plane.normal};
     return result;
@@ -239,6 +268,7 @@ class StoreDocument final : public Document {
   DocumentFacts facts_;
   std::unique_ptr<VolumeValues> values_;
   std::array<double, 2> colour_range_{};
+  std::uint32_t first_step_ = 0;
   SurfaceWorker worker_;
   StoreSection section_;
 };

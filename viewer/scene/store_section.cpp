@@ -24,7 +24,7 @@ struct Overtaken {};
 
 bool StoreSection::Wanted::operator==(const Wanted& other) const {
   return plane.origin == other.plane.origin && plane.normal == other.plane.normal &&
-         coarseness == other.coarseness && is_of_colours == other.is_of_colours;
+         coarseness == other.coarseness && is_of_colours == other.is_of_colours && step == other.step;
 }
 
 StoreSection::StoreSection(const std::string& path, const DocumentOptions& options)
@@ -48,17 +48,17 @@ double StoreSection::least_step() const {
   return 0.5 * std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z});
 }
 
-StoreSection::Wanted StoreSection::wanted(const Plane& plane, const Viewpoint& viewpoint,
-                                          bool is_of_colours) const {
-  Wanted result{plane, 0, is_of_colours};
+StoreSection::Wanted StoreSection::wanted(const Plane& plane, const Viewpoint& viewpoint, bool is_of_colours,
+                                          std::uint32_t step) const {
+  Wanted result{plane, 0, is_of_colours, step};
   const std::vector<Vec3> corners = plane_in_samples(grid_, plane);
   if (corners.empty()) return result;
   Box3 box;
   for (const Vec3& corner : corners) box.extend(corner);
   const double pixel = 1 / View(viewpoint).pixels(1, {box.center(), 0.5 * box.size()});
-  const double least = std::sqrt(polygon_area(corners) / kMostPlaces), step = std::max(pixel, least);
+  const double least = std::sqrt(polygon_area(corners) / kMostPlaces), apart = std::max(pixel, least);
   // Powers of two, so that a section lasts while a view moves a little.
-  result.coarseness = std::max(0, static_cast<int>(std::floor(std::log2(step / least_step()))));
+  result.coarseness = std::max(0, static_cast<int>(std::floor(std::log2(apart / least_step()))));
   if (std::ldexp(least_step(), result.coarseness) < least) ++result.coarseness;
   return result;
 }
@@ -102,9 +102,11 @@ void StoreSection::run() {
       if (is_ended_) return;
       wanted = *wanted_;
     }
-    // The first and every moved plane comes roughly at first, and then whole unless it has moved on.
-    const bool is_moved =
-        !done || !(done->plane.origin == wanted.plane.origin) || !(done->plane.normal == wanted.plane.normal);
+    // The first and every moved plane comes roughly at first, and then whole unless it has moved on; so does
+    // another step.
+    const bool is_moved = !done || done->step != wanted.step ||
+                          !(done->plane.origin == wanted.plane.origin) ||
+                          !(done->plane.normal == wanted.plane.normal);
     if (is_moved) find(wanted, kRough);
     done.reset();
     if (is_overtaken(wanted)) continue;
@@ -133,6 +135,7 @@ void StoreSection::find(const Wanted& wanted, int roughness) {
 
 SharedMesh StoreSection::mesh_of(const Wanted& wanted, int roughness) {
   VolumeValues& values = wanted.is_of_colours && colours_ ? *colours_ : *values_;
+  values.set_step(wanted.step);
   const double step = roughness * std::ldexp(least_step(), wanted.coarseness);
   const Vec3& spacing = values.grid().spacing;
   const double least_spacing = std::min({spacing.x, spacing.y, spacing.z});

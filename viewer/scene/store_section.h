@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,6 +26,7 @@ class StoreSection {
     int coarseness = 0;
     bool is_of_colours =
         false;  ///< of the volume that colours surfaces; otherwise of the store's own samples
+    std::uint32_t step = 0;
 
     bool operator==(const Wanted&) const;
   };
@@ -43,7 +45,8 @@ class StoreSection {
 
   /// What a picture from a viewpoint, in space, wants: places about one pixel apart where the plane is
   /// nearest, and not more than a million of them.
-  [[nodiscard]] Wanted wanted(const Plane& plane, const Viewpoint& viewpoint, bool is_of_colours) const;
+  [[nodiscard]] Wanted wanted(const Plane& plane, const Viewpoint& viewpoint, bool is_of_colours,
+                              std::uint32_t step) const;
   void want(const Wanted& wanted);
   /// What was found last, for whatever was wanted then; null before that.
   [[nodiscard]] std::shared_ptr<const Found> found() const;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "viewer/scene/mesh_maker.h"
 
@@ -12,11 +14,11 @@ namespace adamas {
 SurfaceWorker::SurfaceWorker(const std::string& path, const DocumentOptions& options)
     : file_(path),
       memory_(options.memory),
-      step_(options.step),
       waits_for_pages_(options.waits_for_pages),
       colours_(options.colour_by.empty()
                    ? nullptr
                    : VolumeValues::open(options.colour_by, options.memory, options.step)),
+      step_of_colours_(options.step),
       thread_([this] { run(); }) {}
 
 SurfaceWorker::~SurfaceWorker() {
@@ -37,6 +39,20 @@ void SurfaceWorker::want(const WantedSurfaces& wanted) {
     wanted_ = wanted;
   }
   changed_.notify_all();
+}
+
+void SurfaceWorker::expect(const std::vector<std::uint32_t>& steps) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (expected_ == steps) return;
+    expected_ = steps;
+  }
+  changed_.notify_all();
+}
+
+StepsAhead SurfaceWorker::steps_ahead() const {
+  const std::lock_guard lock(mutex_);
+  return ahead_;
 }
 
 std::shared_ptr<const FoundSurfaces> SurfaceWorker::found() const {
@@ -60,8 +76,7 @@ void SurfaceWorker::wait_for(const WantedSurfaces& wanted) {
 bool SurfaceWorker::wait_for_work(const std::optional<WantedSurfaces>& done) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] {
-    return is_ended_ || asked_ ||
-           (wanted_ && (wanted_ != done || (has_arrived_ && found_ && !found_->report.is_current)));
+    return is_ended_ || asked_ || (wanted_ && (wanted_ != done || has_arrived_ || expected_ != expecting_));
   });
   // A place that is asked about comes first; pages have still arrived then.
   if (!asked_) has_arrived_ = false;
@@ -98,9 +113,16 @@ void SurfaceWorker::run() {
       const std::lock_guard lock(mutex_);
       asked = asked_;
       if (!asked) wanted = *wanted_;
+      expecting_ = expected_;
     }
     if (asked) {
       answer(*asked);
+      continue;
+    }
+    if (done == wanted && is_current()) {
+      StepsAhead ahead = look_ahead(wanted.step, wanted.isovalues.size());
+      const std::lock_guard lock(mutex_);
+      ahead_ = std::move(ahead);
       continue;
     }
     // A rough surface comes at once where there was another one.
@@ -111,6 +133,45 @@ void SurfaceWorker::run() {
     last = wanted;
     if (update(wanted, 1) && (budget_.is_whole() || is_current())) done = std::move(wanted);
   }
+}
+
+StepsAhead SurfaceWorker::look_ahead(std::uint32_t step, std::size_t isovalues) {
+  try {
+    return looked_ahead(step, isovalues);
+  } catch (const Error&) {
+    // Steps that cannot be had are told of when they are wanted.
+    for (const Surface& surface : surfaces_) surface.frames->expect({});
+    return {};
+  }
+}
+
+StepsAhead SurfaceWorker::looked_ahead(std::uint32_t step, std::size_t isovalues) {
+  const auto shown = std::span(surfaces_).first(std::min(isovalues, surfaces_.size()));
+  for (std::size_t n = 0; n < surfaces_.size(); ++n)
+    surfaces_[n].frames->expect(n < shown.size() ? expecting_ : std::vector<std::uint32_t>{});
+  StepsAhead ahead;
+  if (expecting_.empty() || shown.empty()) return ahead;
+  // What is asked about last stays in memory longest: the steps that come next.
+  constexpr std::uint32_t kNear = 8;
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t n = step - std::min(step, kNear); n < std::min(step + kNear + 1, file_.steps()); ++n) {
+    if (std::ranges::find(expecting_, n) == expecting_.end()) near.push_back(n);
+  }
+  near.insert(near.end(), expecting_.rbegin(), expecting_.rend());
+  for (const std::uint32_t n : near) {
+    const auto has = [n](const Surface& surface) { return surface.frames->is_ready(n); };
+    if (std::ranges::all_of(shown, has)) ahead.ready.push_back(n);
+  }
+  ahead.is_reading =
+      std::ranges::any_of(shown, [](const Surface& s) { return s.frames->is_reading_ahead(); });
+  return ahead;
+}
+
+void SurfaceWorker::set_step_of_colours(std::uint32_t step) {
+  if (!colours_ || colours_->steps() == 1 || step == step_of_colours_) return;
+  for (Surface& surface : surfaces_) surface.drawn.clear();
+  colours_->set_step(step);
+  step_of_colours_ = step;
 }
 
 bool SurfaceWorker::is_paging() const {
@@ -133,6 +194,7 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
   auto found = std::make_shared<FoundSurfaces>();
   found->wanted = wanted;
   found->roughness = roughness;
+  found->step = wanted.step;
   using Clock = std::chrono::steady_clock;
   const auto before = Clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - before).count(); };
@@ -141,16 +203,22 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
                                    : Clock::time_point::max();
   bool is_stopped = false, has_failed = false;
   try {
+    set_step_of_colours(wanted.step);
     for (std::size_t n = 0; n < wanted.isovalues.size() && !is_stopped; ++n)
       is_stopped = !add_surface(*found, n, roughness);
     if (!is_stopped && wanted.cells_in && !wanted.isovalues.empty())
       found->cell_edges = cell_edges({(*wanted.cells_in)[0], (*wanted.cells_in)[1]});
-    found->report.problem = paging_problem();
+    // What is read ahead of a series concerns other steps.
+    if (file_.steps() == 1 || found->report.pages_lost > 0) found->report.problem = paging_problem();
   } catch (const std::exception& error) {
     // What there is stays to be seen.
     has_failed = true;
     found->report.problem = error.what();
-    if (const auto last = this->found()) found->surfaces = last->surfaces;
+    if (file_.steps() > 1) found->report.problem += fmt::format(" (step {})", wanted.step);
+    if (const auto last = this->found()) {
+      found->surfaces = last->surfaces;
+      found->step = last->step;
+    }
   }
   found->report.seconds = passed();
   if (roughness == 1) budget_.note(found->report.seconds, is_stopped);
@@ -158,9 +226,11 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
   // Where there is a problem it is not tried again.
   const bool is_done = has_failed || (budget_.is_whole() && !is_paging());
   found->report.is_current = roughness == 1 && is_done;
+  StepsAhead ahead = look_ahead(wanted.step, wanted.isovalues.size());
   {
     const std::lock_guard lock(mutex_);
     found_ = std::move(found);
+    ahead_ = std::move(ahead);
   }
   changed_.notify_all();
   return true;
@@ -185,7 +255,7 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
       std::max<std::uint64_t>(1, budget_.triangles() / wanted.isovalues.size() / roughness);
   request.resident_only = !waits_for_pages_;
   request.stop = [&] { return is_overtaken(wanted) || std::chrono::steady_clock::now() > frame_end_; };
-  const FrameFigures figures = surfaces_[n].frames->next(step_, request);
+  const FrameFigures figures = surfaces_[n].frames->next(wanted.step, request);
   if (figures.stopped) return false;
   found.surfaces.push_back(drawn_chunks(surfaces_[n]));
   found.counts += surfaces_[n].frames->counts();

@@ -27,6 +27,7 @@ namespace adamas {
 struct WantedSurfaces {
   Viewpoint viewpoint;            ///< in the frame of the grid
   std::vector<double> isovalues;  ///< of samples
+  std::uint32_t step = 0;
   double pixels = 1;
   std::uint64_t max_triangles = 0;
   double seconds = 0;  ///< for a frame; 0: any
@@ -42,6 +43,7 @@ struct FoundSurfaces {
   WantedSurfaces wanted;
   std::uint64_t roughness = 1;                    ///< by how much it is coarser than that on purpose
   std::vector<std::vector<SharedMesh>> surfaces;  ///< of each isovalue: the chunks
+  std::uint32_t step = 0;                         ///< of these: an earlier one where that cannot be had
   SharedMesh cell_edges;                          ///< in the plane; null where none are wanted
   UpdateReport report;
   PageCounts counts;
@@ -71,6 +73,9 @@ class SurfaceWorker {
   [[nodiscard]] std::shared_ptr<const FoundSurfaces> found() const;
   /// Whether that is what was wanted last.
   [[nodiscard]] bool is_current() const;
+  /// Which steps are expected to be wanted next, the next one first: their pages are read meanwhile.
+  void expect(const std::vector<std::uint32_t>& steps);
+  [[nodiscard]] StepsAhead steps_ahead() const;
   /// Waits until that is what was found, or there is a problem. Where surfaces do not wait for pages, some
   /// may be missing.
   void wait_for(const WantedSurfaces& wanted);
@@ -94,8 +99,7 @@ class SurfaceWorker {
   };
 
   void run();
-  /// Waits for another wish, for a place that is asked about, or for pages that are missing. Returns false at
-  /// the end.
+  /// Waits for another wish, for a place that is asked about, or for pages. Returns false at the end.
   bool wait_for_work(const std::optional<WantedSurfaces>& done);
   void answer(const SurfacePlace& place);
   /// Whether the surfaces that are worked out are not those that are wanted by now.
@@ -104,6 +108,11 @@ class SurfaceWorker {
   bool update(const WantedSurfaces& wanted, std::uint64_t roughness);
   /// The same.
   bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
+  /// Reads ahead what the last surfaces, of so many isovalues, are made of.
+  StepsAhead look_ahead(std::uint32_t step, std::size_t isovalues);
+  [[nodiscard]] StepsAhead looked_ahead(std::uint32_t step, std::size_t isovalues);
+  /// Colours follow the step, too.
+  void set_step_of_colours(std::uint32_t step);
   [[nodiscard]] bool is_paging() const;
   [[nodiscard]] std::string paging_problem() const;
   /// Only chunks that are not as they were are made anew.
@@ -116,16 +125,19 @@ class SurfaceWorker {
 
   StoreFile file_;
   std::size_t memory_;
-  std::uint32_t step_;
   bool waits_for_pages_;
   std::vector<Surface> surfaces_;  ///< of the thread, like colours_
   std::unique_ptr<VolumeValues> colours_;
+  std::uint32_t step_of_colours_;
+  std::vector<std::uint32_t> expecting_;  ///< of the thread: what frames read ahead
   FrameBudget budget_;
   std::chrono::steady_clock::time_point frame_end_;  ///< when the frame's time is over
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_ended_ = false, has_arrived_ = false;
   std::optional<WantedSurfaces> wanted_;
+  std::vector<std::uint32_t> expected_;
+  StepsAhead ahead_;
   std::shared_ptr<const FoundSurfaces> found_;
   std::optional<SurfacePlace> asked_;  ///< not answered yet
   std::optional<std::pair<SurfacePlace, std::optional<double>>> answered_;

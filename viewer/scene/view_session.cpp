@@ -38,6 +38,8 @@ void ViewSession::open(const std::string& path, const DocumentOptions& options, 
   std::unique_ptr<Document> document = open_document(path, options, progress);
   state_.documents.push_back(document->first_state());
   documents_.push_back(std::move(document));
+  clock_.set_steps(static_cast<std::uint32_t>(std::max<std::size_t>(1, times().size())));
+  set_step(step());
   if (documents_.size() > 1) return;
   act(Action::kViewIsometric);
   state_.cut.plane = {box().center(), {0, 1, 0}};
@@ -53,7 +55,11 @@ void ViewSession::restore(const ViewState& state) {
   for (std::size_t n = 0; n < documents_.size(); ++n) {
     const DocumentFacts& facts = documents_[n]->facts();
     DocumentState& document = state_.documents[n];
-    if (facts.has_isovalues && document.surfaces.empty()) document = first[n];
+    if (facts.has_isovalues && document.surfaces.empty()) {
+      const std::uint32_t step = document.step;
+      document = first[n];
+      document.step = step;
+    }
     if (!facts.has_isovalues) document.surfaces.clear();
     std::erase_if(document.hidden, [&](const std::string& material) {
       return std::ranges::find(facts.materials, material) == facts.materials.end();
@@ -63,6 +69,7 @@ void ViewSession::restore(const ViewState& state) {
       document.range.reset();
     }
   }
+  set_step(step());
 }
 
 Box3 ViewSession::box() const {
@@ -273,10 +280,18 @@ void ViewSession::act(Action action) {
       if (is_recording_) path_.clear();
       return;
     case Action::kPlay:
+      if (times().size() > 1) return play_steps();
+      [[fallthrough]];
+    case Action::kPlayCamera:
       is_playing_ = !is_playing_;
       is_recording_ = false;
       played_ = 0;
       return;
+    case Action::kPreviousStep:
+    case Action::kNextStep:
+    case Action::kFirstStep:
+    case Action::kLastStep:
+      return act_on_steps(action);
     case Action::kScreenshot:
       wants_screenshot = true;
       return;
@@ -313,6 +328,7 @@ void ViewSession::complete(Picked& picked) {
 }
 
 void ViewSession::advance(double seconds) {
+  advance_steps(seconds);
   constexpr std::size_t kMostRecorded = 100'000;
   if (is_recording_ && path_.size() < kMostRecorded) path_.push_back(state_.viewpoint);
   if (!is_playing_) return;

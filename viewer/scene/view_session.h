@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "timevarying/step_clock.h"
 #include "viewer/scene/actions.h"
 #include "viewer/scene/document.h"
 #include "viewer/scene/drawn_mesh.h"
@@ -68,14 +69,34 @@ class ViewSession {
   [[nodiscard]] std::optional<Picked> pick(double x, double y);
   /// Adds to what was picked what has come to be known of it by now.
   void complete(Picked& picked);
-  /// Moves the camera on where it plays: by a turn, or along the recorded path.
+  /// Moves on what plays: the steps of series; the camera, by a turn or along the recorded path.
   void advance(double seconds);
+
+  /// The times of the steps of the file that has most of them; one or none where there is no series.
+  [[nodiscard]] const std::vector<double>& times() const;
+  /// Which of these is seen.
+  [[nodiscard]] std::uint32_t step() const;
+  /// Shows a step of all series; of shorter ones the last step.
+  void set_step(std::uint32_t step);
+  /// Steps near that one of which all that is drawn is in memory, as far as that is known.
+  [[nodiscard]] std::vector<std::uint32_t> ready_steps() const;
+  /// Plays the steps, or pauses.
+  void play_steps();
+  [[nodiscard]] StepClock& clock() { return clock_; }
+  [[nodiscard]] const StepClock& clock() const { return clock_; }
+
+  /// The viewpoints of the bookmarks, for pictures of the present size.
+  [[nodiscard]] std::vector<Viewpoint> bookmarked() const;
+  /// Whether the camera goes along these, from the first in the first step to the last in the last one, while
+  /// steps are played.
+  bool has_keyed_camera = false;
 
   /// Where the handle of the plane is: the place of it that is nearest to the middle of the data.
   [[nodiscard]] Vec3 cut_handle() const;
   /// Moves the plane along its normal, as the mouse moved its handle.
   void drag_cut(double right, double down);
 
+  /// Whether the camera moves by itself.
   [[nodiscard]] bool is_playing() const { return is_playing_; }
   [[nodiscard]] bool is_recording() const { return is_recording_; }
   [[nodiscard]] const std::vector<Viewpoint>& path() const { return path_; }
@@ -85,6 +106,12 @@ class ViewSession {
 
  private:
   void drop_old_depths();
+  /// The number of the file that has most steps.
+  [[nodiscard]] std::size_t longest_series() const;
+  /// Whether what there is to be drawn is whole, and that of another step would be.
+  [[nodiscard]] bool is_ready(std::uint32_t step) const;
+  void advance_steps(double seconds);
+  void act_on_steps(Action action);
   void look(const Vec3& direction, const Vec3& up);
   void next_field();
   void next_bookmark();
@@ -98,6 +125,7 @@ class ViewSession {
   Box3 drawn_box_;
   std::optional<Viewpoint> drawn_view_;
   std::vector<DocumentState> depths_of_;  ///< what was shown when depths were set
+  StepClock clock_;
   std::size_t bookmark_ = 0;
   bool is_playing_ = false, is_recording_ = false;
   std::vector<Viewpoint> path_;

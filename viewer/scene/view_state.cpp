@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/picture/colour_map.h"
+#include "isosurface/storage/store_format.h"
 
 namespace adamas {
 
@@ -32,6 +33,7 @@ Json json(const DocumentState& state) {
                         {"shown", s.is_shown}});
   Json result{{"surfaces", surfaces}, {"hidden", state.hidden}, {"field", state.field}};
   if (state.range) result["range"] = *state.range;
+  if (state.step > 0) result["step"] = state.step;
   return result;
 }
 
@@ -115,6 +117,8 @@ class Reader {
       };
       result.range = {end(0), end(1)};
     }
+    if (from.contains("step"))
+      result.step = static_cast<std::uint32_t>(number(from, "step", 0, kMostSteps - 1));
     return result;
   }
 

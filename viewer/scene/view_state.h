@@ -41,6 +41,7 @@ struct DocumentState {
   std::set<std::string> hidden;                ///< materials
   std::string field;                           ///< what colours are by; empty: materials
   std::optional<std::array<double, 2>> range;  ///< of the colour map; none: all values of the field
+  std::uint32_t step = 0;                      ///< of a series
 
   bool operator==(const DocumentState&) const = default;
 };

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "isosurface/extraction/lattice_samples.h"
 #include "isosurface/storage/restore.h"
+#include "isosurface/storage/step_pages.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -21,7 +22,7 @@ template <class Sample>
 class ValuesOf final : public VolumeValues {
  public:
   ValuesOf(const std::string& path, std::size_t memory, std::uint32_t step)
-      : memory_(memory), file_(path), pages_(file_, step, memory), samples_(pages_) {}
+      : memory_(memory), file_(path), steps_(file_, memory), step_(step), samples_(steps_.at(step)) {}
 
   [[nodiscard]] double at(const Vec3& in_space, int lod) override {
     const VolumeGrid& grid = file_.header().grid;
@@ -53,7 +54,7 @@ class ValuesOf final : public VolumeValues {
     std::vector<double> values;
     const RestoredPart part = restored_part(grid, std::min(lod, samples_.lods()), std::nullopt, file_.name());
     restore(
-        file_, pages_.step(), part, memory_,
+        file_, step_, part, memory_,
         [&](std::span<const std::byte> plane) {
           for (std::size_t n = 0; n < plane.size() / sizeof(Sample); ++n) {
             Sample sample;
@@ -66,7 +67,29 @@ class ValuesOf final : public VolumeValues {
     return values;
   }
 
+  [[nodiscard]] std::array<double, 2> extended_by_steps(std::array<double, 2> range) override {
+    const PageGrid& pages = file_.grid();
+    if (file_.steps() == 1 || pages.depth() == 0) return range;
+    for (std::uint32_t step = 0; step < file_.steps(); ++step) {
+      const std::optional<PageEntry> all = file_.entry(step, {pages.top(), {0, 0, 0}});
+      // The words of an empty range are no numbers.
+      if (!all || all->low > all->high) continue;
+      for (const auto word : {all->low, all->high}) {
+        const auto sample = from_ordered<Sample>(static_cast<OrderedWord<Sample>>(word));
+        const double value = file_.header().grid.value(static_cast<double>(sample));
+        if (std::isfinite(value)) range = {std::min(range[0], value), std::max(range[1], value)};
+      }
+    }
+    return range;
+  }
+
   [[nodiscard]] int coarsest() const override { return std::max(0, samples_.lods() - 1); }
+  [[nodiscard]] std::uint32_t steps() const override { return file_.steps(); }
+  void set_step(std::uint32_t step) override {
+    if (step == step_ || file_.steps() == 1) return;
+    samples_.set_pages(steps_.at(step));
+    step_ = step;
+  }
   [[nodiscard]] const VolumeGrid& grid() const override { return file_.header().grid; }
   [[nodiscard]] const std::string& name() const override { return file_.name(); }
 
@@ -89,7 +112,8 @@ class ValuesOf final : public VolumeValues {
 
   std::size_t memory_;
   StoreFile file_;
-  StoredPages<OrderedWord<Sample>> pages_;
+  StepPages<OrderedWord<Sample>> steps_;
+  std::uint32_t step_;
   LatticeSamples<Sample> samples_;
 };
 

@@ -14,6 +14,7 @@
 #include "core/picture/colour_map.h"
 #include "core/picture/ticks.h"
 #include "viewer/scene/picking.h"
+#include "viewer/window/step_panel.h"
 
 namespace adamas {
 
@@ -134,17 +135,18 @@ void draw_overlay(const ViewSession& session) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const ViewState& state = session.state();
-  if (state.has_axes) draw_axes(list, state.viewpoint, size.y);
+  const float bottom = size.y - step_panel_height(session);
+  if (state.has_axes) draw_axes(list, state.viewpoint, bottom);
   if (state.has_colour_bar) draw_colour_bar(list, session, size.x, size.y);
-  if (!session.shown_field()) draw_materials(list, session, size.y);
+  if (!session.shown_field()) draw_materials(list, session, bottom);
   draw_handle(list, session);
   const UpdateReport report = session.report();
   if (!report.problem.empty()) {
-    draw_message(list, report.problem, IM_COL32(176, 24, 24, 255), size.x, size.y);
+    draw_message(list, report.problem, IM_COL32(176, 24, 24, 255), size.x, bottom);
   } else if (state.culled_from && session.has_panels) {
-    draw_message(list, "The mesh is kept as the red view has it (O: let it go)", kText, size.x, size.y);
+    draw_message(list, "The mesh is kept as the red view has it (O: let it go)", kText, size.x, bottom);
   } else if (session.is_recording()) {
-    draw_message(list, "The camera's path is being recorded (R: end)", kText, size.x, size.y);
+    draw_message(list, "The camera's path is being recorded (R: end)", kText, size.x, bottom);
   }
 }
 

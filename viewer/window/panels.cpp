@@ -11,6 +11,7 @@
 #include "core/picture/colour_map.h"
 #include "core/picture/ticks.h"
 #include "viewer/scene/camera_control.h"
+#include "viewer/window/step_panel.h"
 
 namespace adamas {
 
@@ -245,7 +246,7 @@ void show_camera(ViewSession& session, PanelState& panels) {
   ImGui::SameLine();
   if (ImGui::Button(session.is_recording() ? "End recording" : "Record")) session.act(Action::kRecord);
   ImGui::SameLine();
-  if (ImGui::Button(session.is_playing() ? "Stop" : "Play")) session.act(Action::kPlay);
+  if (ImGui::Button(session.is_playing() ? "Stop" : "Play")) session.act(Action::kPlayCamera);
   if (session.path().size() > 1 && !session.is_recording()) {
     ImGui::SameLine();
     if (ImGui::Button("Save path")) panels.wants_path_saved = true;
@@ -352,11 +353,12 @@ void show_panels(ViewSession& session, Input& input, PanelState& panels) {
   show_help(session);
   show_picked(session, input);
   if (!session.has_panels) return;
-  const float height = ImGui::GetIO().DisplaySize.y;
+  show_step_panel(session);
+  const float height = ImGui::GetIO().DisplaySize.y - step_panel_height(session);
+  const float most = std::max(4 * em(), height - 8 * em());
   ImGui::SetNextWindowPos({0.6F * em(), 0.6F * em()}, ImGuiCond_Once);
-  ImGui::SetNextWindowSizeConstraints({18 * em(), 4 * em()},
-                                      {40 * em(), std::max(4 * em(), height - 8 * em())});
-  ImGui::SetNextWindowSize({22 * em(), std::max(4 * em(), height - 8 * em())}, ImGuiCond_Once);
+  ImGui::SetNextWindowSizeConstraints({18 * em(), 4 * em()}, {40 * em(), most});
+  ImGui::SetNextWindowSize({22 * em(), most}, ImGuiCond_Once);
   ImGui::Begin("adamas", nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PushItemWidth(0.6F * ImGui::GetContentRegionAvail().x);
   for (std::size_t n = 0; n < session.documents().size(); ++n) {

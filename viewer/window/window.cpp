@@ -102,6 +102,14 @@ std::string key_name(int key) {
       return "Escape";
     case GLFW_KEY_F12:
       return "F12";
+    case GLFW_KEY_COMMA:
+      return ",";
+    case GLFW_KEY_PERIOD:
+      return ".";
+    case GLFW_KEY_HOME:
+      return "Home";
+    case GLFW_KEY_END:
+      return "End";
     default:
       break;
   }
@@ -131,7 +139,8 @@ class Viewer {
     while (glfwWindowShouldClose(window_.get()) == GLFW_FALSE && !session_.wants_end) {
       // Where nothing moves by itself there is no need to draw again and again.
       constexpr double kSecondsOfSleep = 0.5, kSecondsOfWait = 0.01;
-      if (session_.is_playing() || session_.is_recording() || frames_to_draw_ > 0) {
+      if (session_.is_playing() || session_.clock().is_playing() || session_.is_recording() ||
+          frames_to_draw_ > 0) {
         glfwPollEvents();
       } else {
         glfwWaitEventsTimeout(session_.report().is_current ? kSecondsOfSleep : kSecondsOfWait);
