@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <functional>
 
 #include "cli/figures.h"
@@ -29,11 +28,6 @@ std::pair<std::string, double> parse_published(const std::string& text) {
     wrong_usage("--published: expected one of {}'triangles A | B', found '{}'", names, name);
   }
   return {name, parse_positive("--published " + name, value)};
-}
-
-bool same_letters(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
 }  // namespace
@@ -138,16 +132,7 @@ std::vector<double> ExperimentRequest::curve(const InputFacts& input, double tar
 
 std::string ExperimentRequest::density(const std::vector<FieldInfo>& fields,
                                        const std::string& source) const {
-  for (const FieldInfo& info : fields) {
-    if (density_name.empty() ? same_letters(info.name, "density") : info.name == density_name) {
-      if (info.components == 1) return info.name;
-      fail("{}: --density: expected a scalar field, found '{}' with {} components", source, info.name,
-           info.components);
-    }
-  }
-  if (density_name.empty()) return {};
-  fail("{}: --density: expected one of its fields ({}), found '{}'", source, field_names(fields),
-       density_name);
+  return density_field(density_name, fields, source);
 }
 
 }  // namespace adamas

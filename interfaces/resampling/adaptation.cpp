@@ -1,5 +1,5 @@
-// A hierarchy of other data is adapted: cells are merged and split until it is the one that refinement from the
-// roots gives.
+// A hierarchy of other data is adapted: cells are merged and split until it is the one that refinement from
+// the roots gives.
 
 #include <algorithm>
 #include <vector>
@@ -52,8 +52,8 @@ void Resampler::evaluate_tree() {
 }
 
 /// The diamonds that refinement from the roots would split, as far as the tree reaches: those of tetrahedra
-/// whose errors are too great, with all their ancestors. A tetrahedron counts only where these make it: errors
-/// may grow on the way down, so that below there may be some that nobody would have looked at.
+/// whose errors are too great, with all their ancestors. A tetrahedron counts only where these make it:
+/// errors may grow on the way down, so that below there may be some that nobody would have looked at.
 LatticeMap<char> Resampler::demanded_diamonds() const {
   LatticeMap<char> demanded;
   std::vector<TetrahedronId> open = hierarchy_.roots();
@@ -97,8 +97,10 @@ void Resampler::merge_others(const LatticeMap<char>& demanded) {
 /// another hierarchy in its order. What comes after depends on these numbers: sums are taken in their order.
 void Resampler::number_as_from_roots() {
   MeshHierarchy numbered(hierarchy_.domain());
-  std::vector<TetrahedronId> adapted = numbered.roots();  // by number: the same tetrahedron of the adapted one
-  for (const VertexId v : corners_of(numbered.roots())) numbered.payload(v) = std::move(hierarchy_.payload(v));
+  std::vector<TetrahedronId> adapted =
+      numbered.roots();  // by number: the same tetrahedron of the adapted one
+  for (const VertexId v : corners_of(numbered.roots()))
+    numbered.payload(v) = std::move(hierarchy_.payload(v));
   std::vector<TetrahedronId> cells = numbered.roots();
   while (!cells.empty()) {
     std::vector<Split> splits;
@@ -115,7 +117,8 @@ void Resampler::number_as_from_roots() {
         if (numbered.is_leaf(split.children[side])) cells.push_back(split.children[side]);
       }
       VertexRecord& vertex = hierarchy_.payload(hierarchy_.split_vertex(hierarchy_.diamond(parent)));
-      if (!numbered.payload(split.vertex).distances.body.valid()) numbered.payload(split.vertex) = std::move(vertex);
+      if (!numbered.payload(split.vertex).distances.body.valid())
+        numbered.payload(split.vertex) = std::move(vertex);
     }
   }
   ADAMAS_ASSERT(numbered.leaf_count() == hierarchy_.leaf_count());

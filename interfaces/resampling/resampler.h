@@ -75,7 +75,8 @@ class Resampler {
   Resampler(const ResamplingSource& source, ResamplingOptions options,
             Progress& progress = SilentProgress::instance());
 
-  /// Refines the hierarchy; this or the next is to be called once. Throws Cancelled where the progress says so.
+  /// Refines the hierarchy; this or the next is to be called once. Throws Cancelled where the progress says
+  /// so.
   void refine();
   /// The same from a hierarchy of the same domain that another resampler has left, as that of the step before
   /// of a series: what these interfaces do not need is merged, what they need is split. The result is that of
