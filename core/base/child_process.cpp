@@ -27,7 +27,7 @@ constexpr std::array<int, 4> kLimitingSignals{SIGPIPE, SIGALRM, SIGXCPU, SIGXFSZ
 /// What the child needs between fork and exec, worked out before: there it may allocate nothing.
 struct Preparation {
   const char* program = nullptr;
-  std::array<char*, 2> arguments{};
+  std::vector<char*> arguments;  ///< a null pointer at the end
   std::array<int, 3> streams{};
   bool own_group = false;
   std::vector<std::pair<int, rlimit>> limits;
@@ -116,7 +116,10 @@ ChildProcess::ChildProcess(const ChildSetup& setup) : own_group_(setup.own_group
   std::string name = setup.program.string();
   Preparation prepared;
   prepared.program = name.c_str();
-  prepared.arguments = {name.data(), nullptr};
+  std::vector<std::string> arguments = setup.arguments;
+  prepared.arguments.push_back(name.data());
+  for (std::string& argument : arguments) prepared.arguments.push_back(argument.data());
+  prepared.arguments.push_back(nullptr);
   prepared.streams = setup.streams;
   prepared.own_group = own_group_;
   prepared.limits = limits_of(setup);
@@ -150,6 +153,18 @@ bool ChildProcess::has_ended() { return wait(WNOHANG); }
 int ChildProcess::wait() {
   wait(0);
   return status_;
+}
+
+std::filesystem::path find_program(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::string_view folders = path == nullptr ? "" : path;
+  while (!folders.empty()) {
+    const std::size_t end = std::min(folders.find(':'), folders.size());
+    const std::filesystem::path found = std::filesystem::path(folders.substr(0, end)) / name;
+    if (end > 0 && can_run(found)) return found;
+    folders.remove_prefix(std::min(end + 1, folders.size()));
+  }
+  return {};
 }
 
 std::filesystem::path find_own_program(const std::string& name, const std::string& variable) {

@@ -16,6 +16,7 @@ namespace adamas {
 /// A program to start, and what it may use.
 struct ChildSetup {
   std::filesystem::path program;
+  std::vector<std::string> arguments{};  ///< without the program's name
   /// Begins the Error where no process can be made: "F.vtk: no process for its reader".
   std::string complaint;
   /// Open files that become its standard input, output and error. Of one that is -1, there is nothing to
@@ -57,6 +58,9 @@ class ChildProcess {
   int status_ = 0;
   bool ended_ = false;
 };
+
+/// Finds a program in the folders that PATH names; empty where there is none.
+std::filesystem::path find_program(const std::string& name);
 
 /// Finds a program that is installed with this library: where the environment variable says, beside the
 /// running program, in ../libexec of that, or where this library was to be installed when it was configured.
