@@ -28,6 +28,7 @@ struct Options {
   SimplificationText simplification;
   std::string save;
   std::vector<std::string> curves;
+  SeriesFilmText film;
 };
 
 /// The interfaces of the mesh, simplified where the options ask for it.
@@ -83,20 +84,34 @@ std::string single_option(const Options& options) {
   return options.input.interfaces.empty() ? options.input.interface_option() : "--interface";
 }
 
+/// The option given that is about a series alone; empty where there is none.
+std::string series_option(const Options& options) {
+  if (!options.curves.empty()) return "--curves";
+  if (!options.film.file.empty()) return "--film";
+  if (!options.film.frame_rate.empty()) return "--frame-rate";
+  if (!options.film.plane.empty()) return "--plane";
+  return options.film.show.empty() ? "" : "--show";
+}
+
 void run_series(const Options& options, const std::vector<SeriesEntry>& steps, Session& session) {
   if (const std::string option = single_option(options); !option.empty())
     wrong_usage("{}: expected one data set, found a series of {}", option, steps.size());
-  if (options.outputs.mesh.empty() && options.curves.empty() && session.json.empty())
-    wrong_usage("nothing to write: expected -o, --curves or --json, found none");
+  if (options.outputs.mesh.empty() && options.curves.empty() && options.film.file.empty() &&
+      session.json.empty())
+    wrong_usage("nothing to write: expected -o, --curves, --film or --json, found none");
+  options.film.check();
+  if (options.film.file.empty() && !(options.film.plane.empty() && options.film.show.empty()))
+    wrong_usage("--{}: expected --film as well", options.film.plane.empty() ? "show" : "plane");
   protect_inputs(options.input, options.inputs.front(), session.outputs);
   resample_series(options.input, steps, ResamplingRequest(options.text),
-                  {options.outputs.mesh, options.curves}, session);
+                  {options.inputs.front(), options.outputs.mesh, options.curves, options.film}, session);
 }
 
 void run(Options& options, Session& session) {
   const std::vector<SeriesEntry> steps = series_steps(options.inputs);
   if (!steps.empty()) return run_series(options, steps, session);
-  if (!options.curves.empty()) wrong_usage("--curves: expected a series (.pvd or several files)");
+  if (const std::string option = series_option(options); !option.empty())
+    wrong_usage("{}: expected a series (a .pvd or several files)", option);
   if (!options.inputs.empty()) options.input.path = options.inputs.front();
   Console& console = session.console;
   const ResamplingRequest request(options.text);
@@ -160,6 +175,15 @@ void add_resample(const Command& app, Session& session) {
                   "repeatable")
       .type_name("FILE")
       .one_value_each();
+  add_film_options(command, options->film);
+  command.add_option("--plane", options->film.plane, "The plane of the film")
+      .type_name("x=N|y=N|z=N")
+      .group("Film");
+  command
+      .add_option("--show", options->film.show,
+                  "The field that the film shows, or NAME:x for a component; without it, the materials")
+      .type_name("NAME")
+      .group("Film");
   add_simplification_options(
       command, options->simplification,
       "the approximated interfaces that --interfaces-out and --picture show, on top of the interface error");

@@ -3,12 +3,14 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/figures.h"
+#include "cli/option_values.h"
+#include "cli/series_curves.h"
 #include "cli/series_input.h"
 #include "cli/series_output.h"
-#include "cli/series_report.h"
 #include "core/io/input_file.h"
 #include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "core/picture/film.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 
 namespace adamas {
@@ -26,7 +28,7 @@ void write_curves(const std::filesystem::path& path, const SeriesRecord& record)
   if (file_extension(path) == ".csv") return write_text(path, series_csv(record));
   std::vector<Plot> plots;
   for (SeriesCurve& curve : series_curves(record)) plots.push_back(std::move(curve.plot));
-  write_bytes(path, draw_plots(plots, picture_format(path)));
+  write_bytes(path, draw_plots(plots, picture_format(path), {.columns = 2}));
 }
 
 }  // namespace
@@ -44,6 +46,12 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
   for (const std::string& file : outputs.curves)
     session.outputs.declare("--curves", file, {".csv", ".png", ".svg", ".pdf"});
 
+  session.outputs.declare("--film", outputs.film.file, film_endings());
+  std::optional<SeriesFilm> film;
+  if (!outputs.film.file.empty())
+    film.emplace(outputs.film.file, parse_plane_option("--plane", outputs.film.plane), outputs.film.show,
+                 std::filesystem::path(outputs.series).filename().string());
+
   SeriesRecord record;
   SeriesForms forms;
   SeriesResampler resampler(request, console);
@@ -59,6 +67,7 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
     }
     ResampledMesh mesh;
     record.steps.push_back(resampler.resample(steps[n], read, record.density, mesh));
+    if (film) film->add(steps[n].time, mesh);
     if (!meshes) continue;
     console.step("writing " + outputs.mesh, -1);
     meshes->write(
@@ -67,6 +76,8 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
   }
   console.about.clear();
   if (meshes) meshes->write_list(session.outputs);
+  session.outputs.write(outputs.film.file,
+                        [&](const auto& path) { film->write(path, outputs.film.rate(), console); });
   print_series(record, console);
   for (const std::string& file : outputs.curves)
     session.outputs.write(file, [&record](const auto& path) { write_curves(path, record); });

@@ -5,8 +5,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/picture/palette.h"
-
 namespace adamas {
 
 namespace {
@@ -19,13 +17,6 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{:
 /// With all its digits; empty where it is not known.
 std::string exact(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
-double certified(const SeriesStep& step) {
-  return step.run.certificate ? step.run.certificate->networks.upper : kNone;
-}
-double attained(const SeriesStep& step) {
-  return step.run.certificate ? step.run.certificate->networks.lower : kNone;
-}
-
 double greatest_error(const SeriesStep& step, std::size_t field) {
   const FieldError& all = step.run.figures.fields[field].all;
   return all.count() > 0 ? all.max : kNone;
@@ -37,7 +28,9 @@ std::string difference(double before, double after) {
 
 ReportTable sizes_table(const SeriesRecord& record) {
   ReportTable table{
-      "Steps", {"step", "time", "tetrahedra", "diamonds kept", "merged", "split", "error wanted", "certified"}, {}};
+      "Steps",
+      {"step", "time", "tetrahedra", "diamonds kept", "merged", "split", "error wanted", "certified"},
+      {}};
   for (const FieldInfo& field : record.fields) table.header.push_back("error of " + field.name);
   table.header.push_back("processor seconds");
   for (std::size_t n = 0; n < record.steps.size(); ++n) {
@@ -52,7 +45,7 @@ ReportTable sizes_table(const SeriesRecord& record) {
                                  diamonds(&Adaptation::merged),
                                  diamonds(&Adaptation::split),
                                  number(step.run.options.interface_error),
-                                 number(certified(step))};
+                                 number(certified_error(step))};
     for (std::size_t f = 0; f < record.fields.size(); ++f) row.push_back(number(greatest_error(step, f)));
     row.push_back(fmt::format("{:.2f}", step.processor_seconds));
     table.rows.push_back(std::move(row));
@@ -83,6 +76,13 @@ ReportTable differences_table(const SeriesRecord& record) {
 }
 
 }  // namespace
+
+double certified_error(const SeriesStep& step) {
+  return step.run.certificate ? step.run.certificate->networks.upper : kNone;
+}
+double attained_error(const SeriesStep& step) {
+  return step.run.certificate ? step.run.certificate->networks.lower : kNone;
+}
 
 Figures series_figures(const SeriesRecord& record) {
   Figures rows = Figures::array();
@@ -147,8 +147,8 @@ std::string series_csv(const SeriesRecord& record) {
         std::to_string(figures.vertices),
         std::to_string(figures.interface_tetrahedra),
         exact(step.run.options.interface_error),
-        exact(certified(step)),
-        exact(attained(step)),
+        exact(certified_error(step)),
+        exact(attained_error(step)),
         exact(certificate ? certificate->materials.upper : kNone),
         exact(certificate && certificate->junctions ? certificate->junctions->upper : kNone)};
     for (std::size_t f = 0; f < record.fields.size(); ++f) {
@@ -162,111 +162,6 @@ std::string series_csv(const SeriesRecord& record) {
     add_line(cells);
   }
   return text;
-}
-
-namespace {
-
-PlotSeries series_of(const SeriesRecord& record, std::string name,
-                     const std::function<double(const SeriesStep&)>& value) {
-  PlotSeries series{.name = std::move(name)};
-  for (const SeriesStep& step : record.steps) {
-    series.x.push_back(step.entry.time);
-    series.y.push_back(value(step));
-  }
-  return series;
-}
-
-Plot over_time(const std::string& label, AxisKind kind = AxisKind::kLinear) {
-  Plot plot;
-  plot.x = {"time"};
-  plot.y = {label, kind};
-  return plot;
-}
-
-bool shows_anything(const PlotSeries& series) {
-  return std::any_of(series.y.begin(), series.y.end(), [](double y) { return std::isfinite(y); });
-}
-
-/// Two lines for each material in its colour: dashed what the input has, and with marks what the mesh has.
-Plot material_plot(const SeriesRecord& record, const std::string& label, double LedgerRow::*input,
-                   double LedgerRow::*mesh) {
-  Plot plot = over_time(label);
-  const auto& materials = record.steps.front().ledger;
-  for (std::size_t m = 0; m < std::min(materials.size(), kMostMaterials); ++m) {
-    const auto of = [&record, m](std::string name, double LedgerRow::*value) {
-      PlotSeries series = series_of(record, std::move(name),
-                                    [m, value](const SeriesStep& step) { return step.ledger[m].*value; });
-      series.colour = material_colour(m);
-      return series;
-    };
-    PlotSeries of_input = of("", input), of_mesh = of(materials[m].material, mesh);
-    of_input.markers = false;
-    of_input.dashed = true;
-    if (!shows_anything(of_mesh)) continue;
-    plot.series.push_back(std::move(of_input));
-    plot.series.push_back(std::move(of_mesh));
-  }
-  return plot;
-}
-
-Plot error_plot(const SeriesRecord& record) {
-  Plot plot = over_time("interface error");
-  plot.series = {
-      series_of(record, "wanted", [](const SeriesStep& step) { return step.run.options.interface_error; }),
-      series_of(record, "certified", certified), series_of(record, "attained (lower bound)", attained)};
-  plot.series[0].markers = false;
-  plot.series[0].dashed = true;
-  plot.y.low = 0;
-  return plot;
-}
-
-Plot field_plot(const SeriesRecord& record) {
-  Plot plot = over_time("mean field error / range", AxisKind::kLogarithmic);
-  for (std::size_t f = 0; f < record.fields.size(); ++f) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const SeriesStep& step : record.steps) {
-      least = std::min(least, step.fields[f].min);
-      most = std::max(most, step.fields[f].max);
-    }
-    PlotSeries series =
-        series_of(record, record.fields[f].name, [f, range = most - least](const SeriesStep& step) {
-          const FieldError& all = step.run.figures.fields[f].all;
-          return all.count() > 0 && range > 0 ? all.mean() / range : kNone;
-        });
-    // The errors of a field that the mesh reproduces exactly are round-off, which would stretch the axis.
-    if (std::any_of(series.y.begin(), series.y.end(), [](double y) { return y > 1e-12; }))
-      plot.series.push_back(std::move(series));
-  }
-  return plot;
-}
-
-}  // namespace
-
-std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
-  std::vector<SeriesCurve> curves;
-  const auto add = [&curves](const std::string& name, Plot plot, const std::string& caption) {
-    if (std::none_of(plot.series.begin(), plot.series.end(), shows_anything)) return;
-    curves.push_back({name, caption, std::move(plot)});
-  };
-  Plot sizes = over_time("tetrahedra");
-  sizes.series = {
-      series_of(record, "tetrahedra",
-                [](const SeriesStep& step) { return static_cast<double>(step.run.figures.tetrahedra); }),
-      series_of(record, "with interfaces", [](const SeriesStep& step) {
-        return static_cast<double>(step.run.figures.interface_tetrahedra);
-      })};
-  sizes.y.low = 0;
-  add("series-tetrahedra", std::move(sizes), "The size of the mesh over time.");
-  add("series-interface-error", error_plot(record),
-      "Two-sided distance between the interfaces of input and mesh over time: no point is farther than the "
-      "certified error.");
-  add("series-field-error", field_plot(record),
-      "Mean field errors over time, as parts of each field's range over all steps.");
-  add("series-volumes", material_plot(record, "volume", &LedgerRow::volume_input, &LedgerRow::volume_mesh),
-      "Volumes of the materials over time: in the mesh, and dashed in the input.");
-  add("series-masses", material_plot(record, "mass", &LedgerRow::mass_input, &LedgerRow::mass_mesh),
-      "Masses of the materials over time: in the mesh, and dashed in the input.");
-  return curves;
 }
 
 }  // namespace adamas

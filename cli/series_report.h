@@ -5,7 +5,6 @@
 
 #include "cli/series_run.h"
 #include "core/picture/html_report.h"
-#include "core/picture/plot.h"
 
 namespace adamas {
 
@@ -16,6 +15,10 @@ struct SeriesRecord {
   std::vector<SeriesStep> steps;
 };
 
+/// The interfaces' distance, certified and attained; NaN where it was not measured.
+double certified_error(const SeriesStep& step);
+double attained_error(const SeriesStep& step);
+
 /// For `--json`: a row per step, with the keys of a single run, its number, its time and its file.
 Figures series_figures(const SeriesRecord& record);
 /// Errors, volumes and masses over time: a line per step, as comma-separated values.
@@ -23,13 +26,5 @@ std::string series_csv(const SeriesRecord& record);
 /// The same as tables; the first tells sizes and errors, the second how far volumes and masses are off.
 std::vector<ReportTable> series_tables(const SeriesRecord& record);
 void print_series(const SeriesRecord& record, Console& console);
-
-/// A curve over time, with a name for its file and a caption.
-struct SeriesCurve {
-  std::string name, caption;
-  Plot plot;
-};
-/// Those of sizes, errors of interfaces and of fields, volumes and masses, as far as there are any.
-std::vector<SeriesCurve> series_curves(const SeriesRecord& record);
 
 }  // namespace adamas
