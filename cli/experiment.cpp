@@ -10,6 +10,7 @@
 #include "cli/generated_data.h"
 #include "cli/output_folder.h"
 #include "cli/picture_block.h"
+#include "cli/series_curves.h"
 #include "cli/series_input.h"
 #include "cli/slice_panels.h"
 #include "cli/surface_picture.h"
@@ -266,8 +267,11 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
     console.print("\n");
     console.table(rows);
   }
-  console.print("\n  {}: report.html, metrics.json and {} pictures\n", folder,
-                record.input_pictures.size() + record.mesh_pictures.size() + record.slices.size() + 2);
+  // Of curves of a series there are two files each.
+  const std::size_t curves = record.series ? 2 * series_curves(*record.series).size() : 0;
+  console.print(
+      "\n  {}: report.html, metrics.json and {} pictures\n", folder,
+      record.input_pictures.size() + record.mesh_pictures.size() + record.slices.size() + curves + 2);
 }
 
 void run(ExperimentOptions& options, Session& session) {

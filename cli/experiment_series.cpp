@@ -5,6 +5,7 @@
 #include "cli/series_curves.h"
 #include "cli/series_film.h"
 #include "cli/series_input.h"
+#include "core/io/input_file.h"
 #include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
@@ -53,9 +54,12 @@ void add_series(HtmlReport& report, const SeriesRecord& record, const std::strin
                 const std::filesystem::path& folder) {
   report.heading("Over time");
   report.paragraph(
-      fmt::format("{} steps, each resampled from the mesh of the one before: mesh.pvd has the meshes, "
-                  "series.csv the figures.{}",
-                  record.steps.size(), film.empty() ? "" : " The film of a slice: " + film + "."));
+      fmt::format("{} steps, each resampled from the mesh of the one before. mesh.pvd has the meshes, "
+                  "series.csv the figures.",
+                  record.steps.size()));
+  if (!film.empty())
+    report.film(read_file(folder / film), file_extension(film),
+                "The mesh in a plane over time: " + film + ".");
   for (const SeriesCurve& curve : series_curves(record)) {
     const std::string png = draw_plot(curve.plot, PictureFormat::kPng);
     write_bytes(folder / (curve.name + ".png"), png);
