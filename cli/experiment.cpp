@@ -305,9 +305,11 @@ void run(ExperimentOptions& options, Session& session) {
 
 void add_experiment(const Command& app, Session& session) {
   const auto options = std::make_shared<ExperimentOptions>();
-  const Command command = add_command(
-      app, session, "experiment", "A resampling experiment from one file, with pictures and a report",
-      "adamas experiment -c datasets/impact.toml -o impact", [options, &session] { run(*options, session); });
+  const Command command = add_command(app, session, "experiment",
+                                      "A resampling experiment from one file, with pictures and a report",
+                                      "adamas experiment -c datasets/impact.toml -o impact\n"
+                                      "  adamas experiment run.pvd --plane z=0 --film film.mp4 -o run",
+                                      [options, &session] { run(*options, session); });
   add_experiment_options(command, *options);
 }
 

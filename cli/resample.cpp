@@ -157,7 +157,8 @@ void add_resample(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
   const Command command =
       add_command(app, session, "resample", "An adaptive tetrahedral mesh with sharp material interfaces",
-                  "adamas resample cth.vtr --interface-error 0.5% --field-error Pressure=5% -o mesh.vtu",
+                  "adamas resample cth.vtr --interface-error 0.5% --field-error Pressure=5% -o mesh.vtu\n"
+                  "  adamas resample run.pvd --interface-error 1% -o meshes.pvd --curves curves.png",
                   [options, &session] { run(*options, session); });
   command
       .add_option(

@@ -110,7 +110,8 @@ void add_slice(const Command& app, Session& session) {
   const auto options = std::make_shared<SliceRequest>();
   const Command command = add_command(
       app, session, "slice", "A cross section of data, of a mesh, of interfaces or of a stored volume",
-      "adamas slice mesh.vtu --plane z=0 --field Pressure --mode all --original cth.vtr -o slice.png",
+      "adamas slice mesh.vtu --plane z=0 --field Pressure --mode all --original cth.vtr -o slice.png\n"
+      "  adamas slice meshes.pvd --plane z=0 --field Pressure -o film.mp4",
       [options, &session] { run(*options, session); });
   command
       .add_option(

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "cli/figures.h"
 #include "cli/option_values.h"
@@ -38,9 +39,10 @@ class StepSlices {
            request.inputs.front(), originals_.size());
   }
 
-  /// `last`: it is drawn now, with interfaces, if at all.
+  /// `last`: it is drawn now, if at all. Before, interfaces are not needed, and notes are for the last time.
   CutInput cut(std::size_t n, bool polygons, bool last) {
     session_.console.about = steps_[n].file;
+    const bool quiet = std::exchange(session_.console.quiet, session_.console.quiet || !last);
     SliceRequest one = request_;
     one.input.path = steps_[n].file;
     if (!originals_.empty()) one.original = originals_[n].file;
@@ -52,6 +54,7 @@ class StepSlices {
     } else {
       forms_.check(one.input.path, input.materials(), input.box());
     }
+    session_.console.quiet = quiet;
     session_.console.about.clear();
     return result;
   }
