@@ -52,7 +52,7 @@ void Console::write(std::string_view text) {
 void Console::write_note(const std::string& text) {
   clear();
   std::fflush(stdout);
-  to_stderr("adamas: note: " + text + "\n");
+  to_stderr("adamas: note: " + (about.empty() ? "" : visible_text(about) + ": ") + text + "\n");
 }
 
 void Console::flush() {

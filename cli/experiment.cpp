@@ -6,14 +6,19 @@
 #include "cli/command.h"
 #include "cli/experiment_options.h"
 #include "cli/experiment_report.h"
+#include "cli/experiment_series.h"
 #include "cli/generated_data.h"
 #include "cli/output_folder.h"
 #include "cli/picture_block.h"
+#include "cli/series_curves.h"
+#include "cli/series_input.h"
 #include "cli/slice_panels.h"
 #include "cli/surface_picture.h"
+#include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "core/picture/film.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
@@ -34,9 +39,9 @@ ResamplingOptions without_fields(ResamplingOptions options) {
 /// An experiment, step by step; what it finds goes into the record and into the folder.
 class Experiment {
  public:
-  Experiment(const ExperimentOptions& options, const ExperimentRequest& request, OutputFolder& folder,
-             Console& console)
-      : options_(options), request_(request), folder_(folder), console_(console) {}
+  Experiment(const ExperimentOptions& options, const ExperimentRequest& request,
+             const std::vector<SeriesEntry>& steps, OutputFolder& folder, Console& console)
+      : options_(options), request_(request), steps_(steps), folder_(folder), console_(console) {}
 
   ExperimentRecord run() {
     load();
@@ -47,6 +52,10 @@ class Experiment {
     follow_curve();
     balance();
     compare_with_published();
+    if (!steps_.empty()) {
+      record_.series = follow_series(options_, request_, steps_, folder_, console_);
+      record_.film = options_.film.file;
+    }
     record_.seconds = console_.seconds();
     return std::move(record_);
   }
@@ -73,6 +82,7 @@ class Experiment {
 
   const ExperimentOptions& options_;
   const ExperimentRequest& request_;
+  const std::vector<SeriesEntry>& steps_;  ///< of a series, whose last step is the input; empty for one file
   OutputFolder& folder_;
   Console& console_;
   Input input_;
@@ -101,6 +111,10 @@ void Experiment::load() {
                   std::filesystem::path(input_.source.name).filename().string(), counts(0), counts(1),
                   counts(2), data.grid.centering == Centering::kCells ? "cells" : "points",
                   data.materials.size(), data.fields.size());
+  if (!steps_.empty())
+    record_.input = fmt::format("{}, {} steps; the last: {}",
+                                std::filesystem::path(options_.inputs.front()).filename().string(),
+                                steps_.size(), record_.input);
   if (input_.source.fields) record_.fields = input_.source.fields->fields();
   if (!options_.show.empty()) record_.shown = find_field(record_.fields, options_.show, data.source).field;
   record_.density = request_.density(record_.fields, data.source);
@@ -241,6 +255,10 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
   add("interfaces", record.interfaces);
   if (record.with_fields) add("with fields", *record.with_fields);
   console.table(rows);
+  if (record.series) {
+    console.print("\n");
+    print_series(*record.series, console);
+  }
   if (!record.published.empty()) {
     rows = {{"", record.published_by, "here"}};
     for (const PublishedFigure& figure : record.published)
@@ -249,19 +267,29 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
     console.print("\n");
     console.table(rows);
   }
-  console.print("\n  {}: report.html, metrics.json and {} pictures\n", folder,
-                record.input_pictures.size() + record.mesh_pictures.size() + record.slices.size() + 2);
+  // Of curves of a series there are two files each.
+  const std::size_t curves = record.series ? 2 * series_curves(*record.series).size() : 0;
+  console.print(
+      "\n  {}: report.html, metrics.json and {} pictures\n", folder,
+      record.input_pictures.size() + record.mesh_pictures.size() + record.slices.size() + curves + 2);
 }
 
-void run(const ExperimentOptions& options, Session& session) {
+void run(ExperimentOptions& options, Session& session) {
+  const std::vector<SeriesEntry> steps = series_steps(options.inputs);
+  if (!options.inputs.empty())
+    options.input.path = steps.empty() ? options.inputs.front() : steps.back().file;
   const ExperimentRequest request(options);
+  if (steps.empty() && !options.film.file.empty())
+    wrong_usage("--film: expected a series (a .pvd or several files)");
+  if (!options.film.file.empty()) require_film_maker(options.film.file);
+  for (const SeriesEntry& step : steps) session.outputs.protect(step.file);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.protect_other(options.output);
   OutputFolder folder(options.output, options.overwrite, {"metrics.json", "report.html"});
   ExperimentRecord record;
   Figures figures;
   folder.fill([&] {
-    record = Experiment(options, request, folder, session.console).run();
+    record = Experiment(options, request, steps, folder, session.console).run();
     write_experiment_report(record, folder.temporary());
     figures = experiment_figures(record);
     write_figures(folder.file("metrics.json"), figures);
@@ -277,9 +305,11 @@ void run(const ExperimentOptions& options, Session& session) {
 
 void add_experiment(const Command& app, Session& session) {
   const auto options = std::make_shared<ExperimentOptions>();
-  const Command command = add_command(
-      app, session, "experiment", "A resampling experiment from one file, with pictures and a report",
-      "adamas experiment -c datasets/impact.toml -o impact", [options, &session] { run(*options, session); });
+  const Command command = add_command(app, session, "experiment",
+                                      "A resampling experiment from one file, with pictures and a report",
+                                      "adamas experiment -c datasets/impact.toml -o impact\n"
+                                      "  adamas experiment run.pvd --plane z=0 --film film.mp4 -o run",
+                                      [options, &session] { run(*options, session); });
   add_experiment_options(command, *options);
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <filesystem>
 #include <functional>
 
 #include "cli/figures.h"
@@ -31,15 +31,25 @@ std::pair<std::string, double> parse_published(const std::string& text) {
   return {name, parse_positive("--published " + name, value)};
 }
 
-bool same_letters(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+/// Throws UsageError where a film is asked for that cannot be made.
+void check_film(const ExperimentOptions& options) {
+  SeriesFilmText film = options.film;
+  if (!options.planes.empty()) film.plane = options.planes.front();
+  film.check();
+  if (!film.file.empty() && std::filesystem::path(film.file).has_parent_path())
+    wrong_usage("--film: expected the name of a file in the folder of the experiment, found '{}'", film.file);
 }
 
 }  // namespace
 
 void add_experiment_options(const Command& command, ExperimentOptions& options) {
-  command.add_option("input", options.input.path, "What to resample: " + grid_files()).type_name("FILE");
+  command
+      .add_option(
+          "input", options.inputs,
+          "What to resample: " + grid_files() +
+              ". Or a series of data on one grid: a .pvd, several files, or a pattern of their names in "
+              "quotes, as \"run_%04d.vti\"")
+      .type_name("FILE...");
   command.add_option("--generate", options.generate, "Make the input: a scene of adamas generate, or impact")
       .type_name("NAME")
       .one_of(generated_names());
@@ -79,6 +89,7 @@ void add_experiment_options(const Command& command, ExperimentOptions& options) 
                   "A published figure to set beside: 'tetrahedra=5390', 'triangles A | B=38'; repeatable")
       .type_name("NAME=X")
       .one_value_each();
+  add_film_options(command, options.film);
   add_surface_picture_options(command, options.pictures, false);
   add_resampling_options(command, options.resampling);
   add_material_options(command, options.input);
@@ -98,6 +109,7 @@ ExperimentRequest::ExperimentRequest(const ExperimentOptions& options)
   if (!show.empty() && options.planes.empty()) wrong_usage("--show: expected --plane as well");
   options.pictures.check();
   for (const std::string& text : options.planes) planes.push_back(parse_plane_option("--plane", text));
+  check_film(options);
   if (!options.detail.empty()) {
     if (planes.empty()) wrong_usage("--detail: expected --plane as well");
     const auto d = parse_numbers("--detail", options.detail, 4);
@@ -138,16 +150,7 @@ std::vector<double> ExperimentRequest::curve(const InputFacts& input, double tar
 
 std::string ExperimentRequest::density(const std::vector<FieldInfo>& fields,
                                        const std::string& source) const {
-  for (const FieldInfo& info : fields) {
-    if (density_name.empty() ? same_letters(info.name, "density") : info.name == density_name) {
-      if (info.components == 1) return info.name;
-      fail("{}: --density: expected a scalar field, found '{}' with {} components", source, info.name,
-           info.components);
-    }
-  }
-  if (density_name.empty()) return {};
-  fail("{}: --density: expected one of its fields ({}), found '{}'", source, field_names(fields),
-       density_name);
+  return density_field(density_name, fields, source);
 }
 
 }  // namespace adamas

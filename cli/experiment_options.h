@@ -9,6 +9,7 @@
 #include "cli/generated_data.h"
 #include "cli/input_options.h"
 #include "cli/resampling_options.h"
+#include "cli/series_film.h"
 #include "cli/surface_picture.h"
 #include "core/geometry/plane.h"
 #include "core/picture/vec2.h"
@@ -17,9 +18,11 @@ namespace adamas {
 
 /// The options of an experiment, as text.
 struct ExperimentOptions {
+  std::vector<std::string> inputs;  ///< one file, or the steps of a series
   InputOptions input;
   ResamplingText resampling;
   SurfacePictureOptions pictures;
+  SeriesFilmText film;
   std::string generate, dimensions, seed;
   std::string title, show, detail, density, published_by, output;
   std::vector<std::string> planes, curve, published;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "cli/experiment_series.h"
 #include "core/picture/plot.h"
 
 namespace adamas {
@@ -237,6 +238,7 @@ Figures experiment_figures(const ExperimentRecord& record) {
     }
     figures["ledger"].push_back(std::move(entry));
   }
+  figures["steps"] = record.series ? series_figures(*record.series) : Figures(nullptr);
   figures["seconds"] = record.seconds;
   figures["peak_memory_bytes"] = peak_memory_bytes();
   return figures;
@@ -265,6 +267,7 @@ void write_experiment_report(const ExperimentRecord& record, const std::filesyst
     add_pictures(report, record.slices, folder);
   }
   add_curves(report, record, folder);
+  if (record.series) add_series(report, *record.series, record.film, folder);
   if (!record.published.empty()) {
     report.heading("Beside published figures");
     report.table(published_table(record));

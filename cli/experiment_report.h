@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/experiment_runs.h"
+#include "cli/series_report.h"
 #include "core/picture/html_report.h"
 
 namespace adamas {
@@ -37,6 +38,8 @@ struct ExperimentRecord {
   std::string density;       ///< the field whose integral is mass; empty for none
   std::string published_by;  ///< the source of `published`
   std::vector<PublishedFigure> published;
+  std::optional<SeriesRecord> series;  ///< where the input is one
+  std::string film;                    ///< of the series; a file in the folder, empty for none
   std::vector<ExperimentPicture> input_pictures, mesh_pictures, slices;
   double seconds = 0;
 

@@ -63,23 +63,28 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
   return run;
 }
 
+std::vector<LedgerRow> ledger_rows(const IdVector<MaterialId, std::string>& materials,
+                                   const IdVector<MaterialId, MaterialIntegral>& input,
+                                   const IdVector<MaterialId, MaterialIntegral>& mesh,
+                                   std::optional<std::size_t> in, std::optional<std::size_t> out) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<LedgerRow> rows;
+  for (MaterialId m(0); m.value < materials.size(); ++m.value) {
+    rows.push_back({materials[m], input[m].volume, mesh[m].volume, in ? input[m].integral[*in] : kNone,
+                    out ? mesh[m].integral[*out] : kNone});
+  }
+  return rows;
+}
+
 std::vector<LedgerRow> make_ledger(const MultiMaterialData& data, const ResampledMesh& mesh,
                                    const std::string& density) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const auto input = material_integrals(data), output = material_integrals(mesh);
-  std::size_t in = 0, out = 0;
+  std::optional<std::size_t> in, out;
   if (!density.empty()) {
     const std::vector<FieldInfo> fields = field_infos(data);
     in = fields[find_field(fields, density, data.source).field].offset;
     out = mesh.fields[find_field(mesh.fields, density, mesh.source).field].offset;
   }
-  std::vector<LedgerRow> rows;
-  for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
-    rows.push_back({data.materials[m], input[m].volume, output[m].volume,
-                    density.empty() ? kNone : input[m].integral[in],
-                    density.empty() ? kNone : output[m].integral[out]});
-  }
-  return rows;
+  return ledger_rows(data.materials, material_integrals(data), material_integrals(mesh), in, out);
 }
 
 }  // namespace adamas

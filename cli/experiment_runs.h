@@ -41,6 +41,13 @@ struct LedgerRow {
   double mass_input = 0, mass_mesh = 0;  ///< NaN where the material has no density
 };
 
+/// The rows of integrals of an input and of a mesh, by material; `in` and `out`: the places of the density in
+/// them, none for volumes alone.
+std::vector<LedgerRow> ledger_rows(const IdVector<MaterialId, std::string>& materials,
+                                   const IdVector<MaterialId, MaterialIntegral>& input,
+                                   const IdVector<MaterialId, MaterialIntegral>& mesh,
+                                   std::optional<std::size_t> in, std::optional<std::size_t> out);
+
 /// Integrals over what the files hold. `density`: the name of a scalar field; empty for volumes alone.
 std::vector<LedgerRow> make_ledger(const MultiMaterialData& data, const ResampledMesh& mesh,
                                    const std::string& density);

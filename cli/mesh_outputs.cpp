@@ -220,8 +220,10 @@ void MeshOutputs::declare(OutputSet& outputs) const {
   outputs.declare("--picture", picture.camera.file, {".png", ".svg", ".pdf", ".html"});
 }
 
-void add_mesh_output_options(const Command& command, MeshOutputs& outputs) {
-  command.add_option("-o,--output", outputs.mesh, "The mesh: .vtu").type_name("FILE");
+void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool series) {
+  command
+      .add_option("-o,--output", outputs.mesh, series ? "The mesh: .vtu; of a series .pvd" : "The mesh: .vtu")
+      .type_name("FILE");
   command
       .add_option("--interfaces-out", outputs.interfaces,
                   "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec")

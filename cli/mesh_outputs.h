@@ -61,7 +61,8 @@ struct MeshOutputs {
   void declare(OutputSet& outputs) const;
 };
 
-void add_mesh_output_options(const Command& command, MeshOutputs& outputs);
+/// `series`: whether there may be several meshes.
+void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool series = false);
 
 /// Interfaces and their picture; `mesh` is called for what a picture that turns shows on a cut.
 void write_interfaces(const MeshOutputs& outputs, const InterfaceMesh& interfaces, const Box3& box,

@@ -1,11 +1,21 @@
 #include "cli/resampling_options.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 
 namespace adamas {
+
+namespace {
+
+bool same_letters(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+}  // namespace
 
 void add_resampling_options(const Command& command, ResamplingText& text) {
   command
@@ -119,6 +129,19 @@ std::string field_names(const std::vector<FieldInfo>& fields) {
   std::string names;
   for (const FieldInfo& f : fields) names += (names.empty() ? "'" : ", '") + f.name + "'";
   return names.empty() ? "none" : names;
+}
+
+std::string density_field(const std::string& name, const std::vector<FieldInfo>& fields,
+                          const std::string& source) {
+  for (const FieldInfo& info : fields) {
+    if (name.empty() ? same_letters(info.name, "density") : info.name == name) {
+      if (info.components == 1) return info.name;
+      fail("{}: --density: expected a scalar field, found '{}' with {} components", source, info.name,
+           info.components);
+    }
+  }
+  if (name.empty()) return {};
+  fail("{}: --density: expected one of its fields ({}), found '{}'", source, field_names(fields), name);
 }
 
 }  // namespace adamas

@@ -54,6 +54,11 @@ double interface_error_of(const std::string& option, const ErrorTarget& error, c
 /// any mesh meets. Throws Error for fields that the input has not.
 std::vector<std::optional<double>> field_errors_of(const FieldErrorTargets& targets, const InputFacts& input);
 
+/// The field whose integral is mass: the one of that name, else, for an empty name, one called density; empty
+/// where there is none. Throws Error for a name that no field has, and for a vector.
+std::string density_field(const std::string& name, const std::vector<FieldInfo>& fields,
+                          const std::string& source);
+
 /// The names of a source's fields, for messages: "'a', 'b'"; "none" where it has none.
 std::string field_names(const std::vector<FieldInfo>& fields);
 

@@ -9,6 +9,7 @@
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
 #include "core/io/series_file.h"
+#include "core/io/volume_stack.h"
 
 namespace adamas {
 
@@ -57,18 +58,39 @@ SeriesOutput::SeriesOutput(std::string output, const std::string& steps, double 
   }
 }
 
+SeriesOutput::SeriesOutput(std::string output, std::vector<double> times, const std::string& ending,
+                           OutputSet& outputs)
+    : output_(std::move(output)), is_series_(file_extension(output_) == ".pvd"), times_(std::move(times)) {
+  const std::filesystem::path list = output_;
+  if (is_series_) outputs.declare("-o", output_);
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    const std::string name =
+        is_series_ ? step_file(list, i, ending) : numbered_name(list.filename().string(), i);
+    if (name.empty())
+      wrong_usage("-o: expected a list of steps (.pvd) or a pattern of names, as F_%04d{}, found '{}'",
+                  ending, output_);
+    files_.push_back((list.parent_path() / name).string());
+    outputs.declare("-o", files_.back(), {ending.c_str()});
+  }
+}
+
+void SeriesOutput::write(std::size_t step, const Writer& writer, OutputSet& outputs) {
+  outputs.write(files_[step], writer);
+  bytes_ += outputs.bytes(files_[step]);
+}
+
 void SeriesOutput::write(const std::function<Writer(double, Progress&)>& make, Session& session) {
   for (std::size_t i = 0; i < files_.size(); ++i) {
     StepProgress progress(session.console, i, files_.size());
     const Writer writer = make(times_[i], progress);
     progress.step("writing " + files_[i], 1);
-    session.outputs.write(files_[i], writer);
-    bytes_ += session.outputs.bytes(files_[i]);
+    write(i, writer, session.outputs);
   }
-  if (is_series_) write_list(session.outputs);
+  write_list(session.outputs);
 }
 
 void SeriesOutput::write_list(OutputSet& outputs) {
+  if (!is_series_) return;
   std::vector<SeriesEntry> entries;
   for (std::size_t i = 0; i < files_.size(); ++i)
     entries.push_back({times_[i], std::filesystem::path(files_[i]).filename().string()});

@@ -27,11 +27,20 @@ class SeriesOutput {
   SeriesOutput(std::string output, const std::string& steps, double end, const SeriesForm& form,
                const std::vector<const char*>& endings, OutputSet& outputs);
 
+  /// A series of steps at these times, whose files end in `ending` (where a name has no ending of its own):
+  /// those of a list F.pvd, or, of a pattern as F_%04d.png, the files alone. Declares the outputs. Throws
+  /// UsageError for a name that is neither.
+  SeriesOutput(std::string output, std::vector<double> times, const std::string& ending, OutputSet& outputs);
+
   /// Writes one file under the name given.
   using Writer = std::function<void(const std::filesystem::path&)>;
   /// Calls `make` with each time, in order, and what it returns with the file to write. Progress is that of
   /// the whole, with the number of the step.
   void write(const std::function<Writer(double, Progress&)>& make, Session& session);
+
+  /// Writes the file of one step, and the list where all are written.
+  void write(std::size_t step, const Writer& writer, OutputSet& outputs);
+  void write_list(OutputSet& outputs);
 
   [[nodiscard]] bool is_series() const { return is_series_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
@@ -39,8 +48,6 @@ class SeriesOutput {
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
  private:
-  void write_list(OutputSet& outputs);
-
   std::string output_;
   bool is_series_ = false;
   std::vector<std::string> files_;

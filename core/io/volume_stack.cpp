@@ -1,5 +1,7 @@
 #include "core/io/volume_stack.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <system_error>
@@ -121,6 +123,17 @@ void check_numbers(const std::filesystem::path& pattern, const std::vector<Part>
 }
 
 }  // namespace
+
+std::string numbered_name(const std::string& pattern, std::size_t number) {
+  std::string name;
+  std::size_t numbers = 0;
+  for (const Part& part : parts_of(pattern)) {
+    if (part.kind == Part::Kind::kAny || part.kind == Part::Kind::kOne) return {};
+    if (part.kind == Part::Kind::kNumber) ++numbers;
+    name += part.kind == Part::Kind::kNumber ? fmt::format("{:0{}}", number, part.digits) : part.text;
+  }
+  return numbers == 1 ? name : std::string();
+}
 
 bool natural_less(const std::string& a, const std::string& b) {
   std::size_t i = 0, j = 0;

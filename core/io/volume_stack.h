@@ -23,6 +23,10 @@ VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths,
 /// where there is one number in the pattern and none of '*' and '?'.
 std::vector<std::filesystem::path> match_stack(const std::filesystem::path& pattern);
 
+/// The name that a pattern with one number, and nothing else that stands for other text, has for a number.
+/// Empty for other patterns.
+std::string numbered_name(const std::string& pattern, std::size_t number);
+
 /// Whether text `a` comes before `b` when runs of digits are compared as numbers.
 bool natural_less(const std::string& a, const std::string& b);
 

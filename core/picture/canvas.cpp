@@ -20,6 +20,7 @@
 #include <sanitizer/lsan_interface.h>
 #endif
 
+#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/picture/text.h"
 
@@ -275,6 +276,24 @@ void Canvas::clip(const Box2& box) {
 }
 
 void Canvas::unclip() { cairo_restore(parts_->cairo); }
+
+Raster Canvas::pixels() const {
+  ADAMAS_ASSERT(parts_->format == PictureFormat::kPng);
+  cairo_surface_flush(parts_->surface);
+  Raster raster(static_cast<int>(parts_->width), static_cast<int>(parts_->height));
+  const unsigned char* data = cairo_image_surface_get_data(parts_->surface);
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(parts_->surface));
+  for (int y = 0; y < raster.height(); ++y) {
+    for (int x = 0; x < raster.width(); ++x) {
+      std::uint32_t word = 0;
+      std::memcpy(&word, data + static_cast<std::size_t>(y) * stride + 4 * static_cast<std::size_t>(x),
+                  sizeof word);
+      const auto byte = [word](int shift) { return static_cast<std::uint8_t>(word >> shift & 0xffu); };
+      raster.at(x, y) = {byte(16), byte(8), byte(0), 255};
+    }
+  }
+  return raster;
+}
 
 std::string Canvas::finish(std::string_view title) {
   Parts& p = *parts_;

@@ -63,6 +63,8 @@ class Canvas {
   void clip(const Box2& box);
   void unclip();
 
+  /// What a PNG would show so far, without opacity.
+  [[nodiscard]] Raster pixels() const;
   /// Ends the drawing and gives the file's bytes. The title goes into the document where the format has a
   /// place for it, for SVG with all text drawn. Throws Error when Cairo fails.
   std::string finish(std::string_view title);

@@ -40,7 +40,7 @@ th { font-weight: 600; border-bottom-width: 2px; white-space: nowrap; }
 tbody tr:hover { background: var(--panel); }
 .number { text-align: right; white-space: nowrap; }
 figure { margin: 1.4rem 0; }
-figure img { display: block; max-width: 100%; height: auto; background: #ffffff; border: 1px solid var(--line); border-radius: .4rem; }
+figure img, figure video { display: block; max-width: 100%; height: auto; background: #ffffff; border: 1px solid var(--line); border-radius: .4rem; }
 figure iframe { display: block; width: 100%; height: 70vh; background: #ffffff; border: 1px solid var(--line); border-radius: .4rem; box-sizing: border-box; }
 figcaption { color: var(--soft); font-size: .92rem; margin-top: .5rem; max-width: 52rem; }
 @media print { main { padding: 0; } h2 { break-after: avoid; } figure, tr { break-inside: avoid; } nav, figure:has(iframe) { display: none; } }
@@ -140,6 +140,18 @@ void HtmlReport::picture(std::string_view bytes, PictureFormat format, std::stri
   body_ += fmt::format(
       "<figure><img src=\"data:{};base64,{}\" alt=\"{}\">\n<figcaption>Figure {}. {}</figcaption></figure>\n",
       type, base64(bytes), escaped(caption), pictures_, escaped(caption));
+}
+
+void HtmlReport::film(std::string_view bytes, std::string_view extension, std::string_view caption) {
+  ++pictures_;
+  const std::string text = escaped(caption);
+  const std::string shown =
+      extension == ".gif"
+          ? fmt::format("<img src=\"data:image/gif;base64,{}\" alt=\"{}\">", base64(bytes), text)
+          : fmt::format("<video controls loop src=\"data:video/{};base64,{}\" aria-label=\"{}\"></video>",
+                        extension == ".webm" ? "webm" : "mp4", base64(bytes), text);
+  body_ +=
+      fmt::format("<figure>{}\n<figcaption>Figure {}. {}</figcaption></figure>\n", shown, pictures_, text);
 }
 
 void HtmlReport::page(std::string_view html, std::string_view caption) {

@@ -37,6 +37,8 @@ class HtmlReport {
   void table(const ReportTable& table);
   /// A picture by the bytes of a PNG or SVG file. Throws Error for PDF.
   void picture(std::string_view bytes, PictureFormat format, std::string_view caption);
+  /// A film by the bytes of a file as Film makes them; `extension` tells its kind.
+  void film(std::string_view bytes, std::string_view extension, std::string_view caption);
   /// A page within the report, as turning_page makes it: the only scripts that a report has.
   void page(std::string_view html, std::string_view caption);
 

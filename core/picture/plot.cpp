@@ -62,10 +62,11 @@ Ticks axis_ticks(const AxisScale& scale, double wanted) {
 
 class PlotDrawing {
  public:
-  /// `left`: where the plot begins on the canvas.
-  PlotDrawing(const Plot& plot, const PlotOptions& options, double left)
+  /// `at`: where the plot begins on the canvas.
+  PlotDrawing(const Plot& plot, const PlotOptions& options, const Vec2& at)
       : plot_(plot),
-        left_(left),
+        left_(at.x),
+        top_(at.y),
         width_(options.width),
         height_(options.height),
         font_(options.font_size > 0 ? options.font_size : options.width / 62),
@@ -91,7 +92,7 @@ class PlotDrawing {
   [[nodiscard]] LegendEntry style(std::size_t index) const;
 
   const Plot& plot_;
-  double left_, width_, height_, font_;
+  double left_, top_, width_, height_, font_;
   Legend legend_;
   AxisScale x_scale_, y_scale_;
   Ticks x_ticks_, y_ticks_;
@@ -122,8 +123,8 @@ void PlotDrawing::place() {
   y_ticks_ = axis_ticks(y_scale_, (height_ - top - bottom) / (2.6 * f));
   label_distance_ = (kTickLength + kTickGap) * f + widest_label(y_ticks_, f) + 0.7 * f;
   const double left = kMargin * f + label_distance_ + (plot_.y.label.empty() ? 0 : f);
-  box_ = {{std::round(left_ + left), std::round(top)},
-          {std::round(left_ + width_ - 2 * kMargin * f), std::round(height_ - bottom)}};
+  box_ = {{std::round(left_ + left), std::round(top_ + top)},
+          {std::round(left_ + width_ - 2 * kMargin * f), std::round(top_ + height_ - bottom)}};
   if (box_.size().x < 4 * f || box_.size().y < 4 * f)
     fail("plot: expected room for the diagram, found {} x {}", width_, height_);
   x_scale_.from = box_.min.x, x_scale_.to = box_.max.x;
@@ -179,7 +180,7 @@ void PlotDrawing::draw(Canvas& canvas) const {
   const double f = font_;
   const TextStyle title{.size = kTitleFont * f, .colour = kInk, .bold = true};
   canvas.text(shortened(plot_.title, title, width_ - 2 * kMargin * f),
-              {left_ + kMargin * f, (kMargin + kTitleFont) * f}, title);
+              {left_ + kMargin * f, top_ + (kMargin + kTitleFont) * f}, title);
   draw_grid(canvas);
   const std::array<Vec2, 4> frame{box_.min, Vec2{box_.max.x, box_.min.y}, box_.max,
                                   Vec2{box_.min.x, box_.max.y}};
@@ -187,7 +188,7 @@ void PlotDrawing::draw(Canvas& canvas) const {
   for (std::size_t i = 0; i < plot_.series.size(); ++i) draw_series(canvas, i);
   draw_x_axis(canvas, box_, x_scale_, x_ticks_, plot_.x.label, f);
   draw_y_axis(canvas, box_, y_scale_, y_ticks_, plot_.y.label, label_distance_, f);
-  legend_.draw(canvas, {box_.min.x, height_ - kMargin * f - legend_.height()});
+  legend_.draw(canvas, {box_.min.x, top_ + height_ - kMargin * f - legend_.height()});
 }
 
 }  // namespace
@@ -197,10 +198,16 @@ std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions&
 }
 
 std::string draw_plots(std::span<const Plot> plots, PictureFormat format, const PlotOptions& options) {
+  const std::size_t columns = options.columns > 0 ? std::min(options.columns, plots.size()) : plots.size();
+  const std::size_t rows = columns > 0 ? (plots.size() + columns - 1) / columns : 0;
   std::vector<PlotDrawing> drawings;
-  for (const Plot& plot : plots)
-    drawings.emplace_back(plot, options, options.width * static_cast<double>(drawings.size()));
-  Canvas canvas(format, options.width * static_cast<double>(plots.size()), options.height);
+  for (const Plot& plot : plots) {
+    const auto column = static_cast<double>(drawings.size() % columns),
+               row = static_cast<double>(drawings.size() / columns);
+    drawings.emplace_back(plot, options, Vec2{options.width * column, options.height * row});
+  }
+  Canvas canvas(format, options.width * static_cast<double>(columns),
+                options.height * static_cast<double>(rows));
   for (const PlotDrawing& drawing : drawings) drawing.draw(canvas);
   return canvas.finish(plots.empty() ? "" : plots.front().title);
 }

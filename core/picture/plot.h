@@ -41,14 +41,15 @@ struct Plot {
 struct PlotOptions {
   double width = 1400;
   double height = 900;
-  double font_size = 0;  ///< 0: by the width
+  double font_size = 0;     ///< 0: by the width
+  std::size_t columns = 0;  ///< of several plots, in rows of so many; 0: all in one row
 };
 
 /// The file's bytes. Throws Error for a series whose x and y differ in number, or a range that is empty or
 /// not positive on a logarithmic axis.
 std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions& options = {});
-/// The same for some plots side by side, each of the size that the options say; the document's title is the
-/// first one's.
+/// The same for some plots side by side or in rows, each of the size that the options say; the document's
+/// title is the first one's.
 std::string draw_plots(std::span<const Plot> plots, PictureFormat format, const PlotOptions& options = {});
 
 }  // namespace adamas

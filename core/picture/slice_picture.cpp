@@ -54,8 +54,10 @@ class SliceDrawing {
   }
 
   std::string draw(PictureFormat format) const;
+  [[nodiscard]] Raster frame() const;
 
  private:
+  void draw_on(Canvas& canvas, PictureFormat format) const;
   void place(const SliceOptions& options);
   void draw_panel(Canvas& canvas, std::size_t index, PictureFormat format) const;
   void draw_areas(Canvas& canvas, const SlicePanel& panel, const Box2& box, PictureFormat format) const;
@@ -225,15 +227,25 @@ void SliceDrawing::draw_bar(Canvas& canvas) const {
               {label_x, 0.5 * (last.min.y + last.max.y)}, style, Anchor::kMiddle, 90);
 }
 
-std::string SliceDrawing::draw(PictureFormat format) const {
-  Canvas canvas(format, width_, height_);
+void SliceDrawing::draw_on(Canvas& canvas, PictureFormat format) const {
   const TextStyle title{.size = kTitleFont * font_, .colour = kInk, .bold = true};
   canvas.text(shortened(picture_.title, title, width_ - 2 * kMargin * font_),
               {kMargin * font_, (kMargin + kTitleFont) * font_}, title);
   for (std::size_t i = 0; i < picture_.panels.size(); ++i) draw_panel(canvas, i, format);
   if (contents_.has_field) draw_bar(canvas);
   legend_.draw(canvas, {kMargin * font_, height_ - kMargin * font_ - legend_.height()});
+}
+
+std::string SliceDrawing::draw(PictureFormat format) const {
+  Canvas canvas(format, width_, height_);
+  draw_on(canvas, format);
   return canvas.finish(picture_.title);
+}
+
+Raster SliceDrawing::frame() const {
+  Canvas canvas(PictureFormat::kPng, width_, height_);
+  draw_on(canvas, PictureFormat::kPng);
+  return canvas.pixels();
 }
 
 }  // namespace
@@ -244,6 +256,10 @@ Stroke approximated_interface_stroke() { return {.colour = {0.86, 0.08, 0.24}, .
 
 std::string draw_slice(const SlicePicture& picture, PictureFormat format, const SliceOptions& options) {
   return SliceDrawing(picture, options).draw(format);
+}
+
+Raster draw_slice_frame(const SlicePicture& picture, const SliceOptions& options) {
+  return SliceDrawing(picture, options).frame();
 }
 
 void write_slice(const SlicePicture& picture, const std::filesystem::path& path,

@@ -67,6 +67,9 @@ struct SliceOptions {
 /// than points.
 std::string draw_slice(const SlicePicture& picture, PictureFormat format, const SliceOptions& options = {});
 
+/// The pixels of the .png, as for a film.
+Raster draw_slice_frame(const SlicePicture& picture, const SliceOptions& options = {});
+
 /// Writes a .png, .svg or .pdf file; also throws Error when it cannot be written.
 void write_slice(const SlicePicture& picture, const std::filesystem::path& path,
                  const SliceOptions& options = {});

@@ -46,6 +46,13 @@ class Hierarchy : public HierarchyTopology {
     merge_diamond(d);
   }
 
+  /// Makes all payloads default values again.
+  void reset_payloads() {
+    vertex_payloads_ = {};
+    tetrahedron_payloads_ = {};
+    grow_payloads();
+  }
+
   /// Bytes of memory held, with the payloads themselves but not what they point to.
   [[nodiscard]] std::size_t bytes() const {
     return HierarchyTopology::bytes() + vertex_payloads_.bytes() + tetrahedron_payloads_.bytes();

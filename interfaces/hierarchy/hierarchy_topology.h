@@ -116,6 +116,8 @@ class HierarchyTopology {
 
  protected:
   explicit HierarchyTopology(const Domain& domain);
+  HierarchyTopology(HierarchyTopology&&) = default;
+  HierarchyTopology& operator=(HierarchyTopology&&) = default;
   ~HierarchyTopology() = default;
 
   /// Splits the leaf's diamond, its missing ancestors first, and appends all bisections. Does nothing for a

@@ -118,8 +118,9 @@ void Resampler::evaluate_interface(TetrahedronId t) {
   cell.evaluated = true;
 }
 
-void Resampler::distribute(TetrahedronId parent) {
-  CellRecord& from = hierarchy_.payload(parent);
+/// Gives the children of a tetrahedron what it has.
+void Resampler::hand_down(TetrahedronId parent) {
+  const CellRecord& from = hierarchy_.payload(parent);
   const SplitPlane plane = split_plane(parent);
   const auto children = hierarchy_.children(parent);
   const auto begin = element_order_.begin();
@@ -141,14 +142,24 @@ void Resampler::distribute(TetrahedronId parent) {
       const auto& corners = source_.network->triangle_corners(t);
       if (meets(part, corners[0], corners[1], corners[2])) to.triangles.push_back(t);
     }
-    if (hierarchy_.is_leaf(children[side])) {
-      evaluate_interface(children[side]);
-    } else {
-      distribute(children[side]);
-    }
   }
-  from.triangles = {};
-  from.evaluated = false;
+}
+
+void Resampler::distribute(TetrahedronId parent) {
+  hand_down(parent);
+  for (const TetrahedronId child : hierarchy_.children(parent)) {
+    const bool leaf = hierarchy_.is_leaf(child);
+    if (leaf || adapting_) evaluate_interface(child);
+    if (!leaf) distribute(child);
+  }
+  close_cell(parent);
+}
+
+/// Takes from a tetrahedron that is split what leaves alone have.
+void Resampler::close_cell(TetrahedronId t) {
+  CellRecord& cell = hierarchy_.payload(t);
+  cell.triangles = {};
+  cell.evaluated = false;
 }
 
 std::vector<TetrahedronId> Resampler::process(const std::vector<Split>& splits) {

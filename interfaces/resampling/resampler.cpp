@@ -95,9 +95,12 @@ Resampler::Priority Resampler::priority(TetrahedronId t) const {
   return result;
 }
 
-bool Resampler::wants_split(TetrahedronId t) const {
-  return hierarchy_.is_leaf(t) && hierarchy_.can_split(t) && priority(t).rank >= 0;
+/// Whether a tetrahedron would be split if it were a leaf.
+bool Resampler::demands_split(TetrahedronId t) const {
+  return hierarchy_.can_split(t) && priority(t).rank >= 0;
 }
+
+bool Resampler::wants_split(TetrahedronId t) const { return hierarchy_.is_leaf(t) && demands_split(t); }
 
 std::vector<TetrahedronId> Resampler::refine_in_rounds(std::vector<TetrahedronId> cells) {
   while (true) {
@@ -160,6 +163,23 @@ void Resampler::refine_to_targets(std::vector<TetrahedronId> cells) {
 void Resampler::refine() {
   place_roots();
   refine_to_targets(leaves());
+  refine_further();
+}
+
+void Resampler::refine(MeshHierarchy from) {
+  const Domain &own = hierarchy_.domain(), &other = from.domain();
+  if (other.roots() != own.roots() || other.box().min != own.box().min || other.box().max != own.box().max)
+    fail("{}: expected the domain of the mesh that is adapted, found another one", source_.name);
+  if (options_.max_tetrahedra) return refine();
+  hierarchy_ = std::move(from);
+  hierarchy_.reset_payloads();
+  place_roots();
+  adapt();
+  refine_further();
+}
+
+/// What follows when no estimate of the interfaces is greater than wanted.
+void Resampler::refine_further() {
   finish_interfaces();
   if (source_.fields) refine_fields();
   comparison_.reset();

@@ -55,6 +55,13 @@ enum class RefinementEnd {
   kRounds,         ///< the greatest number of rounds of measuring
 };
 
+/// What became of the diamonds of a hierarchy that was adapted to other data.
+struct Adaptation {
+  std::size_t kept = 0;    ///< split before and afterwards
+  std::size_t merged = 0;  ///< split before alone
+  std::size_t split = 0;   ///< split afterwards alone
+};
+
 /// Builds a hierarchy that approximates the source within the wanted errors (docs/method.md, Building): the
 /// interfaces first, then the fields. Always the diamond with the greatest error in relation to its target is
 /// split, until all are within or the number of tetrahedra would be exceeded. The result does not depend on
@@ -68,8 +75,18 @@ class Resampler {
   Resampler(const ResamplingSource& source, ResamplingOptions options,
             Progress& progress = SilentProgress::instance());
 
-  /// Refines the hierarchy; it is to be called once. Throws Cancelled where the progress says so.
+  /// Refines the hierarchy; this or the next is to be called once. Throws Cancelled where the progress says
+  /// so.
   void refine();
+  /// The same from a hierarchy of the same domain that another resampler has left, as that of the step before
+  /// of a series: what these interfaces do not need is merged, what they need is split. The result is that of
+  /// refine(), to the last bit and number. With a greatest number of tetrahedra refinement begins at the
+  /// roots, since what fits into it depends on the way from there. Throws Error for another domain.
+  void refine(MeshHierarchy from);
+  /// Gives the hierarchy away; this object can only be destroyed then.
+  [[nodiscard]] MeshHierarchy give_hierarchy() { return std::move(hierarchy_); }
+  /// None where refinement began at the roots.
+  [[nodiscard]] const std::optional<Adaptation>& adaptation() const { return adaptation_; }
 
   [[nodiscard]] const MeshHierarchy& hierarchy() const { return hierarchy_; }
   [[nodiscard]] const ResamplingSource& source() const { return source_; }
@@ -151,12 +168,20 @@ class Resampler {
   };
 
   void place_roots();
+  void refine_further();
   [[nodiscard]] SplitPlane split_plane(TetrahedronId t) const;
   [[nodiscard]] TetrahedronId root_at(const Vec3& p) const;
   void place_elements();
   void evaluate_vertices(const std::vector<VertexId>& vertices);
   void evaluate_interface(TetrahedronId t);
+  void hand_down(TetrahedronId parent);
   void distribute(TetrahedronId parent);
+  void adapt();
+  void evaluate_tree();
+  [[nodiscard]] LatticeMap<char> demanded_diamonds() const;
+  void merge_others(const LatticeMap<char>& demanded);
+  void close_cell(TetrahedronId t);
+  void number_as_from_roots();
   std::vector<TetrahedronId> process(const std::vector<Split>& splits);
   [[nodiscard]] CellView view(TetrahedronId t) const;
   [[nodiscard]] CellView view_with_parts(TetrahedronId t) const;
@@ -168,6 +193,7 @@ class Resampler {
   void measure_fields(const std::vector<TetrahedronId>& cells, DisplacedErrors displaced);
   void compute_rows(std::vector<std::pair<VertexId, BodyId>> needs);
   [[nodiscard]] Priority priority(TetrahedronId t) const;
+  [[nodiscard]] bool demands_split(TetrahedronId t) const;
   [[nodiscard]] bool wants_split(TetrahedronId t) const;
   std::vector<TetrahedronId> refine_in_rounds(std::vector<TetrahedronId> cells);
   void refine_greedily(const std::vector<TetrahedronId>& cells);
@@ -212,6 +238,8 @@ class Resampler {
   std::vector<std::uint32_t> element_order_;
   bool fields_active_ = false;
   bool budget_spent_ = false;
+  bool adapting_ = false;  ///< errors of tetrahedra that are no leaves are needed too
+  std::optional<Adaptation> adaptation_;
   RefinementEnd interface_end_ = RefinementEnd::kReached;
   IdVector<InterfaceId, double> shifts_;       ///< added to signed distances, so that volumes agree
   IdVector<InterfaceId, double> most_shifts_;  ///< bounds of these

@@ -262,5 +262,13 @@ TEST(MatchStack, NaturalOrder) {
   EXPECT_NE(natural_less("1", "01"), natural_less("01", "1"));
 }
 
+TEST(VolumeStack, NamesOfNumbers) {
+  EXPECT_EQ(numbered_name("s_%04d.png", 7), "s_0007.png");
+  EXPECT_EQ(numbered_name("s_##.png", 123), "s_123.png");
+  EXPECT_EQ(numbered_name("%d", 0), "0");
+  for (const char* none : {"s.png", "s_%04d_%d.png", "s_*_%d.png", "s_?#.png", "100%.png", ""})
+    EXPECT_EQ(numbered_name(none, 1), "") << none;
+}
+
 }  // namespace
 }  // namespace adamas

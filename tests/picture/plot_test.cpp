@@ -76,6 +76,26 @@ TEST(Plot, SideBySideEachIsAsItIsAlone) {
   }
 }
 
+TEST(Plot, InRowsEachIsAsItIsAlone) {
+  std::vector<Plot> plots(3, error_plot());
+  for (std::size_t i = 0; i < plots.size(); ++i)
+    plots[i].series[0].y = {5.0 + static_cast<double>(i), 60, 800};
+  const PlotOptions options{.width = 500, .height = 400, .columns = 2};
+  const Raster all = test::decode_png(draw_plots(plots, PictureFormat::kPng, options));
+  ASSERT_EQ(all.width(), 1000);
+  ASSERT_EQ(all.height(), 800);
+  for (int i = 0; i < 3; ++i) {
+    const Raster alone =
+        test::decode_png(draw_plot(plots[static_cast<std::size_t>(i)], PictureFormat::kPng, options));
+    int different = 0;
+    for (int y = 0; y < 400; ++y) {
+      for (int x = 0; x < 500; ++x)
+        different += all.at(x + 500 * (i % 2), y + 400 * (i / 2)) == alone.at(x, y) ? 0 : 1;
+    }
+    EXPECT_EQ(different, 0) << "plot " << i;
+  }
+}
+
 TEST(Plot, MarkersLieWhereTheValuesSay) {
   for (const bool logarithmic : {false, true}) {
     Plot plot;

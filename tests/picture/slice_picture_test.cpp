@@ -193,5 +193,18 @@ TEST(SlicePicture, FilesAreWholeOrAbsent) {
   EXPECT_EQ(folder.entries(), 3);
 }
 
+TEST(SlicePicture, AFrameHasThePixelsOfThePng) {
+  const SlicePicture picture = three_panels();
+  const Raster png = test::decode_png(draw_slice(picture, PictureFormat::kPng)),
+               frame = draw_slice_frame(picture);
+  ASSERT_EQ(frame.width(), png.width());
+  ASSERT_EQ(frame.height(), png.height());
+  int different = 0;
+  for (int y = 0; y < png.height(); ++y) {
+    for (int x = 0; x < png.width(); ++x) different += frame.at(x, y) == png.at(x, y) ? 0 : 1;
+  }
+  EXPECT_EQ(different, 0);
+}
+
 }  // namespace
 }  // namespace adamas

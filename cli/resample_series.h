@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/input_options.h"
+#include "cli/resampling_options.h"
+#include "cli/series_film.h"
+#include "core/io/series_file.h"
+
+namespace adamas {
+
+/// What `resample` writes of a series.
+struct SeriesOutputs {
+  std::string series;               ///< the first of the inputs
+  std::string mesh;                 ///< F.pvd, or a pattern of names
+  std::vector<std::string> curves;  ///< .csv or pictures
+  SeriesFilmText film;
+};
+
+/// Resamples the steps of a series, each from the mesh of the one before. Throws UsageError and Error.
+void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& steps,
+                     const ResamplingRequest& request, const SeriesOutputs& outputs, Session& session);
+
+}  // namespace adamas

@@ -1,0 +1,129 @@
+#include "cli/series_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/picture/palette.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+/// Curves of more materials would not be read.
+constexpr std::size_t kMostMaterials = 12;
+
+PlotSeries series_of(const SeriesRecord& record, std::string name,
+                     const std::function<double(const SeriesStep&)>& value) {
+  PlotSeries series{.name = std::move(name)};
+  for (const SeriesStep& step : record.steps) {
+    series.x.push_back(step.entry.time);
+    series.y.push_back(value(step));
+  }
+  return series;
+}
+
+Plot over_time(const std::string& label, AxisKind kind = AxisKind::kLinear) {
+  Plot plot;
+  plot.x = {"time"};
+  plot.y = {label, kind};
+  return plot;
+}
+
+bool shows_anything(const PlotSeries& series) {
+  return std::any_of(series.y.begin(), series.y.end(), [](double y) { return std::isfinite(y); });
+}
+
+/// Two lines for each material in its colour, dashed what the input has, and with marks what the mesh has;
+/// both as parts of the greatest that the input ever has, so that small materials are seen too.
+Plot material_plot(const SeriesRecord& record, const std::string& label, double LedgerRow::*input,
+                   double LedgerRow::*mesh) {
+  Plot plot = over_time(label + " / greatest in the input (dashed: input)");
+  const auto& materials = record.steps.front().ledger;
+  for (std::size_t m = 0; m < std::min(materials.size(), kMostMaterials); ++m) {
+    double greatest = 0;
+    for (const SeriesStep& step : record.steps) greatest = std::max(greatest, step.ledger[m].*input);
+    if (!(greatest > 0)) continue;
+    const auto of = [&record, m, greatest](std::string name, double LedgerRow::*value) {
+      PlotSeries series = series_of(record, std::move(name), [m, value, greatest](const SeriesStep& step) {
+        return step.ledger[m].*value / greatest;
+      });
+      series.colour = material_colour(m);
+      return series;
+    };
+    PlotSeries of_input = of("", input);
+    of_input.markers = false;
+    of_input.dashed = true;
+    plot.series.push_back(std::move(of_input));
+    plot.series.push_back(of(materials[m].material, mesh));
+  }
+  return plot;
+}
+
+Plot error_plot(const SeriesRecord& record) {
+  Plot plot = over_time("interface error");
+  plot.series = {
+      series_of(record, "wanted", [](const SeriesStep& step) { return step.run.options.interface_error; }),
+      series_of(record, "certified", certified_error),
+      series_of(record, "attained (lower bound)", attained_error)};
+  plot.series[0].markers = false;
+  plot.series[0].dashed = true;
+  plot.y.low = 0;
+  return plot;
+}
+
+Plot field_plot(const SeriesRecord& record) {
+  Plot plot = over_time("mean field error / range", AxisKind::kLogarithmic);
+  for (std::size_t f = 0; f < record.fields.size(); ++f) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const SeriesStep& step : record.steps) {
+      least = std::min(least, step.fields[f].min);
+      most = std::max(most, step.fields[f].max);
+    }
+    PlotSeries series =
+        series_of(record, record.fields[f].name, [f, range = most - least](const SeriesStep& step) {
+          const FieldError& all = step.run.figures.fields[f].all;
+          const double error = all.count() > 0 && range > 0 ? all.mean() / range : kNone;
+          // Errors of a field that the mesh reproduces exactly are round-off, which would stretch the axis.
+          return error > 1e-12 ? error : kNone;
+        });
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+}  // namespace
+
+std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
+  std::vector<SeriesCurve> curves;
+  const auto add = [&curves](const std::string& name, Plot plot, const std::string& caption) {
+    std::erase_if(plot.series, [](const PlotSeries& series) { return !shows_anything(series); });
+    if (plot.series.empty()) return;
+    curves.push_back({name, caption, std::move(plot)});
+  };
+  Plot sizes = over_time("tetrahedra");
+  sizes.series = {
+      series_of(record, "tetrahedra",
+                [](const SeriesStep& step) { return static_cast<double>(step.run.figures.tetrahedra); }),
+      series_of(record, "with interfaces", [](const SeriesStep& step) {
+        return static_cast<double>(step.run.figures.interface_tetrahedra);
+      })};
+  sizes.y.low = 0;
+  add("series-tetrahedra", std::move(sizes), "The size of the mesh over time.");
+  add("series-interface-error", error_plot(record),
+      "Two-sided distance between the interfaces of input and mesh over time: no point is farther than the "
+      "certified error.");
+  add("series-field-error", field_plot(record),
+      "Mean field errors over time, as parts of each field's range over all steps.");
+  add("series-volumes", material_plot(record, "volume", &LedgerRow::volume_input, &LedgerRow::volume_mesh),
+      "Volumes of the materials over time: in the mesh, and dashed in the input, as parts of the greatest in "
+      "the input.");
+  add("series-masses", material_plot(record, "mass", &LedgerRow::mass_input, &LedgerRow::mass_mesh),
+      "Masses of the materials over time: in the mesh, and dashed in the input, as parts of the greatest in "
+      "the input.");
+  return curves;
+}
+
+}  // namespace adamas

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/experiment_runs.h"
+#include "cli/mesh_outputs.h"
+#include "cli/resampling_options.h"
+#include "core/io/series_file.h"
+
+namespace adamas {
+
+/// A step of a series, and what resampling it came to.
+struct SeriesStep {
+  SeriesEntry entry;
+  ExperimentRun run;
+  std::vector<FieldInfo> fields;         ///< with their ranges
+  std::vector<LedgerRow> ledger;         ///< volumes and masses
+  std::optional<Adaptation> adaptation;  ///< none for a mesh that was made from the roots
+  double processor_seconds = 0;          ///< of refinement
+};
+
+/// Resamples the steps of a series one after another, each from the mesh of the one before.
+class SeriesResampler {
+ public:
+  SeriesResampler(const ResamplingRequest& request, Console& console)
+      : request_(request), console_(console) {}
+
+  /// The next step, and its mesh. `density`: the field whose integral is mass; empty for none.
+  SeriesStep resample(const SeriesEntry& entry, const Input& input, const std::string& density,
+                      ResampledMesh& mesh);
+
+ private:
+  const ResamplingRequest& request_;
+  Console& console_;
+  std::optional<Resampler::MeshHierarchy> previous_;
+};
+
+}  // namespace adamas

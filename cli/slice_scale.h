@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/picture/slice_picture.h"
+
+namespace adamas {
+
+/// What pictures of the steps of a series have in common, so that they can be compared and be frames of a
+/// film: one range of values, one legend, one title.
+class SliceScale {
+ public:
+  explicit SliceScale(std::string title) : title_(std::move(title)) {}
+
+  /// Takes in the values and the materials that a step's picture shows.
+  void add(const SlicePicture& picture);
+  /// Gives a step's picture the common range, where it has none of its own, the common legend and title; and
+  /// its first panel the time and the number of the step.
+  void apply(std::size_t step, double time, SlicePicture& picture) const;
+  /// Of all values that were shown; none where there were none.
+  [[nodiscard]] const std::optional<ValueRange>& range() const { return range_; }
+
+ private:
+  std::string title_;
+  std::optional<ValueRange> range_;
+  std::vector<LegendEntry> materials_;
+};
+
+/// Frames of a film where no other number is asked for, per second.
+inline constexpr double kFrameRate = 10;
+
+}  // namespace adamas

@@ -1,0 +1,196 @@
+// A hierarchy that is adapted from step to step is the one that refinement from the roots makes of each step
+// alone: the same numbers, and the same bits of all that is known of them.
+
+#include <cstring>
+
+#include "core/base/error.h"
+#include "datasets/flow/impact.h"
+#include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/resampling/output.h"
+#include "tests/interfaces/resampler_scenes.h"
+
+namespace adamas {
+namespace {
+
+template <class T>
+void append(std::string& bytes, const std::vector<T>& values) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    for (const std::string& value : values) bytes += value + '\n';
+  } else {
+    const auto size = values.size() * sizeof(T);
+    bytes.resize(bytes.size() + size);
+    if (size > 0) std::memcpy(bytes.data() + bytes.size() - size, values.data(), size);
+  }
+}
+
+/// All that a file of a mesh holds, in its order.
+std::string bytes_of(const UnstructuredMesh& mesh) {
+  std::string bytes;
+  append(bytes, mesh.points);
+  append(bytes, mesh.connectivity);
+  for (const auto* arrays : {&mesh.point_arrays, &mesh.cell_arrays, &mesh.field_arrays}) {
+    for (const NamedArray& array : *arrays) {
+      bytes += array.name + '\n';
+      std::visit([&bytes](const auto& values) { append(bytes, values); }, array.values);
+    }
+  }
+  return bytes;
+}
+
+/// The corners of all tetrahedra by number, leaves or not.
+std::vector<std::array<LatticePoint, 4>> corners_by_number(const Resampler& resampler) {
+  const auto& hierarchy = resampler.hierarchy();
+  std::vector<std::array<LatticePoint, 4>> corners(hierarchy.tetrahedron_slots());
+  std::vector<TetrahedronId> open = hierarchy.roots();
+  while (!open.empty()) {
+    const TetrahedronId t = open.back();
+    open.pop_back();
+    corners[t.value] = hierarchy.corners(t);
+    if (hierarchy.is_leaf(t)) continue;
+    for (const TetrahedronId child : hierarchy.children(t)) open.push_back(child);
+  }
+  return corners;
+}
+
+void expect_equal(const Resampler& adapted, const Resampler& alone) {
+  ASSERT_NO_THROW(adapted.hierarchy().validate());
+  EXPECT_EQ(corners_by_number(adapted), corners_by_number(alone));
+  EXPECT_TRUE(bytes_of(to_unstructured_mesh(resampled_mesh(adapted))) ==
+              bytes_of(to_unstructured_mesh(resampled_mesh(alone))));
+  const InterfaceMesh shown = approximated_interfaces(adapted), expected = approximated_interfaces(alone);
+  EXPECT_EQ(shown.points, expected.points);
+  EXPECT_EQ(shown.triangles, expected.triangles);
+  ASSERT_EQ(adapted.certificate().has_value(), alone.certificate().has_value());
+  if (!alone.certificate()) return;
+  EXPECT_EQ(adapted.certificate()->networks.upper, alone.certificate()->networks.upper);
+  EXPECT_EQ(adapted.certificate()->materials.upper, alone.certificate()->materials.upper);
+  EXPECT_EQ(adapted.certificate()->worst_material, alone.certificate()->worst_material);
+}
+
+/// Resamples data one after another, each from the hierarchy of those before, and compares. Returns what was
+/// merged and split in all.
+Adaptation follow(const std::vector<MultiMaterialData>& steps, const ResamplingOptions& options) {
+  std::optional<Resampler::MeshHierarchy> previous;
+  Adaptation all;
+  for (const MultiMaterialData& data : steps) {
+    const ResamplingSource source = make_grid_source(data);
+    Resampler adapted(source, options), alone(source, options);
+    alone.refine();
+    if (previous) {
+      adapted.refine(std::move(*previous));
+    } else {
+      adapted.refine();
+    }
+    expect_equal(adapted, alone);
+    if (adapted.adaptation()) {
+      all.kept += adapted.adaptation()->kept;
+      all.merged += adapted.adaptation()->merged;
+      all.split += adapted.adaptation()->split;
+    }
+    previous = adapted.give_hierarchy();
+  }
+  return all;
+}
+
+void expect_all_ways(const Adaptation& changes) {
+  EXPECT_GT(changes.kept, 0u);
+  EXPECT_GT(changes.merged, 0u);
+  EXPECT_GT(changes.split, 0u);
+}
+
+MultiMaterialData scene_data(const std::string& name, std::uint64_t seed, double time, std::size_t cells,
+                             bool fields) {
+  SceneOptions options;
+  options.time = time;
+  SamplingOptions sampling;
+  sampling.fields = fields;
+  sampling.depth = 2;
+  return sample_scene(make_scene(name, seed, options), {cells, cells, cells}, sampling);
+}
+
+std::vector<MultiMaterialData> moving_steps(std::size_t cells, bool fields) {
+  std::vector<MultiMaterialData> steps;
+  for (const double time : {0.0, 0.1, 0.25, 0.6, 1.0})
+    steps.push_back(scene_data("moving", 0, time, cells, fields));
+  return steps;
+}
+
+ResamplingOptions within(double error) {
+  ResamplingOptions options;
+  options.interface_error = error;
+  return options;
+}
+
+TEST(ResamplerSeries, ScenesThatMove) {
+  ResamplingOptions options = within(0.02);
+  options.certify = false;
+  expect_all_ways(follow(moving_steps(12, false), options));
+}
+
+/// Measuring and splitting what fails, mending and conserving go on from the adapted hierarchy.
+TEST(LongResamplerSeries, CertifiedAndConserved) {
+  ResamplingOptions options = within(0.03);
+  expect_all_ways(follow(moving_steps(14, true), options));
+  options.conserve = true;
+  expect_all_ways(follow(moving_steps(12, false), options));
+}
+
+TEST(LongResamplerSeries, Fields) {
+  ResamplingOptions options = within(0.04);
+  const std::vector<MultiMaterialData> steps = moving_steps(12, true);
+  options.field_errors.assign(steps[0].fields.size(), std::nullopt);
+  options.field_errors.back() = 0.5;
+  expect_all_ways(follow(steps, options));
+}
+
+/// Other cells altogether from step to step.
+TEST(LongResamplerSeries, OtherSeeds) {
+  for (const std::string name : {"voronoi10", "random"}) {
+    std::vector<MultiMaterialData> steps;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) steps.push_back(scene_data(name, seed, 1, 10, false));
+    expect_all_ways(follow(steps, within(0.05)));
+  }
+}
+
+TEST(LongResamplerSeries, AnImpact) {
+  ImpactOptions impact;
+  impact.cells = {10, 10, 16};
+  FlowSolver<3> flow = make_impact(impact);
+  std::vector<MultiMaterialData> steps;
+  for (const double time : {0.0, 0.5, 1.0, 2.0, 3.0}) {
+    flow.advance_to(time, SilentProgress::instance());
+    steps.push_back(flow_data(flow, "impact", {"g/cm3", "Mbar", "cm/us"}));
+  }
+  expect_all_ways(follow(steps, within(0.3)));
+}
+
+/// With a greatest number of tetrahedra each step begins at the roots.
+TEST(ResamplerSeries, AGreatestNumberOfTetrahedra) {
+  ResamplingOptions options = within(0.01);
+  options.certify = false;
+  options.max_tetrahedra = 700;
+  const Adaptation changes = follow(moving_steps(10, false), options);
+  EXPECT_EQ(changes.kept + changes.merged + changes.split, 0u);
+}
+
+/// What is the same twice keeps all its cells.
+TEST(ResamplerSeries, NothingChanges) {
+  ResamplingOptions options = within(0.03);
+  options.certify = false;
+  const std::vector<MultiMaterialData> steps{scene_data("moving", 0, 0.5, 10, false),
+                                             scene_data("moving", 0, 0.5, 10, false)};
+  const Adaptation changes = follow(steps, options);
+  EXPECT_GT(changes.kept, 0u);
+  EXPECT_EQ(changes.merged + changes.split, 0u);
+}
+
+TEST(ResamplerSeries, AnotherDomainIsRefused) {
+  const MultiMaterialData data = scene_data("moving", 0, 0.5, 6, false);
+  const ResamplingSource source = make_grid_source(data);
+  Resampler resampler(source, within(0.1));
+  Resampler::MeshHierarchy other(Domain::fit({{0, 0, 0}, {1, 1, 2}}));
+  EXPECT_THROW(resampler.refine(std::move(other)), Error);
+}
+
+}  // namespace
+}  // namespace adamas
