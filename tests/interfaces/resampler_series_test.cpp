@@ -52,9 +52,20 @@ std::vector<std::array<LatticePoint, 4>> corners_by_number(const Resampler& resa
   return corners;
 }
 
+/// The native elements of all tetrahedra by number, in the order in which their errors are added up.
+std::vector<std::vector<std::uint32_t>> elements_by_number(const Resampler& resampler) {
+  std::vector<std::vector<std::uint32_t>> elements(resampler.hierarchy().tetrahedron_slots());
+  resampler.hierarchy().for_each_leaf([&](TetrahedronId t) {
+    const auto found = resampler.elements(t);
+    elements[t.value].assign(found.begin(), found.end());
+  });
+  return elements;
+}
+
 void expect_equal(const Resampler& adapted, const Resampler& alone) {
   ASSERT_NO_THROW(adapted.hierarchy().validate());
   EXPECT_EQ(corners_by_number(adapted), corners_by_number(alone));
+  EXPECT_EQ(elements_by_number(adapted), elements_by_number(alone));
   EXPECT_TRUE(bytes_of(to_unstructured_mesh(resampled_mesh(adapted))) ==
               bytes_of(to_unstructured_mesh(resampled_mesh(alone))));
   const InterfaceMesh shown = approximated_interfaces(adapted), expected = approximated_interfaces(alone);
