@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,7 @@
 #include "isosurface/view/flight.h"
 #include "timevarying/play_order.h"
 #include "timevarying/series_frames.h"
+#include "timevarying/surface_motion.h"
 
 namespace adamas {
 
@@ -23,6 +25,7 @@ struct Options {
   StoreInput input;
   std::string isovalue, error, pixels, max_triangles, steps, order = "forward", times = "1", seed = "0", path,
                                                              read_steps = "10", ahead = "2";
+  bool motion = false;
 };
 
 constexpr std::int32_t kWidth = 1024, kHeight = 768;
@@ -85,6 +88,7 @@ struct Played {
   Figures frames = Figures::array();
   std::vector<double> seconds;
   std::uint64_t triangles = 0, most_triangles = 0;
+  std::optional<SurfaceCertificate> greatest_motion;
 
   void add(std::uint32_t step, const FrameFigures& figures, double frame_seconds, std::uint64_t reads,
            std::uint64_t bytes) {
@@ -101,6 +105,29 @@ struct Played {
     most_triangles = std::max(most_triangles, figures.triangles);
   }
 };
+
+/// Adds to each frame how far the surface of all samples has moved since the frame before.
+void measure_motion(const Options& options, StoreFile& file, Played& played, Session& session) {
+  const std::unique_ptr<SurfaceMotion> motion = SurfaceMotion::open(file, store_memory(options.input));
+  const double isovalue = file.header().grid.sample(parse_numbers("--isovalue", options.isovalue, 1)[0]);
+  std::map<std::array<std::uint32_t, 2>, SurfaceCertificate> known;
+  SurfaceCertificate greatest;
+  for (std::size_t n = 1; n < played.frames.size(); ++n) {
+    session.console.step("measuring motion",
+                         static_cast<double>(n) / static_cast<double>(played.frames.size()));
+    const std::uint32_t before = played.frames[n - 1]["step"].get<std::uint32_t>(),
+                        now = played.frames[n]["step"].get<std::uint32_t>();
+    const auto [from, to] = std::minmax({before, now});
+    const auto [found, is_new] = known.try_emplace({from, to});
+    if (is_new) found->second = motion->between(from, to, isovalue);
+    const SurfaceCertificate& moved = found->second;
+    played.frames[n]["motion_certified"] = moved.certified;
+    played.frames[n]["motion_found"] = moved.found;
+    greatest = {std::max(greatest.certified, moved.certified), std::max(greatest.found, moved.found)};
+  }
+  session.console.clear();
+  played.greatest_motion = greatest;
+}
 
 Played play(const Options& options, StoreFile& file, Session& session) {
   const auto [first, last] = wanted_steps(options, file);
@@ -143,14 +170,18 @@ void report(const Played& played, const StoreFile& file, Session& session) {
   for (const double of_frame : sorted) seconds += of_frame;
   const auto count = static_cast<double>(sorted.size());
   const double part = static_cast<double>(bytes) / static_cast<double>(file.size());
-  session.console.table(
-      {{"frames", std::to_string(sorted.size())},
-       {"triangles", fmt::format("{:.0f}, at most {}", static_cast<double>(played.triangles) / count,
-                                 played.most_triangles)},
-       {"seconds a frame", fmt::format("{:.4f}, median {:.4f}, at most {:.4f}", seconds / count,
-                                       sorted[sorted.size() / 2], sorted.back())},
-       {"page faults", std::to_string(reads)},
-       {"read", fmt::format("{}, {:.0f}% of the file", bytes_text(static_cast<double>(bytes)), 100 * part)}});
+  std::vector<std::vector<std::string>> rows{
+      {"frames", std::to_string(sorted.size())},
+      {"triangles", fmt::format("{:.0f}, at most {}", static_cast<double>(played.triangles) / count,
+                                played.most_triangles)},
+      {"seconds a frame", fmt::format("{:.4f}, median {:.4f}, at most {:.4f}", seconds / count,
+                                      sorted[sorted.size() / 2], sorted.back())},
+      {"page faults", std::to_string(reads)},
+      {"read", fmt::format("{}, {:.0f}% of the file", bytes_text(static_cast<double>(bytes)), 100 * part)}};
+  if (const auto& moved = played.greatest_motion)
+    rows.push_back({"moved", fmt::format("{:.4g} at most, {:.4g} found, from a frame to the next",
+                                         moved->certified, moved->found)});
+  session.console.table(rows);
   const Figures all{{"frames", played.frames},
                     {"triangles_mean", static_cast<double>(played.triangles) / count},
                     {"frames_per_second", seconds > 0 ? count / seconds : 0},
@@ -179,7 +210,8 @@ void run(const Options& options, Session& session) {
   ahead.is_backward = options.order == "backward";
   ahead.memory = store_memory(options.input) / 4;
   file->set_read_ahead(ahead);
-  const Played played = naming(options.input.path, [&] { return play(options, *file, session); });
+  Played played = naming(options.input.path, [&] { return play(options, *file, session); });
+  if (options.motion) naming(options.input.path, [&] { measure_motion(options, *file, played, session); });
   report(played, *file, session);
   session.outputs.commit();
 }
@@ -217,6 +249,9 @@ void add_play(const Command& app, Session& session) {
       .show_default();
   command.add_option("--times", options->times, "How often they are played").type_name("N").show_default();
   command.add_option("--seed", options->seed, "Which jumps, of --order random").type_name("N").show_default();
+  command.add_flag(
+      "--motion", options->motion,
+      "Measure how far the surface of all samples moves from each frame to the next, between two bounds");
   command
       .add_option("--read-steps", options->read_steps,
                   "How much is read at a time: as many bytes as N steps of a page are before they are "

@@ -61,6 +61,7 @@ const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
 template <class Sample>
 void PagedFrames<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
   if (&pages == &diamonds_.pages()) return;
+  pages_.set_before(diamonds_.pages());
   diamonds_.set_pages(pages);
   maker_.normals().set_pages(pages);
   is_of_another_step_ = true;

@@ -32,7 +32,8 @@ class PagedFrames {
 
   /// Goes over to another step of the same store, of which the next frame is to be. The mesh of the last
   /// frame is what that begins with; values of the step are looked at where the walk through the mesh meets
-  /// with them. The pages must outlive this, or the next call.
+  /// with them, and where these are the same nothing is made anew. The pages must outlive this, or the next
+  /// call but one.
   void set_pages(StoredPages<OrderedWord<Sample>>& pages);
 
   /// Finds the surface of a frame. A stopped one leaves what there was, or the mesh in which nothing is split

@@ -23,7 +23,6 @@ ViewedPages<Sample>::ViewedPages(ViewedDiamonds<Sample>& diamonds, const Surface
                                  std::size_t memory)
     : diamonds_(diamonds),
       reader_(diamonds, surface),
-      still_(diamonds.pages().file()),
       memory_(memory),
       index_(static_cast<std::size_t>(diamonds.lods())),
       incomplete_(index_.size()),

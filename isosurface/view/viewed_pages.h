@@ -12,7 +12,7 @@
 #include "core/lattice/lattice_map.h"
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/storage/missing_page.h"
-#include "isosurface/storage/still_pages.h"
+#include "isosurface/storage/page_comparison.h"
 #include "isosurface/view/crossed_page.h"
 #include "isosurface/view/page_chunk.h"
 #include "isosurface/view/page_view.h"
@@ -70,6 +70,9 @@ class ViewedPages {
 
   /// Forgets all pages, for another contour.
   void clear();
+  /// The pages of the step until now, where the diamonds have those of another one by now; they must stay
+  /// while those do.
+  void set_before(StoredPages<typename ViewedDiamonds<Sample>::Word>& pages) { before_ = &pages; }
   /// Whether walks load pages. Otherwise diamonds are not split whose pages are not in memory, and what comes
   /// from splitting them neither.
   void set_loading(bool loads) { loads_ = loads; }
@@ -218,7 +221,7 @@ class ViewedPages {
 
   ViewedDiamonds<Sample>& diamonds_;
   CrossedPageReader<Sample> reader_;
-  StillPages still_;
+  StoredPages<typename ViewedDiamonds<Sample>::Word>* before_ = nullptr;  ///< of the step before; null: none
   std::size_t memory_, bytes_ = 0;
   std::vector<LodPlaces> places_;  ///< by LOD
   std::deque<ViewedPage> pages_;

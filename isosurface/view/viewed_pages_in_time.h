@@ -23,18 +23,26 @@ void ViewedPages<Sample>::renew(ViewedPage& page) {
 
 template <class Sample>
 bool ViewedPages<Sample>::is_still(const ViewedPage& page) {
+  StoredPages<typename ViewedDiamonds<Sample>::Word>& pages = diamonds_.pages();
+  if (before_ == nullptr || page.step != before_->step() || page.crossed == nullptr) return false;
   const PageGrid& grid = diamonds_.grid();
-  // Gradients near the border may be of samples of finer LODs, where the data are not large.
+  // Gradients near the border may be of samples of finer LODs, where the data are not large; and those that
+  // the store keeps are not looked at.
   constexpr std::int32_t kReach = 4;
   const LatticePoint last = grid.last();
   if (page.lod > grid.top() || std::min({last.i, last.j, last.k}) < kReach << page.lod) return false;
+  if (pages.file().header().gradients) return false;
+  PageComparison comparison(*before_, pages);
+  const PageId id{page.lod, page.block};
+  if (loads_) pages.bounds(id);
+  if (!comparison.has_same_samples(id) || !comparison.has_same_bounds(id)) return false;
   const LatticePoint blocks = grid.blocks(page.lod);
   for (std::int32_t n = 0; n < 27; ++n) {
     const LatticePoint block = page.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
     if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
         block.k >= blocks.k)
       continue;
-    if (!still_.is_still({page.lod, block}, page.step, diamonds_.pages().step(), loads_)) return false;
+    if (!comparison.has_same_samples({page.lod, block})) return false;
   }
   return true;
 }

@@ -1,0 +1,103 @@
+#include "timevarying/surface_motion.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "isosurface/storage/page_comparison.h"
+#include "isosurface/volume/samples.h"
+
+namespace adamas {
+
+namespace {
+
+template <class Sample>
+class SurfaceMotionOf final : public SurfaceMotion {
+ public:
+  SurfaceMotionOf(StoreFile& file, std::size_t memory) : file_(file), memory_(memory) {}
+
+  bool is_still(std::uint32_t from, std::uint32_t to, double isovalue) override {
+    StoredPages<Word>&before = pages_of(from), &after = pages_of(to);
+    PageComparison comparison(before, after);
+    const LatticePoint blocks = file_.grid().blocks(0);
+    for (LatticePoint b{}; b.k < blocks.k; ++b.k) {
+      for (b.j = 0; b.j < blocks.j; ++b.j) {
+        for (b.i = 0; b.i < blocks.i; ++b.i) {
+          if (!is_crossed(from, b, isovalue) && !is_crossed(to, b, isovalue)) continue;
+          if (!are_same_round(b, comparison)) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  SurfaceCertificate between(std::uint32_t from, std::uint32_t to, double isovalue,
+                             Progress& progress) override {
+    if (from == to || is_still(from, to, isovalue)) return {};
+    SurfaceRequest request;
+    request.isovalue = isovalue;
+    request.strict = true;
+    SurfaceExtractor<Sample> before(pages_of(from)), after(pages_of(to));
+    const Contour surface = before.extract(request, progress).contour;
+    return in_space(file_.header().grid, certify_surface(after, request, surface, progress));
+  }
+
+ private:
+  using Word = OrderedWord<Sample>;
+  struct OfStep {
+    std::uint32_t step = 0;
+    std::unique_ptr<StoredPages<Word>> pages;
+  };
+
+  /// Whether the samples of a page's cells may lie on both sides of an isovalue.
+  bool is_crossed(std::uint32_t step, LatticePoint block, double isovalue) {
+    PageId id{0, block};
+    // Cubes without a page of their own have samples of coarser ones.
+    while (!file_.grid().contains(id)) id = {id.lod + 1, {id.block.i / 2, id.block.j / 2, id.block.k / 2}};
+    const std::optional<PageEntry> entry = file_.entry(step, id);
+    if (!entry || id.lod > 0) return true;
+    const auto value = [](std::uint32_t word) {
+      return static_cast<double>(from_ordered<Sample>(static_cast<Word>(word)));
+    };
+    return entry->low <= entry->high && !(value(entry->high) < isovalue) && !(value(entry->low) >= isovalue);
+  }
+
+  /// Of a page of the finest LOD and those behind it, which have samples of its cells.
+  bool are_same_round(LatticePoint block, PageComparison<Word>& comparison) const {
+    const LatticePoint blocks = file_.grid().blocks(0);
+    for (std::int32_t n = 0; n < 8; ++n) {
+      const LatticePoint near = block + LatticePoint{n & 1, n >> 1 & 1, n >> 2};
+      if (near.i >= blocks.i || near.j >= blocks.j || near.k >= blocks.k) continue;
+      if (!comparison.has_same_samples({0, near})) return false;
+    }
+    return true;
+  }
+
+  /// Those of the last two steps that were asked for stay.
+  StoredPages<Word>& pages_of(std::uint32_t step) {
+    const auto found = std::ranges::find_if(
+        steps_, [&](const OfStep& known) { return known.pages != nullptr && known.step == step; });
+    if (found == steps_.begin()) std::swap(steps_[0], steps_[1]);
+    if (found == steps_.end()) {
+      steps_[0] = std::move(steps_[1]);
+      steps_[1] = {step, std::make_unique<StoredPages<Word>>(file_, step, memory_ / 2)};
+    }
+    return *steps_[1].pages;
+  }
+
+  StoreFile& file_;
+  std::size_t memory_;
+  std::array<OfStep, 2> steps_;  ///< the one that was asked for last behind the other
+};
+
+}  // namespace
+
+std::unique_ptr<SurfaceMotion> SurfaceMotion::open(StoreFile& file, std::size_t memory) {
+  return with_sample_type(file.header().grid.type, [&](auto sample) -> std::unique_ptr<SurfaceMotion> {
+    return std::make_unique<SurfaceMotionOf<decltype(sample)>>(file, memory);
+  });
+}
+
+}  // namespace adamas
