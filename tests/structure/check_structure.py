@@ -57,6 +57,7 @@ MOST_LINES = 400
 # Documents that are not part of the repository; what they say stands in docs/.
 UNKNOWN_DOCUMENT = re.compile(r"\b(SPEC|TARGETS|DESIGN)\b")
 ABSOLUTE_PATH = re.compile(r"""(?<![\w.$}/-])/(work|home|root|Users|mnt)/[\w.]""")
+CONFLICT = re.compile(r"<{7} |>{7} ")
 TEST = re.compile(r"^(TEST|TEST_F|TEST_P|TYPED_TEST)\(", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
@@ -153,6 +154,8 @@ def check_text(path, text):
             yield f"line {number} ends in whitespace"
         if "\t" in line:
             yield f"line {number} has a tab"
+        if CONFLICT.match(line):
+            yield f"line {number} is of a merge that was not finished"
         if ABSOLUTE_PATH.search(line):
             yield f"line {number} has an absolute path"
         document = UNKNOWN_DOCUMENT.search(line)

@@ -96,6 +96,7 @@ class StructureTest(unittest.TestCase):
         self.expect({"core/base/a.cpp": "int a; \n"}, "ends in whitespace")
         self.expect({"core/base/a.cpp": "\tint a;\n"}, "has a tab")
         self.expect({"core/base/a.cpp": "int a;"}, "end with a newline")
+        self.expect({"core/base/a.cpp": "int a;\n" + "<" * 7 + " HEAD\n"}, "line 2 is of a merge")
         self.expect({"core/base/a.cpp": "int a;\n" * 401}, "more than 400")
         self.expect({"core/base/a.cpp": '// see "/ho' + 'me/someone/x"\n'}, "absolute path")
         self.expect({"core/base/a.cpp": "// as SPEC 2.1 says\n"}, "line 1 cites SPEC")
