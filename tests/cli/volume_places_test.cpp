@@ -46,14 +46,14 @@ constexpr Vec3 kMiddle{10, -20, 7};
 
 const std::vector<Affine>& affines() {
   const double c = std::cos(0.0003), s = std::sin(0.0003);
-  static const std::vector<Affine> all{
+  static const std::vector<Affine> kAll{
       with_middle_at({{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.4}}}, kMiddle),
       with_middle_at({{{-0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.4}}}, kMiddle),
       with_middle_at({{{0, 0, 0.5}, {0.5, 0, 0}, {0, -0.4, 0}}}, kMiddle),
       with_middle_at({{{0.5 * c, 0.5 * s, 0}, {-0.5 * s, 0.5 * c, 0}, {0, 0, 0.4}}}, kMiddle),
       with_middle_at({{{0.3, 0.4, 0}, {0.4, -0.3, 0}, {0, 0, 0.4}}}, kMiddle),
       with_middle_at({{{0.5, 0, 0}, {0.1, 0.5, 0}, {0.05, -0.1, 0.4}}}, kMiddle)};
-  return all;
+  return kAll;
 }
 
 class VolumePlaces : public ProgramTest {
