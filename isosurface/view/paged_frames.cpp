@@ -61,7 +61,7 @@ const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
 template <class Sample>
 void PagedFrames<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
   if (&pages == &diamonds_.pages()) return;
-  pages_.set_before(diamonds_.pages());
+  pages_.set_before(&diamonds_.pages());
   diamonds_.set_pages(pages);
   maker_.normals().set_pages(pages);
   is_of_another_step_ = true;
@@ -82,14 +82,21 @@ FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
     figures.splits = figures.merges = 0;
     figures.stopped = true;
   } catch (...) {
-    diamonds_.pages().set_loading(true);
+    end_frame();
     isovalue_.reset();
     throw;
   }
-  diamonds_.pages().set_loading(true);
+  end_frame();
   pages_.forget_old();
   find_changes();
   return figures;
+}
+
+template <class Sample>
+void PagedFrames<Sample>::end_frame() {
+  diamonds_.pages().set_loading(true);
+  // They may go from now on.
+  pages_.set_before(nullptr);
 }
 
 template <class Sample>

@@ -32,8 +32,8 @@ class PagedFrames {
 
   /// Goes over to another step of the same store, of which the next frame is to be. The mesh of the last
   /// frame is what that begins with; values of the step are looked at where the walk through the mesh meets
-  /// with them, and where these are the same nothing is made anew. The pages must outlive this, or the next
-  /// call but one.
+  /// with them, and where these are the same nothing is made anew. The pages must outlive this, or the
+  /// frame after the next call.
   void set_pages(StoredPages<OrderedWord<Sample>>& pages);
 
   /// Finds the surface of a frame. A stopped one leaves what there was, or the mesh in which nothing is split
@@ -98,6 +98,7 @@ class PagedFrames {
   /// Gets the coarsest page, without which there is no surface, and lets no other page be loaded where only
   /// those in memory are wanted.
   void choose_pages(bool resident_only);
+  void end_frame();
   /// Whether something has come since that provisional normals lack.
   [[nodiscard]] bool has_come(const std::vector<MissingNormals>& missing);
   void find_missing(FrameFigures& figures);

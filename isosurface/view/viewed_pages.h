@@ -70,9 +70,8 @@ class ViewedPages {
 
   /// Forgets all pages, for another contour.
   void clear();
-  /// The pages of the step until now, where the diamonds have those of another one by now; they must stay
-  /// while those do.
-  void set_before(StoredPages<typename ViewedDiamonds<Sample>::Word>& pages) { before_ = &pages; }
+  /// The pages of the step until now, where the diamonds have those of another one by now; null: none.
+  void set_before(StoredPages<typename ViewedDiamonds<Sample>::Word>* pages) { before_ = pages; }
   /// Whether walks load pages. Otherwise diamonds are not split whose pages are not in memory, and what comes
   /// from splitting them neither.
   void set_loading(bool loads) { loads_ = loads; }
