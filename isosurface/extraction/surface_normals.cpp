@@ -32,11 +32,14 @@ Vec3 downwards(const Vec3& gradient) {
 template <class Sample>
 class VertexGradients {
  public:
-  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages) : samples_(pages) { open_stored(); }
+  explicit VertexGradients(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent = nullptr)
+      : samples_(pages), stored_(lent) {
+    if (lent == nullptr) open_stored();
+  }
 
   void set_pages(StoredPages<OrderedWord<Sample>>& pages) {
     samples_.set_pages(pages);
-    open_stored();
+    if (own_stored_ || stored_ == nullptr) open_stored();
     lost_.clear();
     missing_.clear();
     std::ranges::fill(known_, KnownGradient{});
@@ -57,16 +60,17 @@ class VertexGradients {
   /// Damaged pages that some gradient was worked out without.
   [[nodiscard]] const std::vector<PageId>& lost() const { return lost_; }
   std::vector<MissingNormals> take_missing() { return std::exchange(missing_, {}); }
-  StoredGradients* stored() { return stored_ ? &*stored_ : nullptr; }
+  StoredGradients* stored() { return stored_; }
 
  private:
   void open_stored() {
     StoredPages<OrderedWord<Sample>>& pages = samples_.pages();
-    if (pages.file().header().gradients) stored_.emplace(pages.file(), pages.step(), kStoredMemory);
+    if (!pages.file().header().gradients) return;
+    stored_ = &own_stored_.emplace(pages.file(), pages.step(), kStoredMemory);
   }
 
   Vec3 stored(LatticePoint p, std::int32_t step) {
-    stored_->set_loading(samples_.pages().loads());
+    if (const bool loads = samples_.pages().loads(); loads != stored_->loads()) stored_->set_loading(loads);
     const LatticePoint at = samples_.in_samples(p);
     const std::optional<Vec3> direction = stored_->direction(at);
     if (direction) return *direction;
@@ -154,7 +158,8 @@ class VertexGradients {
   static constexpr int kKnownBits = 12;
 
   LatticeSamples<Sample> samples_;
-  std::optional<StoredGradients> stored_;
+  std::optional<StoredGradients> own_stored_;
+  StoredGradients* stored_;  ///< null where the store keeps none
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
   std::vector<PageId> lost_;
   std::vector<MissingNormals> missing_;
@@ -247,8 +252,8 @@ class PointNormals<Sample>::Gradients : public VertexGradients<Sample> {
 };
 
 template <class Sample>
-PointNormals<Sample>::PointNormals(StoredPages<OrderedWord<Sample>>& pages)
-    : gradients_(std::make_unique<Gradients>(pages)) {}
+PointNormals<Sample>::PointNormals(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent)
+    : gradients_(std::make_unique<Gradients>(pages, lent)) {}
 template <class Sample>
 PointNormals<Sample>::~PointNormals() = default;
 template <class Sample>

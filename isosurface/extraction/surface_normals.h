@@ -40,8 +40,9 @@ struct MissingNormals {
 template <class Sample>
 class PointNormals {
  public:
-  /// The pages must outlive this.
-  explicit PointNormals(StoredPages<OrderedWord<Sample>>& pages);
+  /// The pages must outlive this. `lent`: the directions that the store keeps, opened by another one that
+  /// goes over to other pages before this one does; null: this one opens them, if there are any.
+  explicit PointNormals(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent = nullptr);
   ~PointNormals();
   PointNormals(PointNormals&&) noexcept;
 

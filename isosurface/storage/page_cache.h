@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -82,7 +83,8 @@ class PageCache {
   [[nodiscard]] const std::shared_ptr<Memory>& memory() const { return memory_; }
   /// Of the caches that share the memory, this one was used last; or just before another one.
   void touch(const PageCache* before = nullptr);
-  /// Whether pages that are not in memory are loaded. Otherwise they cannot be had, and none leaves.
+  /// Whether pages that are not in memory are loaded. Otherwise they cannot be had, and none leaves; several
+  /// threads may ask for samples then.
   void set_loading(bool loads) { loads_ = loads; }
   [[nodiscard]] bool loads() const { return loads_; }
 
@@ -90,7 +92,7 @@ class PageCache {
   /// call.
   const PageSamples<Word>* samples(const PageId& id) {
     if (const PageSamples<Word>* found = held(id)) return found;
-    const Slot* slot = get(id, PageParts::kSamples, true);
+    const Slot* slot = loads_ ? get(id, PageParts::kSamples, true) : slot_in_memory(id);
     return slot == nullptr ? nullptr : slot->samples;
   }
   const PageBounds<Word>* bounds(const PageId& id) {
@@ -99,10 +101,8 @@ class PageCache {
   }
   /// The samples of a page that is in memory; null for others. Valid until the next call.
   const PageSamples<Word>* held(const PageId& id) {
-    const std::uint32_t found = slot_of(id);
-    if (found == kNone || !slots_[found].wanted) return nullptr;
-    slots_[found].used = true;
-    return slots_[found].samples;
+    const Slot* const slot = slot_in_memory(id);
+    return slot == nullptr || !slot->wanted ? nullptr : slot->samples;
   }
   /// A page whose samples are in memory.
   struct HeldPage {
@@ -160,6 +160,14 @@ class PageCache {
     std::uint64_t needed = 0;              ///< needs_ when it was noted as needed last
     int importance = 0;                    ///< and how much it was then
   };
+  const Slot* slot_in_memory(const PageId& id) {
+    const std::uint32_t found = slot_of(id);
+    if (found == kNone) return nullptr;
+    Slot& slot = slots_[found];
+    // Other threads may note the same.
+    std::atomic_ref<bool>(slot.used).store(true, std::memory_order_relaxed);
+    return &slot;
+  }
   /// The slots of an LOD's pages, i running fastest; the sizes of its rows and planes of pages.
   struct Lod {
     std::size_t row, plane;

@@ -52,8 +52,9 @@ Contour PagedFrames<Sample>::border() const {
     // The triangles name edges by their places.
     numbers.resize(std::numeric_limits<PageChunk::EdgePlace>::max());
     for (std::size_t n = 0; n < chunk.border.edges.size(); ++n) {
-      const EdgePoint point = maker_.edge_point(chunk, chunk.border.edges[n], chunk.border.parameters[n]);
-      numbers[chunk.border.edges[n]] = edges.number(point, maker_.position(point));
+      const EdgePoint point =
+          makers_.first().edge_point(chunk, chunk.border.edges[n], chunk.border.parameters[n]);
+      numbers[chunk.border.edges[n]] = edges.number(point, makers_.first().position(point));
     }
     for (const auto& places : chunk.border.triangles)
       contour.triangles.push_back({numbers[places[0]], numbers[places[1]], numbers[places[2]]});
@@ -72,7 +73,7 @@ Contour PagedFrames<Sample>::contour() const {
     numbers.clear();
     for (std::size_t n = 0; n < chunk.inside.edges.size(); ++n)
       numbers.push_back(
-          edges.number(maker_.edge_point(chunk, chunk.inside.edges[n], chunk.inside.parameters[n]),
+          edges.number(makers_.first().edge_point(chunk, chunk.inside.edges[n], chunk.inside.parameters[n]),
                        chunk.shown.points[n]));
     for (const auto& triangle : chunk.shown.triangles)
       contour.triangles.push_back(renumbered(triangle, numbers));

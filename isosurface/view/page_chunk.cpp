@@ -38,14 +38,29 @@ PageMask in_cells(const PageMask& mask, std::uint64_t cells) {
 
 }  // namespace
 
+void FreeChunks::give(std::unique_ptr<PageChunk> chunk) {
+  constexpr std::size_t kMost = 1024;
+  const std::lock_guard lock(mutex_);
+  if (chunk != nullptr && chunks_.size() < kMost) chunks_.push_back(std::move(chunk));
+}
+
+std::unique_ptr<PageChunk> FreeChunks::take() {
+  const std::lock_guard lock(mutex_);
+  if (chunks_.empty()) return nullptr;
+  std::unique_ptr<PageChunk> chunk = std::move(chunks_.back());
+  chunks_.pop_back();
+  return chunk;
+}
+
 template <class Sample>
 ChunkMaker<Sample>::ChunkMaker(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface,
-                               SplitOf split_of)
+                               SplitOf split_of, FreeChunks& free, StoredGradients* gradients)
     : diamonds_(diamonds),
       surface_(surface),
       page_(diamonds),
-      normals_(diamonds.pages()),
+      normals_(diamonds.pages(), gradients),
       split_of_(std::move(split_of)),
+      free_(free),
       numbers_(kPlaces) {}
 
 template <class Sample>
@@ -62,13 +77,8 @@ std::array<LatticePoint, 2> ChunkMaker<Sample>::edge(const PageChunk& chunk, Edg
 
 template <class Sample>
 std::unique_ptr<PageChunk> ChunkMaker<Sample>::empty_chunk(int lod, LatticePoint block) {
-  std::unique_ptr<PageChunk> chunk;
-  if (free_.empty()) {
-    chunk = std::make_unique<PageChunk>();
-  } else {
-    chunk = std::move(free_.back());
-    free_.pop_back();
-  }
+  std::unique_ptr<PageChunk> chunk = free_.take();
+  if (chunk == nullptr) chunk = std::make_unique<PageChunk>();
   chunk->lod = lod;
   chunk->block = block;
   for (PageChunk::Part* part : {&chunk->inside, &chunk->border}) {
@@ -80,12 +90,6 @@ std::unique_ptr<PageChunk> ChunkMaker<Sample>::empty_chunk(int lod, LatticePoint
   chunk->shown.normals.clear();
   chunk->shown.triangles.clear();
   return chunk;
-}
-
-template <class Sample>
-void ChunkMaker<Sample>::recycle(std::unique_ptr<PageChunk> chunk) {
-  constexpr std::size_t kMost = 1024;
-  if (chunk != nullptr && free_.size() < kMost) free_.push_back(std::move(chunk));
 }
 
 template <class Sample>

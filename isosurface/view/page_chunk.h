@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "isosurface/contour/contour.h"
@@ -52,6 +53,18 @@ struct PageChunk {
   std::vector<MissingNormals> missing;
 };
 
+/// Chunks that are not needed any more, whose memory the next ones will have. Several threads may use it.
+class FreeChunks {
+ public:
+  void give(std::unique_ptr<PageChunk> chunk);
+  /// Null where there is none.
+  std::unique_ptr<PageChunk> take();
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<PageChunk>> chunks_;
+};
+
 /// Makes the chunks of pages. That a half of a split diamond is in the mesh follows from the masks of split
 /// diamonds, as in PageContour.
 template <class Sample>
@@ -62,15 +75,15 @@ class ChunkMaker {
 
   using EdgePlace = PageChunk::EdgePlace;
 
-  /// All of these must outlive this.
-  ChunkMaker(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface, SplitOf split_of);
+  /// All of these must outlive this. `gradients`: those that the store keeps, of another maker of the same
+  /// diamonds; null: this one opens them, if there are any.
+  ChunkMaker(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface, SplitOf split_of,
+             FreeChunks& free, StoredGradients* gradients = nullptr);
 
   /// The chunk of a page of which something is split. `before`: the page's chunk until now, or null. Of its
   /// cells only some are made anew, `cells` as bits, and the points that it has are taken over. Throws
   /// PageLost.
   std::unique_ptr<PageChunk> make(int lod, LatticePoint block, const PageChunk* before, std::uint64_t cells);
-  /// Takes a chunk that is not needed any more, whose memory the next one will have.
-  void recycle(std::unique_ptr<PageChunk> chunk);
   /// The point on an edge of a part of a chunk.
   [[nodiscard]] EdgePoint edge_point(const PageChunk& chunk, EdgePlace place, double parameter) const {
     const auto [first, second] = edge(chunk, place);
@@ -123,7 +136,7 @@ class ChunkMaker {
   PageDiamonds<Sample> page_;
   PointNormals<Sample> normals_;
   SplitOf split_of_;
-  std::vector<std::unique_ptr<PageChunk>> free_;
+  FreeChunks& free_;
   std::array<Neighbours, 2> neighbours_;
   /// Of the points on edges, by place: in the chunk and in the one before it; kNone where there is none.
   struct Numbers {

@@ -41,8 +41,8 @@ template <class Sample>
 PagedFrames<Sample>::PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory)
     : diamonds_(pages),
       pages_(diamonds_, surface_, memory),
-      maker_(diamonds_, surface_,
-             [this](int lod, LatticePoint block) { return pages_.split_of(lod, block); }) {}
+      makers_(diamonds_, surface_,
+              [this](int lod, LatticePoint block) { return pages_.split_of(lod, block); }) {}
 
 template <class Sample>
 std::uint64_t PagedFrames<Sample>::id_of(int lod, LatticePoint block) {
@@ -63,7 +63,7 @@ void PagedFrames<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
   if (&pages == &diamonds_.pages()) return;
   pages_.set_before(&diamonds_.pages());
   diamonds_.set_pages(pages);
-  maker_.normals().set_pages(pages);
+  makers_.set_pages(pages);
   is_of_another_step_ = true;
 }
 
@@ -293,11 +293,9 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
     if (page->chunk != nullptr && is_of_step && page->changed_in != pages_.walk_number() &&
         !(is_provisional && has_come(page->chunk->missing)))
       continue;
-    progress.check();
-    const PageChunk* const before = is_provisional || !is_of_step ? nullptr : page->chunk.get();
-    made.push_back({page, maker_.make(page->lod, page->block, before, page->changed)});
-    made.back().chunk->shown.id = id_of(page->lod, page->block);
+    made.push_back({page, is_provisional || !is_of_step ? nullptr : page->chunk.get()});
   }
+  makers_.make(made, progress);
   return made;
 }
 
@@ -313,15 +311,16 @@ void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
     if (pages_.split_of(page->lod, page->block) != nullptr) continue;
     note_border(*page->chunk);
     touch(page->chunk->shown.id, true);
-    maker_.recycle(std::move(page->chunk));
+    makers_.recycle(std::move(page->chunk));
   }
   for (NewChunk& next : made) {
+    next.chunk->shown.id = id_of(next.page->lod, next.page->block);
     note_border(*next.chunk);
     if (next.page->chunk != nullptr) note_border(*next.page->chunk);
     touch(next.chunk->shown.id, next.page->chunk != nullptr);
     next.chunk->shown.revision = revision_;
     next.page->chunk_step = next.page->step;
-    maker_.recycle(std::exchange(next.page->chunk, std::move(next.chunk)));
+    makers_.recycle(std::exchange(next.page->chunk, std::move(next.chunk)));
   }
   chunks_ = pages_.shown();
   if (chunks_.empty()) {
@@ -352,9 +351,10 @@ void PagedFrames<Sample>::set_apart(std::uint64_t id, Contour contour) {
   shown.points = contour.points;
   shown.triangles = contour.triangles;
   shown.normals.reserve(contour.points.size());
-  for (const EdgePoint& point : contour.edge_points) shown.normals.push_back(maker_.normals().of(point));
-  for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(maker_.normals().of(point));
-  apart.missing = maker_.normals().take_missing();
+  PointNormals<Sample>& normals = makers_.first().normals();
+  for (const EdgePoint& point : contour.edge_points) shown.normals.push_back(normals.of(point));
+  for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(normals.of(point));
+  apart.missing = normals.take_missing();
   apart.contour = std::move(contour);
 }
 

@@ -10,6 +10,7 @@
 #include "adamas/progress.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/surface_request.h"
+#include "isosurface/view/chunk_makers.h"
 #include "isosurface/view/frame_refinement.h"
 #include "isosurface/view/page_chunk.h"
 #include "isosurface/view/surface_chunk.h"
@@ -61,7 +62,7 @@ class PagedFrames {
   [[nodiscard]] std::vector<MissingPage> needed_pages();
   [[nodiscard]] StoredPages<OrderedWord<Sample>>& pages() { return diamonds_.pages(); }
   /// The directions of gradients that the store keeps; null where it has none.
-  [[nodiscard]] StoredGradients* gradients() { return maker_.normals().stored(); }
+  [[nodiscard]] StoredGradients* gradients() { return makers_.first().normals().stored(); }
 
   /// The isosurface error of the cell of the last frame's mesh at a place, in the frame of the grid: an
   /// estimate of how far its surface is from that of all samples there. 0 where the contour does not cross
@@ -88,10 +89,7 @@ class PagedFrames {
     SurfaceChunk shown;
     std::vector<MissingNormals> missing;
   };
-  struct NewChunk {
-    ViewedPage* page;
-    std::unique_ptr<PageChunk> chunk;
-  };
+  using NewChunk = typename ChunkMakers<Sample>::Job;
 
   /// The frame itself; throws Cancelled where it is stopped.
   FrameFigures find_frame(const FrameRequest& request, const Progress& progress);
@@ -133,7 +131,7 @@ class PagedFrames {
   ViewedDiamonds<Sample> diamonds_;
   SurfaceRequest surface_;
   ViewedPages<Sample> pages_;
-  ChunkMaker<Sample> maker_;
+  ChunkMakers<Sample> makers_;
   std::optional<double> isovalue_;   ///< none before the first frame
   bool is_of_another_step_ = false;  ///< the last frame's surface is of another step than the next one
   std::uint64_t root_triangles_ = 0;

@@ -1,0 +1,87 @@
+#include "isosurface/view/chunk_makers.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "core/base/parallel.h"
+
+namespace adamas {
+
+template <class Sample>
+ChunkMakers<Sample>::ChunkMakers(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface,
+                                 SplitOf split_of)
+    : diamonds_(diamonds), surface_(surface), split_of_(std::move(split_of)) {
+  makers_.push_back(std::make_unique<ChunkMaker<Sample>>(diamonds_, surface_, split_of_, free_));
+  unused_.push_back(makers_.back().get());
+}
+
+template <class Sample>
+void ChunkMakers<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
+  for (const auto& maker : makers_) maker->normals().set_pages(pages);
+}
+
+template <class Sample>
+void ChunkMakers<Sample>::make(std::span<Job> jobs, const Progress& progress) {
+  // The pages of a batch are in memory together, where there is room.
+  constexpr std::size_t kBatch = 256, kLeast = 8;
+  for (; !jobs.empty(); jobs = jobs.subspan(std::min(kBatch, jobs.size()))) {
+    const std::span<Job> batch = jobs.first(std::min(kBatch, jobs.size()));
+    if (thread_limit() > 1 && batch.size() >= kLeast) make_in_memory(batch);
+    for (Job& job : batch) {
+      progress.check();
+      if (job.chunk == nullptr)
+        job.chunk = first().make(job.page->lod, job.page->block, job.before, job.page->changed);
+    }
+  }
+}
+
+template <class Sample>
+void ChunkMakers<Sample>::make_in_memory(std::span<Job> jobs) {
+  StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
+  const bool loads = pages.loads();
+  for (const Job& job : jobs) {
+    if (loads && job.page->lod <= pages.grid().top()) pages.samples({job.page->lod, job.page->block});
+  }
+  StoredGradients* const gradients = first().normals().stored();
+  const auto set_loading = [&](bool is_to_load) {
+    pages.set_loading(is_to_load);
+    if (gradients != nullptr) gradients->set_loading(is_to_load);
+  };
+  set_loading(false);
+  constexpr std::size_t kGrain = 4;
+  parallel_chunks(jobs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    ChunkMaker<Sample>& maker = taken_maker();
+    for (Job& job : jobs.subspan(begin, end - begin)) {
+      try {
+        job.chunk = maker.make(job.page->lod, job.page->block, job.before, job.page->changed);
+      } catch (const PageLost&) {
+        continue;
+      }
+      if (loads && !job.chunk->missing.empty()) recycle(std::move(job.chunk));
+    }
+    const std::lock_guard lock(mutex_);
+    unused_.push_back(&maker);
+  });
+  set_loading(loads);
+}
+
+template <class Sample>
+ChunkMaker<Sample>& ChunkMakers<Sample>::taken_maker() {
+  const std::lock_guard lock(mutex_);
+  if (unused_.empty()) {
+    makers_.push_back(std::make_unique<ChunkMaker<Sample>>(diamonds_, surface_, split_of_, free_,
+                                                           first().normals().stored()));
+    return *makers_.back();
+  }
+  ChunkMaker<Sample>* const maker = unused_.back();
+  unused_.pop_back();
+  return *maker;
+}
+
+template class ChunkMakers<std::uint8_t>;
+template class ChunkMakers<std::uint16_t>;
+template class ChunkMakers<std::int16_t>;
+template class ChunkMakers<float>;
+
+}  // namespace adamas

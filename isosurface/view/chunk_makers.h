@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "adamas/progress.h"
+#include "isosurface/view/page_chunk.h"
+#include "isosurface/view/viewed_pages.h"
+
+namespace adamas {
+
+/// Makes chunks of many pages by several threads. What a chunk is made of is in memory mostly, and does not
+/// change meanwhile: threads load nothing, and chunks for which pages are to be loaded are made one after
+/// another.
+template <class Sample>
+class ChunkMakers {
+ public:
+  using SplitOf = typename ChunkMaker<Sample>::SplitOf;
+
+  /// All of these must outlive this.
+  ChunkMakers(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface, SplitOf split_of);
+
+  /// A chunk that is to be made of a page.
+  struct Job {
+    ViewedPage* page;
+    const PageChunk* before;  ///< of which some cells stay; null: all are made
+    std::unique_ptr<PageChunk> chunk = nullptr;
+  };
+  /// Makes all chunks. Throws PageLost, and Cancelled where `progress` says so, which is asked for each
+  /// chunk.
+  void make(std::span<Job> jobs, const Progress& progress);
+  /// Takes a chunk that is not needed any more, whose memory another one will have.
+  void recycle(std::unique_ptr<PageChunk> chunk) { free_.give(std::move(chunk)); }
+  /// Goes over to the pages of another step of the same store.
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages);
+  /// One for what is made outside of chunks.
+  [[nodiscard]] ChunkMaker<Sample>& first() { return *makers_.front(); }
+  [[nodiscard]] const ChunkMaker<Sample>& first() const { return *makers_.front(); }
+
+ private:
+  /// Makes some chunks of which the pages are in memory; leaves out those that need others.
+  void make_in_memory(std::span<Job> jobs);
+  ChunkMaker<Sample>& taken_maker();
+
+  StoredDiamonds<Sample>& diamonds_;
+  const SurfaceRequest& surface_;
+  SplitOf split_of_;
+  FreeChunks free_;
+  std::vector<std::unique_ptr<ChunkMaker<Sample>>> makers_;
+  std::mutex mutex_;                         ///< of what follows
+  std::vector<ChunkMaker<Sample>*> unused_;  ///< those that no thread works with
+};
+
+extern template class ChunkMakers<std::uint8_t>;
+extern template class ChunkMakers<std::uint16_t>;
+extern template class ChunkMakers<std::int16_t>;
+extern template class ChunkMakers<float>;
+
+}  // namespace adamas
