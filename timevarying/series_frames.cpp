@@ -18,8 +18,11 @@ namespace {
 template <class Sample>
 class SeriesFramesOf final : public SeriesFrames {
  public:
-  SeriesFramesOf(StoreFile& file, std::size_t memory, std::function<void()> arrived)
-      : memory_(memory), steps_(file, memory), frames_(steps_.at(0)), arrived_(std::move(arrived)) {}
+  SeriesFramesOf(StoreFile& file, std::size_t memory, std::function<void()> arrived, SurfaceForm form)
+      : memory_(memory),
+        steps_(file, memory),
+        frames_(steps_.at(0), PagedFrames<Sample>::kMemory, form),
+        arrived_(std::move(arrived)) {}
 
   FrameFigures next(std::uint32_t step, const FrameRequest& request) override {
     try {
@@ -163,9 +166,9 @@ class SeriesFramesOf final : public SeriesFrames {
 }  // namespace
 
 std::unique_ptr<SeriesFrames> SeriesFrames::open(StoreFile& file, std::size_t memory,
-                                                 std::function<void()> arrived) {
+                                                 std::function<void()> arrived, SurfaceForm form) {
   return with_sample_type(file.header().grid.type, [&](auto sample) -> std::unique_ptr<SeriesFrames> {
-    return std::make_unique<SeriesFramesOf<decltype(sample)>>(file, memory, std::move(arrived));
+    return std::make_unique<SeriesFramesOf<decltype(sample)>>(file, memory, std::move(arrived), form);
   });
 }
 

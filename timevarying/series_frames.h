@@ -52,9 +52,10 @@ class SeriesFrames {
   [[nodiscard]] virtual Box3 data_box() const = 0;
 
   /// `memory`: bytes that decoded pages may take. The file must outlive the frames. `arrived` is called in
-  /// the thread that loads pages when some have come.
+  /// the thread that loads pages when some have come. `form`: see PagedFrames.
   static std::unique_ptr<SeriesFrames> open(
-      StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {});
+      StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {},
+      SurfaceForm form = SurfaceForm::kPoints);
 };
 
 }  // namespace adamas

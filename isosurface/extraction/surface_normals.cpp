@@ -269,6 +269,10 @@ Vec3 PointNormals<Sample>::of(const EdgePoint& point) {
   return normal_of<Sample>(point, *gradients_);
 }
 template <class Sample>
+std::array<Vec3, 2> PointNormals<Sample>::at_ends(const EdgePoint& point) {
+  return {gradients_->at(point.first, point.step()), gradients_->at(point.second, point.step())};
+}
+template <class Sample>
 Vec3 PointNormals<Sample>::of(const MeanPoint& point) {
   return normal_of<Sample>(point, *gradients_);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -50,6 +51,8 @@ class PointNormals {
   void set_pages(StoredPages<OrderedWord<Sample>>& pages);
 
   Vec3 of(const EdgePoint& point);
+  /// The gradients that its normal is interpolated from.
+  std::array<Vec3, 2> at_ends(const EdgePoint& point);
   Vec3 of(const MeanPoint& point);
 
   /// What the normals lack that were worked out since this was called last, each page once.

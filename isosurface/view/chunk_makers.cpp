@@ -9,10 +9,8 @@
 namespace adamas {
 
 template <class Sample>
-ChunkMakers<Sample>::ChunkMakers(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface,
-                                 SplitOf split_of)
-    : diamonds_(diamonds), surface_(surface), split_of_(std::move(split_of)) {
-  makers_.push_back(std::make_unique<ChunkMaker<Sample>>(diamonds_, surface_, split_of_, free_));
+ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source) : source_(source) {
+  makers_.push_back(std::make_unique<ChunkMaker<Sample>>(source_, free_));
   unused_.push_back(makers_.back().get());
 }
 
@@ -38,7 +36,7 @@ void ChunkMakers<Sample>::make(std::span<Job> jobs, const Progress& progress) {
 
 template <class Sample>
 void ChunkMakers<Sample>::make_in_memory(std::span<Job> jobs) {
-  StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
+  StoredPages<OrderedWord<Sample>>& pages = source_.diamonds.pages();
   const bool loads = pages.loads();
   for (const Job& job : jobs) {
     if (loads && job.page->lod <= pages.grid().top()) pages.samples({job.page->lod, job.page->block});
@@ -70,8 +68,7 @@ template <class Sample>
 ChunkMaker<Sample>& ChunkMakers<Sample>::taken_maker() {
   const std::lock_guard lock(mutex_);
   if (unused_.empty()) {
-    makers_.push_back(std::make_unique<ChunkMaker<Sample>>(diamonds_, surface_, split_of_, free_,
-                                                           first().normals().stored()));
+    makers_.push_back(std::make_unique<ChunkMaker<Sample>>(source_, free_, first().normals().stored()));
     return *makers_.back();
   }
   ChunkMaker<Sample>* const maker = unused_.back();

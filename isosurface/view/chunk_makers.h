@@ -17,10 +17,7 @@ namespace adamas {
 template <class Sample>
 class ChunkMakers {
  public:
-  using SplitOf = typename ChunkMaker<Sample>::SplitOf;
-
-  /// All of these must outlive this.
-  ChunkMakers(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface, SplitOf split_of);
+  explicit ChunkMakers(const ChunkSource<Sample>& source);
 
   /// A chunk that is to be made of a page.
   struct Job {
@@ -44,9 +41,7 @@ class ChunkMakers {
   void make_in_memory(std::span<Job> jobs);
   ChunkMaker<Sample>& taken_maker();
 
-  StoredDiamonds<Sample>& diamonds_;
-  const SurfaceRequest& surface_;
-  SplitOf split_of_;
+  ChunkSource<Sample> source_;
   FreeChunks free_;
   std::vector<std::unique_ptr<ChunkMaker<Sample>>> makers_;
   std::mutex mutex_;                         ///< of what follows

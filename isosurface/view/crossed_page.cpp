@@ -45,6 +45,13 @@ std::uint32_t pages_of_members(LatticePoint q) {
 
 }  // namespace
 
+void CrossedPage::forget_counts() {
+  counted = 0;
+  added.clear();
+  lost.clear();
+  for (Group& group : groups) group.added = group.lost = 0;
+}
+
 void CrossedPage::find_members(std::size_t wanted) {
   while (members.size() < wanted) {
     const Group& group = groups[members.size()];

@@ -40,6 +40,7 @@ struct CrossedPage {
   };
   [[nodiscard]] Change change(std::size_t n) const { return {added[n], lost.empty() ? 0u : lost[n]}; }
 
+  void forget_counts();
   /// Finds these of so many groups.
   void find_members(std::size_t groups);
   [[nodiscard]] std::size_t bytes() const {

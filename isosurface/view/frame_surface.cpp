@@ -24,6 +24,23 @@ std::array<std::uint32_t, 3> renumbered(const std::array<std::uint32_t, 3>& tria
 }  // namespace
 
 template <class Sample>
+const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
+  if (apart_ && apart_->shown.id == id) return &apart_->shown;
+  if (id == kRoot || id == kBorder) return nullptr;
+  const ViewedPage* const page = pages_.find(static_cast<int>(id >> kLodBits),
+                                             ZOrder::deinterleave(id & ((std::uint64_t{1} << kLodBits) - 1)));
+  return page == nullptr || page->chunk == nullptr ? nullptr : &page->chunk->shown;
+}
+
+template <class Sample>
+bool PagedFrames<Sample>::is_split(LatticePoint p) {
+  const int lod = diamonds_.lod(p);
+  if (lod < 0 || lod >= diamonds_.lods()) return false;
+  const auto [page, q] = pages_.find(p);
+  return page != nullptr && page->chunk != nullptr && page->chunk->split.has(q);
+}
+
+template <class Sample>
 std::vector<std::vector<Vec3>> PagedFrames<Sample>::cells_in(const Plane& plane) {
   if (!isovalue_) return {};
   return adamas::cells_in(diamonds_.root(), diamonds_.domain(), plane, diamonds_.data_box(),
@@ -52,8 +69,7 @@ Contour PagedFrames<Sample>::border() const {
     // The triangles name edges by their places.
     numbers.resize(std::numeric_limits<PageChunk::EdgePlace>::max());
     for (std::size_t n = 0; n < chunk.border.edges.size(); ++n) {
-      const EdgePoint point =
-          makers_.first().edge_point(chunk, chunk.border.edges[n], chunk.border.parameters[n]);
+      const EdgePoint point = makers_.first().edge_point(chunk, chunk.border, n);
       numbers[chunk.border.edges[n]] = edges.number(point, makers_.first().position(point));
     }
     for (const auto& places : chunk.border.triangles)
@@ -71,10 +87,10 @@ Contour PagedFrames<Sample>::contour() const {
   for (const ViewedPage* const page : chunks_) {
     const PageChunk& chunk = *page->chunk;
     numbers.clear();
-    for (std::size_t n = 0; n < chunk.inside.edges.size(); ++n)
-      numbers.push_back(
-          edges.number(makers_.first().edge_point(chunk, chunk.inside.edges[n], chunk.inside.parameters[n]),
-                       chunk.shown.points[n]));
+    for (std::size_t n = 0; n < chunk.inside.edges.size(); ++n) {
+      const EdgePoint point = makers_.first().edge_point(chunk, chunk.inside, n);
+      numbers.push_back(edges.number(point, makers_.first().position(point)));
+    }
     for (const auto& triangle : chunk.shown.triangles)
       contour.triangles.push_back(renumbered(triangle, numbers));
   }
@@ -92,18 +108,26 @@ Contour PagedFrames<Sample>::contour() const {
   return contour;
 }
 
+template const SurfaceChunk* PagedFrames<std::uint8_t>::chunk(std::uint64_t);
+template bool PagedFrames<std::uint8_t>::is_split(LatticePoint);
 template std::vector<std::vector<Vec3>> PagedFrames<std::uint8_t>::cells_in(const Plane&);
 template std::optional<double> PagedFrames<std::uint8_t>::error_at(const Vec3&);
 template Contour PagedFrames<std::uint8_t>::contour() const;
 template Contour PagedFrames<std::uint8_t>::border() const;
+template const SurfaceChunk* PagedFrames<std::uint16_t>::chunk(std::uint64_t);
+template bool PagedFrames<std::uint16_t>::is_split(LatticePoint);
 template std::vector<std::vector<Vec3>> PagedFrames<std::uint16_t>::cells_in(const Plane&);
 template std::optional<double> PagedFrames<std::uint16_t>::error_at(const Vec3&);
 template Contour PagedFrames<std::uint16_t>::contour() const;
 template Contour PagedFrames<std::uint16_t>::border() const;
+template const SurfaceChunk* PagedFrames<std::int16_t>::chunk(std::uint64_t);
+template bool PagedFrames<std::int16_t>::is_split(LatticePoint);
 template std::vector<std::vector<Vec3>> PagedFrames<std::int16_t>::cells_in(const Plane&);
 template std::optional<double> PagedFrames<std::int16_t>::error_at(const Vec3&);
 template Contour PagedFrames<std::int16_t>::contour() const;
 template Contour PagedFrames<std::int16_t>::border() const;
+template const SurfaceChunk* PagedFrames<float>::chunk(std::uint64_t);
+template bool PagedFrames<float>::is_split(LatticePoint);
 template std::vector<std::vector<Vec3>> PagedFrames<float>::cells_in(const Plane&);
 template std::optional<double> PagedFrames<float>::error_at(const Vec3&);
 template Contour PagedFrames<float>::contour() const;

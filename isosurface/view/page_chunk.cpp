@@ -36,6 +36,42 @@ PageMask in_cells(const PageMask& mask, std::uint64_t cells) {
   return found;
 }
 
+/// The ends of the edges that may be on a page, in ascending order, counted from the page's first point.
+struct EdgesOfPage {
+  struct Edge {
+    std::array<std::int8_t, 3> first, second;
+  };
+  std::vector<Edge> edges{kPlaces};
+
+  EdgesOfPage() {
+    constexpr std::int32_t kEdges = DiamondStencil::kEdgeSide, kHalf = 8;
+    // Diamonds on all pages are like those on this one, as far as their edges do not reach beyond the points
+    // round it.
+    constexpr LatticePoint kBlock{1, 1, 1};
+    for (std::int32_t place = 0; place < static_cast<std::int32_t>(kPlaces); ++place) {
+      // The sum of its ends; the edge is the split edge of the diamond at its middle.
+      const LatticePoint sum{place % kEdges - 2, place / kEdges % kEdges - 2, place / (kEdges * kEdges) - 2};
+      auto ends = Diamond(kHalf * (2 * kSide * kBlock + sum)).split_edge();
+      if (ends[1] < ends[0]) std::swap(ends[0], ends[1]);
+      Edge& edge = edges[static_cast<std::size_t>(place)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto from_first = [axis](LatticePoint p) {
+          return static_cast<std::int8_t>(p[static_cast<int>(axis)] / (2 * kHalf) - kSide);
+        };
+        edge.first[axis] = from_first(ends[0]);
+        edge.second[axis] = from_first(ends[1]);
+      }
+    }
+  }
+};
+
+std::array<LatticePoint, 2> ends_of_edge(PageChunk::EdgePlace place) {
+  static const EdgesOfPage kAll;
+  const EdgesOfPage::Edge& edge = kAll.edges[place];
+  return {LatticePoint{edge.first[0], edge.first[1], edge.first[2]},
+          LatticePoint{edge.second[0], edge.second[1], edge.second[2]}};
+}
+
 }  // namespace
 
 void FreeChunks::give(std::unique_ptr<PageChunk> chunk) {
@@ -53,26 +89,24 @@ std::unique_ptr<PageChunk> FreeChunks::take() {
 }
 
 template <class Sample>
-ChunkMaker<Sample>::ChunkMaker(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface,
-                               SplitOf split_of, FreeChunks& free, StoredGradients* gradients)
-    : diamonds_(diamonds),
-      surface_(surface),
-      page_(diamonds),
-      normals_(diamonds.pages(), gradients),
-      split_of_(std::move(split_of)),
+ChunkMaker<Sample>::ChunkMaker(const ChunkSource<Sample>& source, FreeChunks& free,
+                               StoredGradients* gradients)
+    : source_(source),
+      diamonds_(source.diamonds),
+      surface_(source.surface),
+      page_(diamonds_),
+      normals_(diamonds_.pages(), gradients),
       free_(free),
       numbers_(kPlaces) {}
 
 template <class Sample>
-std::array<LatticePoint, 2> ChunkMaker<Sample>::edge(const PageChunk& chunk, EdgePlace place) const {
-  constexpr std::int32_t kEdges = DiamondStencil::kEdgeSide;
-  // The sum of its ends, from the page's first point on.
-  const LatticePoint sum{place % kEdges - 2, place / kEdges % kEdges - 2, place / (kEdges * kEdges) - 2};
-  const std::int32_t half = diamonds_.lattice_step(chunk.lod) / 2;
-  // An edge of the mesh is the split edge of the diamond at its middle.
-  auto ends = Diamond(half * (2 * kSide * chunk.block + sum)).split_edge();
-  if (ends[1] < ends[0]) std::swap(ends[0], ends[1]);
-  return ends;
+EdgePoint ChunkMaker<Sample>::edge_point(const PageChunk& chunk, const PageChunk::Part& part,
+                                         std::size_t n) const {
+  const auto [first, second] = ends_of_edge(part.edges[n]);
+  const double parameter = part.parameters.empty()
+                               ? chunk.shown.ends[n].parameter(surface_.isovalue, surface_.least_parameter)
+                               : part.parameters[n];
+  return {in_lattice(chunk, first), in_lattice(chunk, second), parameter};
 }
 
 template <class Sample>
@@ -89,6 +123,7 @@ std::unique_ptr<PageChunk> ChunkMaker<Sample>::empty_chunk(int lod, LatticePoint
   chunk->shown.points.clear();
   chunk->shown.normals.clear();
   chunk->shown.triangles.clear();
+  chunk->shown.ends.clear();
   return chunk;
 }
 
@@ -99,14 +134,17 @@ std::unique_ptr<PageChunk> ChunkMaker<Sample>::make(int lod, LatticePoint block,
   neighbours_[0] = {.lod = lod, .block = block};
   // A page has eight next finer ones, except that the coarsest page has all coarser LODs too.
   neighbours_[1] = {.lod = lod - 1, .block = (lod > diamonds_.grid().top() ? 1 : 2) * block};
-  chunk->split = *split_of_(lod, block);
+  chunk->split = *source_.split_of(lod, block);
   if (before == nullptr) cells = ~std::uint64_t{0};
   page_.load(lod, block, before == nullptr ? chunk->split : in_cells(chunk->split, cells));
   add_cells(before, cells, *chunk);
   const auto first_cell = before == nullptr ? 0u : static_cast<unsigned>(std::countr_zero(cells));
   show(before, first_cell, *chunk);
-  number(*chunk, before == nullptr ? nullptr : &before->border, first_cell, chunk->border,
-         [](std::size_t, const std::array<std::uint32_t, 3>&) {});
+  const PageChunk::Part* const border = before == nullptr ? nullptr : &before->border;
+  const std::size_t same =
+      number(border, first_cell, chunk->border, [](std::size_t, const std::array<std::uint32_t, 3>&) {});
+  take_over(border == nullptr ? nullptr : &border->parameters, same, chunk->border.parameters,
+            [&](std::size_t n) { return parameter(chunk->border.edges[n]); });
   chunk->missing = normals_.take_missing();
   return chunk;
 }
@@ -155,7 +193,7 @@ template <class Sample>
 void ChunkMaker<Sample>::find_split(std::size_t n, Neighbours& neighbours) {
   const auto step = static_cast<std::int32_t>(n);
   neighbours.known |= 1u << n;
-  neighbours.split[n] = split_of_(
+  neighbours.split[n] = source_.split_of(
       neighbours.lod, neighbours.block + LatticePoint{step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1});
 }
 
@@ -224,8 +262,8 @@ void ChunkMaker<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q,
 
 template <class Sample>
 template <class AddTriangle>
-std::size_t ChunkMaker<Sample>::number(const PageChunk& chunk, const PageChunk::Part* before,
-                                       unsigned first_cell, PageChunk::Part& part, AddTriangle&& triangle) {
+std::size_t ChunkMaker<Sample>::number(const PageChunk::Part* before, unsigned first_cell,
+                                       PageChunk::Part& part, AddTriangle&& triangle) {
   numbers_of_old_.clear();
   if (part.triangles.empty()) {
     part.edges_before.fill(0);
@@ -257,56 +295,74 @@ std::size_t ChunkMaker<Sample>::number(const PageChunk& chunk, const PageChunk::
     }
   }
   for (const EdgePlace place : part.edges) numbers_[place] = {};
-  part.parameters.resize(part.edges.size());
   if (before != nullptr) {
-    std::copy_n(before->parameters.begin(), same, part.parameters.begin());
     for (const EdgePlace place : before->edges) numbers_[place] = {};
-  }
-  for (std::size_t n = same; n < part.edges.size(); ++n) {
-    const std::uint16_t old = numbers_of_old_[n - same];
-    part.parameters[n] = old == kNone ? parameter(chunk, part.edges[n]) : before->parameters[old];
   }
   return same;
 }
 
 template <class Sample>
-double ChunkMaker<Sample>::parameter(const PageChunk& chunk, EdgePlace place) const {
-  const auto [first, second] = edge(chunk, place);
-  const std::int32_t step = diamonds_.lattice_step(chunk.lod);
-  const auto value = [&](LatticePoint p) {
-    return page_.value(LatticePoint{p.i / step, p.j / step, p.k / step} - kSide * chunk.block);
-  };
+double ChunkMaker<Sample>::parameter(EdgePlace place) const {
+  const auto [first, second] = ends_of_edge(place);
   const double least = surface_.least_parameter;
-  return std::clamp(edge_parameter(value(first), value(second), surface_.isovalue), least, 1 - least);
+  return std::clamp(edge_parameter(page_.value(first), page_.value(second), surface_.isovalue), least,
+                    1 - least);
+}
+
+template <class Sample>
+template <class Value, class Make>
+void ChunkMaker<Sample>::take_over(const std::vector<Value>* before, std::size_t same,
+                                   std::vector<Value>& values, Make&& make) {
+  values.resize(same + numbers_of_old_.size());
+  if (same > 0) std::copy_n(before->begin(), same, values.begin());
+  for (std::size_t n = same; n < values.size(); ++n) {
+    const std::uint16_t old = numbers_of_old_[n - same];
+    values[n] = old == kNone ? make(n) : (*before)[old];
+  }
 }
 
 template <class Sample>
 void ChunkMaker<Sample>::show(const PageChunk* before, unsigned first_cell, PageChunk& chunk) {
   SurfaceChunk& shown = chunk.shown;
-  const SurfaceChunk* const old = before == nullptr ? nullptr : &before->shown;
   shown.triangles.resize(chunk.inside.triangles.size());
   if (first_cell > 0)
-    std::copy_n(old->triangles.begin(), before->inside.begins[first_cell], shown.triangles.begin());
+    std::copy_n(before->shown.triangles.begin(), before->inside.begins[first_cell], shown.triangles.begin());
   const std::size_t same = number(
-      chunk, before == nullptr ? nullptr : &before->inside, first_cell, chunk.inside,
+      before == nullptr ? nullptr : &before->inside, first_cell, chunk.inside,
       [&](std::size_t n, const std::array<std::uint32_t, 3>& triangle) { shown.triangles[n] = triangle; });
-  const std::size_t count = chunk.inside.edges.size();
-  shown.points.resize(count);
-  shown.normals.resize(count);
-  if (same > 0) {
-    std::copy_n(old->points.begin(), same, shown.points.begin());
-    std::copy_n(old->normals.begin(), same, shown.normals.begin());
+  if (source_.form == SurfaceForm::kEdgeEnds) {
+    show_ends(before, same, chunk);
+  } else {
+    show_points(before, same, chunk);
   }
-  for (std::size_t n = same; n < count; ++n) {
-    if (const std::uint16_t number = numbers_of_old_[n - same]; number != kNone) {
-      shown.points[n] = old->points[number];
-      shown.normals[n] = old->normals[number];
-    } else {
-      const EdgePoint added = edge_point(chunk, chunk.inside.edges[n], chunk.inside.parameters[n]);
-      shown.points[n] = position(added);
-      shown.normals[n] = normals_.of(added);
-    }
-  }
+}
+
+template <class Sample>
+void ChunkMaker<Sample>::show_points(const PageChunk* before, std::size_t same, PageChunk& chunk) {
+  SurfaceChunk& shown = chunk.shown;
+  take_over(before == nullptr ? nullptr : &before->inside.parameters, same, chunk.inside.parameters,
+            [&](std::size_t n) { return parameter(chunk.inside.edges[n]); });
+  shown.normals.resize(chunk.inside.edges.size());
+  take_over(before == nullptr ? nullptr : &before->shown.points, same, shown.points,
+            [&](std::size_t n) { return position(edge_point(chunk, chunk.inside, n)); });
+  take_over(before == nullptr ? nullptr : &before->shown.normals, same, shown.normals,
+            [&](std::size_t n) { return normals_.of(edge_point(chunk, chunk.inside, n)); });
+}
+
+template <class Sample>
+void ChunkMaker<Sample>::show_ends(const PageChunk* before, std::size_t same, PageChunk& chunk) {
+  SurfaceChunk& shown = chunk.shown;
+  constexpr LatticePoint kCorner{-1, -1, -1};
+  const Domain& domain = diamonds_.domain();
+  const LatticePoint first = in_lattice(chunk, {0, 0, 0});
+  shown.corner = domain.position(in_lattice(chunk, kCorner));
+  shown.step = domain.position(first) - shown.corner;
+  take_over(before == nullptr ? nullptr : &before->shown.ends, same, shown.ends, [&](std::size_t n) {
+    const auto [a, b] = ends_of_edge(chunk.inside.edges[n]);
+    return EdgeEnds({a - kCorner, b - kCorner},
+                    {static_cast<float>(page_.value(a)), static_cast<float>(page_.value(b))},
+                    normals_.at_ends({in_lattice(chunk, a), in_lattice(chunk, b), 0}));
+  });
 }
 
 template class ChunkMaker<std::uint8_t>;

@@ -38,7 +38,7 @@ struct PageChunk {
     /// How many edges the triangles of the cells before a cell name.
     std::array<std::uint32_t, kCells> edges_before{};
     /// The edges that have a point, in the order in which the triangles name them first; and the parameters
-    /// of these points, as in EdgePoint.
+    /// of these points, as in EdgePoint, where the surface is of points.
     std::vector<EdgePlace> edges;
     std::vector<double> parameters;
   };
@@ -65,30 +65,34 @@ class FreeChunks {
   std::vector<std::unique_ptr<PageChunk>> chunks_;
 };
 
+/// What chunks are made from; all of it must outlive who makes them.
+template <class Sample>
+struct ChunkSource {
+  StoredDiamonds<Sample>& diamonds;
+  const SurfaceRequest& surface;
+  /// What is split of a page; null where nothing is.
+  std::function<const PageMask*(int lod, LatticePoint block)> split_of;
+  SurfaceForm form = SurfaceForm::kPoints;
+};
+
 /// Makes the chunks of pages. That a half of a split diamond is in the mesh follows from the masks of split
 /// diamonds, as in PageContour.
 template <class Sample>
 class ChunkMaker {
  public:
-  /// What is split of a page; null where nothing is.
-  using SplitOf = std::function<const PageMask*(int lod, LatticePoint block)>;
-
   using EdgePlace = PageChunk::EdgePlace;
 
-  /// All of these must outlive this. `gradients`: those that the store keeps, of another maker of the same
-  /// diamonds; null: this one opens them, if there are any.
-  ChunkMaker(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface, SplitOf split_of,
-             FreeChunks& free, StoredGradients* gradients = nullptr);
+  /// `gradients`: those that the store keeps, of another maker of the same diamonds; null: this one opens
+  /// them, if there are any. All of these must outlive this.
+  ChunkMaker(const ChunkSource<Sample>& source, FreeChunks& free, StoredGradients* gradients = nullptr);
 
   /// The chunk of a page of which something is split. `before`: the page's chunk until now, or null. Of its
   /// cells only some are made anew, `cells` as bits, and the points that it has are taken over. Throws
   /// PageLost.
   std::unique_ptr<PageChunk> make(int lod, LatticePoint block, const PageChunk* before, std::uint64_t cells);
-  /// The point on an edge of a part of a chunk.
-  [[nodiscard]] EdgePoint edge_point(const PageChunk& chunk, EdgePlace place, double parameter) const {
-    const auto [first, second] = edge(chunk, place);
-    return {first, second, parameter};
-  }
+  /// The n-th point on an edge of a part of a chunk.
+  [[nodiscard]] EdgePoint edge_point(const PageChunk& chunk, const PageChunk::Part& part,
+                                     std::size_t n) const;
   [[nodiscard]] Vec3 position(const EdgePoint& point) const {
     return point_between(diamonds_.domain().position(point.first), diamonds_.domain().position(point.second),
                          point.parameter);
@@ -106,8 +110,10 @@ class ChunkMaker {
     std::array<const PageMask*, 27> split{};
   };
 
-  /// The ends of an edge.
-  [[nodiscard]] std::array<LatticePoint, 2> edge(const PageChunk& chunk, EdgePlace place) const;
+  /// A point of a page, counted from its first one, in the lattice.
+  [[nodiscard]] LatticePoint in_lattice(const PageChunk& chunk, LatticePoint q) const {
+    return diamonds_.lattice_step(chunk.lod) * (PageGrid::kSide * chunk.block + q);
+  }
   std::unique_ptr<PageChunk> empty_chunk(int lod, LatticePoint block);
   void add_cells(const PageChunk* before, std::uint64_t cells, PageChunk& chunk);
   void add_cell(unsigned cell, PageChunk& chunk);
@@ -120,22 +126,28 @@ class ChunkMaker {
   void add_half(const DiamondStencil& stencil, LatticePoint q, const DiamondStencil::Half& half,
                 DiamondStencil::Members above, PageChunk& chunk) const;
   [[nodiscard]] bool is_in_data(LatticePoint p) const;
-  /// Finds the edges of a part, with their parameters, and calls triangle(n, numbers) for its triangles by
+  /// Finds the edges of a part, and calls triangle(n, numbers) for its triangles by
   /// the numbers of these. The first cells, of which the part before has the same triangles, are passed over.
   /// Returns the number of the first edge of the others; numbers_of_old_ has, from that on, the number that
   /// each edge has in the part before, or kNone.
   template <class AddTriangle>
-  std::size_t number(const PageChunk& chunk, const PageChunk::Part* before, unsigned first_cell,
-                     PageChunk::Part& part, AddTriangle&& triangle);
-  [[nodiscard]] double parameter(const PageChunk& chunk, EdgePlace place) const;
+  std::size_t number(const PageChunk::Part* before, unsigned first_cell, PageChunk::Part& part,
+                     AddTriangle&& triangle);
+  [[nodiscard]] double parameter(EdgePlace place) const;
   /// Sets what is shown; the cells before the first are as they were.
   void show(const PageChunk* before, unsigned first_cell, PageChunk& chunk);
+  /// Sets the points on edges from a number on, in the form that is wanted.
+  void show_points(const PageChunk* before, std::size_t same, PageChunk& chunk);
+  void show_ends(const PageChunk* before, std::size_t same, PageChunk& chunk);
+  /// What show() sets of one kind: those that were there before are taken over, others made by make(n).
+  template <class Value, class Make>
+  void take_over(const std::vector<Value>* before, std::size_t same, std::vector<Value>& values, Make&& make);
 
+  ChunkSource<Sample> source_;
   StoredDiamonds<Sample>& diamonds_;
   const SurfaceRequest& surface_;
   PageDiamonds<Sample> page_;
   PointNormals<Sample> normals_;
-  SplitOf split_of_;
   FreeChunks& free_;
   std::array<Neighbours, 2> neighbours_;
   /// Of the points on edges, by place: in the chunk and in the one before it; kNone where there is none.

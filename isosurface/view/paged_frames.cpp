@@ -14,7 +14,6 @@ namespace adamas {
 namespace {
 
 constexpr std::int32_t kSide = PageGrid::kSide;
-constexpr int kLodBits = 56;  ///< of a chunk's id: the LOD stands above so many bits
 
 /// Ends the work when the frame's own predicate says so.
 class StoppedByFrame final : public Progress {
@@ -38,24 +37,17 @@ int classes_further(std::uint64_t triangles, std::uint64_t most) {
 }  // namespace
 
 template <class Sample>
-PagedFrames<Sample>::PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory)
-    : diamonds_(pages),
+PagedFrames<Sample>::PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory,
+                                 SurfaceForm form)
+    : form_(form),
+      diamonds_(pages),
       pages_(diamonds_, surface_, memory),
-      makers_(diamonds_, surface_,
-              [this](int lod, LatticePoint block) { return pages_.split_of(lod, block); }) {}
+      makers_({diamonds_, surface_,
+               [this](int lod, LatticePoint block) { return pages_.split_of(lod, block); }, form}) {}
 
 template <class Sample>
 std::uint64_t PagedFrames<Sample>::id_of(int lod, LatticePoint block) {
   return std::uint64_t{static_cast<unsigned>(lod)} << kLodBits | ZOrder::interleave(block);
-}
-
-template <class Sample>
-const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
-  if (apart_ && apart_->shown.id == id) return &apart_->shown;
-  if (id == kRoot || id == kBorder) return nullptr;
-  const ViewedPage* const page = pages_.find(static_cast<int>(id >> kLodBits),
-                                             ZOrder::deinterleave(id & ((std::uint64_t{1} << kLodBits) - 1)));
-  return page == nullptr || page->chunk == nullptr ? nullptr : &page->chunk->shown;
 }
 
 template <class Sample>
@@ -77,7 +69,8 @@ FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
     choose_pages(request.resident_only);
     figures = find_frame(request, progress);
   } catch (const Cancelled&) {
-    if (request.max_triangles && figures_.triangles > *request.max_triangles) merge_all();
+    const bool is_too_much = request.max_triangles && figures_.triangles > *request.max_triangles;
+    if (is_too_much || is_of_another_isovalue_) merge_all();
     figures = figures_;
     figures.splits = figures.merges = 0;
     figures.stopped = true;
@@ -172,14 +165,26 @@ std::vector<MissingPage> PagedFrames<Sample>::needed_pages() {
 
 template <class Sample>
 void PagedFrames<Sample>::start(double isovalue) {
+  const bool is_first = !isovalue_.has_value();
+  const std::uint64_t least_above = diamonds_.least_above();
   isovalue_.reset();
   diamonds_.set_contour(isovalue);
   surface_.isovalue = isovalue;
-  merge_all();
-  pages_.clear();
+  if (!is_first && diamonds_.least_above() == least_above) {
+    // The same samples are on the same sides: points move along edges, and nothing else changes.
+    is_of_another_isovalue_ = true;
+    for (ViewedPage* const page : chunks_) {
+      const bool stays = form_ == SurfaceForm::kEdgeEnds && page->chunk->border.triangles.empty();
+      if (!stays) page->chunk_step = ViewedPage::kNoStep;
+    }
+    pages_.forget_counts();
+  } else {
+    merge_all();
+    pages_.clear();
+    last_class_ = 0;
+    is_of_another_step_ = false;
+  }
   count_root();
-  last_class_ = 0;
-  is_of_another_step_ = false;
   isovalue_ = isovalue;
 }
 
@@ -201,6 +206,7 @@ void PagedFrames<Sample>::merge_all() {
   figures_ = {};
   figures_.triangles = apart_ ? apart_->shown.triangles.size() : 0;
   figures_.largest_error = std::numeric_limits<double>::infinity();
+  is_of_another_isovalue_ = false;
 }
 
 template <class Sample>
@@ -302,7 +308,8 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
 template <class Sample>
 void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   ++revision_;
-  const bool is_apart_old = is_of_another_step_ || (apart_ && has_come(apart_->missing));
+  const bool is_apart_old =
+      is_of_another_step_ || is_of_another_isovalue_ || (apart_ && has_come(apart_->missing));
   bool border_changed = is_apart_old || (apart_ && apart_->shown.id == kRoot);
   const auto note_border = [&](const PageChunk& chunk) {
     border_changed = border_changed || !chunk.border.triangles.empty();
@@ -329,7 +336,7 @@ void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   } else if (border_changed) {
     set_apart(kBorder, border());
   }
-  is_of_another_step_ = false;
+  is_of_another_step_ = is_of_another_isovalue_ = false;
 }
 
 template <class Sample>
@@ -356,14 +363,6 @@ void PagedFrames<Sample>::set_apart(std::uint64_t id, Contour contour) {
   for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(normals.of(point));
   apart.missing = normals.take_missing();
   apart.contour = std::move(contour);
-}
-
-template <class Sample>
-bool PagedFrames<Sample>::is_split(LatticePoint p) {
-  const int lod = diamonds_.lod(p);
-  if (lod < 0 || lod >= diamonds_.lods()) return false;
-  const auto [page, q] = pages_.find(p);
-  return page != nullptr && page->chunk != nullptr && page->chunk->split.has(q);
 }
 
 template <class Sample>

@@ -28,8 +28,10 @@ class PagedFrames {
   static constexpr std::size_t kMemory = std::size_t{64} << 20;
 
   /// `memory`: bytes that may be taken between frames by what is known of pages that the last one did not
-  /// look at. The pages must outlive this.
-  explicit PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory = kMemory);
+  /// look at. `form`: of chunks, but for those that are not of one page, which have points. The pages must
+  /// outlive this.
+  explicit PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory = kMemory,
+                       SurfaceForm form = SurfaceForm::kPoints);
 
   /// Goes over to another step of the same store, of which the next frame is to be. The mesh of the last
   /// frame is what that begins with; values of the step are looked at where the walk through the mesh meets
@@ -81,6 +83,7 @@ class PagedFrames {
   /// Ids of the chunks that are not of one page: of the mesh in which nothing is split, and of all triangles
   /// that the border of the data cuts, which are cut together, so that neighbours stay joined.
   static constexpr std::uint64_t kRoot = ~std::uint64_t{0}, kBorder = kRoot - 1;
+  static constexpr int kLodBits = 56;  ///< of other ids: the LOD stands above so many bits
   static std::uint64_t id_of(int lod, LatticePoint block);
 
   /// A chunk that is not of one page, and its surface.
@@ -101,7 +104,8 @@ class PagedFrames {
   [[nodiscard]] bool has_come(const std::vector<MissingNormals>& missing);
   void find_missing(FrameFigures& figures);
   void add_missing(const std::vector<MissingNormals>& missing);
-  /// Forgets all of another contour, and leaves the mesh in which nothing is split.
+  /// Begins another contour: with the mesh in which nothing is split, and nothing known of pages; or with all
+  /// that there is, where the same samples are above it.
   void start(double isovalue);
   void count_root();
   /// Leaves the surface of the mesh in which nothing is split.
@@ -128,12 +132,15 @@ class PagedFrames {
     return surface_.contour_options(diamonds_.last_sample(), diamonds_.spacing());
   }
 
+  SurfaceForm form_;
   ViewedDiamonds<Sample> diamonds_;
   SurfaceRequest surface_;
   ViewedPages<Sample> pages_;
   ChunkMakers<Sample> makers_;
   std::optional<double> isovalue_;   ///< none before the first frame
   bool is_of_another_step_ = false;  ///< the last frame's surface is of another step than the next one
+  /// The same with an isovalue between the same samples.
+  bool is_of_another_isovalue_ = false;
   std::uint64_t root_triangles_ = 0;
   int last_class_ = 0;    ///< the least class of the last cut of this contour; 0 before there is one
   FrameFigures figures_;  ///< of the last frame that was not stopped

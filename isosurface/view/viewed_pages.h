@@ -54,6 +54,8 @@ struct ViewedPage {
   std::uint64_t changed_in = 0;     ///< the walk after which `changed` was noted
   std::uint64_t changed = 0;     ///< the cells of the chunk in which not all is as in the last frame, as bits
   std::uint32_t chunk_step = 0;  ///< the step of the store that `chunk` is of
+  /// No step: the chunk is to be made anew.
+  static constexpr std::uint32_t kNoStep = ~std::uint32_t{0};
   std::unique_ptr<PageChunk> chunk;  ///< its triangles in the last frame; null where it had none
 };
 
@@ -70,6 +72,13 @@ class ViewedPages {
 
   /// Forgets all pages, for another contour.
   void clear();
+  /// Forgets how many triangles splits add, for another contour of which the same samples are above: the
+  /// border of the data cuts other ones.
+  void forget_counts() {
+    for (ViewedPage& page : pages_) {
+      if (page.crossed != nullptr) page.crossed->forget_counts();
+    }
+  }
   /// The pages of the step until now, where the diamonds have those of another one by now; null: none.
   void set_before(StoredPages<typename ViewedDiamonds<Sample>::Word>* pages) { before_ = pages; }
   /// Whether walks load pages. Otherwise diamonds are not split whose pages are not in memory, and what comes

@@ -69,6 +69,7 @@ inline void expect_same(const Chunks& found, const Chunks& expected) {
     EXPECT_EQ(a->second.points, b->second.points);
     EXPECT_EQ(a->second.normals, b->second.normals);
     EXPECT_EQ(a->second.triangles, b->second.triangles);
+    EXPECT_EQ(a->second.ends, b->second.ends);
   }
 }
 

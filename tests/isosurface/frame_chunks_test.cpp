@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "adamas/progress.h"
 #include "isosurface/extraction/surface_normals.h"
 #include "isosurface/view/paged_frames.h"
 #include "tests/isosurface/contour_checks.h"
@@ -91,6 +92,34 @@ void expect_parts(StoredPages<OrderedWord<Sample>>& pages, const PagedFrames<Sam
   EXPECT_EQ(whole, parts);
 }
 
+/// Chunks of the ends of edges have the triangles of those of points, and their points and normals come from
+/// them as a vertex shader has them: with gradients of 15 bits.
+void expect_ends(const Chunks& of_ends, const Chunks& of_points, double isovalue) {
+  ASSERT_EQ(of_ends.size(), of_points.size());
+  for (auto a = of_ends.begin(), b = of_points.begin(); a != of_ends.end(); ++a, ++b) {
+    const SurfaceChunk &ends = a->second, &points = b->second;
+    ASSERT_EQ(a->first, b->first);
+    EXPECT_EQ(ends.triangles, points.triangles);
+    if (ends.ends.empty()) {  // of no page
+      EXPECT_EQ(ends.points, points.points);
+      continue;
+    }
+    EXPECT_TRUE(ends.points.empty() && ends.normals.empty());
+    ASSERT_EQ(ends.ends.size(), points.points.size());
+    for (std::size_t n = 0; n < ends.ends.size(); ++n) {
+      const EdgeEnds& edge = ends.ends[n];
+      const double t = edge.parameter(isovalue, SurfaceRequest{}.least_parameter);
+      EXPECT_LT(distance(ends.place(edge, t), points.points[n]), 1e-12 * (1 + norm(points.points[n])));
+      const auto& d = edge.descents;
+      const Vec3 first{double(d[0]), double(d[1]), double(d[2])},
+          second{double(d[3]), double(d[4]), double(d[5])}, descent = (1 - t) * first + t * second;
+      // Where both ends nearly balance each other a direction has fewer bits.
+      if (norm(descent) < 300) continue;
+      EXPECT_GT(dot(normalized(descent), points.normals[n]), 1 - 1e-4);
+    }
+  }
+}
+
 class FrameChunks : public testing::TestWithParam<unsigned> {
  protected:
   [[nodiscard]] auto hills() const {
@@ -105,10 +134,10 @@ class FrameChunks : public testing::TestWithParam<unsigned> {
 
 template <class Sample>
 void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
-  OpenStore<Sample> store(volume), other(volume);
+  OpenStore<Sample> store(volume), other(volume), third(volume);
   Path path(volume.grid.box(), GetParam());
-  PagedFrames<Sample> frames(store.pages(), 1 << 14);
-  Copy copy;
+  PagedFrames<Sample> frames(store.pages(), 1 << 14), of_ends(third.pages(), 1 << 14, SurfaceForm::kEdgeEnds);
+  Copy copy, copy_of_ends;
   FrameRequest first;
   Chunks first_chunks;
   std::size_t stopped = 0, kept = 0;
@@ -116,7 +145,8 @@ void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
   for (int n = 0; n < 36; ++n) {
     FrameRequest wanted;
     wanted.viewpoint = path.next();
-    if (path.number(10) == 0) isovalue = 80.5 + path.number(3) * 20;
+    // Between the same samples too.
+    if (path.number(5) == 0) isovalue = 80.1 + path.number(3) * 20 + 0.4 * path.number(3);
     wanted.isovalue = isovalue;
     wanted.pixels = 0.5 * (1 + path.number(8));
     if (path.number(3) != 0) wanted.max_triangles = 40 + path.number(12000);
@@ -124,8 +154,15 @@ void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
     std::uint32_t done = 0;
     if (path.number(4) == 0) wanted.stop = [&] { return ++done >= steps; };
     const Chunks before = chunks_of(frames);
+    set_thread_limit(4);
     const FrameFigures figures = frames.refine(wanted);
     copy.update(frames);
+    FrameRequest unlimited = wanted;
+    if (path.number(2) == 0) unlimited.stop = nullptr;
+    done = 0;
+    const bool has_ends = !of_ends.refine(unlimited).stopped;
+    copy_of_ends.update(of_ends);
+    set_thread_limit(1);
     const Contour contour = frames.contour();
     EXPECT_EQ(figures.triangles, contour.triangles.size());
     if (is_whole) test::expect_sound(contour, volume.grid.box());
@@ -141,6 +178,10 @@ void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
     const FrameFigures of_fresh = fresh.refine(wanted);
     expect_same(chunks_of(frames), chunks_of(fresh));
     EXPECT_EQ(contour, fresh.contour());
+    if (has_ends) {
+      expect_ends(chunks_of(of_ends), chunks_of(fresh), isovalue);
+      EXPECT_EQ(of_ends.contour(), contour);
+    }
     EXPECT_EQ(figures.largest_error, of_fresh.largest_error);
     kept += chunks_of(frames).size() - frames.changes().added.size() - frames.changes().changed.size();
     if (first_chunks.empty()) {
@@ -152,6 +193,7 @@ void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
   EXPECT_GT(kept, 20u);
   frames.refine(first);
   expect_same(chunks_of(frames), first_chunks);
+  set_thread_limit(0);
 }
 
 TEST_P(FrameChunks, AreThoseFromScratch) { fly(MemoryVolume<std::uint8_t>({51, 44, 34}, hills()), true); }
@@ -169,6 +211,39 @@ TEST_P(FrameChunks, AreThoseFromScratchWhereSamplesAreNoNumbers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, FrameChunks, testing::Range(0u, 3u));
+
+TEST(PagedFrames, KeepTheEndsOfEdgesForAnotherIsovalueBetweenTheSameSamples) {
+  const MemoryVolume<std::uint8_t> volume({100, 60, 50}, [](LatticePoint p) {
+    return 100 + 60 * std::sin(0.35 * p.i + 0.2 * p.k) * std::cos(0.3 * p.j);
+  });
+  OpenStore<std::uint8_t> store(volume), other(volume);
+  PagedFrames<std::uint8_t> frames(store.pages(), 1 << 20, SurfaceForm::kEdgeEnds);
+  Path path(volume.grid.box(), 3);
+  FrameRequest wanted;
+  wanted.viewpoint = path.next();
+  for (const double isovalue : {90.5, 90.75, 90.01, 90.99, 91.5, 90.5}) {
+    const bool is_between_same = std::ceil(isovalue) == std::ceil(wanted.isovalue);
+    wanted.isovalue = isovalue;
+    const Chunks before = chunks_of(frames);
+    frames.refine(wanted);
+    const Chunks now = chunks_of(frames);
+    PagedFrames<std::uint8_t> fresh(other.pages());
+    fresh.refine(wanted);
+    expect_ends(now, chunks_of(fresh), isovalue);
+    std::size_t same = 0, whole = 0;
+    for (const auto& [id, chunk] : now) {
+      if (chunk.ends.empty()) continue;
+      ++whole;
+      const auto known = before.find(id);
+      same += known != before.end() && known->second.revision == chunk.revision ? 1 : 0;
+    }
+    ASSERT_GT(whole, 30u);
+    // Those that the border of the data cuts are made anew.
+    if (is_between_same) {
+      EXPECT_GT(same, whole / 4);
+    }
+  }
+}
 
 TEST(PagedFrames, ForgetPagesThatAreOutOfSight) {
   const MemoryVolume<std::uint8_t> volume({200, 40, 40}, [](LatticePoint p) {
