@@ -21,6 +21,7 @@ DocumentOptions document_options(const ViewOptions& options) {
   DocumentOptions documents;
   documents.memory = parse_size("--memory", options.memory);
   documents.waits_for_pages = waits_for_pages(options);
+  documents.interpolates_in_shader = options.interpolation == "shader";
   if (!options.step.empty())
     documents.step = static_cast<std::uint32_t>(parse_count("--step", options.step, 0));
   return documents;

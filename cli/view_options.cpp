@@ -181,6 +181,13 @@ void add_budget_options(const Command& command, ViewOptions& options) {
                   "sharpen as these are loaded (default async in a window, wait offscreen)")
       .one_of({"wait", "async"});
   command
+      .add_option(
+          "--interpolation", options.interpolation,
+          "Where points and normals of surfaces of stores are interpolated: by the processor, once; or "
+          "by the vertex shader in each picture, so that another step or isovalue comes sooner "
+          "(default processor)")
+      .one_of({"processor", "shader"});
+  command
       .add_option("--memory", options.memory,
                   "What decoded pages may take, for each surface and the section: bytes, or with K, M or G")
       .type_name("SIZE")

@@ -14,9 +14,9 @@ namespace adamas {
 /// The options of `adamas view` as they were given; empty where they were not.
 struct ViewOptions {
   std::vector<std::string> paths, isovalues, opacities, hidden;
-  std::string memory = "256M", step, steps, colour_by, pixels, max_triangles, frame_time, paging, path,
-              frames, size, shading, field, range, colour_map, plane, origin, normal, state, culled_from,
-              film, frame_rate;
+  std::string memory = "256M", step, steps, colour_by, pixels, max_triangles, frame_time, paging,
+              interpolation, path, frames, size, shading, field, range, colour_map, plane, origin, normal,
+              state, culled_from, film, frame_rate;
   bool offscreen = false, overwrite = false, edges = false, plain = false, no_cut = false, no_section = false,
        occlusion = false, fresh = false;
 };

@@ -357,6 +357,7 @@ void ChunkMaker<Sample>::show_ends(const PageChunk* before, std::size_t same, Pa
   const LatticePoint first = in_lattice(chunk, {0, 0, 0});
   shown.corner = domain.position(in_lattice(chunk, kCorner));
   shown.step = domain.position(first) - shown.corner;
+  shown.least_parameter = surface_.least_parameter;
   take_over(before == nullptr ? nullptr : &before->shown.ends, same, shown.ends, [&](std::size_t n) {
     const auto [a, b] = ends_of_edge(chunk.inside.edges[n]);
     return EdgeEnds({a - kCorner, b - kCorner},

@@ -109,7 +109,9 @@ void expect_ends(const Chunks& of_ends, const Chunks& of_points, double isovalue
     for (std::size_t n = 0; n < ends.ends.size(); ++n) {
       const EdgeEnds& edge = ends.ends[n];
       const double t = edge.parameter(isovalue, SurfaceRequest{}.least_parameter);
-      EXPECT_LT(distance(ends.place(edge, t), points.points[n]), 1e-12 * (1 + norm(points.points[n])));
+      const Vec3 at = edge.at(t),
+                 place = ends.corner + Vec3{ends.step.x * at.x, ends.step.y * at.y, ends.step.z * at.z};
+      EXPECT_LT(distance(place, points.points[n]), 1e-12 * (1 + norm(points.points[n])));
       const auto& d = edge.descents;
       const Vec3 first{double(d[0]), double(d[1]), double(d[2])},
           second{double(d[3]), double(d[4]), double(d[5])}, descent = (1 - t) * first + t * second;

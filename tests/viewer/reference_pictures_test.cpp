@@ -56,13 +56,16 @@ Difference difference(const Raster& one, const Raster& other) {
   return result;
 }
 
-class ReferencePictures : public testing::Test {
+/// Whether surfaces are interpolated by the vertex shader.
+class ReferencePictures : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
     const std::string path = (folder / "ball.adm").string();
     test::make_ball_store(path);
-    session.open(path, {std::size_t{64} << 20, path}, SilentProgress::instance());
-    session.state().documents[0].field.clear();
+    DocumentOptions options;
+    options.memory = std::size_t{64} << 20;
+    options.interpolates_in_shader = GetParam();
+    session.open(path, options, SilentProgress::instance());
     session.state().documents[0].surfaces[0].isovalue = 100;
     // Texts differ by the fonts of the system.
     session.state().has_axes = session.state().has_colour_bar = false;
@@ -90,13 +93,28 @@ class ReferencePictures : public testing::Test {
   std::optional<OffscreenPictures> pictures;
 };
 
-TEST_F(ReferencePictures, LitAndAsASphere) {
+INSTANTIATE_TEST_SUITE_P(Interpolation, ReferencePictures, testing::Values(false, true),
+                         [](const auto& by) { return by.param ? "ByTheShader" : "ByTheProcessor"; });
+
+TEST_P(ReferencePictures, AreOfWhatIsInterpolatedThere) {
+  session.finish();
+  std::size_t of_ends = 0, of_vertices = 0;
+  for (const DrawnPart& part : session.parts()) {
+    if (part.mesh->is_lines) continue;
+    of_ends += part.mesh->ends.size();
+    of_vertices += part.mesh->vertices.size();
+  }
+  EXPECT_EQ(of_ends > 0, GetParam());
+  EXPECT_EQ(of_vertices > 0, !GetParam());
+}
+
+TEST_P(ReferencePictures, LitAndAsASphere) {
   expect_reference("lit");
   session.state().shading = Shading::kSphere;
   expect_reference("sphere");
 }
 
-TEST_F(ReferencePictures, TransparentAroundOpaque) {
+TEST_P(ReferencePictures, TransparentAroundOpaque) {
   DocumentState& state = session.state().documents[0];
   state.surfaces.push_back(state.surfaces[0]);
   state.surfaces[0].opacity = 0.4;
@@ -105,19 +123,19 @@ TEST_F(ReferencePictures, TransparentAroundOpaque) {
   expect_reference("transparent");
 }
 
-TEST_F(ReferencePictures, CutWithEdges) {
+TEST_P(ReferencePictures, CutWithEdges) {
   session.state().has_edges = true;
   session.state().cut = {true, {{16, 16, 16}, {1, -0.5, 0.3}}, true, false};
   expect_reference("cut");
 }
 
-TEST_F(ReferencePictures, WithASection) {
+TEST_P(ReferencePictures, WithASection) {
   session.state().colour_map = "viridis";
   session.state().cut = {true, {{16, 18, 16}, {0.6, -1, 0.3}}, false, true};
   expect_reference("section");
 }
 
-TEST_F(ReferencePictures, ADifferenceThatCanBeSeenIsOne) {
+TEST_P(ReferencePictures, ADifferenceThatCanBeSeenIsOne) {
   const Viewpoint viewpoint = flight("orbit:1", session.box(), kWidth, kHeight)[0];
   const Raster first = pictures->draw(viewpoint);
   session.state().documents[0].surfaces[0].isovalue = 97;

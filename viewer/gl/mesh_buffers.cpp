@@ -49,33 +49,63 @@ class MappedBuffer {
   std::byte* bytes_ = nullptr;
 };
 
+struct Attribute {
+  GLuint location;
+  GLint count;
+  GLenum type;
+  std::size_t offset;
+};
+constexpr std::array<Attribute, 3> kOfVertices{{{0, 3, GL_FLOAT, offsetof(DrawnMesh::Vertex, place)},
+                                                {1, 3, GL_FLOAT, offsetof(DrawnMesh::Vertex, normal)},
+                                                {2, 2, GL_FLOAT, offsetof(DrawnMesh::Vertex, front_value)}}};
+constexpr std::size_t kDescents = offsetof(EdgeEnds, descents);
+// Shorts in fours and twos, so that all begin at multiples of four bytes.
+constexpr std::array<Attribute, 4> kOfEdges{{{0, 1, GL_UNSIGNED_INT, offsetof(EdgeEnds, points)},
+                                             {1, 2, GL_FLOAT, offsetof(EdgeEnds, values)},
+                                             {2, 4, GL_SHORT, kDescents},
+                                             {4, 2, GL_SHORT, kDescents + 4 * sizeof(std::int16_t)}}};
+
+void set_attributes(GLuint array, std::span<const Attribute> attributes) {
+  for (const Attribute& each : attributes) {
+    const auto offset = static_cast<GLuint>(each.offset);
+    glEnableVertexArrayAttrib(array, each.location);
+    if (each.type == GL_UNSIGNED_INT) {
+      glVertexArrayAttribIFormat(array, each.location, each.count, each.type, offset);
+    } else {
+      glVertexArrayAttribFormat(array, each.location, each.count, each.type, GL_TRUE, offset);
+    }
+    glVertexArrayAttribBinding(array, each.location, 0);
+  }
+}
+
+std::size_t vertex_count(const DrawnMesh& mesh) { return std::max(mesh.vertices.size(), mesh.ends.size()); }
+std::span<const std::byte> vertex_bytes(const DrawnMesh& mesh) {
+  return mesh.ends.empty() ? std::as_bytes(std::span(mesh.vertices)) : std::as_bytes(std::span(mesh.ends));
+}
+
 }  // namespace
 
 struct MeshBuffers::Block {
+  bool has_edges;
+  std::size_t vertex_bytes;  ///< of one
   RangeAllocator vertices, indices;
   MappedBuffer vertex_buffer, index_buffer;
   GLuint array = 0;
 
-  Block(std::size_t vertex_count, std::size_t index_count)
-      : vertices(vertex_count),
+  Block(bool is_of_edges, std::size_t vertex_count, std::size_t index_count)
+      : has_edges(is_of_edges),
+        vertex_bytes(is_of_edges ? sizeof(EdgeEnds) : sizeof(DrawnMesh::Vertex)),
+        vertices(vertex_count),
         indices(index_count),
-        vertex_buffer(vertex_count * sizeof(DrawnMesh::Vertex)),
+        vertex_buffer(vertex_count * vertex_bytes),
         index_buffer(index_count * sizeof(std::uint32_t)) {
-    struct Attribute {
-      GLint count;
-      std::size_t offset;
-    };
-    constexpr std::array<Attribute, 3> kAttributes{{{3, offsetof(DrawnMesh::Vertex, place)},
-                                                    {3, offsetof(DrawnMesh::Vertex, normal)},
-                                                    {2, offsetof(DrawnMesh::Vertex, front_value)}}};
     glCreateVertexArrays(1, &array);
-    for (GLuint n = 0; n < kAttributes.size(); ++n) {
-      glEnableVertexArrayAttrib(array, n);
-      glVertexArrayAttribFormat(array, n, kAttributes[n].count, GL_FLOAT, GL_FALSE,
-                                static_cast<GLuint>(kAttributes[n].offset));
-      glVertexArrayAttribBinding(array, n, 0);
+    if (has_edges) {
+      set_attributes(array, kOfEdges);
+    } else {
+      set_attributes(array, kOfVertices);
     }
-    glVertexArrayVertexBuffer(array, 0, vertex_buffer.name(), 0, sizeof(DrawnMesh::Vertex));
+    glVertexArrayVertexBuffer(array, 0, vertex_buffer.name(), 0, static_cast<GLsizei>(vertex_bytes));
   }
   Block(const Block&) = delete;
   Block& operator=(const Block&) = delete;
@@ -89,6 +119,8 @@ MeshBuffers::~MeshBuffers() {
 }
 
 std::uint32_t MeshBuffers::vertex_array(std::size_t block) const { return blocks_[block]->array; }
+
+bool MeshBuffers::has_edges(std::size_t block) const { return blocks_[block]->has_edges; }
 
 std::uint32_t MeshBuffers::index_buffer(std::size_t block) const {
   return blocks_[block]->index_buffer.name();
@@ -105,24 +137,25 @@ MeshBuffers::Place MeshBuffers::copied(const DrawnMesh& mesh) {
   for (std::size_t n = 0; n < blocks_.size(); ++n) {
     if (const std::optional<Place> place = copied_into(n, mesh)) return *place;
   }
-  blocks_.push_back(std::make_unique<Block>(std::max(kBlockVertices, mesh.vertices.size()),
+  blocks_.push_back(std::make_unique<Block>(!mesh.ends.empty(), std::max(kBlockVertices, vertex_count(mesh)),
                                             std::max(kBlockIndices, mesh.indices.size())));
   return *copied_into(blocks_.size() - 1, mesh);
 }
 
 std::optional<MeshBuffers::Place> MeshBuffers::copied_into(std::size_t block, const DrawnMesh& mesh) {
   Block& into = *blocks_[block];
-  const auto vertices = into.vertices.take(mesh.vertices.size());
+  if (into.has_edges == mesh.ends.empty()) return std::nullopt;
+  const auto vertices = into.vertices.take(vertex_count(mesh));
   if (!vertices) return std::nullopt;
   const auto indices = into.indices.take(mesh.indices.size());
   if (!indices) {
-    into.vertices.give_back(*vertices, mesh.vertices.size());
+    into.vertices.give_back(*vertices, vertex_count(mesh));
     return std::nullopt;
   }
-  into.vertex_buffer.write(*vertices * sizeof(DrawnMesh::Vertex), std::as_bytes(std::span(mesh.vertices)));
-  into.index_buffer.write(*indices * sizeof(std::uint32_t), std::as_bytes(std::span(mesh.indices)));
-  copied_bytes_ +=
-      mesh.vertices.size() * sizeof(DrawnMesh::Vertex) + mesh.indices.size() * sizeof(std::uint32_t);
+  const std::span<const std::byte> index_bytes = std::as_bytes(std::span(mesh.indices));
+  into.vertex_buffer.write(*vertices * into.vertex_bytes, vertex_bytes(mesh));
+  into.index_buffer.write(*indices * sizeof(std::uint32_t), index_bytes);
+  copied_bytes_ += vertex_bytes(mesh).size() + index_bytes.size();
   return Place{block, static_cast<std::uint32_t>(*vertices), static_cast<std::uint32_t>(*indices),
                static_cast<std::uint32_t>(mesh.indices.size())};
 }
@@ -140,7 +173,7 @@ void MeshBuffers::begin_picture() {
     const Known& known = entry.second;
     if (known.last_picture + kPicturesInFlight >= picture_) return false;
     Block& block = *blocks_[known.place.block];
-    block.vertices.give_back(known.place.first_vertex, known.mesh->vertices.size());
+    block.vertices.give_back(known.place.first_vertex, vertex_count(*known.mesh));
     block.indices.give_back(known.place.first_index, known.mesh->indices.size());
     return true;
   });

@@ -33,8 +33,11 @@ class MeshBuffers {
   /// Ends it, after the last command that reads meshes.
   void end_picture();
 
-  /// The vertex array of a block: attributes 0 to 2 are place, normal and values.
+  /// The vertex array of a block. Attributes 0 to 2 are place, normal and values; or 0 to 2 and 4 are the
+  /// parts of EdgeEnds.
   [[nodiscard]] std::uint32_t vertex_array(std::size_t block) const;
+  /// Whether the meshes of a block are of ends of edges.
+  [[nodiscard]] bool has_edges(std::size_t block) const;
   /// The buffer of its indices.
   [[nodiscard]] std::uint32_t index_buffer(std::size_t block) const;
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }

@@ -25,6 +25,7 @@ constexpr GLsizei kMapColours = 256;
 struct Draw {
   std::array<float, 4> origin;
   std::array<std::uint32_t, 4> style;  ///< its number, whether the mesh is clipped
+  std::array<float, 4> along;          ///< of ends of edges: steps, and the isovalue
 };
 struct Style {
   std::array<float, 4> front, back, range;
@@ -35,11 +36,10 @@ struct Command {
   std::uint32_t count, instances, first_index, base_vertex, base_instance;
 };
 
-GLuint compiled(GLenum kind, std::string_view source) {
+GLuint compiled(GLenum kind, const std::string& source) {
   const GLuint shader = glCreateShader(kind);
-  const char* const text = source.data();
-  const auto length = static_cast<GLint>(source.size());
-  glShaderSource(shader, 1, &text, &length);
+  const char* const text = source.c_str();
+  glShaderSource(shader, 1, &text, nullptr);
   glCompileShader(shader);
   GLint done = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
@@ -51,10 +51,12 @@ GLuint compiled(GLenum kind, std::string_view source) {
   return shader;
 }
 
-GLuint linked_program() {
+/// `vertices`: what those of meshes are.
+GLuint linked_program(std::string_view vertices) {
   const GLuint program = glCreateProgram();
   for (const auto& [kind, source] :
-       {std::pair{GL_VERTEX_SHADER, kVertexShader}, std::pair{GL_FRAGMENT_SHADER, kFragmentShader}}) {
+       {std::pair{GL_VERTEX_SHADER, fmt::format("{}{}{}", kVersion, vertices, kVertexShader)},
+        std::pair{GL_FRAGMENT_SHADER, fmt::format("{}{}", kVersion, kFragmentShader)}}) {
     const GLuint shader = compiled(static_cast<GLenum>(kind), source);
     glAttachShader(program, shader);
     glDeleteShader(shader);
@@ -108,7 +110,7 @@ double far_plane(const Viewpoint& viewpoint, std::span<const DrawnPart> parts) {
   const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
   double far = 2 * viewpoint.near;
   for (const DrawnPart& part : parts) {
-    if (part.mesh->vertices.empty()) continue;
+    if (part.mesh->indices.empty()) continue;
     for (const Vec3& corner : part.mesh->box.corners())
       far = std::max(far, 1.01 * dot(corner - viewpoint.eye, forward));
   }
@@ -164,13 +166,11 @@ class SortedTriangles {
       if (!is_transparent(parts[p])) continue;
       const DrawnMesh& mesh = *parts[p].mesh;
       const auto origin = static_cast<float>(dot(mesh.origin - viewpoint.eye, forward));
-      const auto [fx, fy, fz] = std::array{static_cast<float>(forward.x), static_cast<float>(forward.y),
-                                           static_cast<float>(forward.z)};
       for (std::size_t t = 0; 3 * t + 2 < mesh.indices.size(); ++t) {
         float depth = 3 * origin;
         for (std::size_t c = 0; c < 3; ++c) {
-          const auto& place = mesh.vertices[mesh.indices[3 * t + c]].place;
-          depth += fx * place[0] + fy * place[1] + fz * place[2];
+          const Vec3 place = mesh.place(mesh.indices[3 * t + c], parts[p].isovalue);
+          depth += static_cast<float>(dot(forward, place));
         }
         triangles_.push_back({depth, static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(t)});
       }
@@ -191,7 +191,7 @@ class SortedTriangles {
 }  // namespace
 
 struct Renderer::Objects {
-  GLuint program = linked_program();
+  GLuint point_program = linked_program(kPointVertices), edge_program = linked_program(kEdgeVertices);
   GLuint map_texture = 0;
   std::string map_name;
   MeshBuffers meshes;
@@ -208,7 +208,8 @@ struct Renderer::Objects {
   Objects(const Objects&) = delete;
   Objects& operator=(const Objects&) = delete;
   ~Objects() {
-    glDeleteProgram(program);
+    glDeleteProgram(point_program);
+    glDeleteProgram(edge_program);
     glDeleteTextures(1, &map_texture);
   }
 
@@ -235,8 +236,9 @@ struct Renderer::Objects {
       if (last == nullptr || !(*last == part.style)) all_styles.push_back(style_of(part.style));
       last = &part.style;
       all_draws.push_back(
-          {in_single(part.mesh->origin - contents.viewpoint.target, 0),
-           {static_cast<std::uint32_t>(all_styles.size() - 1), part.style.is_clipped ? 1u : 0u, 0, 0}});
+          {in_single(part.mesh->origin - contents.viewpoint.target, part.mesh->least_parameter),
+           {static_cast<std::uint32_t>(all_styles.size() - 1), part.style.is_clipped ? 1u : 0u, 0, 0},
+           in_single(part.mesh->step, part.isovalue)});
     }
     draws.fill(all_draws);
     styles.fill(all_styles);
@@ -261,6 +263,10 @@ struct Renderer::Objects {
     return {place.index_count, 1, place.first_index, place.first_vertex, static_cast<std::uint32_t>(part)};
   }
 
+  [[nodiscard]] GLuint program_of(std::size_t block) const {
+    return meshes.has_edges(block) ? edge_program : point_program;
+  }
+
   /// Draws the parts that `chosen` accepts, by one command for each block.
   template <class Chosen>
   void draw_parts(std::span<const DrawnPart> parts, GLenum mode, Chosen&& chosen) {
@@ -272,6 +278,7 @@ struct Renderer::Objects {
       }
       if (all.empty()) continue;
       commands.fill(all);
+      glUseProgram(program_of(block));
       glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.name());
       const GLuint array = meshes.vertex_array(block);
       glVertexArrayElementBuffer(array, meshes.index_buffer(block));
@@ -300,6 +307,7 @@ struct Renderer::Objects {
       while (end < all.size() && all[end].part == all[begin].part) ++end;
       const MeshBuffers::Place& place = places[all[begin].part];
       const GLuint array = meshes.vertex_array(place.block);
+      glUseProgram(program_of(place.block));
       glVertexArrayElementBuffer(array, sorted_indices.name());
       glBindVertexArray(array);
       const std::uintptr_t offset = 3 * begin * sizeof(std::uint32_t);
@@ -315,15 +323,24 @@ struct Renderer::Objects {
   }
 
   void set_view(const PictureContents& contents, const Viewpoint& viewpoint) const {
-    glUseProgram(program);
-    glUniformMatrix4fv(0, 1, GL_FALSE, view_matrix(viewpoint).data());
-    glUniformMatrix4fv(1, 1, GL_FALSE, picture_matrix(viewpoint, figures.far).data());
     const Plane plane = contents.clip.value_or(Plane{{}, {}});
-    glUniform4fv(2, 1, in_single(plane.normal, dot(plane.normal, viewpoint.target - plane.origin)).data());
-    glUniform1i(3, contents.shading == Shading::kSphere ? 1 : 0);
-    glUniform1i(4, viewpoint.height > 0 ? 1 : 0);
-    glUniform1i(5, 0);
+    const std::array<float, 4> clip =
+        in_single(plane.normal, dot(plane.normal, viewpoint.target - plane.origin));
+    for (const GLuint program : {edge_program, point_program}) {
+      glProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, view_matrix(viewpoint).data());
+      glProgramUniformMatrix4fv(program, 1, 1, GL_FALSE, picture_matrix(viewpoint, figures.far).data());
+      glProgramUniform4fv(program, 2, 1, clip.data());
+      glProgramUniform1i(program, 3, contents.shading == Shading::kSphere ? 1 : 0);
+      glProgramUniform1i(program, 4, viewpoint.height > 0 ? 1 : 0);
+    }
+    set_edges(false);
     glBindTextureUnit(0, map_texture);
+  }
+
+  /// Whether edges are drawn, not areas.
+  void set_edges(bool are_edges) const {
+    for (const GLuint program : {edge_program, point_program})
+      glProgramUniform1i(program, 5, are_edges ? 1 : 0);
   }
 
   void draw_all(const PictureContents& contents) {
@@ -334,11 +351,11 @@ struct Renderer::Objects {
                [](const DrawnPart& part) { return !part.mesh->is_lines && !is_transparent(part); });
     glDisable(GL_POLYGON_OFFSET_FILL);
     glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    glUniform1i(5, 1);
+    set_edges(true);
     draw_parts(contents.parts, GL_TRIANGLES, [](const DrawnPart& part) {
       return !part.mesh->is_lines && !is_transparent(part) && part.style.has_edges;
     });
-    glUniform1i(5, 0);
+    set_edges(false);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     draw_parts(contents.parts, GL_LINES, [](const DrawnPart& part) { return part.mesh->is_lines; });
     draw_transparent(contents);

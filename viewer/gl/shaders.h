@@ -6,12 +6,42 @@ namespace adamas {
 
 // In the view the eye is at the origin and looks along -z. Places are relative to the origin of their mesh;
 // each command for a mesh tells that origin relative to the target, and how the mesh looks.
-inline constexpr std::string_view kVertexShader = R"(#version 450 core
+inline constexpr std::string_view kVersion = "#version 450 core\n";
+
+/// What the vertices of meshes are.
+inline constexpr std::string_view kPointVertices = R"(
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 values;
+void find_vertex(vec4 along, float least, out vec3 at, out vec3 towards, out vec2 on_sides) {
+  at = place;
+  towards = normal;
+  on_sides = values;
+}
+)";
+
+/// The ends of edges, as EdgeEnds has them: `along` are steps and the isovalue. Values are halved, so that
+/// differences do not overflow.
+inline constexpr std::string_view kEdgeVertices = R"(
+layout(location = 0) in uint points;
+layout(location = 1) in vec2 samples;
+layout(location = 2) in vec4 descents;
+layout(location = 4) in vec2 last_descents;
+void find_vertex(vec4 along, float least, out vec3 at, out vec3 towards, out vec2 on_sides) {
+  float t = clamp((0.5 * along.w - 0.5 * samples.x) / (0.5 * samples.y - 0.5 * samples.x), least, 1.0 - least);
+  uvec3 first = uvec3(points, points >> 5, points >> 10) & 31u;
+  uvec3 second = uvec3(points >> 15, points >> 20, points >> 25) & 31u;
+  at = along.xyz * mix(vec3(first), vec3(second), t);
+  vec3 descent = mix(descents.xyz, vec3(descents.w, last_descents), t);
+  float steepness = dot(descent, descent);
+  towards = steepness > 0.0 ? descent * inversesqrt(steepness) : vec3(0.0);
+  on_sides = vec2(intBitsToFloat(0x7fc00000));
+}
+)";
+
+inline constexpr std::string_view kVertexShader = R"(
 layout(location = 3) in uint draw_number;
-struct Draw { vec4 origin; uvec4 style; };
+struct Draw { vec4 origin; uvec4 style; vec4 along; };
 layout(std430, binding = 0) readonly buffer Draws { Draw draws[]; };
 layout(location = 0) uniform mat4 to_view;
 layout(location = 1) uniform mat4 to_picture;
@@ -22,18 +52,19 @@ out vec2 side_values;
 flat out uint style;
 void main() {
   Draw draw = draws[draw_number];
-  vec3 from_target = place + draw.origin.xyz;
+  vec3 place_in_mesh, towards;
+  find_vertex(draw.along, draw.origin.w, place_in_mesh, towards, side_values);
+  vec3 from_target = place_in_mesh + draw.origin.xyz;
   vec4 at = to_view * vec4(from_target, 1.0);
   view_place = at.xyz;
-  view_normal = mat3(to_view) * normal;
-  side_values = values;
+  view_normal = mat3(to_view) * towards;
   style = draw.style.x;
   gl_Position = to_picture * at;
   gl_ClipDistance[0] = draw.style.y != 0u ? -(dot(clip.xyz, from_target) + clip.w) : 1.0;
 }
 )";
 
-inline constexpr std::string_view kFragmentShader = R"(#version 450 core
+inline constexpr std::string_view kFragmentShader = R"(
 in vec3 view_place;
 in vec3 view_normal;
 in vec2 side_values;

@@ -93,6 +93,9 @@ struct DocumentOptions {
   /// Whether surfaces wait for the pages that they need. Otherwise they are coarser at first, and sharpen as
   /// pages come.
   bool waits_for_pages = true;
+  /// Whether points and normals of a store's surfaces are interpolated by the vertex shader. Otherwise, where
+  /// grids are oblique and where another store colours surfaces, the processor does it.
+  bool interpolates_in_shader = false;
 };
 
 /// Opens a store, a resampled mesh, a saved hierarchy or interfaces. Throws Error for another file.

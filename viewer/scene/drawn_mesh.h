@@ -9,6 +9,7 @@
 
 #include "core/geometry/vec3.h"
 #include "core/picture/colour.h"
+#include "isosurface/view/edge_ends.h"
 
 namespace adamas {
 
@@ -25,10 +26,25 @@ struct DrawnMesh {
 
   Vec3 origin;
   std::vector<Vertex> vertices;
+  /// In place of vertices: the ends of edges, which the vertex shader interpolates along. Their points lie
+  /// so many steps from `origin`.
+  std::vector<EdgeEnds> ends;
+  Vec3 step;
+  double least_parameter = 0;  ///< see ContourOptions
   std::vector<std::uint32_t>
       indices;  ///< three for a triangle, counterclockwise from the front; two for a line
   bool is_lines = false;
-  Box3 box;  ///< of all vertices, in the frame of the data
+  Box3 box;  ///< of all vertices, in the frame of the data; that of both ends of edges
+
+  /// Relative to `origin`; of ends of edges where the surface of an isovalue crosses them.
+  [[nodiscard]] Vec3 place(std::uint32_t vertex, double isovalue) const {
+    if (ends.empty()) {
+      const auto& at = vertices[vertex].place;
+      return {at[0], at[1], at[2]};
+    }
+    const Vec3 at = ends[vertex].at(ends[vertex].parameter(isovalue, least_parameter));
+    return {step.x * at.x, step.y * at.y, step.z * at.z};
+  }
 };
 
 /// As vertices have it.
@@ -56,6 +72,7 @@ struct DrawnPart {
   SharedMesh mesh;
   PartStyle style;
   std::size_t surface = 0;  ///< of a store: to which of those that are shown it belongs
+  double isovalue = 0;      ///< of samples: where it crosses the edges of the mesh, if that has them
 };
 
 }  // namespace adamas

@@ -26,8 +26,6 @@ bool meets(const Ray& ray, const Box3& box) {
   return from <= to;
 }
 
-Vec3 in_double(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-
 /// Where a ray meets a triangle: the distance, and the weights of the second and third corner (Moeller and
 /// Trumbore 1997).
 struct Meeting {
@@ -86,13 +84,13 @@ std::optional<Hit> pick(std::span<const DrawnPart> parts, const Ray& ray, const 
     const Ray local{ray.origin - mesh.origin, ray.direction};
     for (std::size_t t = 0; 3 * t + 2 < mesh.indices.size(); ++t) {
       std::array<Vec3, 3> corners;
-      for (std::size_t c = 0; c < 3; ++c)
-        corners[c] = in_double(mesh.vertices[mesh.indices[3 * t + c]].place);
+      for (std::size_t c = 0; c < 3; ++c) corners[c] = mesh.place(mesh.indices[3 * t + c], parts[p].isovalue);
       const std::optional<Meeting> found = meeting(local, corners);
       if (!found || (nearest && found->distance >= nearest->distance)) continue;
       const Vec3 place = ray.origin + found->distance * ray.direction;
       if (clip && parts[p].style.is_clipped && dot(place - clip->origin, clip->normal) > 0) continue;
       const auto value = [&](std::size_t c) {
+        if (mesh.vertices.empty()) return std::numeric_limits<double>::quiet_NaN();
         const DrawnMesh::Vertex& vertex = mesh.vertices[mesh.indices[3 * t + c]];
         return static_cast<double>(found->is_front ? vertex.front_value : vertex.back_value);
       };

@@ -96,7 +96,8 @@ class StoreDocument final : public Document {
         std::tie(style.low, style.high) = std::pair((*range)[0], (*range)[1]);
       style.is_clipped = true;
       style.has_edges = view.has_edges;
-      for (const SharedMesh& chunk : found->surfaces[n]) result.push_back({chunk, style, n});
+      for (const SharedMesh& chunk : found->surfaces[n])
+        result.push_back({chunk, style, n, found->isovalues[n]});
     }
     return result;
   }

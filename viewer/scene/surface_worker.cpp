@@ -6,10 +6,22 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/data/volume_placement.h"
 #include "viewer/scene/mesh_maker.h"
 
 namespace adamas {
+
+namespace {
+
+std::vector<std::uint32_t> indices_of(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<std::uint32_t> indices;
+  indices.reserve(3 * triangles.size());
+  for (const auto& t : triangles) indices.insert(indices.end(), t.begin(), t.end());
+  return indices;
+}
+
+}  // namespace
 
 SurfaceWorker::SurfaceWorker(const std::string& path, const DocumentOptions& options)
     : file_(path),
@@ -19,6 +31,9 @@ SurfaceWorker::SurfaceWorker(const std::string& path, const DocumentOptions& opt
                    ? nullptr
                    : VolumeValues::open(options.colour_by, options.memory, options.step)),
       step_of_colours_(options.step),
+      form_(options.interpolates_in_shader && !colours_ && file_.header().grid.is_straight()
+                ? SurfaceForm::kEdgeEnds
+                : SurfaceForm::kPoints),
       thread_([this] { run(); }) {}
 
 SurfaceWorker::~SurfaceWorker() {
@@ -193,6 +208,7 @@ bool SurfaceWorker::is_overtaken(const WantedSurfaces& wanted) const {
 bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness) {
   auto found = std::make_shared<FoundSurfaces>();
   found->wanted = wanted;
+  found->isovalues = wanted.isovalues;
   found->roughness = roughness;
   found->step = wanted.step;
   using Clock = std::chrono::steady_clock;
@@ -217,6 +233,7 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
     if (file_.steps() > 1) found->report.problem += fmt::format(" (step {})", wanted.step);
     if (const auto last = this->found()) {
       found->surfaces = last->surfaces;
+      found->isovalues = last->isovalues;
       found->step = last->step;
     }
   }
@@ -244,7 +261,7 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
     }
     changed_.notify_all();
   };
-  while (surfaces_.size() <= n) surfaces_.push_back({SeriesFrames::open(file_, memory_, arrived), {}});
+  while (surfaces_.size() <= n) surfaces_.push_back({SeriesFrames::open(file_, memory_, arrived, form_), {}});
   const WantedSurfaces& wanted = found.wanted;
   FrameRequest request;
   request.viewpoint = wanted.viewpoint;
@@ -272,16 +289,25 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
 }
 
 std::vector<SharedMesh> SurfaceWorker::drawn_chunks(Surface& surface) {
-  std::vector<SharedMesh> meshes;
   std::unordered_map<std::uint64_t, Surface::Drawn> now;
+  std::vector<const Surface::Drawn*> in_order;
+  std::vector<std::pair<const SurfaceChunk*, Surface::Drawn*>> changed;
   surface.frames->for_each_chunk([&](const SurfaceChunk& chunk) {
     if (chunk.triangles.empty()) return;
     Surface::Drawn& drawn = now[chunk.id];
     if (const auto before = surface.drawn.find(chunk.id); before != surface.drawn.end())
       drawn = before->second;
-    if (!drawn.mesh || drawn.revision != chunk.revision) drawn = {chunk.revision, drawn_chunk(chunk)};
-    meshes.push_back(drawn.mesh);
+    if (!drawn.mesh || drawn.revision != chunk.revision) changed.emplace_back(&chunk, &drawn);
+    in_order.push_back(&drawn);
   });
+  // Values of a volume that colours come from one cache of pages.
+  const std::size_t grain = colours_ ? changed.size() : 4;
+  parallel_for(changed.size(), grain, [&](std::size_t n) {
+    const auto& [chunk, drawn] = changed[n];
+    *drawn = {chunk->revision, drawn_chunk(*chunk)};
+  });
+  std::vector<SharedMesh> meshes;
+  for (const Surface::Drawn* const drawn : in_order) meshes.push_back(drawn->mesh);
   surface.drawn = std::move(now);
   return meshes;
 }
@@ -298,7 +324,8 @@ SharedMesh SurfaceWorker::cell_edges(const Plane& plane) {
   return maker.finish();
 }
 
-SharedMesh SurfaceWorker::drawn_chunk(const SurfaceChunk& chunk) {
+SharedMesh SurfaceWorker::drawn_chunk(const SurfaceChunk& chunk) const {
+  if (!chunk.ends.empty()) return drawn_ends(chunk);
   TriangleSurface surface;
   surface.points = chunk.points;
   surface.normals = chunk.normals;
@@ -308,6 +335,23 @@ SharedMesh SurfaceWorker::drawn_chunk(const SurfaceChunk& chunk) {
     for (const Vec3& p : surface.points) surface.values.push_back(static_cast<float>(colours_->at(p)));
   }
   return drawn_mesh(surface);
+}
+
+SharedMesh drawn_ends(const SurfaceChunk& chunk) {
+  auto mesh = std::make_shared<DrawnMesh>();
+  mesh->origin = chunk.corner;
+  mesh->step = chunk.step;
+  mesh->least_parameter = chunk.least_parameter;
+  mesh->ends = chunk.ends;
+  mesh->indices = indices_of(chunk.triangles);
+  Box3 steps;
+  for (const EdgeEnds& edge : chunk.ends) {
+    for (const LatticePoint& p : edge.places()) steps.extend({double(p.i), double(p.j), double(p.k)});
+  }
+  for (const Vec3& corner : {steps.min, steps.max})
+    mesh->box.extend(chunk.corner +
+                     Vec3{chunk.step.x * corner.x, chunk.step.y * corner.y, chunk.step.z * corner.z});
+  return mesh;
 }
 
 SharedMesh drawn_mesh(const TriangleSurface& surface) {
@@ -321,8 +365,7 @@ SharedMesh drawn_mesh(const TriangleSurface& surface) {
     vertex.normal = in_single(surface.normals.empty() ? Vec3{} : surface.normals[n]);
     if (!surface.values.empty()) vertex.front_value = vertex.back_value = surface.values[n];
   }
-  mesh->indices.reserve(3 * surface.triangles.size());
-  for (const auto& t : surface.triangles) mesh->indices.insert(mesh->indices.end(), t.begin(), t.end());
+  mesh->indices = indices_of(surface.triangles);
   return mesh;
 }
 

@@ -43,6 +43,7 @@ struct FoundSurfaces {
   WantedSurfaces wanted;
   std::uint64_t roughness = 1;                    ///< by how much it is coarser than that on purpose
   std::vector<std::vector<SharedMesh>> surfaces;  ///< of each isovalue: the chunks
+  std::vector<double> isovalues;                  ///< of these
   std::uint32_t step = 0;                         ///< of these: an earlier one where that cannot be had
   SharedMesh cell_edges;                          ///< in the plane; null where none are wanted
   UpdateReport report;
@@ -119,7 +120,7 @@ class SurfaceWorker {
   std::vector<SharedMesh> drawn_chunks(Surface& surface);
   /// Of the first surface's mesh.
   [[nodiscard]] SharedMesh cell_edges(const Plane& plane);
-  [[nodiscard]] SharedMesh drawn_chunk(const SurfaceChunk& chunk);
+  [[nodiscard]] SharedMesh drawn_chunk(const SurfaceChunk& chunk) const;
 
   static constexpr std::uint64_t kRough = 8;
 
@@ -129,6 +130,7 @@ class SurfaceWorker {
   std::vector<Surface> surfaces_;  ///< of the thread, like colours_
   std::unique_ptr<VolumeValues> colours_;
   std::uint32_t step_of_colours_;
+  SurfaceForm form_;
   std::vector<std::uint32_t> expecting_;  ///< of the thread: what frames read ahead
   FrameBudget budget_;
   std::chrono::steady_clock::time_point frame_end_;  ///< when the frame's time is over
@@ -144,6 +146,8 @@ class SurfaceWorker {
   std::thread thread_;
 };
 
+/// The same of chunks of the ends of edges.
+SharedMesh drawn_ends(const SurfaceChunk& chunk);
 /// A surface as a renderer takes it; its values on both sides.
 SharedMesh drawn_mesh(const TriangleSurface& surface);
 
