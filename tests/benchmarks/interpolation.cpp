@@ -1,6 +1,7 @@
 // The surfaces of a stored series, step after step, with points and normals interpolated by the processor and
 // by the vertex shader (D 5.6, table 5.2): seconds until a step's surface is worked out, until it is drawn,
-// and for a picture of what is there already. Without a window. Prints a line of JSON for each.
+// and for a picture of what is there already; then how many steps a second are shown as a window plays them.
+// Without a window. Prints a line of JSON for each.
 
 #include <epoxy/gl.h>
 
@@ -51,47 +52,96 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-void play(const Series& series, bool in_shader, const OffscreenContext& context) {
-  ViewSession session(kWidth, kHeight);
-  DocumentOptions options;
-  options.memory = std::size_t{2} << 30;
-  options.interpolates_in_shader = in_shader;
-  session.open(series.store, options, SilentProgress::instance());
-  const Vec3 spacing = StoreFile(series.store).header().grid.spacing;
-  look_from_everywhere(session, series.voxels, std::min({spacing.x, spacing.y, spacing.z}));
-  DocumentState& state = session.state().documents[0];
-  state.surfaces[0].isovalue = series.isovalue;
-  const PictureTarget target(kWidth, kHeight);
+/// A session that shows one step of a series.
+struct Shown {
+  ViewSession session{kWidth, kHeight};
+  PictureTarget target{kWidth, kHeight};
   Renderer renderer;
   PictureContents contents;
-  contents.viewpoint = session.state().viewpoint;
-  std::vector<double> worked_out, shown, pictures, triangles;
-  const auto draw = [&] {
+
+  Shown(const Series& series, bool in_shader, bool waits_for_pages) {
+    DocumentOptions options;
+    options.memory = std::size_t{2} << 30;
+    options.interpolates_in_shader = in_shader;
+    options.waits_for_pages = waits_for_pages;
+    session.open(series.store, options, SilentProgress::instance());
+    const Vec3 spacing = StoreFile(series.store).header().grid.spacing;
+    look_from_everywhere(session, series.voxels, std::min({spacing.x, spacing.y, spacing.z}));
+    session.state().documents[0].surfaces[0].isovalue = series.isovalue;
+    session.set_step(series.first);
+    contents.viewpoint = session.state().viewpoint;
+  }
+  void draw() {
     renderer.draw(contents, target.framebuffer(), kWidth, kHeight);
     glFinish();
-  };
-  for (std::uint32_t step = series.first; step <= series.last; ++step) {
-    state.step = step;
-    const double until_drawn = seconds_of([&] {
-      session.finish();
-      contents.parts = session.parts();
-      draw();
-    });
+  }
+  void draw_now() {
+    contents.parts = session.parts();
+    draw();
+  }
+  void finish() {
+    session.finish();
     if (const std::string problem = session.report().problem; !problem.empty())
       throw std::runtime_error(problem);
+  }
+};
+
+/// Each step by itself.
+void step_by_step(const Series& series, bool in_shader, const std::string& drawn_by) {
+  Shown shown(series, in_shader, true);
+  std::vector<double> worked_out, until_drawn, pictures, triangles;
+  for (std::uint32_t step = series.first; step <= series.last; ++step) {
+    shown.session.set_step(step);
+    const double seconds = seconds_of([&] {
+      shown.finish();
+      shown.draw_now();
+    });
     // The first step reads what is the same of all.
     if (step == series.first) continue;
-    shown.push_back(until_drawn);
-    worked_out.push_back(session.report().seconds);
-    triangles.push_back(static_cast<double>(session.report().triangles));
-    pictures.push_back(seconds_of(draw));
+    until_drawn.push_back(seconds);
+    worked_out.push_back(shown.session.report().seconds);
+    triangles.push_back(static_cast<double>(shown.session.report().triangles));
+    pictures.push_back(seconds_of([&] { shown.draw(); }));
   }
   std::printf(
       "{\"row\": \"interpolation\", \"by\": \"%s\", \"voxels\": %g, \"threads\": %u, \"triangles\": %.0f, "
-      "\"worked_out\": %.5f, \"shown\": %.5f, \"slowest\": %.5f, \"picture\": %.5f, \"drawn_by\": \"%s\"}\n",
+      "\"worked_out\": %.5f, \"until_drawn\": %.5f, \"picture\": %.5f, \"drawn_by\": \"%s\"}\n",
       in_shader ? "shader" : "processor", series.voxels, thread_limit(), quantile(triangles, 0.5),
-      quantile(worked_out, 0.5), quantile(shown, 0.5), quantile(shown, 1), quantile(pictures, 0.5),
-      context.name().c_str());
+      quantile(worked_out, 0.5), quantile(until_drawn, 0.5), quantile(pictures, 0.5), drawn_by.c_str());
+  std::fflush(stdout);
+}
+
+/// As a window plays: pages are read ahead, and a picture is drawn while the next surface is worked out.
+void play(const Series& series, bool in_shader, const std::string& drawn_by) {
+  Shown shown(series, in_shader, false);
+  shown.finish();
+  shown.draw_now();
+  StepClock& clock = shown.session.clock();
+  clock.pace().steps_per_second = 1000;
+  clock.pace().repeat = Repeat::kOnce;
+  shown.session.play_steps();
+  std::uint32_t pictures = 0, steps = 0;
+  std::vector<double> between, triangles;
+  double last_frame = 0, since = 0;
+  const double seconds = seconds_of([&] {
+    while (shown.session.step() < series.last) {
+      const std::uint32_t before = shown.session.step();
+      shown.session.advance(last_frame);
+      last_frame = seconds_of([&] { shown.draw_now(); });
+      since += last_frame;
+      ++pictures;
+      if (shown.session.step() == before) continue;
+      ++steps;
+      between.push_back(since);
+      triangles.push_back(static_cast<double>(shown.session.report().triangles));
+      since = 0;
+    }
+  });
+  std::printf(
+      "{\"row\": \"played\", \"by\": \"%s\", \"voxels\": %g, \"threads\": %u, \"triangles\": %.0f, "
+      "\"steps_per_second\": %.2f, \"longest_step\": %.5f, \"pictures\": %u, \"drawn_by\": \"%s\"}\n",
+      in_shader ? "shader" : "processor", series.voxels, thread_limit(), quantile(triangles, 0.5),
+      steps / seconds, quantile(between, 1), pictures, drawn_by.c_str());
   std::fflush(stdout);
 }
 
@@ -109,7 +159,10 @@ int main(int argc, char** argv) {
       const Series series{argv[1], std::atof(argv[2]), std::atof(argv[n]),
                           static_cast<std::uint32_t>(std::atoi(argv[3])),
                           static_cast<std::uint32_t>(std::atoi(argv[4]))};
-      for (const bool in_shader : {false, true}) play(series, in_shader, context);
+      for (const bool in_shader : {false, true}) {
+        step_by_step(series, in_shader, context.name());
+        play(series, in_shader, context.name());
+      }
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_interpolation: %s\n", error.what());
