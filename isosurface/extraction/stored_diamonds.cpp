@@ -86,8 +86,13 @@ void StoredDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
   if (greatest_class(id) == 0) {
     codes.fill(0);
   } else {
-    select_crossed(found, static_cast<Word>(least_above_), codes);
+    find_crossed(found, codes);
   }
+}
+
+template <class Sample>
+void StoredDiamonds<Sample>::find_crossed(const PageBounds<Word>& bounds, Codes& codes) const {
+  select_crossed(bounds, static_cast<Word>(least_above_), codes);
 }
 
 template <class Sample>

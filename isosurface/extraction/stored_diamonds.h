@@ -61,6 +61,8 @@ class StoredDiamonds : public LatticeSamples<Sample> {
   /// Gets the error codes of a page's diamonds: of those that the contour crosses, and 0 for the others.
   /// Throws PageLost.
   void find_crossed(const PageId& id, Codes& codes);
+  /// The same by the bounds of a page some diamond of which the contour crosses.
+  void find_crossed(const PageBounds<Word>& bounds, Codes& codes) const;
 
  private:
   const PageEntry& entry(const PageId& id);

@@ -84,7 +84,7 @@ class PageCache {
   /// Of the caches that share the memory, this one was used last; or just before another one.
   void touch(const PageCache* before = nullptr);
   /// Whether pages that are not in memory are loaded. Otherwise they cannot be had, and none leaves; several
-  /// threads may ask for samples then.
+  /// threads may ask for samples and bounds then.
   void set_loading(bool loads) { loads_ = loads; }
   [[nodiscard]] bool loads() const { return loads_; }
 
@@ -96,7 +96,7 @@ class PageCache {
     return slot == nullptr ? nullptr : slot->samples;
   }
   const PageBounds<Word>* bounds(const PageId& id) {
-    const Slot* slot = get(id, PageParts::kAll, true);
+    const Slot* slot = loads_ ? get(id, PageParts::kAll, true) : slot_in_memory(id);
     return slot == nullptr ? nullptr : slot->bounds;
   }
   /// The samples of a page that is in memory; null for others. Valid until the next call.

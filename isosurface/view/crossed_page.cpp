@@ -62,17 +62,21 @@ void CrossedPage::find_members(std::size_t wanted) {
 }
 
 template <class Sample>
-void CrossedPageReader<Sample>::find_codes(int lod, LatticePoint block) {
-  const PageGrid& grid = diamonds_.grid();
-  const PageId id{std::min(lod, grid.top()), block};
-  diamonds_.find_crossed(id, codes_);
+void CrossedPageReader<Sample>::drop_bounds(int lod, LatticePoint block) {
   // Bounds of the finest LOD predict nothing, and others predict none here where pages are not loaded. Those
   // of the next step may be the same.
   StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
-  if (id.lod < grid.top() && (lod == 0 || !pages.loads()) && pages.file().steps() == 1) pages.drop_bounds(id);
+  const PageId id{std::min(lod, diamonds_.grid().top()), block};
+  if (id.lod < diamonds_.grid().top() && (lod == 0 || !pages.loads()) && pages.file().steps() == 1)
+    pages.drop_bounds(id);
+}
+
+template <class Sample>
+void CrossedPageReader<Sample>::keep_own_codes(int lod, LatticePoint block) {
+  const PageGrid& grid = diamonds_.grid();
   const auto all = codes_;
   codes_.fill(0);
-  const std::int32_t step = 1 << (lod - id.lod);
+  const std::int32_t step = 1 << (lod - std::min(lod, grid.top()));
   const LatticePoint reach = grid.reach(lod);
   LatticePoint count;
   for (int axis = 0; axis < 3; ++axis)
@@ -89,7 +93,22 @@ void CrossedPageReader<Sample>::find_codes(int lod, LatticePoint block) {
 
 template <class Sample>
 CrossedPage CrossedPageReader<Sample>::read(int lod, LatticePoint block) {
-  find_codes(lod, block);
+  diamonds_.find_crossed({std::min(lod, diamonds_.grid().top()), block}, codes_);
+  drop_bounds(lod, block);
+  keep_own_codes(lod, block);
+  return page_of_codes();
+}
+
+template <class Sample>
+CrossedPage CrossedPageReader<Sample>::read(int lod, LatticePoint block,
+                                            const PageBounds<typename StoredDiamonds<Sample>::Word>& bounds) {
+  diamonds_.find_crossed(bounds, codes_);
+  keep_own_codes(lod, block);
+  return page_of_codes();
+}
+
+template <class Sample>
+CrossedPage CrossedPageReader<Sample>::page_of_codes() const {
   CrossedPage page;
   std::array<std::uint16_t, kKeys> next{};
   std::size_t total = 0, group_count = 0;
@@ -140,18 +159,20 @@ void CrossedPageReader<Sample>::count(int lod, LatticePoint block, std::size_t g
   if (!page.lost.empty()) page.lost.resize(end);
   for (; page.counted < groups; ++page.counted) {
     CrossedPage::Group& group = page.groups[page.counted];
+    // Nothing is kept of a group of which some page cannot be had.
+    std::uint32_t added = 0, lost = 0;
     for (std::size_t n = group.begin; n < group.end; ++n) {
       const std::int64_t more = added_at(CrossedPage::point(page.places[n]));
       ADAMAS_ASSERT(std::abs(more) <= std::numeric_limits<std::uint8_t>::max());
-      if (more < 0) {
-        page.lost.resize(end);
-        page.lost[n] = static_cast<std::uint8_t>(-more);
-        group.lost += page.lost[n];
-      } else {
-        page.added[n] = static_cast<std::uint8_t>(more);
-        group.added += page.added[n];
-      }
+      page.added[n] = static_cast<std::uint8_t>(std::max<std::int64_t>(more, 0));
+      added += page.added[n];
+      if (more >= 0) continue;
+      page.lost.resize(end);
+      page.lost[n] = static_cast<std::uint8_t>(-more);
+      lost += page.lost[n];
     }
+    group.added = added;
+    group.lost = lost;
   }
 }
 

@@ -75,12 +75,20 @@ class CrossedPageReader {
 
   /// Throws PageLost.
   CrossedPage read(int lod, LatticePoint block);
+  /// The same of a page, but the coarsest, by its bounds; some of its diamonds the contour crosses. Where
+  /// pages are not loaded, several readers may do this at the same time, and count.
+  CrossedPage read(int lod, LatticePoint block,
+                   const PageBounds<typename StoredDiamonds<Sample>::Word>& bounds);
+  /// Frees the memory of bounds that will hardly be needed again, of a page that was read.
+  void drop_bounds(int lod, LatticePoint block);
   /// Finds how many triangles splits add in the groups up to `groups`. Throws PageLost.
   void count(int lod, LatticePoint block, std::size_t groups, CrossedPage& page);
 
  private:
-  /// The error codes of the page's own diamonds which the contour crosses; 0 of others.
-  void find_codes(int lod, LatticePoint block);
+  /// Leaves the error codes of the page's own diamonds alone; 0 of others.
+  void keep_own_codes(int lod, LatticePoint block);
+  /// What there is by codes_.
+  [[nodiscard]] CrossedPage page_of_codes() const;
   [[nodiscard]] std::int64_t added_at(LatticePoint q);
 
   StoredDiamonds<Sample>& diamonds_;

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "isosurface/view/viewed_pages_by_threads.h"
 #include "isosurface/view/viewed_pages_in_memory.h"
 #include "isosurface/view/viewed_pages_in_time.h"
 #include "isosurface/volume/z_order.h"
@@ -22,6 +23,7 @@ template <class Sample>
 ViewedPages<Sample>::ViewedPages(ViewedDiamonds<Sample>& diamonds, const SurfaceRequest& surface,
                                  std::size_t memory)
     : diamonds_(diamonds),
+      surface_(surface),
       reader_(diamonds, surface),
       memory_(memory),
       index_(static_cast<std::size_t>(diamonds.lods())),
@@ -134,6 +136,7 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
   added.of_generations.resize(static_cast<std::size_t>(generations()));
   for (int lod = lods() - 1; lod >= 0; --lod) {
     find_candidates(lod);
+    read_ahead_of_walk();
     std::vector<ViewedPage*>& active = active_[static_cast<std::size_t>(lod)];
     active.clear();
     incomplete_[static_cast<std::size_t>(lod)].clear();

@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -176,6 +177,10 @@ class ViewedPages {
   /// Sets candidates_ to the pages of an LOD on which diamonds may be split, since coarser ones may.
   void find_candidates(int lod);
   void add_candidate(int lod, LatticePoint block);
+  /// Reads, by several threads, what the walk will want of candidates_ and what is in memory.
+  void read_ahead_of_walk();
+  void read_from_memory(ViewedPage& page, CrossedPageReader<Sample>& reader);
+  CrossedPageReader<Sample>& taken_reader();
   /// Adds the diamonds of a page.
   void look_at(ViewedPage& page, const PageView& view, Added& added);
   /// Whether depths hide a diamond; counts.
@@ -228,7 +233,11 @@ class ViewedPages {
   }
 
   ViewedDiamonds<Sample>& diamonds_;
+  const SurfaceRequest& surface_;
   CrossedPageReader<Sample> reader_;
+  std::mutex readers_mutex_;                       ///< of what follows
+  std::deque<CrossedPageReader<Sample>> readers_;  ///< of threads
+  std::vector<CrossedPageReader<Sample>*> unused_readers_;
   StoredPages<typename ViewedDiamonds<Sample>::Word>* before_ = nullptr;  ///< of the step before; null: none
   std::size_t memory_, bytes_ = 0;
   std::vector<LodPlaces> places_;  ///< by LOD
