@@ -93,6 +93,12 @@ struct ContourOptions {
 
 /// Whether the tetrahedron has at most a face in the data's box.
 bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample);
+/// Whether some of it lies there.
+inline bool reaches_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample) {
+  return std::ranges::any_of(vertices, [&](LatticePoint p) {
+    return p.i > last_sample.i || p.j > last_sample.j || p.k > last_sample.k;
+  });
+}
 
 /// The point at parameter t from a to b. Rounding never puts it beyond them, and where they have the same
 /// coordinate it has that too.

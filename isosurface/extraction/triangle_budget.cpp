@@ -105,6 +105,13 @@ std::int64_t TriangleCounter<Sample>::count(const Diamond& diamond, int slot,
   }
   const std::int64_t triangles = kTetrahedronContours[above].triangle_count;
   if (triangles == 0 || is_inside(diamond)) return triangles;
+  if (!request_.region) {
+    // Of a diamond at the border of the data few tetrahedra reach over it.
+    const std::array<LatticePoint, 4> vertices = diamond.tetrahedron(slot);
+    const LatticePoint last = samples_.last_sample();
+    if (is_beyond(vertices, last)) return 0;
+    if (!reaches_beyond(vertices, last)) return triangles;
+  }
   return count_clipped(diamond, slot);
 }
 

@@ -237,7 +237,7 @@ void ChunkMaker<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q,
                                   PageChunk& chunk) const {
   unsigned bits = 0;
   for (std::size_t v = 0; v < 4; ++v) bits |= (above >> half.vertices[v] & 1) << v;
-  bool reaches_beyond = false;
+  bool is_cut = false;
   if (std::is_floating_point_v<Sample> || !page_.is_inside()) {
     std::array<LatticePoint, 4> in_lattice;
     for (std::size_t v = 0; v < 4; ++v) {
@@ -247,8 +247,7 @@ void ChunkMaker<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q,
     }
     const LatticePoint last = diamonds_.last_sample();
     if (is_beyond(in_lattice, last)) return;
-    for (const LatticePoint p : in_lattice)
-      reaches_beyond = reaches_beyond || p.i > last.i || p.j > last.j || p.k > last.k;
+    is_cut = reaches_beyond(in_lattice, last);
   }
   const TetrahedronContour& contour = kTetrahedronContours[bits];
   const std::int32_t middle = DiamondStencil::edge_place(2 * (q + LatticePoint{1, 1, 1}));
@@ -256,7 +255,7 @@ void ChunkMaker<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q,
     std::array<EdgePlace, 3> triangle;
     for (std::size_t c = 0; c < 3; ++c)
       triangle[c] = static_cast<EdgePlace>(middle + half.edges[contour.triangles[n][c]]);
-    (reaches_beyond ? chunk.border : chunk.inside).triangles.push_back(triangle);
+    (is_cut ? chunk.border : chunk.inside).triangles.push_back(triangle);
   }
 }
 
