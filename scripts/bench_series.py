@@ -135,6 +135,17 @@ def reading_row(series, read_steps, sample, coded, plain):
             f"{coded['triangles_mean']:,.0f} triangles a step, error 0.7 voxel; {memory_text(read_steps, sample)}"]
 
 
+def needs_row(name, least, found):
+    """What a surface needs at all, read page by page, and of what these bytes are."""
+    def size(which):
+        return found[which]["samples"] + found[which]["bounds"]
+    crossed = found["crossed"]
+    return [f"play {name}, no read ahead", f"{least['page_faults']:,} reads, {mega(least['bytes_read'])} ({least['part_read']:.1%})", "", "", "",
+            f"{crossed['pages']:,} pages and steps that the surface of all samples crosses {mega(size('crossed'))} ({mega(crossed['samples'])} of samples, "
+            f"{mega(crossed['bounds'])} of errors and ranges), what they are predicted from {mega(size('in space'))} and in time {mega(size('in time'))}, "
+            f"directory, tables and copies {mega(found['others'])}, pages that are not needed {mega(size('not needed'))}"]
+
+
 def median(values):
     return sorted(values)[len(values) // 2]
 
@@ -228,8 +239,7 @@ def rows_of(bench):
     for steps, both in plays.items():
         yield reading_row(series, steps, SAMPLE_BYTES[coded["type"]], *both)
     least = bench.play(coded_file, 1)
-    yield [f"play {series.name}, no read ahead", f"{least['page_faults']:,} reads, {mega(least['bytes_read'])} ({least['part_read']:.1%})", "", "", "",
-           "a page and step a read: what the surface needs"]
+    yield needs_row(series.name, least, lines_of(bench.build, "bench_series_bytes", coded_file, str(series.isovalue))[0])
     timed = [(bench.play(coded_file, READ_STEPS[0]), bench.contours(coded_file)) for _ in range(RUNS)]
     yield time_row(series, *zip(*timed))
     draw_plays(bench, plays, timed[-1][1])
