@@ -1,6 +1,7 @@
 // What zstd -19 makes of the samples of a series, page by page as a store has them: each step of a page by
 // itself; the steps of a block one after another, as in the file; and these sample by sample, as the
-// dissertation (D 5.5) interleaves them. Of each page of a block the least counts. Prints a line of JSON.
+// dissertation (D 5.5) interleaves them. Of each page of a block the least counts. Of a long series only some
+// pages are looked at. Prints a line of JSON.
 
 #include <zstd.h>
 
@@ -67,17 +68,24 @@ Bytes samples_of(const PageGrid& grid, const PageId& id, const PagePoints<Ordere
   return bytes;
 }
 
-std::vector<PageId> pages_of(const PageGrid& grid) {
+/// How many pages are looked at of all steps, as far as these divide into so few.
+constexpr std::uint64_t kPages = 70'000;
+
+/// Every so many-th page, of all levels in turn.
+std::vector<PageId> pages_of(const StoreFile& file) {
+  const PageGrid& grid = file.grid();
+  const std::uint64_t every = 1 + grid.page_count() * file.steps() / kPages;
   std::vector<PageId> pages;
+  std::uint64_t count = 0;
   for (std::uint64_t number = 1; number < std::uint64_t{2} << (3 * grid.top()); ++number)
-    if (grid.contains(grid.page(number))) pages.push_back(grid.page(number));
+    if (grid.contains(grid.page(number)) && count++ % every == 0) pages.push_back(grid.page(number));
   return pages;
 }
 
 /// Of the block that begins with a step.
 template <class Sample>
 void add_block(StoreFile& file, std::uint32_t first, PageBytes& all, std::size_t& least) {
-  const std::vector<PageId> pages = pages_of(file.grid());
+  const std::vector<PageId> pages = pages_of(file);
   std::vector<std::vector<Bytes>> samples(pages.size());
   StepPages<OrderedWord<Sample>> steps(file, kMemory);
   for (std::uint32_t step = first; step < first + file.header(first).steps(); ++step) {

@@ -9,7 +9,7 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
 from bench_large import QUICK, ball_centres, check_samples, distance_from_spheres, write_sparse  # noqa: E402
-from bench_series import coefficient_table, file_rows, needs_row, play_plots, reading_row, Series, time_row  # noqa: E402
+from bench_series import coefficient_table, file_rows, needs_row, play_plots, reading_row, Series, time_row, whole  # noqa: E402
 from bench_table import closest_point_table, hierarchy_table, some  # noqa: E402
 from bench_volumes import codec_table, contour_table, quality_table, surface_table  # noqa: E402
 
@@ -120,6 +120,7 @@ class BenchTableTest(unittest.TestCase):
         coded, plain = ({"bytes_file": n, "bytes_data": n // 2, "bytes_errors": n // 4} for n in (4000, 16000))
         zstd = {"alone": 9000, "in_turn": 8000, "interleaved": 7000, "least": 5000}
         self.assertEqual([r[3] for r in file_rows("a", coded, plain, zstd)], ["0.250", "0.800", "0.400"])
+        self.assertEqual(whole(zstd | {"input": 10000}, 20000)["least"], 10000)
         series = Series("a", 1, [], aim=0.3)
         row = reading_row(series, 10, 2, played(3, 1000), played(4, 4000))
         self.assertEqual(row[1:5], ["6 reads, 2 kB (25.0%)", "uncompressed 8 reads, 8 kB (25.0%)", "0.250", "<= 30% of the file"])
