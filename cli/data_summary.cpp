@@ -61,6 +61,13 @@ void print_range(StoreFile& file, Console& console, Figures& figures) {
   });
 }
 
+/// `is_plain`: whether no page is smaller than its samples.
+const char* coding_name(SampleCoding coding, bool is_plain) {
+  if (coding == SampleCoding::kRanks) return "interpolation of ranks";
+  if (coding == SampleCoding::kInterpolation) return "interpolation";
+  return is_plain ? "none" : "split-edge";
+}
+
 }  // namespace
 
 void print_places(const VolumeGrid& grid, Console& console) {
@@ -183,9 +190,7 @@ Figures print_store(const std::string& path, Session& session) {
   const std::uint64_t before = grid.bytes() * file->steps();
   const StoreBytes bytes = file->bytes();
   const int levels = file->grid().top() + 1;
-  const char* coding = header.coding == SampleCoding::kSplitEdge ? "split-edge"
-                       : header.coding == SampleCoding::kRanks   ? "interpolation of ranks"
-                                                                 : "interpolation";
+  const char* coding = coding_name(header.coding, bytes.samples >= before);
   console.print("{}: stored {}\n", path, file->steps() > 1 ? "series of volumes" : "volume");
   console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
   if (grid.is_scaled())

@@ -59,7 +59,8 @@ void report(const StoredSteps& steps, const StoreFigures& store, Session& sessio
 
 StoreOptions store_options(const Options& options) {
   StoreOptions store;
-  store.coding = options.coding == "split-edge" ? SampleCoding::kSplitEdge : SampleCoding::kInterpolation;
+  if (options.coding == "split-edge") store.coding = SampleCoding::kSplitEdge;
+  if (options.coding == "none") store.coding = SampleCoding::kPlain;
   if (!options.smoothing.empty() && !options.gradients)
     wrong_usage("--smoothing: expected with --gradients, which are what is smoothed");
   store.gradients = options.gradients;
@@ -157,8 +158,9 @@ void add_store(const Command& app, Session& session) {
   command
       .add_option("--coding", options->coding,
                   "How samples are predicted: from all neighbours that are known, or only from the two ends "
-                  "of the edge whose middle they are")
-      .one_of({"interpolation", "split-edge"})
+                  "of the edge whose middle they are; or not at all: samples and gradients as they are, for "
+                  "comparison")
+      .one_of({"interpolation", "split-edge", "none"})
       .show_default();
   command.add_flag(
       "--gradients", options->gradients,

@@ -13,6 +13,7 @@ import time
 
 from bench_frames import frame_rows
 from bench_large import large_rows
+from bench_series import series_rows
 from bench_volumes import volume_rows
 
 
@@ -182,13 +183,15 @@ def print_table(rows):
 
 
 PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "selection": selection_rows,
-         "sphere": sphere_rows, "impact": impact_rows, "cth": cth_rows, "volumes": volume_rows, "frames": frame_rows, "large": large_rows}
+         "sphere": sphere_rows, "impact": impact_rows, "cth": cth_rows, "volumes": volume_rows, "frames": frame_rows, "series": series_rows,
+         "large": large_rows}
 
 
 def main():
     parser = argparse.ArgumentParser(prog="scripts/bench", usage="%(prog)s [--quick] [--large] [PART ...]",
                                      description="Builds and runs the benchmarks; prints a table of what the project and "
-                                     "its peers do. Data sets are looked for in $ADAMAS_DATA, or else in ../shared/data.")
+                                     "its peers do. Data sets are looked for in $ADAMAS_DATA, or else in ../shared/data. Of the "
+                                     "part series, what is generated and drawn stays in folders of $ADAMAS_BENCH_DATA, where that is set.")
     parser.add_argument("build", help=argparse.SUPPRESS)
     parser.add_argument("parts", nargs="*", metavar="PART",
                         help=f"only these: {', '.join(PARTS)} (default: all but large)")

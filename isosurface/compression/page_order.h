@@ -56,13 +56,27 @@ inline std::size_t own_points(const PageShape& shape) {
   return box(n.i, n.j, n.k) - (shape.complete ? 0 : box((n.i + 1) / 2, (n.j + 1) / 2, (n.k + 1) / 2));
 }
 
+/// The places of all points of a page in hierarchical z-order.
+inline const std::array<std::uint16_t, PageGrid::kPoints>& places_in_order() {
+  static const auto kPlaces = [] {
+    constexpr ZOrder kOrder(4);
+    std::array<std::uint16_t, PageGrid::kPoints> places{};
+    for (std::uint64_t index = 0; index < kOrder.size(); ++index)
+      places[index] = static_cast<std::uint16_t>(PageGrid::place(kOrder.point(index), 0));
+    return places;
+  }();
+  return kPlaces;
+}
+
 /// f(q, index in hierarchical z-order of 16^3 points) for the points that the page keeps, in this order.
 template <class F>
 void for_each_own_point(const PageShape& shape, F&& f) {
-  static constexpr ZOrder kOrder(4);
-  for (std::uint64_t index = shape.complete ? 0 : kOrder.size(1); index < kOrder.size(); ++index) {
-    const LatticePoint q = kOrder.point(index);
-    if (shape.owns(q)) f(q, index);
+  constexpr std::size_t kCoarser = PageGrid::kPoints / 8;
+  const auto& places = places_in_order();
+  const bool is_whole = shape.count == LatticePoint{PageGrid::kSide, PageGrid::kSide, PageGrid::kSide};
+  for (std::size_t index = shape.complete ? 0 : kCoarser; index < places.size(); ++index) {
+    const LatticePoint q{places[index] & 15, places[index] >> 4 & 15, places[index] >> 8};
+    if (is_whole || shape.owns(q)) f(q, std::uint64_t{index});
   }
 }
 

@@ -10,6 +10,7 @@
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/interpolation_codec.h"
 #include "isosurface/compression/page_order.h"
+#include "isosurface/compression/plain_codec.h"
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/split_edge_codec.h"
 
@@ -77,6 +78,7 @@ std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding,
                                                   std::shared_ptr<const SampleRanks> ranks,
                                                   std::optional<Word> prevailing) {
   ADAMAS_ASSERT((coding == SampleCoding::kRanks) == (ranks != nullptr));
+  if (coding == SampleCoding::kPlain) return std::make_unique<PlainSurvey<Word>>();
   if (coding == SampleCoding::kSplitEdge) return std::make_unique<SplitEdgeSurvey<Word>>();
   if constexpr (sizeof(Word) > 1) {
     if (coding == SampleCoding::kRanks) return ranked_survey<Word>(std::move(ranks), prevailing);

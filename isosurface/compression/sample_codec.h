@@ -18,8 +18,14 @@ class SampleRanks;
 enum class SampleCoding : std::uint8_t {
   kSplitEdge = 0,      ///< mean of the split edge's ends, lead-1 codes: the dissertation (D), section 4.11
   kInterpolation = 1,  ///< cubic on edges, then faces, then centres; contexts of local variation
-  kRanks = 2           ///< kInterpolation of the samples' ranks; of words of more than a byte
+  kRanks = 2,          ///< kInterpolation of the samples' ranks; of words of more than a byte
+  kPlain = 3           ///< as they are: kSplitEdge in files, all of whose pages are raw
 };
+
+/// By which pages of this coding are decoded.
+constexpr SampleCoding coding_in_files(SampleCoding coding) {
+  return coding == SampleCoding::kPlain ? SampleCoding::kSplitEdge : coding;
+}
 
 /// That of single bytes, which have no ranks, in a file with this coding.
 constexpr SampleCoding coding_of_bytes(SampleCoding coding) {

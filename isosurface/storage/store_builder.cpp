@@ -81,7 +81,7 @@ class StoreBuilder {
     const Codecs<Word> codecs = survey();
     StoreHeader header;
     header.grid = volume_;
-    header.coding = coding();
+    header.coding = coding_in_files(coding());
     header.gradients = options_.gradients;
     header.first_step = first;
     header.times.assign(series.times.begin() + begin, series.times.begin() + end);
@@ -255,7 +255,8 @@ class StoreBuilder {
   }
 
   [[nodiscard]] std::unique_ptr<Surveys<Word>> empty_surveys() const {
-    const bool in_time = steps_before(first_) > 0 || steps_.size() > 1;
+    const bool in_time =
+        options_.coding != SampleCoding::kPlain && (steps_before(first_) > 0 || steps_.size() > 1);
     TimeSurvey<Word> samples(sample_survey<Word>(coding(), ranks_, prevailing_), coding(), in_time);
     return std::make_unique<Surveys<Word>>(std::move(samples), coding(), options_.gradients, volume_.spacing,
                                            rounding_);
@@ -367,7 +368,7 @@ StoreFigures append_series(const std::filesystem::path& path, const SeriesSource
   const double last = file.times().back();
   if (series.times.empty() || series.times.front() <= last)
     fail("{}: expected steps after the time {}, found earlier ones", file.name(), last);
-  options.coding = coding_of_bytes(file.header().coding);
+  if (options.coding != SampleCoding::kPlain) options.coding = coding_of_bytes(file.header().coding);
   options.gradients = file.header().gradients;
   StoreFileWriter writer(path, file);
   add_blocks(writer, path, series, options, file.steps(), figures, progress);

@@ -53,9 +53,9 @@ StoreFigures build_series(const std::filesystem::path& path, const std::string& 
                           const SeriesSource& series, const StoreOptions& options,
                           Progress& progress = SilentProgress::instance());
 
-/// Adds steps, whose times are after those of the store at `path`, behind its last ones, with its coding and
-/// with gradients if it has some. Who opens the file meanwhile, or after this was killed, finds all steps of
-/// the blocks that are finished.
+/// Adds steps, whose times are after those of the store at `path`, behind its last ones, with its coding,
+/// unless they are to be plain, and with gradients if it has some. Who opens the file meanwhile, or after
+/// this was killed, finds all steps of the blocks that are finished.
 StoreFigures append_series(const std::filesystem::path& path, const SeriesSource& series,
                            StoreOptions options, Progress& progress = SilentProgress::instance());
 

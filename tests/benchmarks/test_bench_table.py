@@ -9,6 +9,7 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
 from bench_large import QUICK, ball_centres, check_samples, distance_from_spheres, write_sparse  # noqa: E402
+from bench_series import coefficient_table, file_rows, needs_row, play_plots, reading_row, Series, time_row, whole  # noqa: E402
 from bench_table import closest_point_table, hierarchy_table, some  # noqa: E402
 from bench_volumes import codec_table, contour_table, quality_table, surface_table  # noqa: E402
 
@@ -111,6 +112,34 @@ class BenchTableTest(unittest.TestCase):
                 else:
                     with self.assertRaisesRegex(SystemExit, "expected the samples"):
                         check_samples(QUICK, raw, part, box)
+
+    def test_series(self):
+        def played(reads, size):
+            frames = [{"step": n, "page_faults": reads, "bytes_read": size, "seconds": 0.5, "triangles": 7} for n in range(2)]
+            return {"frames": frames, "page_faults": 2 * reads, "bytes_read": 2 * size, "part_read": 0.25, "triangles_mean": 3e5, "processor_seconds": 4}
+        coded, plain = ({"bytes_file": n, "bytes_data": n // 2, "bytes_errors": n // 4} for n in (4000, 16000))
+        zstd = {"alone": 9000, "in_turn": 8000, "interleaved": 7000, "least": 5000}
+        self.assertEqual([r[3] for r in file_rows("a", coded, plain, zstd)], ["0.250", "0.800", "0.400"])
+        self.assertEqual(whole(zstd | {"input": 10000}, 20000)["least"], 10000)
+        series = Series("a", 1, [], aim=0.3)
+        row = reading_row(series, 10, 2, played(3, 1000), played(4, 4000))
+        self.assertEqual(row[1:5], ["6 reads, 2 kB (25.0%)", "uncompressed 8 reads, 8 kB (25.0%)", "0.250", "<= 30% of the file"])
+        # A quarter more or less than ten steps of 4096 samples of two bytes.
+        self.assertIn("61,440 to 102,400 as read", row[5])
+        contoured = [{"step": n, "triangles": 5, "processor_seconds": 0.5} for n in range(2)]
+        self.assertEqual(time_row(series, [played(1, 1)] * 3, [contoured] * 3)[1:5], ["2000.0 ms", "raw + Flying Edges 500.0 ms", "4.00", "<= 0.5"])
+        plots = play_plots({10: (played(3, 1000), played(4, 4000))}, lambda frames: [f["page_faults"] for f in frames], "reads")
+        self.assertEqual([line["y"] for line in plots[0]["series"]], [[3, 3], [4, 4]])
+        need = {which: {"pages": 2, "samples": size, "bounds": 1000} for which, size in
+                (("not needed", 1000), ("in time", 2000), ("in space", 3000), ("crossed", 4000))}
+        self.assertIn("2 pages and steps that the surface of all samples crosses 5 kB", needs_row("a", played(1, 1), need | {"others": 7})[5])
+
+    def test_coefficients(self):
+        found = {"samples": {"0": 1, "200": 3}, "differences": {"0": 2, "1": 1, "300": 1}, "residuals": {"0": 3, "5": 1}}
+        rows = list(coefficient_table("a", found))
+        self.assertEqual([r[1] for r in rows], ["50.0%", "75.0%"])
+        self.assertEqual([r[2] for r in rows], ["samples 25.0%"] * 2)
+        self.assertIn("at most 1: 75.0%; greatest 300", rows[0][5])
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ TEST_F(StoreCommands, VerifyFindsAllSound) {
 TEST_F(StoreCommands, RestoreGivesTheSamplesBack) {
   for (const std::string type : {"uint8", "uint16", "float32"}) {
     make_ball("20,18,33", type);
-    for (const std::string coding : {"interpolation", "split-edge"}) {
+    for (const std::string coding : {"interpolation", "split-edge", "none"}) {
       make_store({"--coding", coding});
       run_well({"verify", "b.adm"});
       run_well({"restore", "b.adm", "-o", "r.raw", "--json", "f.json"});

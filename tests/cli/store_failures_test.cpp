@@ -32,7 +32,7 @@ TEST_F(StoreFailures, WrongUsageOfStore) {
   refused({"--dimensions", "10", "--type", "uint8", "--header-bytes=-1"}, {"--header-bytes", "'-1'"});
   refused({"--dimensions", "10", "--type", "uint8", "--stack"}, {"--stack and --dimensions"});
   refused({"--dimensions", "10", "--type", "uint8", "--array", "a"}, {"--array", "not --dimensions"});
-  refused({"--coding", "zip"}, {"--coding", "interpolation or split-edge", "'zip'"});
+  refused({"--coding", "zip"}, {"--coding", "interpolation, split-edge or none", "'zip'"});
   expect_wrong_usage({"store", "ball.nhdr", "--array", "a", "-o", "b.adm"}, {"--array", "ball.nhdr"});
   std::filesystem::copy(folder() / "ball.raw", folder() / "raw.adm");
   expect_wrong_usage({"store", "raw.adm", "--dimensions", "10", "--type", "uint8", "-o", "raw.adm"},

@@ -45,6 +45,23 @@ TEST_F(StoreGradients, AreStoredToldAndUsed) {
   EXPECT_NE(wrong.err.find("--smoothing: expected with --gradients"), std::string::npos) << wrong.err;
 }
 
+TEST_F(StoreGradients, WithoutCodingTakeTwoBytesEachAndSamplesOne) {
+  run_well({"generate", "buckyball", "--dimensions", "20,18,33", "-o", "b.vti"});
+  const int samples = 20 * 18 * 33;
+  run_well({"store", "b.vti", "-o", "p.adm", "--coding", "none", "--gradients", "--json", "f.json"});
+  const auto f = read_json("f.json");
+  for (const auto& [part, each] : {std::pair{"bytes_data", 1}, std::pair{"bytes_gradients", 2}}) {
+    EXPECT_GE(f[part], each * samples) << part;
+    // Levels of an even number of samples reach one farther.
+    EXPECT_LE(f[part], each * samples * 11 / 10) << part;
+  }
+  EXPECT_NE(run_well({"info", "p.adm"}).out.find("coding none, with gradients"), std::string::npos);
+  run_well({"store", "b.vti", "-o", "c.adm", "--gradients"});
+  for (const std::string name : {"p", "c"})
+    run_well({"isosurface", name + ".adm", "--isovalue", "80", "--error", "0.7voxels", "-o", name + ".ply"});
+  EXPECT_EQ(read("p.ply"), read("c.ply"));
+}
+
 TEST_F(StoreGradients, AreSeenInAPlane) {
   run_well({"generate", "buckyball", "--dimensions", "40,36,33", "-o", "b.vti"});
   std::vector<double> without;

@@ -160,7 +160,7 @@ def main(adamas):
         for name, form, size, samples in volumes():
             with open(raw, "wb") as file:
                 file.write(struct.pack(f"<{len(samples)}{form}", *samples))
-            for coding in ("split-edge", "interpolation"):
+            for coding in ("split-edge", "interpolation", "none"):
                 if os.path.exists(store):
                     os.remove(store)
                 subprocess.run([adamas, "store", raw, "--dimensions", ",".join(map(str, size)), "--type", name,

@@ -68,8 +68,10 @@ TYPED_TEST(SeriesStoreOf, GivesAllStepsBack) {
       expect_steps(folder / "a.adm", series);
       if (this->HasFatalFailure()) return;
     }
-    build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(8, SampleCoding::kSplitEdge));
-    expect_steps(folder / "a.adm", series);
+    for (const SampleCoding coding : {SampleCoding::kSplitEdge, SampleCoding::kPlain}) {
+      build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(8, coding));
+      expect_steps(folder / "a.adm", series);
+    }
   }
 }
 
@@ -89,6 +91,19 @@ TYPED_TEST(SeriesStoreOf, GivesStepsBackThatWereAdded) {
     expect_steps(folder / "a.adm", series);
     if (this->HasFatalFailure()) return;
   }
+}
+
+/// Plain steps behind coded ones, and coded ones behind these.
+TYPED_TEST(SeriesStoreOf, GivesPlainStepsBackThatWereAdded) {
+  const test::Scratch folder;
+  const TestSeries<TypeParam> series({12, 17, 20}, Motion::kWaves, 10);
+  const auto path = folder / "a.adm";
+  build_series(path, "a.adm", series.source(0, 3), with_blocks(4));
+  const StoreFigures plain = append_series(path, series.source(3, 6), with_blocks(4, SampleCoding::kPlain));
+  EXPECT_GE(plain.bytes.samples, 3 * series.steps[0].grid.bytes());
+  const StoreFigures coded = append_series(path, series.source(6, 10), with_blocks(4));
+  EXPECT_LT(coded.bytes.samples, plain.bytes.samples);
+  expect_steps(path, series);
 }
 
 TEST(SeriesStore, IsSmallerWhereStepsAreAlike) {

@@ -57,7 +57,8 @@ void expect_back(const MemoryVolume<Sample>& volume, SampleCoding coding) {
 
 template <class Sample>
 void expect_back_all_ways(const MemoryVolume<Sample>& volume) {
-  for (const SampleCoding coding : {SampleCoding::kSplitEdge, SampleCoding::kInterpolation})
+  for (const SampleCoding coding :
+       {SampleCoding::kSplitEdge, SampleCoding::kInterpolation, SampleCoding::kPlain})
     expect_back(volume, coding);
 }
 
@@ -134,6 +135,25 @@ TYPED_TEST(StoreOf, FewDifferentSamplesAreCodedByTheirRanks) {
   test::build(folder / "a.adm", volume, {SampleCoding::kInterpolation});
   StoreFile file(folder / "a.adm");
   EXPECT_EQ(file.header().coding, sizeof(Sample) > 1 ? SampleCoding::kRanks : SampleCoding::kInterpolation);
+}
+
+TYPED_TEST(StoreOf, PlainPagesAreAsLargeAsTheirSamples) {
+  for (const Kind kind : {Kind::kEqual, Kind::kSmooth, Kind::kRandom}) {
+    const auto volume = volume_of<TypeParam>({40, 35, 34}, kind);
+    const test::Scratch folder;
+    const StoreFigures figures = test::build(folder / "a.adm", volume, {SampleCoding::kPlain});
+    StoreFile file(folder / "a.adm");
+    EXPECT_EQ(file.header().coding, SampleCoding::kSplitEdge);
+    const PageGrid& grid = file.grid();
+    std::uint64_t bytes = file.header().sample_tables.size();
+    for (std::uint64_t number = 1; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
+      const PageId id = grid.page(number);
+      // Each page says of what kind it is.
+      if (grid.contains(id)) bytes += 1 + own_points(page_shape(grid, id)) * sizeof(TypeParam);
+    }
+    EXPECT_EQ(figures.bytes.samples, bytes);
+    EXPECT_GE(bytes, volume.grid.bytes());
+  }
 }
 
 TYPED_TEST(StoreOf, LodsAreEverySoManyOfTheSamples) {

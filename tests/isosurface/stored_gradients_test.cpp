@@ -132,9 +132,13 @@ TYPED_TEST(StoredGradientsOf, AreThoseOfTheSamples) {
   for (const std::array<std::uint64_t, 3>& dimensions : std::vector<std::array<std::uint64_t, 3>>{
            {1, 1, 1}, {2, 1, 3}, {9, 8, 5}, {33, 20, 18}, {40, 37, 50}}) {
     const auto volume = rough<TypeParam>(dimensions);
-    for (const SampleCoding coding : {SampleCoding::kSplitEdge, SampleCoding::kInterpolation}) {
+    for (const SampleCoding coding :
+         {SampleCoding::kSplitEdge, SampleCoding::kInterpolation, SampleCoding::kPlain}) {
       const StoreFigures figures = volume.build(true, coding);
       EXPECT_GT(figures.bytes.gradients, 0u);
+      if (coding == SampleCoding::kPlain) {
+        EXPECT_GE(figures.bytes.gradients, 2 * volume.grid.samples());
+      }
       expect_stored(volume);
     }
   }

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "isosurface/compression/page_order.h"
+#include "isosurface/compression/split_edge_codec.h"
+
+namespace adamas {
+
+/// SampleCoding::kPlain: every page raw, whatever it holds, so that all of one shape have the same size. What
+/// compression is compared with.
+template <class Word>
+class PlainCodec final : public SampleCodec<Word> {
+ public:
+  using typename SampleCodec<Word>::Samples;
+  using typename SampleCodec<Word>::Around;
+
+  [[nodiscard]] std::vector<std::byte> tables() const override { return decoder_.tables(); }
+  void encode_with(const PageShape& shape, const Around&, const Samples& samples, std::vector<std::byte>& out,
+                   std::span<const std::byte>) const override {
+    write_raw<Word>(shape, samples, out);
+  }
+  [[nodiscard]] bool decode_with(std::span<const std::byte> bytes, const PageShape& shape,
+                                 const Around& around, Samples& samples, BytesAlong& along) const override {
+    return decoder_.decode_with(bytes, shape, around, samples, along);
+  }
+
+ private:
+  SplitEdgeCodec<Word> decoder_{ResidualCode(ResidualStatistics(8 * static_cast<int>(sizeof(Word))))};
+};
+
+/// Nothing needs to be counted.
+template <class Word>
+class PlainSurvey final : public SampleSurvey<Word> {
+ public:
+  using typename SampleSurvey<Word>::Samples;
+  using typename SampleSurvey<Word>::Around;
+
+  void add(const PageShape&, const Around&, const Samples&) override {}
+  void merge(const SampleSurvey<Word>&) override {}
+  [[nodiscard]] std::unique_ptr<SampleCodec<Word>> codec() const override {
+    return std::make_unique<PlainCodec<Word>>();
+  }
+};
+
+}  // namespace adamas
