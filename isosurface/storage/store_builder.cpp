@@ -354,7 +354,7 @@ void add_blocks(StoreFileWriter& writer, const std::filesystem::path& path, cons
 StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
                           const SeriesSource& series, const StoreOptions& options, Progress& progress) {
   StoreFigures figures;
-  StoreFileWriter writer(path, shown, series.grid);
+  StoreFileWriter writer(path, shown, series.grid, options.group_pages);
   add_blocks(writer, path, series, options, 0, figures, progress);
   return figures;
 }

@@ -12,6 +12,7 @@
 #include "isosurface/extraction/surface_normals.h"
 #include "isosurface/gradients/direction_code.h"
 #include "isosurface/gradients/plane_gradients.h"
+#include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
