@@ -30,10 +30,9 @@ class GrowingStretch {
   }
 
  private:
-  /// Pages without bytes have no place.
+  /// Pages without bytes lie where the next ones begin.
   [[nodiscard]] FileStretch with(std::size_t place, const FileStretch& stretch) const {
     const PageEntry& page = group_[place];
-    if (page.size == 0) return stretch;
     return {std::min(stretch.begin, page.offset), std::max(stretch.end, page.offset + page.size)};
   }
   [[nodiscard]] bool is_in_memory(std::size_t place) const {
@@ -58,12 +57,13 @@ FileStretch stretch_to_read(const PageGroup& group, std::size_t place, std::size
   // The steps of a page alone are needed, whatever their size.
   const std::uint64_t most = pages == 1 ? file_size : length;
   for (std::size_t n = 1; n <= coded_with && read.grow(place - n * pages, most);) ++n;
-  const std::size_t first_step = read.first() / pages, last_step = read.last() / pages;
+  // Pages of a step are asked for in ascending order, whichever way steps go.
   if (ahead.is_backward) {
-    read.grow(last_step * pages + pages - 1, length);
+    const std::size_t end_of_step = (read.last() / pages + 1) * pages;
+    while (read.last() + 1 < end_of_step && read.grow(read.last() + 1, length)) continue;
     while (read.first() > 0 && read.grow(read.first() - 1, length)) continue;
   } else {
-    read.grow(first_step * pages, length);
+    read.grow(read.first() / pages * pages, length);
     while (read.last() + 1 < group.size() && read.grow(read.last() + 1, length)) continue;
   }
   return read.stretch();

@@ -38,9 +38,9 @@ struct FileStretch {
 };
 
 /// What is read for the page at a place of a group: with it those of the `coded_with` steps before it, as far
-/// as they go into one read; what lies before it at its step, or behind it where steps are read backwards, if
-/// a read has room for a whole step of the group; and then what comes next. The stretch ends where pages are
-/// in memory already, so that nothing is read twice.
+/// as they go into one read; what lies before it at its step, if all of that does; and then what comes next.
+/// Where steps are read backwards, what lies behind it at its step, and then what comes before. The stretch
+/// ends where pages are in memory already, so that nothing is read twice.
 FileStretch stretch_to_read(const PageGroup& group, std::size_t place, std::size_t coded_with,
                             const ReadAhead& ahead, const PageRuns& in_memory, std::uint64_t file_size);
 
