@@ -23,6 +23,7 @@
 #include "isosurface/storage/scratch_pages.h"
 #include "isosurface/storage/step_pages.h"
 #include "isosurface/storage/store_file.h"
+#include "isosurface/storage/store_file_writer.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {

@@ -10,6 +10,7 @@
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
+#include "isosurface/storage/store_file_writer.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {

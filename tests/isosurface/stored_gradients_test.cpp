@@ -17,6 +17,7 @@
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
+#include "isosurface/storage/store_file_writer.h"
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/storage/verify.h"
 #include "tests/support/scratch.h"
