@@ -41,10 +41,9 @@ inline std::vector<GoldenSeries> golden_series() {
 /// A step of a golden series, in whole numbers: still where i is 16 or more, and in between waves that travel
 /// and samples that rise evenly.
 template <class Sample>
-MemoryVolume<Sample> golden_step(std::uint32_t step) {
+MemoryVolume<Sample> golden_step(const Dimensions& dimensions, std::uint32_t step) {
   std::uint32_t random = 7;
   const auto wave = [](int x, int length) { return std::abs(x % (2 * length) - length); };
-  const Dimensions dimensions{35, 20, 18};
   return MemoryVolume<Sample>(dimensions, [&, t = static_cast<int>(step)](LatticePoint p) {
     random = random * 1664525u + 1013904223u;
     const int noise = random >> 29 == 0 ? static_cast<int>(random >> 24 & 1) : 0;
@@ -62,9 +61,9 @@ template <class Sample>
 struct GoldenSteps {
   std::vector<MemoryVolume<Sample>> steps;
 
-  explicit GoldenSteps(const GoldenSeries& series) {
+  explicit GoldenSteps(const GoldenSeries& series, const Dimensions& dimensions = {35, 20, 18}) {
     for (std::uint32_t step = 0; step < series.ends.back(); ++step)
-      steps.push_back(golden_step<Sample>(step));
+      steps.push_back(golden_step<Sample>(dimensions, step));
   }
   [[nodiscard]] SeriesSource source(std::uint32_t begin, std::uint32_t end) const {
     SeriesSource source{
