@@ -203,6 +203,7 @@ Figures print_store(const std::string& path, Session& session) {
   if (file->unfinished_bytes() > 0)
     console.note("{}: {} bytes at its end are of steps that were never finished", path,
                  file->unfinished_bytes());
+  if (header.group_pages > 1) console.print("  pages in groups of {}, step by step\n", header.group_pages);
   Figures figures{{"file", path},
                   {"kind", "store"},
                   {"dimensions", grid.dimensions},
@@ -211,6 +212,7 @@ Figures print_store(const std::string& path, Session& session) {
                   {"intercept", grid.intercept},
                   {"steps", file->steps()},
                   {"blocks", file->blocks()},
+                  {"group_pages", header.group_pages},
                   {"times", times},
                   {"levels", levels},
                   {"pages", file->grid().page_count()},

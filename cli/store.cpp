@@ -1,3 +1,4 @@
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,7 +22,7 @@ namespace {
 struct Options {
   std::vector<std::string> inputs;
   VolumeInput input;
-  std::string coding = "interpolation", block_steps = "32", smoothing, output;
+  std::string coding = "interpolation", block_steps = "32", group_pages = "1", smoothing, output;
   bool gradients = false, append = false, no_time_smoothing = false;
 };
 
@@ -76,6 +77,11 @@ StoreOptions store_options(const Options& options) {
   if (block_steps > kMostBlockSteps)
     wrong_usage("--block-steps: expected from 1 to {}, found {}", kMostBlockSteps, options.block_steps);
   store.block_steps = static_cast<std::uint32_t>(block_steps);
+  const std::size_t group_pages = parse_count("--group-pages", options.group_pages, 1);
+  if (group_pages > kMostGroupPages || !std::has_single_bit(group_pages))
+    wrong_usage("--group-pages: expected a power of two from 1 to {}, found {}", kMostGroupPages,
+                options.group_pages);
+  store.group_pages = static_cast<std::uint32_t>(group_pages);
   return store;
 }
 
@@ -179,6 +185,14 @@ void add_store(const Command& app, Session& session) {
       .add_option("--block-steps", options->block_steps,
                   "Of a series: how many steps a page has side by side in the file. Playing goes fast where "
                   "they are many, looking at one step where they are few")
+      .type_name("N")
+      .show_default();
+  command
+      .add_option(
+          "--group-pages", options->group_pages,
+          "Of a series: how many neighbouring pages lie together in the file step by step, a power of "
+          "two up to 512. With one, all steps of a page are side by side, for playing; with many, "
+          "whole steps, for looking at one alone")
       .type_name("N")
       .show_default();
   command.add_flag(

@@ -20,13 +20,14 @@ class SurfaceMotionOf final : public SurfaceMotion {
 
   bool is_still(std::uint32_t from, std::uint32_t to, double isovalue) override {
     StoredPages<Word>&before = pages_of(from), &after = pages_of(to);
-    PageComparison comparison(before, after);
     const LatticePoint blocks = file_.grid().blocks(0);
     for (LatticePoint b{}; b.k < blocks.k; ++b.k) {
       for (b.j = 0; b.j < blocks.j; ++b.j) {
         for (b.i = 0; b.i < blocks.i; ++b.i) {
           if (!is_crossed(from, b, isovalue) && !is_crossed(to, b, isovalue)) continue;
-          if (!are_same_round(b, comparison)) return false;
+          if (are_same_round(b, before, after)) continue;
+          const Side side = side_of(before, b, isovalue);
+          if (side == Side::kBoth || side != side_of(after, b, isovalue)) return false;
         }
       }
     }
@@ -64,15 +65,55 @@ class SurfaceMotionOf final : public SurfaceMotion {
     return entry->low <= entry->high && !(value(entry->high) < isovalue) && !(value(entry->low) >= isovalue);
   }
 
-  /// Of a page of the finest LOD and those behind it, which have samples of its cells.
-  bool are_same_round(LatticePoint block, PageComparison<Word>& comparison) const {
-    const LatticePoint blocks = file_.grid().blocks(0);
+  /// fn(page, last) for a page of the finest LOD and those behind it, which have samples of its cells: up to
+  /// a last one in each page. Returns false where one of the calls does.
+  template <class Fn>
+  bool all_round(LatticePoint block, Fn fn) const {
+    const PageGrid& grid = file_.grid();
+    const LatticePoint blocks = grid.blocks(0);
     for (std::int32_t n = 0; n < 8; ++n) {
-      const LatticePoint near = block + LatticePoint{n & 1, n >> 1 & 1, n >> 2};
+      const LatticePoint behind{n & 1, n >> 1 & 1, n >> 2}, near = block + behind;
       if (near.i >= blocks.i || near.j >= blocks.j || near.k >= blocks.k) continue;
-      if (!comparison.has_same_samples({0, near})) return false;
+      LatticePoint last = page_shape(grid, {0, near}).count - LatticePoint{1, 1, 1};
+      for (int axis = 0; axis < 3; ++axis) last[axis] = behind[axis] == 1 ? 0 : last[axis];
+      if (!fn(PageId{0, near}, last)) return false;
     }
     return true;
+  }
+
+  /// Where the directory does not tell, as from a step to a whole one, samples are read.
+  bool are_same_round(LatticePoint block, StoredPages<Word>& before, StoredPages<Word>& after) const {
+    PageComparison<Word> comparison(before, after);
+    return all_round(block, [&](const PageId& id, LatticePoint) {
+      if (comparison.has_same_samples(id)) return true;
+      if (before.samples(id) == nullptr || after.samples(id) == nullptr) return false;
+      return comparison.has_same_samples(id);
+    });
+  }
+
+  /// On which side of an isovalue the samples of a page's cells are, of which the directory knows rounded
+  /// ranges. Samples that are no numbers, or cannot be had, count as on both.
+  enum class Side : std::uint8_t { kBelow, kAbove, kBoth };
+  Side side_of(StoredPages<Word>& pages, LatticePoint block, double isovalue) const {
+    bool is_below = true, is_above = true;
+    const bool is_one = all_round(block, [&](const PageId& id, LatticePoint last) {
+      const PageSamples<Word>* page = pages.samples(id);
+      if (page == nullptr) return false;
+      LatticePoint p{};
+      for (p.k = 0; p.k <= last.k; ++p.k) {
+        for (p.j = 0; p.j <= last.j; ++p.j) {
+          for (p.i = 0; p.i <= last.i; ++p.i) {
+            const auto value =
+                static_cast<double>(from_ordered<Sample>(page->samples[PageGrid::place(p, 0)]));
+            is_below = is_below && value < isovalue;
+            is_above = is_above && value >= isovalue;
+          }
+        }
+      }
+      return is_below || is_above;
+    });
+    if (!is_one) return Side::kBoth;
+    return is_below ? Side::kBelow : Side::kAbove;
   }
 
   /// Those of the last two steps that were asked for stay.

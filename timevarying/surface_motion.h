@@ -17,9 +17,9 @@ class SurfaceMotion {
  public:
   virtual ~SurfaceMotion() = default;
 
-  /// Whether the surface is known to be the same at two steps, by the directory and the pages of coarser
-  /// LODs: each page that it crosses at one of them has the samples that it has at the other, and so have
-  /// those round it.
+  /// Whether the surface is known to be the same at two steps, by the directory, and by samples where that
+  /// does not tell: each page that it crosses at one of them has the samples that it has at the other, and so
+  /// have those round it.
   virtual bool is_still(std::uint32_t from, std::uint32_t to, double isovalue) = 0;
   /// Infinite where there is a surface at one of the steps alone. Throws Error where a page is damaged.
   virtual SurfaceCertificate between(std::uint32_t from, std::uint32_t to, double isovalue,

@@ -10,8 +10,8 @@
 
 namespace adamas {
 
-/// How much is read at a time of a series: beside the bytes of a page at a step those of the same page at the
-/// steps that follow, which lie behind them.
+/// How much is read at a time of a series: beside the bytes of a page at a step those of its group at the
+/// steps that follow, which lie behind them (stretch_to_read).
 struct ReadAhead {
   std::uint64_t bytes = 0;   ///< of one read, a quarter more or less; 0: what is asked for alone
   bool is_backward = false;  ///< the steps before are read instead

@@ -23,6 +23,7 @@
 #include "isosurface/storage/scratch_pages.h"
 #include "isosurface/storage/step_pages.h"
 #include "isosurface/storage/store_file.h"
+#include "isosurface/storage/store_file_writer.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -355,7 +356,7 @@ void add_blocks(StoreFileWriter& writer, const std::filesystem::path& path, cons
 StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
                           const SeriesSource& series, const StoreOptions& options, Progress& progress) {
   StoreFigures figures;
-  StoreFileWriter writer(path, shown, series.grid);
+  StoreFileWriter writer(path, shown, series.grid, options.group_pages);
   add_blocks(writer, path, series, options, 0, figures, progress);
   return figures;
 }

@@ -30,6 +30,10 @@ struct StoreOptions {
   /// How many steps of a series are in a block, page by page, from 1 to kMostBlockSteps: reading a page's
   /// next steps goes fast where they are many, reading one step where they are few.
   std::uint32_t block_steps = 32;
+  /// How many pages lie interleaved in time, a power of two up to kMostGroupPages (PageGroup): one has each
+  /// page's steps side by side, many have whole steps of a part of the volume side by side. Their bytes of
+  /// all steps of a block are held in memory.
+  std::uint32_t group_pages = 1;
 };
 
 /// The steps of a series of volumes on one grid.
@@ -54,8 +58,8 @@ StoreFigures build_series(const std::filesystem::path& path, const std::string& 
                           Progress& progress = SilentProgress::instance());
 
 /// Adds steps, whose times are after those of the store at `path`, behind its last ones, with its coding,
-/// unless they are to be plain, and with gradients if it has some. Who opens the file meanwhile, or after
-/// this was killed, finds all steps of the blocks that are finished.
+/// unless they are to be plain, in groups as large as its own, and with gradients if it has some. Who opens
+/// the file meanwhile, or after this was killed, finds all steps of the blocks that are finished.
 StoreFigures append_series(const std::filesystem::path& path, const SeriesSource& series,
                            StoreOptions options, Progress& progress = SilentProgress::instance());
 

@@ -14,6 +14,7 @@
 #include "core/base/checksum.h"
 #include "core/base/error.h"
 #include "isosurface/compression/time_codec.h"
+#include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas {
@@ -152,8 +153,7 @@ const StoreFile::DirectoryPart& StoreFile::chunk(const StoreHeader& block, const
   part->numbers = chunk_pages(grid_, from.first);
   const auto bytes = bytes_at(from.offset, from.size);
   if (crc32c(bytes) == from.checksum) {
-    if (auto entries = parse_entries(grid_, from, block.steps(), bytes, sample_bytes(block.grid.type)))
-      part->entries = std::move(*entries);
+    if (auto entries = parse_entries(grid_, from, block, bytes)) part->entries = std::move(*entries);
   }
   return *chunks_.emplace(part->key, part).first->second;
 }
@@ -186,9 +186,23 @@ std::optional<StoreFile::EntryPlace> StoreFile::entry_place(std::uint32_t step, 
   }
   const auto at = std::lower_bound(found->numbers.begin(), found->numbers.end(), number);
   if (found->entries.empty() || at == found->numbers.end() || *at != number) return {};
-  const auto row = static_cast<std::size_t>(at - found->numbers.begin());
-  return EntryPlace{std::span(found->entries).subspan(row * header.steps(), header.steps()),
-                    step - header.first_step, header.first_step};
+  EntryPlace place;
+  place.part = found;
+  place.page = static_cast<std::size_t>(at - found->numbers.begin());
+  place.step = step - header.first_step;
+  place.block = &header;
+  return place;
+}
+
+std::size_t StoreFile::EntryPlace::group_begin() const {
+  const std::uint64_t number = part->numbers[page];
+  const auto begin = std::ranges::lower_bound(part->numbers, number - number % block->group_pages);
+  return static_cast<std::size_t>(begin - part->numbers.begin());
+}
+
+PageGroup StoreFile::EntryPlace::group(std::size_t begin) const {
+  const std::size_t steps = block->steps(), end = group_end(part->numbers, begin, block->group_pages);
+  return {std::span(part->entries).subspan(begin * steps, (end - begin) * steps), steps};
 }
 
 std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page) {
@@ -207,28 +221,17 @@ std::span<const std::byte> StoreFile::page_bytes(const EntryPlace& place) {
   }
   ++page_reads_;
   if (!is_ahead) return bytes_at(page.offset, page.size);
-  // The steps of a page lie one after another; those without bytes have no place.
-  std::uint64_t begin = page.offset, end = page.offset + page.size;
-  std::size_t first = place.n, last = place.n;
-  const auto add = [&](const PageEntry& step, std::uint64_t most) {
-    if (step.size == 0) return true;
-    const std::uint64_t from = std::min(begin, step.offset), to = std::max(end, step.offset + step.size);
-    if (to - from > most || to > size_) return false;
-    begin = from;
-    end = to;
-    return true;
-  };
-  // Where the steps that this one may be coded with were not read lately, they will be asked for too.
-  const bool follows =
-      first > 0 && runs_->has(place.entries[first - 1].offset, place.entries[first - 1].size);
-  const std::size_t coded_with = follows ? 0 : (place.first_step + first) % kWholeSteps;
-  while (first > 0 && place.n - first < coded_with && add(place.entries[first - 1], size_)) --first;
-  const std::uint64_t length = ahead_.length(page.offset);
-  if (ahead_.is_backward) {
-    while (first > 0 && add(place.entries[first - 1], length)) --first;
-  } else {
-    while (last + 1 < place.entries.size() && add(place.entries[last + 1], length)) ++last;
+  const std::size_t first = place.group_begin();
+  const PageGroup group = place.group(first);
+  const std::size_t at = group.place(place.page - first, place.step);
+  // Where the step before was not read lately, those that this one may be coded with will be asked for too.
+  std::size_t coded_with =
+      std::min<std::size_t>(place.step, (place.block->first_step + place.step) % kWholeSteps);
+  if (coded_with > 0) {
+    const PageEntry& before = group[at - group.pages()];
+    if (runs_->has(before.offset, before.size)) coded_with = 0;
   }
+  const auto [begin, end] = stretch_to_read(group, at, coded_with, ahead_, *runs_, size_);
   const auto bytes = bytes_at(begin, end - begin);
   runs_->put(begin, bytes, ahead_.memory);
   return bytes.subspan(page.offset - begin, page.size);
@@ -278,103 +281,6 @@ void StoreFile::check_directory() {
   }
   if (total != last_root_.end())
     fail("{}: expected {} bytes by its directory, found {}", name_, total, last_root_.end());
-}
-
-StoreFileWriter::StoreFileWriter(const std::filesystem::path& path, std::string shown, const VolumeGrid& grid)
-    : shown_(std::move(shown)),
-      stream_(path, std::ios::binary | std::ios::out | std::ios::trunc),
-      grid_(grid.dimensions),
-      word_bytes_(sample_bytes(grid.type)) {
-  if (!stream_) fail("{}: cannot be written", shown_);
-  write(std::vector<std::byte>(StorePrologue::kBytes));
-}
-
-StoreFileWriter::StoreFileWriter(const std::filesystem::path& path, const StoreFile& store)
-    : shown_(store.name()),
-      stream_(path, std::ios::binary | std::ios::in | std::ios::out),
-      grid_(store.grid()),
-      word_bytes_(sample_bytes(store.header().grid.type)),
-      at_(store.last_root().end()),
-      before_(store.last_root()) {
-  if (!stream_) fail("{}: cannot be written", shown_);
-  // What was never finished goes first: were it longer than what comes, its end would stand behind that.
-  std::error_code failed;
-  std::filesystem::resize_file(path, at_, failed);
-  if (failed) fail("{}: cannot be cut to {} bytes: {}", shown_, at_, failed.message());
-  stream_.seekp(static_cast<std::streamoff>(at_));
-}
-
-void StoreFileWriter::write(std::span<const std::byte> bytes) {
-  stream_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!stream_) fail("{}: cannot write {} bytes more: is the disk full?", shown_, bytes.size());
-  at_ += bytes.size();
-}
-
-void StoreFileWriter::begin_chunk(std::uint64_t first) {
-  if (chunks_.empty() && before_.size > 0) write(std::as_bytes(std::span(kBlockMark)));
-  DirectoryChunk chunk;
-  chunk.first = first;
-  chunk.pages = at_;
-  chunk.copies = copies_.size();
-  chunks_.push_back(chunk);
-}
-
-void StoreFileWriter::end_chunk() {
-  ADAMAS_ASSERT(entries_.size() % chunk_pages(grid_, chunks_.back().first).size() == 0);
-  entry_bytes_.push_back(serialise_entries(entries_, word_bytes_));
-  entries_.clear();
-}
-
-void StoreFileWriter::add_page(std::uint64_t number, std::span<const std::byte> payload,
-                               const PageSummary& summary) {
-  const std::uint64_t first = number / DirectoryChunk::kPages * DirectoryChunk::kPages;
-  if (chunks_.empty() || chunks_.back().first != first) {
-    if (!chunks_.empty()) end_chunk();
-    begin_chunk(first);
-  }
-  PageEntry entry{summary};
-  ADAMAS_ASSERT(!payload.empty());
-  if (is_plain(payload, summary)) {
-    entries_.push_back(entry);
-    return;
-  }
-  entry.size = static_cast<std::uint32_t>(payload.size());
-  entry.checksum = crc32c(payload);
-  entries_.push_back(entry);
-  if (grid_.page(number).lod >= kCopiedLod) copies_.insert(copies_.end(), payload.begin(), payload.end());
-  write(payload);
-}
-
-std::uint64_t StoreFileWriter::finish_block(const StoreHeader& header) {
-  if (!chunks_.empty()) end_chunk();
-  for (DirectoryChunk& chunk : chunks_) chunk.copies += at_;
-  write(copies_);
-  for (std::size_t n = 0; n < chunks_.size(); ++n) {
-    chunks_[n].offset = at_;
-    chunks_[n].size = entry_bytes_[n].size();
-    chunks_[n].checksum = crc32c(entry_bytes_[n]);
-    write(entry_bytes_[n]);
-  }
-  const std::vector<std::byte> bytes = StoreRoot{header, before_, std::move(chunks_)}.serialise();
-  before_ = {at_, bytes.size()};
-  write(bytes);
-  write_prologue(before_);
-  chunks_.clear();
-  entry_bytes_.clear();
-  copies_.clear();
-  return at_;
-}
-
-void StoreFileWriter::write_prologue(const RootPlace& root) {
-  // Whoever opens the file finds the block when all of it is there, and the blocks before until then.
-  stream_.flush();
-  const std::vector<std::byte> prologue = StorePrologue{root}.serialise();
-  stream_.seekp(0);
-  stream_.write(reinterpret_cast<const char*>(prologue.data()),
-                static_cast<std::streamsize>(prologue.size()));
-  stream_.flush();
-  stream_.seekp(static_cast<std::streamoff>(at_));
-  if (!stream_) fail("{}: cannot be written to its end: is the disk full?", shown_);
 }
 
 }  // namespace adamas

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "isosurface/storage/page_group.h"
 #include "isosurface/storage/page_runs.h"
 #include "isosurface/storage/store_format.h"
 
@@ -110,13 +110,8 @@ class StoreFile {
   std::span<const std::byte> bytes_at(std::uint64_t offset, std::uint64_t size);
   [[nodiscard]] ChunkKey key_of(std::uint32_t step, const PageId& page) const;
   const DirectoryPart& chunk(const StoreHeader& block, const DirectoryChunk& chunk);
-  /// A page in the directory: its entries for all steps of a block, and which of them is meant.
-  struct EntryPlace {
-    std::span<const PageEntry> entries;
-    std::size_t n = 0;
-    std::uint32_t first_step = 0;  ///< of the block
-    [[nodiscard]] const PageEntry& entry() const { return entries[n]; }
-  };
+  /// A page at a step in a part of the directory.
+  struct EntryPlace;
   /// Nothing where that part of the directory is damaged.
   std::optional<EntryPlace> entry_place(std::uint32_t step, const PageId& page);
   /// The first copy of a page's bytes.
@@ -142,39 +137,15 @@ struct StoreFile::DirectoryPart {
   std::vector<PageEntry> entries;  ///< none where the part is damaged
 };
 
-/// Writes a store, block after block, page after page. A new file is no store before the first block is
-/// finished. What is written of a block is not seen by those who open the file before it is finished, also
-/// where that never comes.
-class StoreFileWriter {
- public:
-  /// Of a new file with blocks of this grid. Throws Error where it cannot be written; messages name `shown`,
-  /// the file's final name.
-  StoreFileWriter(const std::filesystem::path& path, std::string shown, const VolumeGrid& grid);
-  /// Of a store that more is added to, behind its last block.
-  StoreFileWriter(const std::filesystem::path& path, const StoreFile& store);
+struct StoreFile::EntryPlace {
+  const DirectoryPart* part = nullptr;
+  const StoreHeader* block = nullptr;
+  std::size_t page = 0, step = 0;  ///< which of the part's pages, and of the block's steps
 
-  /// Takes the pages of a block that PageGrid::contains, every one, in ascending order of number, then step.
-  void add_page(std::uint64_t number, std::span<const std::byte> payload, const PageSummary& summary);
-  /// Writes what is not pages of the block. `header`: of the bytes and tables that are known now. Returns the
-  /// file's size.
-  std::uint64_t finish_block(const StoreHeader& header);
-
- private:
-  void write(std::span<const std::byte> bytes);
-  void begin_chunk(std::uint64_t first);
-  void end_chunk();
-  void write_prologue(const RootPlace& root);
-
-  std::string shown_;
-  std::fstream stream_;
-  PageGrid grid_;
-  std::size_t word_bytes_;
-  std::uint64_t at_ = 0;
-  RootPlace before_;                                 ///< the root of the last block that is finished
-  std::vector<DirectoryChunk> chunks_;               ///< of the block, as all that follows
-  std::vector<PageEntry> entries_;                   ///< of the last chunk
-  std::vector<std::vector<std::byte>> entry_bytes_;  ///< of the chunks before
-  std::vector<std::byte> copies_;
+  [[nodiscard]] const PageEntry& entry() const { return part->entries[page * block->steps() + step]; }
+  /// Which of the part's pages begins the page's group, and the group.
+  [[nodiscard]] std::size_t group_begin() const;
+  [[nodiscard]] PageGroup group(std::size_t begin) const;
 };
 
 }  // namespace adamas

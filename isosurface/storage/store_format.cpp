@@ -19,6 +19,8 @@ namespace {
 
 // A carriage return and a line feed show transfers that took the file for text.
 constexpr std::array<char, 8> kMagic{'a', 'd', 'a', 'm', 'a', 's', '\r', '\n'};
+/// Where the bits of the size of groups stand, in the byte whose lowest bit tells of gradients.
+constexpr int kGroupShift = 4;
 
 void write_grid(ByteWriter& out, const VolumeGrid& grid) {
   out.number(static_cast<std::uint8_t>(grid.type));
@@ -57,7 +59,8 @@ VolumeGrid read_grid(ByteReader& in, std::string_view name) {
 void write_header(ByteWriter& out, const StoreHeader& header) {
   write_grid(out, header.grid);
   out.number(static_cast<std::uint8_t>(header.coding));
-  out.number(static_cast<std::uint8_t>(header.gradients));
+  const int group_bits = std::countr_zero(header.group_pages);
+  out.number(static_cast<std::uint8_t>(static_cast<int>(header.gradients) | group_bits << kGroupShift));
   out.number(header.first_step);
   out.varint(header.times.size());
   for (const double time : header.times) out.number(time);
@@ -92,7 +95,13 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
     return value;
   };
   header.coding = static_cast<SampleCoding>(choice("a coding of samples", 2));
-  header.gradients = choice("a coding of gradients", 1) != 0;
+  const auto layout = in.number<std::uint8_t>();
+  const int group_bits = layout >> kGroupShift;
+  if ((layout & ~1 & ((1 << kGroupShift) - 1)) != 0 || kMostGroupPages >> group_bits == 0)
+    fail("{}: expected gradients or none, and groups of up to {} pages, found {}", name, kMostGroupPages,
+         layout);
+  header.gradients = (layout & 1) != 0;
+  header.group_pages = 1u << group_bits;
   header.first_step = in.number<std::uint32_t>();
   read_times(in, header, name);
   for (std::uint64_t* n : {&header.bytes.samples, &header.bytes.bounds, &header.bytes.gradients})
@@ -109,36 +118,6 @@ StoreHeader read_header(ByteReader& in, std::string_view name) {
     if (n > kMost) fail("{}: expected at most {} samples along every axis, found {}", name, kMost, n);
   }
   return header;
-}
-
-/// Four bits for each part, the first lowest: 0 where nothing is crossed, else 15 less what its greatest
-/// error is below that of the page.
-void write_part_errors(ByteWriter& out, const PageSummary& summary) {
-  const std::size_t count = summary.part_count();
-  for (std::size_t n = 0; n < count; n += 2) {
-    const auto bits = [&](std::size_t part) {
-      const int error = part < count ? summary.part_errors[part] : 0;
-      return error == 0 ? 0 : PageSummary::kSpan + 1 - (summary.error - error);
-    };
-    out.number(static_cast<std::uint8_t>(bits(n) | bits(n + 1) << 4));
-  }
-}
-
-/// False where an error is no code.
-bool read_part_errors(ByteReader& in, PageSummary& summary) {
-  const std::size_t count = summary.part_count();
-  for (std::size_t n = 0; n < count; n += 2) {
-    const auto both = in.number<std::uint8_t>();
-    if (n + 1 == count && both >> 4 != 0) return false;
-    for (const std::size_t part : {n, n + 1}) {
-      const int bits = part == n ? both & 15 : both >> 4;
-      if (bits == 0) continue;
-      const int error = summary.error - (PageSummary::kSpan + 1 - bits);
-      if (error < 1) return false;
-      summary.part_errors[part] = static_cast<std::uint8_t>(error);
-    }
-  }
-  return true;
 }
 
 void write_chunk(ByteWriter& out, const DirectoryChunk& chunk) {
@@ -271,125 +250,6 @@ StoreRoot StoreRoot::parse(std::span<const std::byte> bytes, std::uint64_t root_
   if (!in.good() || !in.rest().empty()) fail("{}: expected a directory, found other bytes", name);
   check_chunks(root, grid, root_offset, name);
   return root;
-}
-
-std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first) {
-  std::vector<std::uint64_t> numbers;
-  for (std::uint64_t number = first; number < first + DirectoryChunk::kPages; ++number) {
-    // Numbers between those of two LODs are nobody's.
-    if (number == 0 || (std::bit_width(number) - 1) % 3 != 0) continue;
-    if (grid.contains(grid.page(number))) numbers.push_back(number);
-  }
-  return numbers;
-}
-
-std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std::size_t word_bytes) {
-  std::vector<std::byte> bytes;
-  ByteWriter out(bytes);
-  const auto put_range = [&](const PageEntry& entry) {
-    for (const std::uint32_t word : {entry.low, entry.high})
-      out.bytes(std::as_bytes(std::span(&word, 1)).first(word_bytes));
-  };
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-    const PageEntry& entry = entries[begin];
-    const auto is_alike = [&](const PageEntry& other) {
-      return other.size == 0 && other.low == entry.low && other.high == entry.high;
-    };
-    end = begin + 1;
-    out.varint(entry.size);
-    if (entry.size == 0) {
-      while (end < entries.size() && is_alike(entries[end])) ++end;
-      out.varint(end - begin);
-      put_range(entry);
-      continue;
-    }
-    out.number(entry.checksum);
-    put_range(entry);
-    out.number(entry.error);
-    write_part_errors(out, entry);
-  }
-  return bytes;
-}
-
-namespace {
-
-/// Takes the entries of pages one after another, without offsets.
-class EntryReader {
- public:
-  /// `most`: how many there may be.
-  EntryReader(std::span<const std::byte> bytes, std::size_t word_bytes, std::uint64_t most)
-      : in_(bytes), word_bytes_(word_bytes), most_(most) {}
-
-  /// Nothing where the bytes are not those of an entry, or a stretch of plain pages goes on from another.
-  std::optional<PageEntry> take() {
-    if (plain_left_ == 0) {
-      const std::uint64_t size = in_.varint();
-      if (size > ~std::uint32_t{0}) return {};
-      if (size > 0) return take_page(static_cast<std::uint32_t>(size));
-      const PageEntry before = plain_;
-      plain_left_ = in_.varint();
-      take_range(plain_);
-      const bool goes_on = follows_plain_ && static_cast<const PageSummary&>(plain_) == before;
-      if (plain_left_ == 0 || plain_left_ > most_ || goes_on) return {};
-    }
-    --plain_left_;
-    follows_plain_ = true;
-    return plain_;
-  }
-  [[nodiscard]] bool at_end() const { return plain_left_ == 0 && in_.good() && in_.rest().empty(); }
-
- private:
-  void take_range(PageSummary& summary) {
-    for (std::uint32_t* const word : {&summary.low, &summary.high}) {
-      *word = 0;
-      const auto from = in_.bytes(word_bytes_);
-      if (!from.empty()) std::memcpy(word, from.data(), word_bytes_);
-    }
-  }
-  std::optional<PageEntry> take_page(std::uint32_t size) {
-    follows_plain_ = false;
-    PageEntry entry;
-    entry.size = size;
-    entry.checksum = in_.number<std::uint32_t>();
-    take_range(entry);
-    entry.error = in_.number<std::uint8_t>();
-    if (entry.error >= ErrorScale::kCodes || !read_part_errors(in_, entry)) return {};
-    return entry;
-  }
-
-  ByteReader in_;
-  std::size_t word_bytes_;
-  std::uint64_t most_;
-  PageEntry plain_;  ///< of the stretch of plain pages that was begun last
-  std::uint64_t plain_left_ = 0;
-  bool follows_plain_ = false;
-};
-
-}  // namespace
-
-std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
-                                                    std::uint32_t steps, std::span<const std::byte> bytes,
-                                                    std::size_t word_bytes) {
-  const std::vector<std::uint64_t> numbers = chunk_pages(grid, chunk.first);
-  EntryReader in(bytes, word_bytes, numbers.size() * steps);
-  std::vector<PageEntry> entries;
-  std::uint64_t offset = chunk.pages, copy = chunk.copies;
-  for (const std::uint64_t number : numbers) {
-    const bool is_copied = grid.page(number).lod >= kCopiedLod;
-    for (std::uint32_t step = 0; step < steps; ++step) {
-      std::optional<PageEntry> entry = in.take();
-      if (!entry) return {};
-      entry->offset = offset;
-      offset += entry->size;
-      if (is_copied) {
-        entry->copy = copy;
-        copy += entry->size;
-      }
-      entries.push_back(*entry);
-    }
-  }
-  if (!in.at_end()) return {};
-  return entries;
 }
 
 }  // namespace adamas

@@ -32,17 +32,18 @@ struct StoreBytes {
   }
 };
 
-/// How many steps a store may have in all, and a block of it.
-inline constexpr std::uint32_t kMostSteps = 1u << 24, kMostBlockSteps = 256;
+/// How many steps a store may have in all, and a block of it; and how many pages a group.
+inline constexpr std::uint32_t kMostSteps = 1u << 24, kMostBlockSteps = 256, kMostGroupPages = 512;
 
 /// What a store says of a block, which is one or several steps in time that were added together. A volume is
 /// a block of one step.
 struct StoreHeader {
   VolumeGrid grid;  ///< the same of all blocks
   SampleCoding coding = SampleCoding::kInterpolation;
-  bool gradients = false;        ///< whether pages hold directions of gradients; the same of all blocks
-  std::uint32_t first_step = 0;  ///< how many steps the blocks before have
-  std::vector<double> times{0};  ///< of the block's steps, one or more, ascending
+  bool gradients = false;         ///< whether pages hold directions of gradients; the same of all blocks
+  std::uint32_t group_pages = 1;  ///< how many numbers the pages of a group have, a power of two (PageGroup)
+  std::uint32_t first_step = 0;   ///< how many steps the blocks before have
+  std::vector<double> times{0};   ///< of the block's steps, one or more, ascending
   StoreBytes bytes;
   /// `time_tables`: of differences in time; empty where no page of the block can have them.
   std::vector<std::byte> sample_tables, time_tables, bounds_tables, gradient_tables;
@@ -96,11 +97,11 @@ struct PageEntry : PageSummary {
 };
 
 /// Pages whose numbers agree but for the last nine bits have their directory entries in one piece, those of
-/// each page for all steps of the block one after another. Pages, and their copies, lie in the file in the
-/// same order.
+/// each page for all steps of the block one after another. Pages, and their copies, lie in the file group by
+/// group (PageGroup).
 struct DirectoryChunk {
   std::uint64_t first = 0;  ///< the least page number of the chunk, a multiple of kPages
-  static constexpr std::uint64_t kPages = 512;
+  static constexpr std::uint64_t kPages = kMostGroupPages;
 
   std::uint64_t offset = 0, size = 0;  ///< of the entries in the file
   std::uint32_t checksum = 0;          ///< of the entries
@@ -146,15 +147,5 @@ struct StoreRoot {
   /// order or outside the `root_offset` bytes before the root.
   static StoreRoot parse(std::span<const std::byte> bytes, std::uint64_t root_offset, std::string_view name);
 };
-
-/// Numbers of the pages that a chunk has, in ascending order.
-std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first);
-
-/// The entries of a chunk's pages in that order, each of all steps. Words have `word_bytes` bytes.
-std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std::size_t word_bytes);
-/// Offsets and copies too. Nothing where the bytes are not those of so many entries, or an error is no code.
-std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
-                                                    std::uint32_t steps, std::span<const std::byte> bytes,
-                                                    std::size_t word_bytes);
 
 }  // namespace adamas

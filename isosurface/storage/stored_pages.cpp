@@ -43,10 +43,17 @@ StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::shared_
 template <class Word>
 bool StoredPages<Word>::load(const PageToLoad<Word>& page) {
   last_damaged_ = page.id;
-  if (std::find(damaged_.begin(), damaged_.end(), page.id) != damaged_.end()) return false;
+  const auto is_among = [&](const std::vector<PageId>& pages) {
+    return std::find(pages.begin(), pages.end(), page.id) != pages.end();
+  };
+  const bool is_damaged = is_among(damaged_);
+  if (is_damaged && (page.bounds != nullptr || !is_among(damaged_bounds_))) return false;
   const StoreFile::Payload payload = file_.read(step_, page.id);
-  if (payload.state == PageState::kDamaged || !decode(payload.bytes, page)) {
-    damaged_.push_back(page.id);
+  const Decoded decoded =
+      payload.state == PageState::kDamaged ? Decoded::kNothing : decode(payload.bytes, page);
+  if (decoded != Decoded::kAll) {
+    if (!is_damaged) damaged_.push_back(page.id);
+    if (decoded == Decoded::kSamples) damaged_bounds_.push_back(page.id);
     return false;
   }
   if (has_part(page.parts, PageParts::kSamples)) copies_ += payload.state == PageState::kCopied ? 1 : 0;
@@ -64,18 +71,20 @@ StoredPages<Word>& StoredPages<Word>::before() {
 }
 
 template <class Word>
-bool StoredPages<Word>::decode(std::span<const std::byte> payload, const PageToLoad<Word>& page) {
+typename StoredPages<Word>::Decoded StoredPages<Word>::decode(std::span<const std::byte> payload,
+                                                              const PageToLoad<Word>& page) {
   const SampleCoding coding = file_.header(step_).coding;
   PagePayload coded;
-  if (!split_payload(payload, coding, coded)) return false;
+  if (!split_payload(payload, coding, coded)) return Decoded::kNothing;
   std::vector<std::byte> kept;
   if (time_order(coded.samples) > 0 || coded.has_earlier_bounds()) {
     // Reading another step's page ends the life of this one's bytes.
     kept.assign(payload.begin(), payload.end());
-    if (!split_payload(kept, coding, coded)) return false;
+    if (!split_payload(kept, coding, coded)) return Decoded::kNothing;
   }
-  if (has_part(page.parts, PageParts::kSamples) && !decode_samples(coded.samples, page)) return false;
-  return page.bounds == nullptr || decode_bounds(coded, page);
+  if (has_part(page.parts, PageParts::kSamples) && !decode_samples(coded.samples, page))
+    return Decoded::kNothing;
+  return page.bounds == nullptr || decode_bounds(coded, page) ? Decoded::kAll : Decoded::kSamples;
 }
 
 template <class Word>

@@ -89,7 +89,9 @@ class StoredPages : public PageCache<Word> {
 
  private:
   bool load(const PageToLoad<Word>& page) override;
-  bool decode(std::span<const std::byte> payload, const PageToLoad<Word>& page);
+  /// Which of the parts that are wanted the bytes are of.
+  enum class Decoded : std::uint8_t { kNothing, kSamples, kAll };
+  Decoded decode(std::span<const std::byte> payload, const PageToLoad<Word>& page);
   bool decode_samples(std::span<const std::byte> coded, const PageToLoad<Word>& page);
   bool decode_bounds(const PagePayload& coded, const PageToLoad<Word>& page);
   /// Of the step before, one of which there is.
@@ -115,6 +117,7 @@ class StoredPages : public PageCache<Word> {
   std::unique_ptr<EarlierPages<Word>> earlier_;  ///< work memory; null before a page is coded in time
   std::shared_ptr<const BoundsCodec<Word>> bounds_codec_;  ///< null before bounds are asked for
   std::vector<PageId> damaged_;
+  std::vector<PageId> damaged_bounds_;  ///< of these, those whose samples can be had
   PageId last_damaged_;
   std::uint64_t copies_ = 0;
 };

@@ -86,6 +86,24 @@ TEST_F(SeriesStores, StepsAreAdded) {
   run_well({"verify", "a.adm", "-q"});
 }
 
+TEST_F(SeriesStores, InGroupsOfPages) {
+  run_well(store({"s_%d.raw"}, "one.adm"));
+  run_well(store({file(0), file(1)}, "a.adm", {"--group-pages", "8", "--append"}));
+  for (const int step : {2, 3, 4}) run_well(store({file(step)}, "a.adm", {"--append"}));
+  for (int step = 0; step < 5; ++step) expect_step("a.adm", step);
+  EXPECT_EQ(info("a.adm")["group_pages"], 8);
+  EXPECT_EQ(info("one.adm")["group_pages"], 1);
+  run_well({"verify", "a.adm", "-q"});
+  for (const std::string name : {"one", "a"}) {
+    run_well({"isosurface", name + ".adm", "--step", "3", "--isovalue", "30", "-o", name + ".ply", "-q"});
+    run_well({"play", name + ".adm", "--isovalue", "30", "--json", name + ".json", "-q"});
+  }
+  EXPECT_EQ(read("a.ply"), read("one.ply"));
+  const auto played = read_json("a.json"), expected = read_json("one.json");
+  for (std::size_t n = 0; n < 5; ++n)
+    EXPECT_EQ(played["frames"][n]["triangles"], expected["frames"][n]["triangles"]) << n;
+}
+
 /// Of a list only the later ones are added, as a simulation makes it longer.
 TEST_F(SeriesStores, LaterStepsOfAListAreAdded) {
   run_well(store({"s_%d.raw"}, "all.adm"));
@@ -127,6 +145,8 @@ TEST_F(SeriesStores, WrongUsage) {
   expect_wrong_usage({"restore", "a.adm", "--steps", "3,1", "-o", "r.pvd"}, {"--steps", "3,1"});
   expect_wrong_usage({"restore", "a.adm", "--steps", "1,3", "-o", "r.raw"}, {"--steps", "r.raw"});
   expect_wrong_usage(store({"s_%d.raw"}, "b.adm", {"--block-steps", "1000"}), {"--block-steps", "256"});
+  for (const std::string pages : {"0", "3", "1024", "8x"})
+    expect_wrong_usage(store({"s_%d.raw"}, "b.adm", {"--group-pages", pages}), {"--group-pages", pages});
   write("short.raw", "123");
   expect_failure(store({file(0), "short.raw"}, "b.adm"), {"short.raw"});
   expect_failure(store({file(0), "missing.raw"}, "b.adm"), {"missing.raw"});

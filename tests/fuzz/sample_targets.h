@@ -45,6 +45,20 @@ void sample_codec_of(SampleCoding coding, const PageShape& shape, std::span<cons
   for_each_own_place(shape, [&](std::size_t n) { require((*back)[n] == (*samples)[n], "other samples"); });
 }
 
+/// 128 in the first byte of a header: kInterpolation; 64: kRanks.
+inline SampleCoding coding_in_header(int first) {
+  if (first >= 128) return SampleCoding::kInterpolation;
+  return first >= 64 ? SampleCoding::kRanks : SampleCoding::kSplitEdge;
+}
+
+/// Points per axis, and whether the page is complete, behind the first byte.
+inline PageShape shape_in_header(std::span<const std::byte> header) {
+  const auto along = [&](std::size_t at) {
+    return std::to_integer<std::int32_t>(header[at]) % PageGrid::kSide + 1;
+  };
+  return {{along(1), along(2), along(3)}, std::to_integer<int>(header[4]) % 2 != 0, 0};
+}
+
 /// A header of 7 bytes: the size of a sample, and 128 more for kInterpolation or 64 more for kRanks; points
 /// per axis; whether the page is complete; the size of the tables in 2 bytes. Then the tables and the page.
 inline void sample_codec(std::string_view bytes) {
@@ -52,13 +66,8 @@ inline void sample_codec(std::string_view bytes) {
   const auto given = std::as_bytes(std::span(bytes));
   if (given.size() < kHeader) fail("expected a header, found {} bytes", given.size());
   const auto number = [given](std::size_t at) { return std::to_integer<int>(given[at]); };
-  const auto coding = number(0) >= 128  ? SampleCoding::kInterpolation
-                      : number(0) >= 64 ? SampleCoding::kRanks
-                                        : SampleCoding::kSplitEdge;
-  const auto along = [&](std::size_t at) {
-    return static_cast<std::int32_t>(number(at) % PageGrid::kSide + 1);
-  };
-  const PageShape shape{{along(1), along(2), along(3)}, number(4) % 2 != 0, 0};
+  const SampleCoding coding = coding_in_header(number(0));
+  const PageShape shape = shape_in_header(given);
   const auto size = std::min(static_cast<std::size_t>(number(5) + 256 * number(6)), given.size() - kHeader);
   const auto tables = given.subspan(kHeader, size), page = given.subspan(kHeader + size);
   const int word = number(0) % 64;

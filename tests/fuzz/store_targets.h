@@ -1,12 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string_view>
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
-#include "isosurface/storage/store_format.h"
+#include "isosurface/storage/directory_entries.h"
 #include "tests/fuzz/require.h"
 
 namespace adamas::fuzz {
@@ -20,6 +21,26 @@ inline std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
   return result;
 }
 
+/// In the order of groups, then steps, then pages these follow each other, and so do their copies.
+inline void require_no_gaps(const StoreHeader& block, const PageGrid& grid, const DirectoryChunk& chunk,
+                            std::span<const std::uint64_t> numbers, std::span<const PageEntry> entries) {
+  std::vector<std::array<std::uint64_t, 4>> order;
+  for (std::size_t n = 0; n < entries.size(); ++n) {
+    const std::uint64_t number = numbers[n / block.steps()];
+    order.push_back({number / block.group_pages, n % block.steps(), number, n});
+  }
+  std::ranges::sort(order);
+  std::uint64_t offset = chunk.pages, copy = chunk.copies;
+  for (const auto& place : order) {
+    const PageEntry& entry = entries[place[3]];
+    const bool is_copied = grid.page(place[2]).lod >= kCopiedLod;
+    require(entry.offset == offset && entry.copy == (is_copied ? copy : 0), "pages with gaps");
+    require(entry.error < 64, "an error without a code");
+    offset += entry.size;
+    copy += is_copied ? entry.size : 0;
+  }
+}
+
 /// The parts of a directory one after another, as their sizes say: those that are taken are written as they
 /// were read.
 inline void store_directory(const StoreRoot& root, std::span<const std::byte> bytes) {
@@ -30,20 +51,12 @@ inline void store_directory(const StoreRoot& root, std::span<const std::byte> by
     const auto part =
         bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(chunk.size, bytes.size())));
     bytes = bytes.subspan(part.size());
-    const auto entries = parse_entries(grid, chunk, steps, part, word_bytes);
+    const auto entries = parse_entries(grid, chunk, root.header, part);
     if (!entries) fail("expected a part of the directory, found other bytes");
     require(std::ranges::equal(serialise_entries(*entries, word_bytes), part), "another part");
     const auto numbers = chunk_pages(grid, chunk.first);
     require(entries->size() == steps * numbers.size(), "pages without entries");
-    std::uint64_t offset = chunk.pages, copy = chunk.copies;
-    for (std::size_t n = 0; n < entries->size(); ++n) {
-      const PageEntry& entry = (*entries)[n];
-      const bool is_copied = grid.page(numbers[n / steps]).lod >= kCopiedLod;
-      require(entry.offset == offset && entry.copy == (is_copied ? copy : 0), "pages with gaps");
-      require(entry.error < 64, "an error without a code");
-      offset += entry.size;
-      copy += is_copied ? entry.size : 0;
-    }
+    require_no_gaps(root.header, grid, chunk, numbers, *entries);
   }
 }
 

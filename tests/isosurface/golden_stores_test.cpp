@@ -7,10 +7,10 @@
 #include <iterator>
 #include <limits>
 
-#include "core/base/simd.h"
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/storage/verify.h"
 #include "tests/support/prepared_volume.h"
+#include "tests/support/short_vectors.h"
 
 namespace adamas {
 namespace {
@@ -21,14 +21,6 @@ std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
-
-/// Vectors of 16 bytes for a while, as on a processor that has no wider ones.
-struct ShortVectors {
-  ShortVectors() { only_short_vectors = true; }
-  ~ShortVectors() { only_short_vectors = false; }
-  ShortVectors(const ShortVectors&) = delete;
-  ShortVectors& operator=(const ShortVectors&) = delete;
-};
 
 /// f(store, volume) for each golden store.
 template <class F>
@@ -97,7 +89,7 @@ TEST(GoldenStores, HoldTheirVolumes) {
 }
 
 TEST(GoldenStores, AreReadAlikeWithShortVectors) {
-  const ShortVectors scope;
+  const test::ShortVectors scope;
   for_each_store([](const auto& store, const auto& volume) { expect_contents(store, volume); });
 }
 
@@ -113,7 +105,7 @@ TEST(GoldenStores, AreBuiltAlike) {
 }
 
 TEST(GoldenStores, AreBuiltAlikeWithShortVectors) {
-  const ShortVectors scope;
+  const test::ShortVectors scope;
   for_each_store([&](const auto& store, const auto& volume) {
     const test::Scratch folder;
     test::build(folder / "a.adm", volume, store.options);

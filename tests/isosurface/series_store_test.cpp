@@ -20,6 +20,10 @@ using test::Motion;
 using test::TestSeries;
 using test::with_blocks;
 
+StoreOptions in_groups(std::uint32_t block_steps, std::uint32_t pages) {
+  return with_blocks(block_steps, SampleCoding::kInterpolation, pages);
+}
+
 /// The samples of all steps, in an order of steps that jumps, and the errors and ranges that each has on its
 /// own.
 template <class Sample>
@@ -80,9 +84,9 @@ TYPED_TEST(SeriesStoreOf, GivesStepsBackThatWereAdded) {
   const test::Scratch folder;
   const TestSeries<TypeParam> series({12, 17, 20}, Motion::kWaves, 13);
   std::mt19937 random(5);
-  for (int trial = 0; trial < 4; ++trial) {
+  for (const std::uint32_t group : {1u, 2u, 8u, 512u}) {
     std::size_t end = 1 + random() % 4;
-    build_series(folder / "a.adm", "a.adm", series.source(0, end), with_blocks(4));
+    build_series(folder / "a.adm", "a.adm", series.source(0, end), in_groups(4, group));
     while (end < series.steps.size()) {
       const std::size_t begin = end;
       end = std::min(series.steps.size(), begin + 1 + random() % 5);
@@ -134,13 +138,17 @@ TEST(SeriesStore, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(test::bytes_of(folder / "1"), test::bytes_of(folder / "3"));
 }
 
+/// With groups of several sizes.
+class SeriesStoreInGroups : public testing::TestWithParam<std::uint32_t> {};
+INSTANTIATE_TEST_SUITE_P(Groups, SeriesStoreInGroups, testing::Values(1u, 8u));
+
 /// Whoever adds steps may be stopped after any byte: what was there stays, and what is not finished is not
 /// seen.
-TEST(SeriesStore, OpensWithAllFinishedStepsWhereverAddingEnds) {
+TEST_P(SeriesStoreInGroups, OpensWithAllFinishedStepsWhereverAddingEnds) {
   const test::Scratch folder;
-  const TestSeries<std::uint8_t> series({9, 9, 9}, Motion::kWaves, 6);
+  const TestSeries<std::uint8_t> series({9, 9, 18}, Motion::kWaves, 6);
   const auto path = folder / "a.adm", cut = folder / "cut.adm";
-  build_series(path, "a.adm", series.source(0, 2), with_blocks(8));
+  build_series(path, "a.adm", series.source(0, 2), in_groups(8, GetParam()));
   for (std::size_t begin = 2; begin < 6; begin += 2) {
     const std::string before = test::bytes_of(path);
     append_series(path, series.source(begin, begin + 2), with_blocks(8));
@@ -162,11 +170,11 @@ TEST(SeriesStore, OpensWithAllFinishedStepsWhereverAddingEnds) {
   expect_steps(path, series);
 }
 
-TEST(SeriesStore, AnswersToFlippedBitsAndTruncation) {
+TEST_P(SeriesStoreInGroups, AnswersToFlippedBitsAndTruncation) {
   const test::Scratch folder;
   const TestSeries<std::uint8_t> series({18, 9, 17}, Motion::kWaves, 5);
   const auto path = folder / "a.adm";
-  build_series(path, "a.adm", series.source(0, 3), with_blocks(8));
+  build_series(path, "a.adm", series.source(0, 3), in_groups(8, GetParam()));
   append_series(path, series.source(3, 5), with_blocks(8));
   const std::string whole = test::bytes_of(path);
   for (std::size_t at = 0; at < whole.size(); at += 5 + at % 7) {

@@ -8,7 +8,9 @@
 #include "core/base/checksum.h"
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
+#include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
+#include "isosurface/storage/store_file_writer.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
@@ -56,8 +58,8 @@ TEST(ByteStream, VarintsAreTheShortest) {
   EXPECT_FALSE(in.good());
 }
 
-/// A store of two steps with random bytes as pages.
-class StoreOfRandomPages : public testing::Test {
+/// A store of two steps with random bytes as pages, in groups of some sizes.
+class StoreOfRandomPages : public testing::TestWithParam<std::uint32_t> {
  protected:
   StoreOfRandomPages() {
     header_.grid.dimensions = {70, 33, 40};
@@ -76,7 +78,7 @@ class StoreOfRandomPages : public testing::Test {
 
   void write() {
     const PageGrid grid(header_.grid.dimensions);
-    StoreFileWriter writer(path_, "store.adm", header_.grid);
+    StoreFileWriter writer(path_, "store.adm", header_.grid, GetParam());
     for (std::uint64_t number = 0; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
       if (number == 0 || (std::bit_width(number) - 1) % 3 != 0 || !grid.contains(grid.page(number))) continue;
       for (std::uint32_t step = 0; step < header_.steps(); ++step) {
@@ -118,7 +120,7 @@ class StoreOfRandomPages : public testing::Test {
   std::uint64_t size_ = 0;
 };
 
-TEST_F(StoreOfRandomPages, GivesThemBack) {
+TEST_P(StoreOfRandomPages, GivesThemBack) {
   for (const Paging paging : {Paging::kRead, Paging::kMap}) {
     StoreFile file(path_, paging);
     EXPECT_EQ(file.size(), size_);
@@ -159,8 +161,12 @@ TEST(Directory, OfPagesInAnyOrderIsReadAsItWasWritten) {
   std::mt19937 random(21);
   for (int trial = 0; trial < 50; ++trial) {
     const DirectoryChunk chunk{512, 0, 0, 0, 1000, 5000};
-    const auto steps = static_cast<std::uint32_t>(1 + trial % 3);
-    std::vector<PageEntry> entries(steps * chunk_pages(grid, chunk.first).size());
+    const auto numbers = chunk_pages(grid, chunk.first);
+    StoreHeader header;
+    header.grid.type = SampleType::kUint16;
+    header.times.resize(1 + static_cast<std::size_t>(trial % 3));
+    header.group_pages = 1u << trial % 10;
+    std::vector<PageEntry> entries(header.steps() * numbers.size());
     for (PageEntry& entry : entries) {
       entry.low = static_cast<std::uint32_t>(random() % 2);
       entry.high = static_cast<std::uint32_t>(random() % 3);
@@ -169,22 +175,31 @@ TEST(Directory, OfPagesInAnyOrderIsReadAsItWasWritten) {
       entry.checksum = static_cast<std::uint32_t>(random());
     }
     const auto bytes = serialise_entries(entries, 2);
-    const auto found = parse_entries(grid, chunk, steps, bytes, 2);
+    const auto found = parse_entries(grid, chunk, header, bytes);
     ASSERT_TRUE(found && found->size() == entries.size());
-    std::uint64_t offset = chunk.pages;
     for (std::size_t n = 0; n < entries.size(); ++n) {
       EXPECT_EQ(static_cast<const PageSummary&>((*found)[n]), entries[n]);
       EXPECT_EQ((*found)[n].size, entries[n].size);
       EXPECT_EQ((*found)[n].checksum, entries[n].checksum);
-      EXPECT_EQ((*found)[n].offset, offset);
+    }
+    // In the order of groups, then steps, then pages they follow each other without gaps.
+    std::vector<std::array<std::uint64_t, 4>> order;
+    for (std::size_t n = 0; n < entries.size(); ++n) {
+      const std::uint64_t number = numbers[n / header.steps()];
+      order.push_back({number / header.group_pages, n % header.steps(), number, n});
+    }
+    std::ranges::sort(order);
+    std::uint64_t offset = chunk.pages;
+    for (const auto& [group, step, number, n] : order) {
+      EXPECT_EQ((*found)[n].offset, offset) << "page " << number << " step " << step << " of group " << group;
       offset += entries[n].size;
     }
     for (std::size_t length = 0; length < bytes.size(); ++length)
-      EXPECT_FALSE(parse_entries(grid, chunk, steps, std::span(bytes).first(length), 2)) << length;
+      EXPECT_FALSE(parse_entries(grid, chunk, header, std::span(bytes).first(length))) << length;
   }
 }
 
-TEST_F(StoreOfRandomPages, EveryFlippedBitIsFound) {
+TEST_P(StoreOfRandomPages, EveryFlippedBitIsFound) {
   const std::string whole = test::bytes_of(path_);
   std::size_t fatal = 0, repaired = 0, lost = 0;
   for (std::size_t at = 0; at < whole.size(); at += 11 + at % 5) {
@@ -219,7 +234,7 @@ TEST_F(StoreOfRandomPages, EveryFlippedBitIsFound) {
   EXPECT_GT(lost, 0u);
 }
 
-TEST_F(StoreOfRandomPages, EveryTruncationIsTold) {
+TEST_P(StoreOfRandomPages, EveryTruncationIsTold) {
   const std::string whole = test::bytes_of(path_);
   for (std::size_t size = 0; size < whole.size(); size += size < 100 ? 1 : 97) {
     test::put_bytes(path_, whole.substr(0, size));
@@ -261,6 +276,8 @@ TEST(StoreFile, RefusesMorePagesThanItsDirectoryHas) {
     root.chunks.push_back({DirectoryChunk::kPages * parts});
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Groups, StoreOfRandomPages, testing::Values(1u, 8u, 512u));
 
 TEST(StoreFileWriter, TellsOfAFullDisk) {
   StoreHeader header;

@@ -48,9 +48,11 @@ struct TestSeries {
   [[nodiscard]] SeriesSource source() const { return source(0, steps.size()); }
 };
 
-inline StoreOptions with_blocks(std::uint32_t steps, SampleCoding coding = SampleCoding::kInterpolation) {
+inline StoreOptions with_blocks(std::uint32_t steps, SampleCoding coding = SampleCoding::kInterpolation,
+                                std::uint32_t group_pages = 1) {
   StoreOptions options;
   options.block_steps = steps;
+  options.group_pages = group_pages;
   options.coding = coding;
   return options;
 }

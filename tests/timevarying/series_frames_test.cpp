@@ -38,6 +38,7 @@ class SeriesFramesWalk : public testing::TestWithParam<unsigned> {
 
   void build(Motion motion, StoreOptions options) {
     options.block_steps = 10;
+    options.group_pages = GetParam() == 1 ? 1 : GetParam() == 2 ? 8 : 512;
     const TestSeries<std::uint8_t> series({36, 33, 20}, motion, kSteps);
     build_series(path_, "a.adm", series.source(), options);
     box_ = series.steps[0].grid.box();
@@ -70,7 +71,8 @@ class SeriesFramesWalk : public testing::TestWithParam<unsigned> {
   double isovalue_ = 60.5;
 };
 
-/// In whatever order steps come, whatever is read ahead, and however much is read at a time.
+/// In whatever order steps come, whatever is read ahead, however much is read at a time, and however pages
+/// lie.
 TEST_P(SeriesFramesWalk, FramesThatWaitAreThoseOfTheStepAlone) {
   for (const std::uint64_t bytes : {0u, 2000u, 100'000u}) {
     StoreFile file(path_);

@@ -1,5 +1,5 @@
-// Makes the seeds of the fuzz targets of codecs of samples, of bounds and of gradients, and of the store's
-// own bytes: FOLDER is that of all seeds. To be run again where such bytes change.
+// Makes the seeds of the fuzz targets of codecs of samples, of bounds and of gradients, of the store's own
+// bytes, and of whole stores: FOLDER is that of all seeds. To be run again where such bytes change.
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,10 @@
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/storage/store_format.h"
+#include "isosurface/storage/directory_entries.h"
 #include "tests/fuzz/bounds_targets.h"
+#include "tests/fuzz/time_targets.h"
+#include "tests/support/golden_series.h"
 
 namespace adamas::fuzz {
 namespace {
@@ -99,6 +101,51 @@ void make_samples(const std::filesystem::path& folder, const Seed& seed) {
   put(bytes, seed.complete ? 1 : 0);
   put_tables(bytes, codec->tables(), page);
   write(folder / "sample_codec", seed.name, bytes);
+}
+
+/// How a page of a series follows from those before.
+enum class InTime : std::uint8_t { kSpace, kAsBefore, kOnce, kTwice };
+
+/// Where the page is coded in space it has nothing of those before; else it is the one before, or that with
+/// some noise, or as they rise with some noise.
+template <class Word>
+void make_time(const std::filesystem::path& folder, const Seed& seed, InTime way) {
+  constexpr std::uint8_t kSeed = 9;
+  const PageShape shape{seed.count, seed.complete, 0};
+  const auto steps = std::make_unique<SeededSteps<Word>>(kSeed);
+  PagePoints<Word> samples = steps->before[0].samples;
+  if (way == InTime::kSpace) fill(samples, seed.noise);
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const std::size_t noise = n % 11 == 0 && way >= InTime::kOnce ? 5 : 0;
+    samples[n] = static_cast<Word>(samples[n] + noise + (way == InTime::kTwice ? n % 3 : 0));
+    if (seed.coding == SampleCoding::kRanks) samples[n] = static_cast<Word>(samples[n] % 16 * seed.values);
+  }
+  std::shared_ptr<const SampleRanks> ranks;
+  if (seed.coding == SampleCoding::kRanks) ranks = std::make_shared<const SampleRanks>(different(samples));
+  TimeSurvey<Word> survey(sample_survey<Word>(seed.coding, ranks, {}), seed.coding, true);
+  survey.add(shape, steps->around, samples, steps->before);
+  // Of the page as it is kept there are no differences, so that tables of others are there too.
+  if (way == InTime::kAsBefore) {
+    samples[7] = static_cast<Word>(samples[7] + 1);
+    survey.add(shape, steps->around, samples, steps->before);
+    samples = steps->before[0].samples;
+  }
+  const TimeCodec<Word> codec(survey);
+  Bytes page, bytes;
+  codec.encode(shape, steps->around, samples, steps->before, page, {});
+  const bool is_before = page.size() == 1 && page[0] == kAsBefore;
+  const int wanted = way == InTime::kSpace ? 0 : way == InTime::kTwice ? 2 : 1;
+  require(is_before == (way == InTime::kAsBefore) && time_order(page) == wanted, "a page of another order");
+  put(bytes, sizeof(Word) + (seed.coding == SampleCoding::kInterpolation ? 128u : 0u) + (ranks ? 64u : 0u));
+  put_points(bytes, seed.count);
+  put(bytes, seed.complete ? 1 : 0);
+  for (const std::size_t size : {codec.tables().size(), codec.time_tables().size()}) {
+    put(bytes, size);
+    put(bytes, size >> 8);
+  }
+  put(bytes, kSeed);
+  for (const Bytes& part : {codec.tables(), codec.time_tables(), page}) append(bytes, part);
+  write(folder / "time_codec", seed.name, bytes);
 }
 
 void make_gradients(const std::filesystem::path& folder, const Seed& seed) {
@@ -188,10 +235,15 @@ void make_bounds(const std::filesystem::path& folder, const std::string& name, c
   write(folder / "bounds_codec", name, bytes);
 }
 
-/// All of a store but its pages, which are of a few bytes each.
+/// All of a store but its pages, which are of a few bytes each. With a step that it begins at the last block
+/// of several.
 void make_store(const std::filesystem::path& folder, const std::string& name, const VolumeGrid& grid,
-                std::uint32_t steps, bool has_plain = false) {
+                std::uint32_t steps, bool has_plain = false, std::uint32_t first_step = 0,
+                std::uint32_t group_pages = 1) {
   StoreRoot root;
+  root.header.first_step = first_step;
+  root.header.group_pages = group_pages;
+  if (first_step > 0) root.before = {5, 20};
   root.header.grid = grid;
   root.header.times.resize(steps);
   for (std::size_t n = 0; n < root.header.times.size(); ++n) root.header.times[n] = static_cast<double>(n);
@@ -221,6 +273,18 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
   bytes.assign(start.begin() + 8, start.end() - 4);
   put_tables(bytes, last, directory);
   write(folder / "store_format", name, bytes);
+}
+
+/// A whole store of a small series, made and added to.
+template <class Sample>
+void make_store_file(const std::filesystem::path& folder, const test::GoldenSeries& series,
+                     const test::Dimensions& dimensions) {
+  const test::Scratch scratch;
+  const test::GoldenSteps<Sample> steps(series, dimensions);
+  steps.build(series, scratch / "a.adm");
+  const std::string made = test::bytes_of(scratch / "a.adm");
+  const auto bytes = std::as_bytes(std::span(made));
+  write(folder / "store_file", series.name, {bytes.begin(), bytes.end()});
 }
 
 VolumeGrid grid_of(SampleType type, std::array<std::uint64_t, 3> dimensions) {
@@ -258,6 +322,13 @@ void make(const std::filesystem::path& folder) {
   make_gradients(folder, {"raw", kOurs, {3, 3, 3}, false, 1});
   make_gradients(folder, {"split_page", kEdge, {6, 5, 3}, false, 2});
   make_gradients(folder, {"split_complete", kEdge, {4, 4, 4}, true, 2});
+  make_time<std::uint8_t>(folder, {"space", kOurs, {5, 4, 3}, false, 2}, InTime::kSpace);
+  make_time<std::uint8_t>(folder, {"as_before", kOurs, {5, 4, 3}, false, 0}, InTime::kAsBefore);
+  make_time<std::uint8_t>(folder, {"once", kOurs, {9, 5, 4}, false, 0}, InTime::kOnce);
+  make_time<std::uint8_t>(folder, {"twice", kOurs, {9, 5, 4}, false, 0}, InTime::kTwice);
+  make_time<std::uint16_t>(folder, {"complete", kOurs, {4, 5, 4}, true, 0}, InTime::kTwice);
+  make_time<std::uint16_t>(folder, {"split_edge", kEdge, {5, 4, 4}, false, 0}, InTime::kOnce);
+  make_time<std::uint32_t>(folder, {"words", kOurs, {5, 4, 4}, false, 0}, InTime::kTwice);
   make_store(folder, "one_sample", grid_of(SampleType::kUint8, {1, 1, 1}), 1);
   make_store(folder, "floats", grid_of(SampleType::kFloat32, {20, 17, 9}), 2);
   VolumeGrid turned = grid_of(SampleType::kUint16, {130, 20, 20});
@@ -266,6 +337,15 @@ void make(const std::filesystem::path& folder) {
   make_store(folder, "copies", turned, 1);
   make_store(folder, "rod", grid_of(SampleType::kInt16, {300, 1, 2}), 1);
   make_store(folder, "plain", grid_of(SampleType::kUint8, {90, 40, 20}), 1, true);
+  make_store(folder, "groups", grid_of(SampleType::kUint8, {70, 40, 20}), 3, true, 0, 8);
+  make_store(folder, "last_block", grid_of(SampleType::kUint8, {36, 20, 20}), 2, false, 4, 2);
+  std::vector<test::GoldenSeries> series = test::golden_series();
+  for (test::GoldenSeries& one : series) one.ends = {1, 3};
+  make_store_file<std::uint8_t>(folder, series[0], {18, 9, 9});
+  make_store_file<std::uint8_t>(folder, series[1], {20, 9, 18});
+  make_store_file<std::uint8_t>(folder, series[2], {17, 9, 4});
+  make_store_file<std::uint16_t>(folder, series[3], {18, 5, 4});
+  make_store_file<float>(folder, series[4], {18, 3, 4});
 }
 
 }  // namespace

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "isosurface/storage/page_runs.h"
+#include "isosurface/storage/store_format.h"
+
+namespace adamas {
+
+/// Pages that lie interleaved in time in a block of steps (D 5.5): those whose numbers divided by
+/// StoreHeader::group_pages are the same; all of them at the first step, in ascending order, then all at the
+/// second, and so on. Groups of one page have each page's steps side by side; the greatest have whole steps
+/// of a directory chunk one after another.
+class PageGroup {
+ public:
+  /// `entries`: of each page for all steps, one page after another.
+  PageGroup(std::span<const PageEntry> entries, std::size_t steps)
+      : entries_(entries), steps_(steps), pages_(entries.size() / steps) {}
+
+  [[nodiscard]] std::size_t size() const { return entries_.size(); }
+  [[nodiscard]] std::size_t pages() const { return pages_; }
+  /// The place of a page at a step among all of the group, in the order of the file.
+  [[nodiscard]] std::size_t place(std::size_t page, std::size_t step) const { return step * pages_ + page; }
+  [[nodiscard]] const PageEntry& operator[](std::size_t place) const {
+    return entries_[place % pages_ * steps_ + place / pages_];
+  }
+
+ private:
+  std::span<const PageEntry> entries_;
+  std::size_t steps_, pages_;
+};
+
+/// Bytes of a file from `begin` to before `end`.
+struct FileStretch {
+  std::uint64_t begin = 0, end = 0;
+};
+
+/// What is read for the page at a place of a group: with it those of the `coded_with` steps before it, as far
+/// as they go into one read; what lies before it at its step, if all of that does; and then what comes next.
+/// Where steps are read backwards, what lies behind it at its step, and then what comes before. The stretch
+/// ends where pages are in memory already, so that nothing is read twice.
+FileStretch stretch_to_read(const PageGroup& group, std::size_t place, std::size_t coded_with,
+                            const ReadAhead& ahead, const PageRuns& in_memory, std::uint64_t file_size);
+
+}  // namespace adamas

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "isosurface/storage/store_file.h"
+
+namespace adamas {
+
+/// Writes a store, block after block, page after page. A new file is no store before the first block is
+/// finished. What is written of a block is not seen by those who open the file before it is finished, also
+/// where that never comes.
+class StoreFileWriter {
+ public:
+  /// Of a new file with blocks of this grid. Throws Error where it cannot be written; messages name `shown`,
+  /// the file's final name. `group_pages`: as StoreHeader says.
+  StoreFileWriter(const std::filesystem::path& path, std::string shown, const VolumeGrid& grid,
+                  std::uint32_t group_pages = 1);
+  /// Of a store that more is added to, behind its last block and in groups of the same size.
+  StoreFileWriter(const std::filesystem::path& path, const StoreFile& store);
+
+  /// Takes the pages of a block that PageGrid::contains, every one, in ascending order of number, then step.
+  void add_page(std::uint64_t number, std::span<const std::byte> payload, const PageSummary& summary);
+  /// Writes what is not pages of the block. `header`: of the bytes and tables that are known now, but for the
+  /// size of groups. Returns the file's size.
+  std::uint64_t finish_block(const StoreHeader& header);
+
+ private:
+  void write(std::span<const std::byte> bytes);
+  /// Writes the pages of a group, step by step.
+  void end_group();
+  void begin_chunk(std::uint64_t first);
+  void end_chunk();
+  void write_prologue(const RootPlace& root);
+
+  std::string shown_;
+  std::fstream stream_;
+  PageGrid grid_;
+  std::size_t word_bytes_;
+  std::uint32_t group_pages_;
+  std::uint64_t at_ = 0;
+  RootPlace before_;                                 ///< the root of the last block that is finished
+  std::vector<DirectoryChunk> chunks_;               ///< of the block, as all that follows
+  std::vector<std::uint64_t> group_numbers_;         ///< of the pages of the last group
+  std::vector<std::vector<std::byte>> group_;        ///< their bytes, of each page for all steps
+  std::vector<PageEntry> entries_;                   ///< of the last chunk
+  std::vector<std::vector<std::byte>> entry_bytes_;  ///< of the chunks before
+  std::vector<std::byte> copies_;
+};
+
+}  // namespace adamas
