@@ -130,6 +130,9 @@ class BenchTableTest(unittest.TestCase):
         self.assertEqual(time_row(series, [played(1, 1)] * 3, [contoured] * 3)[1:5], ["2000.0 ms", "raw + Flying Edges 500.0 ms", "4.00", "<= 0.5"])
         plots = play_plots({10: (played(3, 1000), played(4, 4000))}, lambda frames: [f["page_faults"] for f in frames], "reads")
         self.assertEqual([line["y"] for line in plots[0]["series"]], [[3, 3], [4, 4]])
+        few = played(3, 1000)
+        few["frames"][0]["triangles"] = 1
+        self.assertEqual(play_plots({10: (few, few)}, lambda frames: [1 for f in frames], "1", part=0.5)[0]["series"][0]["x"], [1])
         need = {which: {"pages": 2, "samples": size, "bounds": 1000} for which, size in
                 (("not needed", 1000), ("in time", 2000), ("in space", 3000), ("crossed", 4000))}
         self.assertIn("2 pages and steps that the surface of all samples crosses 5 kB", needs_row("a", played(1, 1), need | {"others": 7})[5])
