@@ -12,6 +12,7 @@ from bench_volumes import lines_of, note, run_measured
 
 MEGA = 10**6
 READ_STEPS = (10, 15, 20)
+INTERPOLATION_VOXELS = ("0.7", "2", "4")
 ERROR = "0.7voxels"
 RUNS = 3
 SAMPLE_BYTES = {"uint8": 1, "uint16": 2, "float32": 4}
@@ -235,6 +236,19 @@ def gradient_rows(bench, inputs):
     yield [row[0] + ", with gradients", *row[1:4], "", row[5]]
 
 
+def interpolation_rows(build, name, file, isovalue, steps, threads):
+    """Points and normals by the vertex shader beside the processor, over the last steps, and how many steps a window shows: table 5.2."""
+    found = lines_of(build, "bench_interpolation", file, str(isovalue), str(max(0, steps - 9)), str(steps - 1), str(threads), *INTERPOLATION_VOXELS)
+    for voxels in map(float, INTERPOLATION_VOXELS):
+        line = {(each["row"], each["by"]): each for each in found if each["voxels"] == voxels}
+        by_shader, by_processor = line["interpolation", "shader"], line["interpolation", "processor"]
+        rates = [line["played", by]["steps_per_second"] for by in ("shader", "processor")]
+        yield [f"step of {name} by the shader, {voxels:g} voxels", f"{1e3 * by_shader['worked_out']:.0f} ms",
+               f"by the processor {1e3 * by_processor['worked_out']:.0f} ms", f"{by_shader['worked_out'] / by_processor['worked_out']:.2f}", "",
+               f"{by_shader['triangles']:,} triangles; a picture {1e3 * by_shader['picture']:.0f} and {1e3 * by_processor['picture']:.0f} ms; played "
+               f"{rates[0]:.1f} and {rates[1]:.1f} steps/s (aim 30 at 1 M triangles on a graphics device); by the clock, {threads} threads; {by_shader['drawn_by']}"]
+
+
 def rows_of(bench):
     series, inputs = bench.series, bench.generate()
     coded_file, coded = bench.store("coded.adm", inputs)
@@ -266,3 +280,6 @@ def series_rows(build, quick):
             draw_coefficients(bench, found)
             yield from coefficient_table(series.name, found)
             yield from gradient_rows(bench, bench.generate())
+            if os.path.exists(os.path.join(build, "tests/benchmarks/bench_interpolation")):
+                steps = int(series.generate[series.generate.index("--steps") + 1])
+                yield from interpolation_rows(build, series.name, bench.path("coded.adm"), series.isovalue, steps, os.cpu_count())
