@@ -48,21 +48,6 @@ PlayOrder wanted_order(const std::string& text) {
   return text == "random" ? PlayOrder::kRandom : PlayOrder::kForward;
 }
 
-/// A parallel projection of all data in which a pixel is a unit of length, so that errors in pixels are the
-/// same everywhere.
-Viewpoint from_everywhere(const VolumeGrid& grid) {
-  const Box3 box = grid.frame_box();
-  const double size = std::max(box.diagonal(), std::numeric_limits<double>::min());
-  Viewpoint viewpoint;
-  viewpoint.target = box.center();
-  viewpoint.eye = box.center() + size * Vec3{0.6, -0.64, 0.48};
-  viewpoint.up = {0, 0, 1};
-  viewpoint.near = 1e-3 * size;
-  viewpoint.height = 1.1 * size;
-  viewpoint.width_pixels = viewpoint.height_pixels = kHeight;
-  return viewpoint;
-}
-
 /// The frames that are asked for: where they are seen from, in turn, and how fine they are.
 struct Frames {
   std::vector<Viewpoint> path;
@@ -73,7 +58,7 @@ struct Frames {
     if (!options.max_triangles.empty())
       request.max_triangles = parse_count("--max-triangles", options.max_triangles);
     if (options.path.empty()) {
-      path = {from_everywhere(grid)};
+      path = {from_everywhere(grid.frame_box(), kHeight, kHeight)};
       const double error = options.error.empty() ? 0 : parse_surface_error(options.error, grid);
       request.pixels = error / grid.greatest_stretch() * path[0].height_pixels / path[0].height;
     } else {

@@ -12,23 +12,17 @@ namespace adamas {
 /// SampleCoding::kPlain: every page raw, whatever it holds, so that all of one shape have the same size. What
 /// compression is compared with.
 template <class Word>
-class PlainCodec final : public SampleCodec<Word> {
+class PlainCodec final : public SplitEdgeCodec<Word> {
  public:
   using typename SampleCodec<Word>::Samples;
   using typename SampleCodec<Word>::Around;
 
-  [[nodiscard]] std::vector<std::byte> tables() const override { return decoder_.tables(); }
+  PlainCodec() : SplitEdgeCodec<Word>(ResidualCode(ResidualStatistics(8 * static_cast<int>(sizeof(Word))))) {}
+
   void encode_with(const PageShape& shape, const Around&, const Samples& samples, std::vector<std::byte>& out,
                    std::span<const std::byte>) const override {
     write_raw<Word>(shape, samples, out);
   }
-  [[nodiscard]] bool decode_with(std::span<const std::byte> bytes, const PageShape& shape,
-                                 const Around& around, Samples& samples, BytesAlong& along) const override {
-    return decoder_.decode_with(bytes, shape, around, samples, along);
-  }
-
- private:
-  SplitEdgeCodec<Word> decoder_{ResidualCode(ResidualStatistics(8 * static_cast<int>(sizeof(Word))))};
 };
 
 /// Nothing needs to be counted.

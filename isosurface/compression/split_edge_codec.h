@@ -13,7 +13,7 @@ namespace adamas {
 /// SampleCoding::kSplitEdge: the residuals of a page in hierarchical z-order, by a ResidualCode. A page that
 /// has a residual without a codeword, or does not shrink, is stored raw.
 template <class Word>
-class SplitEdgeCodec final : public SampleCodec<Word> {
+class SplitEdgeCodec : public SampleCodec<Word> {
  public:
   using typename SampleCodec<Word>::Samples;
   using typename SampleCodec<Word>::Around;

@@ -9,14 +9,13 @@
 namespace adamas {
 
 template <class Sample>
-ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source) : source_(source) {
-  makers_.push_back(std::make_unique<ChunkMaker<Sample>>(source_, free_));
-  unused_.push_back(makers_.back().get());
-}
+ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source)
+    : source_(source), first_(source_, free_) {}
 
 template <class Sample>
 void ChunkMakers<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
-  for (const auto& maker : makers_) maker->normals().set_pages(pages);
+  first_.normals().set_pages(pages);
+  others_.for_each([&](ChunkMaker<Sample>& maker) { maker.normals().set_pages(pages); });
 }
 
 template <class Sample>
@@ -29,7 +28,7 @@ void ChunkMakers<Sample>::make(std::span<Job> jobs, const Progress& progress) {
     for (Job& job : batch) {
       progress.check();
       if (job.chunk == nullptr)
-        job.chunk = first().make(job.page->lod, job.page->block, job.before, job.page->changed);
+        job.chunk = first_.make(job.page->lod, job.page->block, job.before, job.page->changed);
     }
   }
 }
@@ -41,7 +40,7 @@ void ChunkMakers<Sample>::make_in_memory(std::span<Job> jobs) {
   for (const Job& job : jobs) {
     if (loads && job.page->lod <= pages.grid().top()) pages.samples({job.page->lod, job.page->block});
   }
-  StoredGradients* const gradients = first().normals().stored();
+  StoredGradients* const gradients = first_.normals().stored();
   const auto set_loading = [&](bool is_to_load) {
     pages.set_loading(is_to_load);
     if (gradients != nullptr) gradients->set_loading(is_to_load);
@@ -49,31 +48,19 @@ void ChunkMakers<Sample>::make_in_memory(std::span<Job> jobs) {
   set_loading(false);
   constexpr std::size_t kGrain = 4;
   parallel_chunks(jobs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    ChunkMaker<Sample>& maker = taken_maker();
+    std::unique_ptr<ChunkMaker<Sample>> maker = others_.take();
+    if (maker == nullptr) maker = std::make_unique<ChunkMaker<Sample>>(source_, free_, gradients);
     for (Job& job : jobs.subspan(begin, end - begin)) {
       try {
-        job.chunk = maker.make(job.page->lod, job.page->block, job.before, job.page->changed);
+        job.chunk = maker->make(job.page->lod, job.page->block, job.before, job.page->changed);
       } catch (const PageLost&) {
         continue;
       }
       if (loads && !job.chunk->missing.empty()) recycle(std::move(job.chunk));
     }
-    const std::lock_guard lock(mutex_);
-    unused_.push_back(&maker);
+    others_.give(std::move(maker));
   });
   set_loading(loads);
-}
-
-template <class Sample>
-ChunkMaker<Sample>& ChunkMakers<Sample>::taken_maker() {
-  const std::lock_guard lock(mutex_);
-  if (unused_.empty()) {
-    makers_.push_back(std::make_unique<ChunkMaker<Sample>>(source_, free_, first().normals().stored()));
-    return *makers_.back();
-  }
-  ChunkMaker<Sample>* const maker = unused_.back();
-  unused_.pop_back();
-  return *maker;
 }
 
 template class ChunkMakers<std::uint8_t>;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <span>
 #include <vector>
 
@@ -33,19 +32,18 @@ class ChunkMakers {
   /// Goes over to the pages of another step of the same store.
   void set_pages(StoredPages<OrderedWord<Sample>>& pages);
   /// One for what is made outside of chunks.
-  [[nodiscard]] ChunkMaker<Sample>& first() { return *makers_.front(); }
-  [[nodiscard]] const ChunkMaker<Sample>& first() const { return *makers_.front(); }
+  [[nodiscard]] ChunkMaker<Sample>& first() { return first_; }
+  [[nodiscard]] const ChunkMaker<Sample>& first() const { return first_; }
 
  private:
   /// Makes some chunks of which the pages are in memory; leaves out those that need others.
   void make_in_memory(std::span<Job> jobs);
-  ChunkMaker<Sample>& taken_maker();
 
   ChunkSource<Sample> source_;
-  FreeChunks free_;
-  std::vector<std::unique_ptr<ChunkMaker<Sample>>> makers_;
-  std::mutex mutex_;                         ///< of what follows
-  std::vector<ChunkMaker<Sample>*> unused_;  ///< those that no thread works with
+  static constexpr std::size_t kMostFree = 1024;
+  SharedPool<PageChunk> free_{kMostFree};
+  ChunkMaker<Sample> first_;
+  SharedPool<ChunkMaker<Sample>> others_;  ///< for threads
 };
 
 extern template class ChunkMakers<std::uint8_t>;

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <numbers>
 #include <string_view>
 
@@ -115,6 +116,19 @@ std::vector<Viewpoint> flight(const std::string& path, const Box3& box, int widt
   constexpr std::string_view kOrbit = "orbit:";
   return path.starts_with(kOrbit) ? orbit(std::string_view(path).substr(kOrbit.size()), first, box)
                                   : flight_of_file(path, first);
+}
+
+Viewpoint from_everywhere(const Box3& box, int width_pixels, int height_pixels) {
+  const double size = std::max(box.diagonal(), std::numeric_limits<double>::min());
+  Viewpoint viewpoint;
+  viewpoint.target = box.center();
+  viewpoint.eye = box.center() + size * Vec3{0.6, -0.64, 0.48};
+  viewpoint.up = {0, 0, 1};
+  viewpoint.near = 1e-3 * size;
+  viewpoint.height = 1.1 * size;
+  viewpoint.width_pixels = width_pixels;
+  viewpoint.height_pixels = height_pixels;
+  return viewpoint;
 }
 
 }  // namespace adamas

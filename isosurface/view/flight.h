@@ -15,6 +15,9 @@ namespace adamas {
 /// number. Throws Error.
 std::vector<Viewpoint> flight(const std::string& path, const Box3& box, int width_pixels, int height_pixels);
 
+/// A parallel projection of all of a box from one side: errors in pixels are the same everywhere.
+Viewpoint from_everywhere(const Box3& box, int width_pixels, int height_pixels);
+
 /// The viewpoints of such a file; `name` begins messages. What the lines do not say is that of `first`.
 std::vector<Viewpoint> read_viewpoints(std::istream& file, const std::string& name, const Viewpoint& first);
 

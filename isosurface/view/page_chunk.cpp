@@ -74,22 +74,8 @@ std::array<LatticePoint, 2> ends_of_edge(PageChunk::EdgePlace place) {
 
 }  // namespace
 
-void FreeChunks::give(std::unique_ptr<PageChunk> chunk) {
-  constexpr std::size_t kMost = 1024;
-  const std::lock_guard lock(mutex_);
-  if (chunk != nullptr && chunks_.size() < kMost) chunks_.push_back(std::move(chunk));
-}
-
-std::unique_ptr<PageChunk> FreeChunks::take() {
-  const std::lock_guard lock(mutex_);
-  if (chunks_.empty()) return nullptr;
-  std::unique_ptr<PageChunk> chunk = std::move(chunks_.back());
-  chunks_.pop_back();
-  return chunk;
-}
-
 template <class Sample>
-ChunkMaker<Sample>::ChunkMaker(const ChunkSource<Sample>& source, FreeChunks& free,
+ChunkMaker<Sample>::ChunkMaker(const ChunkSource<Sample>& source, SharedPool<PageChunk>& free,
                                StoredGradients* gradients)
     : source_(source),
       diamonds_(source.diamonds),
@@ -341,7 +327,6 @@ void ChunkMaker<Sample>::show_points(const PageChunk* before, std::size_t same, 
   SurfaceChunk& shown = chunk.shown;
   take_over(before == nullptr ? nullptr : &before->inside.parameters, same, chunk.inside.parameters,
             [&](std::size_t n) { return parameter(chunk.inside.edges[n]); });
-  shown.normals.resize(chunk.inside.edges.size());
   take_over(before == nullptr ? nullptr : &before->shown.points, same, shown.points,
             [&](std::size_t n) { return position(edge_point(chunk, chunk.inside, n)); });
   take_over(before == nullptr ? nullptr : &before->shown.normals, same, shown.normals,

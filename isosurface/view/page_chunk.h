@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "core/base/shared_pool.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/page_diamonds.h"
 #include "isosurface/extraction/surface_normals.h"
@@ -53,18 +53,6 @@ struct PageChunk {
   std::vector<MissingNormals> missing;
 };
 
-/// Chunks that are not needed any more, whose memory the next ones will have. Several threads may use it.
-class FreeChunks {
- public:
-  void give(std::unique_ptr<PageChunk> chunk);
-  /// Null where there is none.
-  std::unique_ptr<PageChunk> take();
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<PageChunk>> chunks_;
-};
-
 /// What chunks are made from; all of it must outlive who makes them.
 template <class Sample>
 struct ChunkSource {
@@ -82,9 +70,11 @@ class ChunkMaker {
  public:
   using EdgePlace = PageChunk::EdgePlace;
 
-  /// `gradients`: those that the store keeps, of another maker of the same diamonds; null: this one opens
-  /// them, if there are any. All of these must outlive this.
-  ChunkMaker(const ChunkSource<Sample>& source, FreeChunks& free, StoredGradients* gradients = nullptr);
+  /// `free`: chunks that are not needed any more, whose memory the next ones will have. `gradients`: those
+  /// that the store keeps, of another maker of the same diamonds; null: this one opens them, if there are
+  /// any. All of these must outlive this.
+  ChunkMaker(const ChunkSource<Sample>& source, SharedPool<PageChunk>& free,
+             StoredGradients* gradients = nullptr);
 
   /// The chunk of a page of which something is split. `before`: the page's chunk until now, or null. Of its
   /// cells only some are made anew, `cells` as bits, and the points that it has are taken over. Throws
@@ -148,7 +138,7 @@ class ChunkMaker {
   const SurfaceRequest& surface_;
   PageDiamonds<Sample> page_;
   PointNormals<Sample> normals_;
-  FreeChunks& free_;
+  SharedPool<PageChunk>& free_;
   std::array<Neighbours, 2> neighbours_;
   /// Of the points on edges, by place: in the chunk and in the one before it; kNone where there is none.
   struct Numbers {

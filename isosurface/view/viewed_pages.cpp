@@ -136,23 +136,12 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
   added.of_generations.resize(static_cast<std::size_t>(generations()));
   for (int lod = lods() - 1; lod >= 0; --lod) {
     find_candidates(lod);
+    find_in_sight(check);
     read_ahead_of_walk();
     std::vector<ViewedPage*>& active = active_[static_cast<std::size_t>(lod)];
     active.clear();
     incomplete_[static_cast<std::size_t>(lod)].clear();
-    for (ViewedPage* const page : candidates_) {
-      check();
-      if (!page->is_told && !tell(*page)) page->greatest = greatest_of_parents(*page);
-      if (page->greatest == 0) continue;
-      const PageView view = view_of(*page);
-      depth_tests_ += view.has_depths() ? 1 : 0;
-      hidden_ += view.is_occluded() ? 1 : 0;
-      if (view.is_hidden()) continue;
-      const double depth = view.least_depth(0);
-      if (low_[static_cast<std::size_t>(page->greatest)] < depth) {
-        greatest_passed_ = std::max(greatest_passed_, class_at(page->greatest, depth));
-        continue;
-      }
+    for (const auto& [page, view] : in_sight_) {
       if (!loads_ && !find_in_memory(*page, view)) continue;
       look_at(*page, view, added);
       active.push_back(page);
@@ -163,6 +152,26 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
     if (added.above.added > room) return {};
   }
   return added;
+}
+
+template <class Sample>
+void ViewedPages<Sample>::find_in_sight(const Check& check) {
+  in_sight_.clear();
+  for (ViewedPage* const page : candidates_) {
+    check();
+    if (!page->is_told && !tell(*page)) page->greatest = greatest_of_parents(*page);
+    if (page->greatest == 0) continue;
+    const PageView view = view_of(*page);
+    depth_tests_ += view.has_depths() ? 1 : 0;
+    hidden_ += view.is_occluded() ? 1 : 0;
+    if (view.is_hidden()) continue;
+    const double depth = view.least_depth(0);
+    if (low_[static_cast<std::size_t>(page->greatest)] < depth) {
+      greatest_passed_ = std::max(greatest_passed_, class_at(page->greatest, depth));
+      continue;
+    }
+    in_sight_.push_back({page, view});
+  }
 }
 
 template <class Sample>
@@ -182,8 +191,7 @@ std::size_t ViewedPages<Sample>::find_groups(ViewedPage& page, const PageView& v
 
 template <class Sample>
 void ViewedPages<Sample>::read(ViewedPage& page) {
-  page.crossed = std::make_unique<CrossedPage>(reader_.read(page.lod, page.block));
-  page.masks = std::make_unique<ViewedMasks>();
+  set_crossed(page, reader_.read(page.lod, page.block));
   bytes_ += bytes_of(page);
 }
 

@@ -6,10 +6,11 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "core/base/shared_pool.h"
 #include "core/lattice/lattice_map.h"
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/storage/missing_page.h"
@@ -177,10 +178,11 @@ class ViewedPages {
   /// Sets candidates_ to the pages of an LOD on which diamonds may be split, since coarser ones may.
   void find_candidates(int lod);
   void add_candidate(int lod, LatticePoint block);
-  /// Reads, by several threads, what the walk will want of candidates_ and what is in memory.
+  /// Sets in_sight_ to those that may have diamonds of the walk's classes in sight.
+  void find_in_sight(const Check& check);
+  /// Reads, by several threads, what the walk will want of these and what is in memory.
   void read_ahead_of_walk();
-  void read_from_memory(ViewedPage& page, CrossedPageReader<Sample>& reader);
-  CrossedPageReader<Sample>& taken_reader();
+  void read_from_memory(ViewedPage& page, const PageView& view, CrossedPageReader<Sample>& reader);
   /// Adds the diamonds of a page.
   void look_at(ViewedPage& page, const PageView& view, Added& added);
   /// Whether depths hide a diamond; counts.
@@ -220,6 +222,10 @@ class ViewedPages {
     page.crossed.reset();
     page.masks.reset();
   }
+  static void set_crossed(ViewedPage& page, CrossedPage crossed) {
+    page.crossed = std::make_unique<CrossedPage>(std::move(crossed));
+    page.masks = std::make_unique<ViewedMasks>();
+  }
   static std::size_t bytes_of(const ViewedPage& page) { return page.crossed->bytes() + sizeof(ViewedMasks); }
   [[nodiscard]] int generation_of(int lod) const { return 3 * (lods() - 1 - lod); }
   /// Ends a cut on a page, at the first diamond of the last generation for which there is no room.
@@ -235,9 +241,7 @@ class ViewedPages {
   ViewedDiamonds<Sample>& diamonds_;
   const SurfaceRequest& surface_;
   CrossedPageReader<Sample> reader_;
-  std::mutex readers_mutex_;                       ///< of what follows
-  std::deque<CrossedPageReader<Sample>> readers_;  ///< of threads
-  std::vector<CrossedPageReader<Sample>*> unused_readers_;
+  SharedPool<CrossedPageReader<Sample>> readers_;                         ///< for threads
   StoredPages<typename ViewedDiamonds<Sample>::Word>* before_ = nullptr;  ///< of the step before; null: none
   std::size_t memory_, bytes_ = 0;
   std::vector<LodPlaces> places_;  ///< by LOD
@@ -254,6 +258,11 @@ class ViewedPages {
   int greatest_missing_ = 0;                          ///< of the diamonds for whose split pages are missing
   std::vector<std::vector<ViewedPage*>> incomplete_;  ///< by LOD: those that lack diamonds
   std::vector<ViewedPage*> candidates_, shown_;
+  struct InSight {
+    ViewedPage* page;
+    PageView view;
+  };
+  std::vector<InSight> in_sight_;
   std::vector<std::vector<ViewedPage*>> active_;  ///< by LOD, in z-order: those that the walk looked at
 };
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "isosurface/view/flight.h"
 #include "tests/benchmarks/support/measurement.h"
 #include "viewer/gl/offscreen_context.h"
 #include "viewer/gl/picture_target.h"
@@ -34,13 +35,7 @@ struct Series {
 /// All data from one side, by a parallel projection, in which a pixel is one length everywhere.
 void look_from_everywhere(ViewSession& session, double voxels, double voxel) {
   ViewState& state = session.state();
-  const Box3 box = session.box();
-  const double size = box.diagonal();
-  state.viewpoint.target = box.center();
-  state.viewpoint.eye = box.center() + size * Vec3{0.6, -0.64, 0.48};
-  state.viewpoint.up = {0, 0, 1};
-  state.viewpoint.near = 1e-3 * size;
-  state.viewpoint.height = 1.1 * size;
+  state.viewpoint = from_everywhere(session.box(), kWidth, kHeight);
   state.pixels = voxels * voxel * kHeight / state.viewpoint.height;
   state.max_triangles = 100'000'000;
   state.has_box = state.has_axes = false;

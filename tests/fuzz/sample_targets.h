@@ -59,6 +59,16 @@ inline PageShape shape_in_header(std::span<const std::byte> header) {
   return {{along(1), along(2), along(3)}, std::to_integer<int>(header[4]) % 2 != 0, 0};
 }
 
+/// run(Word{}) for the size of samples in the first byte of a header.
+template <class Run>
+void with_word_in_header(int first, Run&& run) {
+  const int word = first % 64;
+  if (word == 1) return run(std::uint8_t{});
+  if (word == 2) return run(std::uint16_t{});
+  if (word == 4) return run(std::uint32_t{});
+  fail("expected samples of 1, 2 or 4 bytes, found {}", word);
+}
+
 /// A header of 7 bytes: the size of a sample, and 128 more for kInterpolation or 64 more for kRanks; points
 /// per axis; whether the page is complete; the size of the tables in 2 bytes. Then the tables and the page.
 inline void sample_codec(std::string_view bytes) {
@@ -70,11 +80,8 @@ inline void sample_codec(std::string_view bytes) {
   const PageShape shape = shape_in_header(given);
   const auto size = std::min(static_cast<std::size_t>(number(5) + 256 * number(6)), given.size() - kHeader);
   const auto tables = given.subspan(kHeader, size), page = given.subspan(kHeader + size);
-  const int word = number(0) % 64;
-  if (word == 1) return sample_codec_of<std::uint8_t>(coding, shape, tables, page);
-  if (word == 2) return sample_codec_of<std::uint16_t>(coding, shape, tables, page);
-  if (word == 4) return sample_codec_of<std::uint32_t>(coding, shape, tables, page);
-  fail("expected samples of 1, 2 or 4 bytes, found {}", word);
+  with_word_in_header(number(0),
+                      [&](auto word) { sample_codec_of<decltype(word)>(coding, shape, tables, page); });
 }
 
 }  // namespace adamas::fuzz

@@ -81,11 +81,9 @@ inline void time_codec(std::string_view bytes) {
   const auto tables = rest.first(size), time_tables = rest.subspan(size, time_size);
   const auto page = rest.subspan(size + time_size);
   const auto seed = static_cast<std::uint8_t>(number(9));
-  const int word = number(0) % 64;
-  if (word == 1) return time_codec_of<std::uint8_t>(coding, shape, seed, tables, time_tables, page);
-  if (word == 2) return time_codec_of<std::uint16_t>(coding, shape, seed, tables, time_tables, page);
-  if (word == 4) return time_codec_of<std::uint32_t>(coding, shape, seed, tables, time_tables, page);
-  fail("expected samples of 1, 2 or 4 bytes, found {}", word);
+  with_word_in_header(number(0), [&](auto word) {
+    time_codec_of<decltype(word)>(coding, shape, seed, tables, time_tables, page);
+  });
 }
 
 }  // namespace adamas::fuzz
