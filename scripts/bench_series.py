@@ -14,6 +14,7 @@ MEGA = 10**6
 READ_STEPS = (10, 15, 20)
 INTERPOLATION_VOXELS = ("0.7", "2", "4")
 ERROR = "0.7voxels"
+FINE_ERROR = "0.05voxels"  # at which the large series has 200,000 triangles
 RUNS = 3
 SAMPLE_BYTES = {"uint8": 1, "uint16": 2, "float32": 4}
 PAGE_SAMPLES = 4096
@@ -27,15 +28,24 @@ class Series:
         self.folder = name.replace(" ", "-").replace("^3", "")
 
 
+def moving_bodies(side, steps, sample):
+    return ["generate", "scene", "moving", "--dimensions", ",".join([side] * 3), "--steps", steps, "--volume", sample, "-o", "moving.pvd"]
+
+
+def large_series(quick):
+    """Of which nothing but steps is measured."""
+    side, steps = ("128", "4") if quick else ("512", "8")
+    return Series(f"moving {side}^3 x {steps} uint16", 0, ["moving.pvd"], aim=0.15, generate=moving_bodies(side, steps, "uint16"))
+
+
 def all_series(quick):
     side, steps = ("64", "20") if quick else ("128", "100")
     large, moving = ("64", "20") if quick else ("256", "64")
     data = os.environ.get("ADAMAS_DATA", "../shared/data")
     yield Series(f"mixing {side}^3 x {steps}", 12, ["mixing.pvd"], "--array", "density", aim=0.3,
                  generate=["generate", "mixing", "--dimensions", side, "--steps", steps, "-o", "mixing.pvd"])
-    yield Series(f"moving {large}^3 x {moving}", 0, ["moving.pvd"], aim=0.15,
-                 generate=["generate", "scene", "moving", "--dimensions", ",".join([large] * 3), "--steps", moving, "--volume", "uint8", "-o",
-                           "moving.pvd"])
+    for sample, aim in (("uint16", 0.15), ("uint8", None)):
+        yield Series(f"moving {large}^3 x {moving} {sample}", 0, ["moving.pvd"], aim=aim, generate=moving_bodies(large, moving, sample))
     yield Series("ViscousFingers 64^3 x 24", 20, sorted(glob.glob(os.path.join(data, "timeseries/ttk_ViscousFingers/run01/*.vti"))))
     yield Series("spcth 64^3 x 9", 127.5, sorted(glob.glob(os.path.join(data, "derived/spcth_vf/*_vf3_*.raw"))), "--dimensions", "64,64,64", "--type",
                  "uint8", "--spacing", "0.78125,0.78125,0.78125")
@@ -86,8 +96,12 @@ class Bench:
             os.remove(path)
         return path, self.figures("store", *inputs, *self.series.options, *options, "-o", path)
 
-    def play(self, file, read_steps):
-        return self.figures("play", file, f"--isovalue={self.series.isovalue}", "--error", ERROR, "--ahead", "0", "--read-steps", str(read_steps))
+    def play(self, file, read_steps, error=ERROR):
+        return self.figures("play", file, f"--isovalue={self.series.isovalue}", "--error", error, "--ahead", "0", "--read-steps", str(read_steps))
+
+    def timed(self, file, error=ERROR):
+        """Playing and contouring by turns."""
+        return [(self.play(file, READ_STEPS[0], error), self.contours(file)) for _ in range(RUNS)]
 
     def contours(self, file):
         return lines_of(self.build, "bench_series_contour", file, str(self.series.isovalue), self.path("step.raw"))
@@ -107,8 +121,8 @@ def mega(count):
 
 
 def whole(zstd, size):
-    """What zstd makes of some pages, for the samples of all."""
-    return {key: count * size // zstd["input"] for key, count in zstd.items()}
+    """What zstd makes of some pages, for all, whose bytes are so many."""
+    return {key: count * size // zstd["input"] for key, count in zstd.items() if key != "of"}
 
 
 def least_by_page(zstd):
@@ -116,12 +130,19 @@ def least_by_page(zstd):
 
 
 def file_rows(name, coded, plain, zstd, aim="<= 0.54"):
-    """The file beside one that is not compressed, and beside what zstd makes of the samples."""
+    """The file beside one that is not compressed, and beside what zstd makes of the same: samples, and errors and ranges of all."""
     parts = f"{mega(coded['bytes_data'])} of samples, {mega(coded['bytes_errors'])} of errors and ranges"
     yield [f"file of {name}", mega(coded["bytes_file"]), f"uncompressed {mega(plain['bytes_file'])}",
            f"{coded['bytes_file'] / plain['bytes_file']:.3f}", aim, f"{parts}; errors and ranges are coded in both"]
-    for what, size in (("file", coded["bytes_file"]), ("samples alone", coded["bytes_data"])):
-        yield [f"{what} of {name}", mega(size), f"zstd {mega(zstd['least'])}", f"{size / zstd['least']:.3f}", "< 1", least_by_page(zstd)]
+    sample = SAMPLE_BYTES[coded["type"]]
+    of = {"samples": whole(zstd["samples"], coded["bytes_input"]),
+          "errors and ranges": whole(zstd["errors and ranges"], coded["bytes_input"] * (1 + 2 * sample) // sample)}
+    least = sum(part["least"] for part in of.values())
+    yield [f"file of {name}", mega(coded["bytes_file"]), f"zstd {mega(least)}", f"{coded['bytes_file'] / least:.3f}", "< 1",
+           ", ".join(f"{mega(part['least'])} of {what}" for what, part in of.items()) + ", without directory and checksums"]
+    for what, key in (("samples", "bytes_data"), ("errors and ranges", "bytes_errors")):
+        yield [f"{what} of {name}", mega(coded[key]), f"zstd {mega(of[what]['least'])}", f"{coded[key] / of[what]['least']:.3f}", "< 1",
+               least_by_page(of[what])]
 
 
 def memory_text(read_steps, sample):
@@ -156,14 +177,14 @@ def median(values):
     return sorted(values)[len(values) // 2]
 
 
-def time_row(series, played, contoured):
+def time_row(series, played, contoured, error=ERROR):
     """Runs of both by turns: processor seconds of the whole run, and of Flying Edges with its reading."""
     steps = len(contoured[0])
     ours = [p["processor_seconds"] / steps for p in played]
     peer = [sum(line["processor_seconds"] for line in lines) / steps for lines in contoured]
     ratios = sorted(a / b for a, b in zip(ours, peer))
     triangles = sum(line["triangles"] for line in contoured[0]) / steps
-    return [f"step of {series.name}", f"{1e3 * median(ours):.1f} ms", f"raw + Flying Edges {1e3 * median(peer):.1f} ms", f"{median(ratios):.2f}",
+    return [f"step of {series.name}, {error}", f"{1e3 * median(ours):.1f} ms", f"raw + Flying Edges {1e3 * median(peer):.1f} ms", f"{median(ratios):.2f}",
             "<= 0.5" if played[0]["triangles_mean"] >= 2e5 or series.aim else "",
             f"{played[0]['triangles_mean']:,.0f} triangles against {triangles:,.0f}, with normals, 1 thread, processor seconds; ratios of {len(ratios)} "
             f"runs {ratios[0]:.2f} to {ratios[-1]:.2f}; at most {1e3 * median([max(f['seconds'] for f in p['frames']) for p in played]):.0f} ms a step"]
@@ -253,15 +274,15 @@ def rows_of(bench):
     series, inputs = bench.series, bench.generate()
     coded_file, coded = bench.store("coded.adm", inputs)
     plain_file, plain = bench.store("plain.adm", inputs, "--coding", "none")
-    zstd = lines_of(bench.build, "bench_series_pages", coded_file)[0]
-    yield from file_rows(series.name, coded, plain, whole(zstd, coded["bytes_input"]), "<= 0.54" if series.aim else "")
+    zstd = {found["of"]: found for found in lines_of(bench.build, "bench_series_pages", coded_file)}
+    yield from file_rows(series.name, coded, plain, zstd, "<= 0.54" if series.aim else "")
     yield one_by_one_row(bench, inputs, coded)
     plays = {steps: (bench.play(coded_file, steps), bench.play(plain_file, steps)) for steps in READ_STEPS}
     for steps, both in plays.items():
         yield reading_row(series, steps, SAMPLE_BYTES[coded["type"]], *both)
     least = bench.play(coded_file, 1)
     yield needs_row(series.name, least, lines_of(bench.build, "bench_series_bytes", coded_file, str(series.isovalue))[0])
-    timed = [(bench.play(coded_file, READ_STEPS[0]), bench.contours(coded_file)) for _ in range(RUNS)]
+    timed = bench.timed(coded_file)
     yield time_row(series, *zip(*timed))
     draw_plays(bench, plays, timed[-1][1])
 
@@ -283,3 +304,9 @@ def series_rows(build, quick):
             if os.path.exists(os.path.join(build, "tests/benchmarks/bench_interpolation")):
                 steps = int(series.generate[series.generate.index("--steps") + 1])
                 yield from interpolation_rows(build, series.name, bench.path("coded.adm"), series.isovalue, steps, os.cpu_count())
+    large = large_series(quick)
+    with folder_of(large) as folder:
+        bench = Bench(build, folder, large)
+        file, _ = bench.store("coded.adm", bench.generate())
+        for error in (ERROR, FINE_ERROR):
+            yield time_row(large, *zip(*bench.timed(file, error)), error)

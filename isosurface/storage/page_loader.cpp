@@ -10,21 +10,13 @@
 
 namespace adamas {
 
-namespace {
-
-bool is_of_same_page(const MissingPage& a, const MissingPage& b) {
-  return a.id == b.id && a.part == b.part && a.step == b.step;
-}
-
-}  // namespace
-
 template <class Word>
 PageLoader<Word>::PageLoader(StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived)
     : file_(pages.file().for_another_thread()),
-      memory_(memory),
-      pages_(*file_, memory),
+      memory_(memory - memory / 4),
+      pages_(*file_, memory_),
       notify_(std::move(arrived)),
-      most_arrived_(std::clamp<std::size_t>(memory / (4 * sizeof(Page<Word>)), 16, 256)),
+      most_arrived_(std::clamp<std::size_t>(memory / (4 * sizeof(Page<Word>)), 16, 4096)),
       thread_([this] { run(); }) {}
 
 template <class Word>
@@ -39,8 +31,27 @@ PageLoader<Word>::~PageLoader() {
 
 template <class Word>
 void PageLoader<Word>::want(std::vector<MissingPage> pages) {
+  const auto key = [this](const MissingPage& page) {
+    return std::tuple(page.step, file_->grid().number(page.id), page.part);
+  };
+  using Key = decltype(key(MissingPage{}));
+  std::vector<Key> keys;
+  std::ranges::transform(pages, std::back_inserter(keys), key);
+  std::ranges::sort(keys);
   {
     const std::lock_guard lock(mutex_);
+    // What is there or on its way is not loaded once more.
+    std::vector<Key> known;
+    const auto is_wanted = [&](const MissingPage& page) {
+      const bool is_among = std::ranges::binary_search(keys, key(page));
+      if (is_among) known.push_back(key(page));
+      return is_among;
+    };
+    for (Arrived& arrived : arrived_) arrived.is_wanted = is_wanted(arrived.what);
+    if (loading_) is_loading_wanted_ = is_wanted(*loading_);
+    std::ranges::sort(known);
+    std::erase_if(pages,
+                  [&](const MissingPage& page) { return std::ranges::binary_search(known, key(page)); });
     wanted_ = std::move(pages);
     next_ = 0;
   }
@@ -54,19 +65,18 @@ void PageLoader<Word>::run() {
     changed_.wait(lock, [this] { return is_ended_ || has_work(); });
     if (is_ended_) return;
     const MissingPage wanted = wanted_[next_++];
-    const auto has_come = [&](const Arrived& arrived) { return is_of_same_page(arrived.what, wanted); };
-    if (!std::ranges::any_of(arrived_, has_come)) {
-      is_loading_ = true;
-      lock.unlock();
-      Arrived arrived = load(wanted);
-      const PageCounts counts = pages_.counts();
-      lock.lock();
-      is_loading_ = false;
-      counts_ = counts;
-      page_reads_ = file_->page_reads();
-      if (problem_.empty()) problem_ = arrived.problem;
-      arrived_.push_back(std::move(arrived));
-    }
+    loading_ = wanted;
+    is_loading_wanted_ = true;
+    lock.unlock();
+    Arrived arrived = load(wanted);
+    const PageCounts counts = pages_.counts();
+    lock.lock();
+    loading_.reset();
+    arrived.is_wanted = is_loading_wanted_;
+    counts_ = counts;
+    page_reads_ = file_->page_reads();
+    if (problem_.empty()) problem_ = arrived.problem;
+    arrived_.push_back(std::move(arrived));
     lock.unlock();
     changed_.notify_all();
     notify_();
@@ -128,19 +138,11 @@ template <class Word>
 typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages, StoredGradients* gradients,
                                                         const PagesOf& pages_of) {
   std::vector<Arrived> arrived;
-  std::vector<MissingPage> wanted;
   {
     const std::lock_guard lock(mutex_);
     arrived = std::exchange(arrived_, {});
-    wanted = wanted_;
   }
   changed_.notify_all();
-  const auto key = [&](const MissingPage& page) {
-    return std::tuple(page.step, pages.grid().number(page.id), page.part);
-  };
-  std::vector<decltype(key(MissingPage{}))> keys;
-  if (!arrived.empty()) std::ranges::transform(wanted, std::back_inserter(keys), key);
-  std::ranges::sort(keys);
   Taken taken;
   for (const Arrived& one : arrived) {
     if (one.directory) pages.file().take_over(one.directory);
@@ -152,7 +154,7 @@ typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages
       if (is_of_step) taken.pages.push_back(one.what);
       continue;
     }
-    if (!std::ranges::binary_search(keys, key(one.what))) continue;
+    if (!one.is_wanted) continue;
     const bool has_room = put(one, *to, is_of_step ? gradients : nullptr);
     if (!is_of_step) continue;
     if (has_room) {
@@ -194,13 +196,13 @@ void PageLoader<Word>::note_lost(const Arrived& arrived, StoredPages<Word>& page
 template <class Word>
 bool PageLoader<Word>::is_idle() const {
   const std::lock_guard lock(mutex_);
-  return next_ >= wanted_.size() && !is_loading_ && arrived_.empty();
+  return next_ >= wanted_.size() && !loading_ && arrived_.empty();
 }
 
 template <class Word>
 void PageLoader<Word>::wait() const {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !arrived_.empty() || (next_ >= wanted_.size() && !is_loading_); });
+  changed_.wait(lock, [this] { return !arrived_.empty() || (next_ >= wanted_.size() && !loading_); });
 }
 
 template <class Word>

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,9 +22,9 @@ namespace adamas {
 template <class Word>
 class PageLoader {
  public:
-  /// A loader for pages of memories of all steps of a store. `memory`: bytes that its own pages may take.
-  /// `arrived` is called in the loader's thread when there is something to take. Throws Error where the file
-  /// cannot be opened again.
+  /// A loader for pages of memories of all steps of a store. `memory`: bytes that its own pages may take,
+  /// with those that wait to be taken. `arrived` is called in the loader's thread when there is something to
+  /// take. Throws Error where the file cannot be opened again.
   PageLoader(
       StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived = [] {});
   PageLoader(const PageLoader&) = delete;
@@ -63,6 +64,7 @@ class PageLoader {
     std::unique_ptr<Page<Word>> page;
     std::unique_ptr<PageSamples<std::uint16_t>> gradients;
     std::shared_ptr<const StoreFile::DirectoryPart> directory;
+    bool is_wanted = true;  ///< still, by the last call of want()
   };
 
   void run();
@@ -82,7 +84,9 @@ class PageLoader {
   std::size_t most_arrived_;  ///< so many pages wait to be taken at most
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  bool is_ended_ = false, is_loading_ = false;
+  bool is_ended_ = false;
+  std::optional<MissingPage> loading_;  ///< at the moment
+  bool is_loading_wanted_ = false;      ///< that still
   std::vector<MissingPage> wanted_;
   std::size_t next_ = 0;  ///< of wanted_
   std::vector<Arrived> arrived_;

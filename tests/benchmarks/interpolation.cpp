@@ -1,6 +1,7 @@
 // The surfaces of a stored series, step after step, with points and normals interpolated by the processor and
 // by the vertex shader (D 5.6, table 5.2): seconds until a step's surface is worked out, until it is drawn,
-// and for a picture of what is there already; then how many steps a second are shown as a window plays them.
+// and for a picture of what is there already; then how many steps and how many pictures a second are shown as
+// a window plays them.
 // Without a window. Prints a line of JSON for each.
 
 #include <epoxy/gl.h>
@@ -115,8 +116,8 @@ void play(const Series& series, bool in_shader, const std::string& drawn_by) {
   clock.pace().steps_per_second = 1000;
   clock.pace().repeat = Repeat::kOnce;
   shown.session.play_steps();
-  std::uint32_t pictures = 0, steps = 0;
-  std::vector<double> between, triangles;
+  std::uint32_t steps = 0;
+  std::vector<double> between, of_pictures, triangles;
   double last_frame = 0, since = 0;
   const double seconds = seconds_of([&] {
     while (shown.session.step() < series.last) {
@@ -124,7 +125,7 @@ void play(const Series& series, bool in_shader, const std::string& drawn_by) {
       shown.session.advance(last_frame);
       last_frame = seconds_of([&] { shown.draw_now(); });
       since += last_frame;
-      ++pictures;
+      of_pictures.push_back(last_frame);
       if (shown.session.step() == before) continue;
       ++steps;
       between.push_back(since);
@@ -134,9 +135,11 @@ void play(const Series& series, bool in_shader, const std::string& drawn_by) {
   });
   std::printf(
       "{\"row\": \"played\", \"by\": \"%s\", \"voxels\": %g, \"threads\": %u, \"triangles\": %.0f, "
-      "\"steps_per_second\": %.2f, \"longest_step\": %.5f, \"pictures\": %u, \"drawn_by\": \"%s\"}\n",
+      "\"steps_per_second\": %.2f, \"longest_step\": %.5f, \"pictures_per_second\": %.1f, "
+      "\"longest_picture\": %.5f, \"drawn_by\": \"%s\"}\n",
       in_shader ? "shader" : "processor", series.voxels, thread_limit(), quantile(triangles, 0.5),
-      steps / seconds, quantile(between, 1), pictures, drawn_by.c_str());
+      steps / seconds, quantile(between, 1), static_cast<double>(of_pictures.size()) / seconds,
+      quantile(of_pictures, 1), drawn_by.c_str());
   std::fflush(stdout);
 }
 

@@ -1,14 +1,14 @@
-// What zstd -19 makes of the samples of a series, page by page as a store has them: each step of a page by
-// itself; the steps of a block one after another, as in the file; and these sample by sample, as the
-// dissertation (D 5.5) interleaves them. Of each page of a block the least counts. Of a long series only some
-// pages are looked at. Prints a line of JSON.
+// What zstd -19 makes of a series, page by page as a store has them: each step of a page by itself; the steps
+// of a block one after another, as in the file; and these sample by sample, as the dissertation (D 5.5)
+// interleaves them. Of each page of a block the least counts. So of samples, and of errors, least and
+// greatest words of ranges, each compressed by itself. Of a long series only some pages are looked at. Prints
+// a line of JSON for samples, and one for the others.
 
 #include <zstd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
-#include <numeric>
+#include <span>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -53,28 +53,43 @@ PageBytes compress(const std::vector<Bytes>& steps, std::size_t sample_bytes) {
   return found;
 }
 
-/// The samples that a page adds to coarser ones, in z-order, without those beyond the data.
-template <class Sample>
-Bytes samples_of(const PageGrid& grid, const PageId& id, const PagePoints<OrderedWord<Sample>>& words) {
-  Bytes bytes;
+/// Which points a page adds to coarser ones, in z-order, without those beyond the data.
+std::vector<std::size_t> own_places(const PageGrid& grid, const PageId& id) {
+  std::vector<std::size_t> places;
   for_each_own_point(page_shape(grid, id), [&](LatticePoint q, std::uint64_t) {
     const LatticePoint p = (1 << id.lod) * (PageGrid::kSide * id.block + q);
-    if (p.i > grid.last().i || p.j > grid.last().j || p.k > grid.last().k) return;
-    const Sample sample = from_ordered<Sample>(words[PageGrid::place(q, 0)]);
-    const std::size_t size = bytes.size();
-    bytes.resize(size + sizeof(Sample));
-    std::memcpy(bytes.data() + size, &sample, sizeof(Sample));
+    if (p.i <= grid.last().i && p.j <= grid.last().j && p.k <= grid.last().k)
+      places.push_back(PageGrid::place(q, 0));
   });
-  return bytes;
+  return places;
 }
 
-/// How many pages are looked at of all steps, as far as these divide into so few.
-constexpr std::uint64_t kPages = 70'000;
+template <class Number>
+Bytes bytes_of(const std::vector<Number>& numbers) {
+  const auto bytes = std::as_bytes(std::span(numbers));
+  return {bytes.begin(), bytes.end()};
+}
 
-/// Every so many-th page, of all levels in turn.
-std::vector<PageId> pages_of(const StoreFile& file) {
+/// The samples of a page as they are given.
+template <class Sample>
+Bytes samples_of(const PagePoints<OrderedWord<Sample>>& words, const std::vector<std::size_t>& places) {
+  std::vector<Sample> samples;
+  for (const std::size_t place : places) samples.push_back(from_ordered<Sample>(words[place]));
+  return bytes_of(samples);
+}
+
+template <class Points>
+Bytes points_of(const Points& points, const std::vector<std::size_t>& places) {
+  std::vector<typename Points::value_type> numbers;
+  for (const std::size_t place : places) numbers.push_back(points[place]);
+  return bytes_of(numbers);
+}
+
+/// Every so many-th page, of all levels in turn: `most` pages of all steps, as far as these divide into so
+/// few.
+std::vector<PageId> pages_of(const StoreFile& file, std::uint64_t most) {
   const PageGrid& grid = file.grid();
-  const std::uint64_t every = 1 + grid.page_count() * file.steps() / kPages;
+  const std::uint64_t every = 1 + grid.page_count() * file.steps() / most;
   std::vector<PageId> pages;
   std::uint64_t count = 0;
   for (std::uint64_t number = 1; number < std::uint64_t{2} << (3 * grid.top()); ++number)
@@ -82,37 +97,77 @@ std::vector<PageId> pages_of(const StoreFile& file) {
   return pages;
 }
 
-/// Of the block that begins with a step.
-template <class Sample>
-void add_block(StoreFile& file, std::uint32_t first, PageBytes& all, std::size_t& least) {
-  const std::vector<PageId> pages = pages_of(file);
-  std::vector<std::vector<Bytes>> samples(pages.size());
-  StepPages<OrderedWord<Sample>> steps(file, kMemory);
-  for (std::uint32_t step = first; step < first + file.header(first).steps(); ++step) {
-    auto& of_step = steps.at(step);
-    for (std::size_t n = 0; n < pages.size(); ++n)
-      samples[n].push_back(
-          samples_of<Sample>(file.grid(), pages[n], of_step.needed_samples(pages[n]).samples));
-  }
-  std::vector<PageBytes> found(pages.size());
-  parallel_for(pages.size(), 4, [&](std::size_t n) { found[n] = compress(samples[n], sizeof(Sample)); });
-  for (const PageBytes& page : found) {
+/// All that is compressed of one kind.
+struct Total {
+  PageBytes all;
+  std::size_t least = 0;
+
+  void add(const PageBytes& page) {
     all.input += page.input;
     all.alone += page.alone;
     all.in_turn += page.in_turn;
     all.interleaved += page.interleaved;
     least += page.least();
   }
+  void print(const char* what) const {
+    std::printf(
+        "{\"of\": \"%s\", \"input\": %zu, \"alone\": %zu, \"in_turn\": %zu, \"interleaved\": %zu, "
+        "\"least\": %zu}\n",
+        what, all.input, all.alone, all.in_turn, all.interleaved, least);
+  }
+};
+
+/// Adds a number of each point of some pages, in the block that begins with a step. bytes(pages of a step,
+/// id, places): those of a page's points.
+template <class Sample, class BytesOf>
+void add_block(StoreFile& file, std::uint32_t first, std::uint64_t most, std::size_t size, BytesOf bytes,
+               Total& total) {
+  const std::vector<PageId> pages = pages_of(file, most);
+  std::vector<std::vector<Bytes>> steps_of(pages.size());
+  StepPages<OrderedWord<Sample>> steps(file, kMemory);
+  for (std::uint32_t step = first; step < first + file.header(first).steps(); ++step) {
+    auto& of_step = steps.at(step);
+    for (std::size_t n = 0; n < pages.size(); ++n)
+      steps_of[n].push_back(bytes(of_step, pages[n], own_places(file.grid(), pages[n])));
+  }
+  std::vector<PageBytes> found(pages.size());
+  parallel_for(pages.size(), 4, [&](std::size_t n) { found[n] = compress(steps_of[n], size); });
+  for (const PageBytes& page : found) total.add(page);
 }
 
 template <class Sample>
 void report(StoreFile& file) {
-  PageBytes all;
-  std::size_t least = 0;
-  for (std::uint32_t step = 0; step < file.steps(); step += file.header(step).steps())
-    add_block<Sample>(file, step, all, least);
-  std::printf("{\"input\": %zu, \"alone\": %zu, \"in_turn\": %zu, \"interleaved\": %zu, \"least\": %zu}\n",
-              all.input, all.alone, all.in_turn, all.interleaved, least);
+  using Word = OrderedWord<Sample>;
+  using Places = std::vector<std::size_t>;
+  constexpr std::uint64_t kSamplePages = 70'000, kBoundsPages = 10'000;
+  Total samples, bounds;
+  for (std::uint32_t step = 0; step < file.steps(); step += file.header(step).steps()) {
+    const auto add = [&](std::uint64_t most, std::size_t size, auto bytes, Total& total) {
+      add_block<Sample>(file, step, most, size, bytes, total);
+    };
+    using Pages = StoredPages<Word>;
+    add(
+        kSamplePages, sizeof(Sample),
+        [](Pages& pages, const PageId& id, const Places& places) {
+          return samples_of<Sample>(pages.needed_samples(id).samples, places);
+        },
+        samples);
+    add(
+        kBoundsPages, 1,
+        [](Pages& pages, const PageId& id, const Places& places) {
+          return points_of(pages.needed_bounds(id).errors, places);
+        },
+        bounds);
+    for (const auto side : {&PageBounds<Word>::low, &PageBounds<Word>::high})
+      add(
+          kBoundsPages, sizeof(Word),
+          [side](Pages& pages, const PageId& id, const Places& places) {
+            return points_of(pages.needed_bounds(id).*side, places);
+          },
+          bounds);
+  }
+  samples.print("samples");
+  bounds.print("errors and ranges");
 }
 
 }  // namespace
