@@ -1,8 +1,9 @@
 #include "isosurface/storage/missing_page.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <tuple>
-#include <utility>
+#include <unordered_map>
 
 namespace adamas {
 
@@ -14,23 +15,30 @@ auto importance(const MissingPage& page) { return std::tuple(-page.view_class, p
 
 void sort_by_importance(const PageGrid& grid, std::vector<MissingPage>& pages) {
   using Part = MissingPage::Part;
-  const auto number = [&](const MissingPage& page) {
-    return std::pair(grid.number(page.id), page.part == Part::kGradients);
+  struct Wanted {
+    std::uint64_t number;
+    MissingPage page;
   };
+  std::vector<Wanted> all;
   // Of several wants of one page the most important one tells its place, and the greatest part all of them.
-  std::ranges::sort(pages, [&](const MissingPage& a, const MissingPage& b) {
-    return std::tuple(number(a), importance(a), a.part) < std::tuple(number(b), importance(b), b.part);
-  });
-  std::size_t count = 0;
+  std::unordered_map<std::uint64_t, std::size_t> places;
   for (const MissingPage& page : pages) {
-    if (count > 0 && number(pages[count - 1]) == number(page)) {
-      pages[count - 1].part = std::max(pages[count - 1].part, page.part);
-    } else {
-      pages[count++] = page;
+    const std::uint64_t number = 2 * grid.number(page.id) + (page.part == Part::kGradients ? 1 : 0);
+    const auto [found, is_new] = places.try_emplace(number, all.size());
+    if (is_new) {
+      all.push_back({number, page});
+      continue;
     }
+    MissingPage& known = all[found->second].page;
+    const Part part = std::max(known.part, page.part);
+    if (importance(page) < importance(known)) known = page;
+    known.part = part;
   }
-  pages.resize(count);
-  std::ranges::stable_sort(pages, {}, importance);
+  std::ranges::sort(all, {}, [](const Wanted& wanted) {
+    return std::tuple_cat(importance(wanted.page), std::tuple(wanted.number));
+  });
+  pages.clear();
+  for (const Wanted& wanted : all) pages.push_back(wanted.page);
 }
 
 }  // namespace adamas

@@ -124,7 +124,8 @@ void PageLoader<Word>::load_part(Arrived& arrived) {
     return;
   }
   StoredPages<Word>& pages = pages_.at(step);
-  arrived.page = std::make_unique<Page<Word>>();
+  arrived.page = free_.take();
+  if (arrived.page == nullptr) arrived.page = std::make_unique_for_overwrite<Page<Word>>();
   if (part == MissingPage::Part::kAll) {
     if (!pages.copy(id, *arrived.page)) note_damaged(pages.last_damaged());
     return;
@@ -163,6 +164,7 @@ typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages
       taken.is_full = true;
     }
   }
+  for (Arrived& one : arrived) free_.give(std::move(one.page));
   return taken;
 }
 

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/shared_pool.h"
 #include "isosurface/storage/missing_page.h"
 #include "isosurface/storage/step_pages.h"
 
@@ -81,7 +82,8 @@ class PageLoader {
   std::unique_ptr<StoredGradients> gradients_;  ///< of gradients_step_; null before they are asked for
   std::uint32_t gradients_step_ = 0;
   std::function<void()> notify_;
-  std::size_t most_arrived_;  ///< so many pages wait to be taken at most
+  std::size_t most_arrived_;     ///< so many pages wait to be taken at most
+  SharedPool<Page<Word>> free_;  ///< pages that were taken, for others that come
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   bool is_ended_ = false;

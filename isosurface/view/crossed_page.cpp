@@ -35,12 +35,11 @@ void for_each_code(const Codes& codes, Visit&& visit) {
 
 /// The pages round one that have members of its diamond.
 std::uint32_t pages_of_members(LatticePoint q) {
-  const auto along = [](std::int32_t x) { return 2u | (x == 0 ? 1u : 0u) | (x == kSide - 1 ? 4u : 0u); };
-  std::uint32_t pages = 0;
-  for (unsigned n = 0; n < 9; ++n) {
-    if ((along(q.j) >> n % 3 & along(q.k) >> n / 3 & 1) != 0) pages |= along(q.i) << 3 * n;
-  }
-  return pages;
+  // Bit 0 for the page before, then `step` bits for each page further.
+  const auto along = [](std::int32_t x, int step) {
+    return 1u << step | (x == 0 ? 1u : 0u) | (x == kSide - 1 ? 1u << 2 * step : 0u);
+  };
+  return along(q.i, 1) * along(q.j, 3) * along(q.k, 9);
 }
 
 }  // namespace

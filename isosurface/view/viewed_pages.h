@@ -200,9 +200,9 @@ class ViewedPages {
   [[nodiscard]] std::size_t groups_in_memory(const ViewedPage& page);
   /// Finds the pages that have members of the first groups of a page.
   void find_members(const ViewedPage& page, std::size_t groups);
-  /// Calls visit(id) for the pages that have members of a group; until it returns false.
+  /// Calls visit(id) for pages round one, by bits as CrossedPage::members has them; until it returns false.
   template <class Visit>
-  bool for_each_member_page(const ViewedPage& page, std::size_t group, Visit&& visit);
+  bool for_each_member_page(const ViewedPage& page, std::uint32_t members, Visit&& visit);
   /// Calls visit(id, part, class, depth) for the pages that the last walk needs.
   template <class Visit>
   void for_each_needed(Visit&& visit);

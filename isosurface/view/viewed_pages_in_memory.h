@@ -62,12 +62,12 @@ void ViewedPages<Sample>::note_missing(const PageId& id, MissingPage::Part part,
 
 template <class Sample>
 template <class Visit>
-bool ViewedPages<Sample>::for_each_member_page(const ViewedPage& page, std::size_t group, Visit&& visit) {
+bool ViewedPages<Sample>::for_each_member_page(const ViewedPage& page, std::uint32_t members, Visit&& visit) {
   const PageGrid& grid = diamonds_.grid();
   // The coarsest page has all members of its diamonds.
   if (page.lod >= grid.top()) return visit(PageId{grid.top(), {0, 0, 0}});
   const LatticePoint blocks = grid.blocks(page.lod);
-  for (std::uint32_t bits = page.crossed->members[group]; bits != 0; bits &= bits - 1) {
+  for (std::uint32_t bits = members; bits != 0; bits &= bits - 1) {
     const int n = std::countr_zero(bits);
     const LatticePoint block = page.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
     if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
@@ -89,11 +89,14 @@ template <class Sample>
 std::size_t ViewedPages<Sample>::groups_in_memory(const ViewedPage& page) {
   find_members(page, page.groups_wanted);
   auto& pages = diamonds_.pages();
+  const std::vector<std::uint32_t>& members = page.crossed->members;
   std::size_t group = 0;
-  while (group < page.groups_wanted && for_each_member_page(page, group, [&](const PageId& id) {
-           return pages.has(id, PageParts::kSamples);
-         }))
-    ++group;
+  // Those of groups before are there.
+  for (std::uint32_t known = 0; group < page.groups_wanted; known |= members[group++]) {
+    const bool has_all = for_each_member_page(
+        page, members[group] & ~known, [&](const PageId& id) { return pages.has(id, PageParts::kSamples); });
+    if (!has_all) break;
+  }
   return group;
 }
 
@@ -147,7 +150,7 @@ void ViewedPages<Sample>::note_missing_groups(const ViewedPage& page, const Page
   }
   auto& pages = diamonds_.pages();
   for (std::size_t g = page.groups_in_memory; g < end; ++g) {
-    for_each_member_page(page, g, [&](const PageId& id) {
+    for_each_member_page(page, page.crossed->members[g], [&](const PageId& id) {
       if (!pages.has(id, PageParts::kSamples))
         note_missing(id, MissingPage::Part::kSamples, greatest, nearest);
       return true;
@@ -249,9 +252,14 @@ void ViewedPages<Sample>::for_each_needed(Visit&& visit) {
         visit(own, MissingPage::Part::kAll,
               class_at(error_class(page->crossed->groups[0].code, page->lod), depth), depth);
       }
+      // The first of the groups with members on a page have the greatest errors.
+      std::uint32_t known = 0;
       for (std::size_t g = 0; g < groups; ++g) {
+        const std::uint32_t members = page->crossed->members[g] & ~known;
+        if (members == 0) continue;
+        known |= members;
         const int importance = class_at(error_class(page->crossed->groups[g].code, page->lod), depth);
-        for_each_member_page(*page, g, [&](const PageId& id) {
+        for_each_member_page(*page, members, [&](const PageId& id) {
           visit(id, MissingPage::Part::kSamples, importance, depth);
           return true;
         });
