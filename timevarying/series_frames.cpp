@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "isosurface/storage/page_loader.h"
 #include "isosurface/storage/step_pages.h"
 #include "isosurface/view/paged_frames.h"
@@ -106,7 +107,9 @@ class SeriesFramesOf final : public SeriesFrames {
     // loader.
     const std::size_t of_loader = steps_.file().steps() > 1 ? memory_ / 2 : memory_ / 4;
     steps_.set_memory(memory_ - of_loader);
-    loader_ = std::make_unique<PageLoader<Word>>(frames_.pages(), of_loader, arrived_);
+    // Some threads are for the frames themselves.
+    const std::size_t threads = std::clamp<std::size_t>(thread_limit() / 4, 1, 4);
+    loader_ = std::make_unique<PageLoader<Word>>(frames_.pages(), of_loader, arrived_, threads);
   }
 
   void take_pages(std::uint32_t step, const FrameRequest& request) {

@@ -11,28 +11,52 @@
 namespace adamas {
 
 template <class Word>
-PageLoader<Word>::PageLoader(StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived)
-    : file_(pages.file().for_another_thread()),
-      memory_(memory - memory / 4),
-      pages_(*file_, memory_),
+PageLoader<Word>::PageLoader(StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived,
+                             std::size_t threads)
+    : grid_(pages.grid()),
       notify_(std::move(arrived)),
-      most_arrived_(std::clamp<std::size_t>(memory / (4 * sizeof(Page<Word>)), 16, 4096)),
-      thread_([this] { run(); }) {}
+      most_arrived_(std::clamp<std::size_t>(memory / (4 * sizeof(Page<Word>)), 16, 4096)) {
+  for (std::size_t n = 0; n < threads; ++n)
+    readers_.push_back(
+        std::make_unique<Reader>(pages.file().for_another_thread(), (memory - memory / 4) / threads));
+  try {
+    for (const auto& reader : readers_)
+      reader->thread = std::thread([this, &of_thread = *reader] { run(of_thread); });
+  } catch (...) {
+    end();
+    throw;
+  }
+}
 
 template <class Word>
 PageLoader<Word>::~PageLoader() {
+  end();
+}
+
+template <class Word>
+void PageLoader<Word>::end() {
   {
     const std::lock_guard lock(mutex_);
     is_ended_ = true;
   }
   changed_.notify_all();
-  thread_.join();
+  for (const auto& reader : readers_) {
+    if (reader->thread.joinable()) reader->thread.join();
+  }
+}
+
+template <class Word>
+typename PageLoader<Word>::Reader& PageLoader<Word>::reader_of(const PageId& id) {
+  // Eighths of the volume, so that few pages predict those of several readers.
+  const int up = std::max(0, grid_.top() - 2 - id.lod);
+  const LatticePoint part{id.block.i >> up, id.block.j >> up, id.block.k >> up};
+  return *readers_[static_cast<std::size_t>(part.i + 2 * part.j + 3 * part.k) % readers_.size()];
 }
 
 template <class Word>
 void PageLoader<Word>::want(std::vector<MissingPage> pages) {
   const auto key = [this](const MissingPage& page) {
-    return std::tuple(page.step, file_->grid().number(page.id), page.part);
+    return std::tuple(page.step, grid_.number(page.id), page.part);
   };
   using Key = decltype(key(MissingPage{}));
   std::vector<Key> keys;
@@ -48,34 +72,41 @@ void PageLoader<Word>::want(std::vector<MissingPage> pages) {
       return is_among;
     };
     for (Arrived& arrived : arrived_) arrived.is_wanted = is_wanted(arrived.what);
-    if (loading_) is_loading_wanted_ = is_wanted(*loading_);
+
+    for (const auto& reader : readers_) {
+      if (reader->loading) reader->is_loading_wanted = is_wanted(*reader->loading);
+      reader->wanted.clear();
+      reader->next = 0;
+    }
     std::ranges::sort(known);
-    std::erase_if(pages,
-                  [&](const MissingPage& page) { return std::ranges::binary_search(known, key(page)); });
-    wanted_ = std::move(pages);
-    next_ = 0;
+    for (const MissingPage& page : pages) {
+      if (!std::ranges::binary_search(known, key(page))) reader_of(page.id).wanted.push_back(page);
+    }
   }
   changed_.notify_all();
 }
 
 template <class Word>
-void PageLoader<Word>::run() {
+void PageLoader<Word>::run(Reader& reader) {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return is_ended_ || has_work(); });
+    changed_.wait(lock, [&] {
+      return is_ended_ || (reader.next < reader.wanted.size() && arrived_.size() < most_arrived_);
+    });
     if (is_ended_) return;
-    const MissingPage wanted = wanted_[next_++];
-    loading_ = wanted;
-    is_loading_wanted_ = true;
+    const MissingPage wanted = reader.wanted[reader.next++];
+    reader.loading = wanted;
+    reader.is_loading_wanted = true;
     lock.unlock();
-    Arrived arrived = load(wanted);
-    const PageCounts counts = pages_.counts();
+    Arrived arrived = load(reader, wanted);
+    const PageCounts counts = reader.pages.counts();
     lock.lock();
-    loading_.reset();
-    arrived.is_wanted = is_loading_wanted_;
-    counts_ = counts;
-    page_reads_ = file_->page_reads();
+    reader.loading.reset();
+    arrived.is_wanted = reader.is_loading_wanted;
+    reader.counts = counts;
+    reader.page_reads = reader.file->page_reads();
     if (problem_.empty()) problem_ = arrived.problem;
+    if (arrived.damaged) damaged_.emplace(wanted.step, grid_.number(*arrived.damaged));
     arrived_.push_back(std::move(arrived));
     lock.unlock();
     changed_.notify_all();
@@ -85,11 +116,11 @@ void PageLoader<Word>::run() {
 }
 
 template <class Word>
-typename PageLoader<Word>::Arrived PageLoader<Word>::load(const MissingPage& wanted) {
+typename PageLoader<Word>::Arrived PageLoader<Word>::load(Reader& reader, const MissingPage& wanted) {
   Arrived arrived;
   arrived.what = wanted;
   try {
-    load_part(arrived);
+    load_part(reader, arrived);
   } catch (const std::exception& error) {
     // A disk that cannot be read, or tables that are damaged.
     arrived.problem = error.what();
@@ -98,32 +129,34 @@ typename PageLoader<Word>::Arrived PageLoader<Word>::load(const MissingPage& wan
 }
 
 template <class Word>
-StoredGradients& PageLoader<Word>::gradients(std::uint32_t step) {
-  if (gradients_ == nullptr || gradients_step_ != step)
-    gradients_ = std::make_unique<StoredGradients>(*file_, step, memory_ / 2);
-  gradients_step_ = step;
-  return *gradients_;
+StoredGradients& PageLoader<Word>::gradients(Reader& reader, std::uint32_t step) {
+  if (reader.gradients == nullptr || reader.gradients_step != step)
+    reader.gradients = std::make_unique<StoredGradients>(*reader.file, step, reader.memory / 2);
+  reader.gradients_step = step;
+  return *reader.gradients;
 }
 
 template <class Word>
-void PageLoader<Word>::load_part(Arrived& arrived) {
+void PageLoader<Word>::load_part(Reader& reader, Arrived& arrived) {
   const auto& [id, part, view_class, depth, step] = arrived.what;
+  StoreFile& file = *reader.file;
   const auto note_damaged = [&](const PageId& damaged) {
-    arrived.problem = fmt::format("{}: {} is damaged", file_->name(), page_name(damaged));
+    arrived.damaged = damaged;
+    arrived.problem = fmt::format("{}: {} is damaged", file.name(), page_name(damaged));
   };
   if (part == MissingPage::Part::kDirectory) {
-    arrived.directory = file_->directory_part(step, id);
-    if (!file_->entry(step, id)) note_damaged(id);
+    arrived.directory = file.directory_part(step, id);
+    if (!file.entry(step, id)) note_damaged(id);
     return;
   }
   if (part == MissingPage::Part::kGradients) {
-    StoredGradients& from = gradients(step);
+    StoredGradients& from = gradients(reader, step);
     const PageSamples<std::uint16_t>* const found = from.samples(id);
     if (found == nullptr) return note_damaged(from.last_damaged());
     arrived.gradients = std::make_unique<PageSamples<std::uint16_t>>(*found);
     return;
   }
-  StoredPages<Word>& pages = pages_.at(step);
+  StoredPages<Word>& pages = reader.pages.at(step);
   arrived.page = free_.take();
   if (arrived.page == nullptr) arrived.page = std::make_unique_for_overwrite<Page<Word>>();
   if (part == MissingPage::Part::kAll) {
@@ -198,13 +231,13 @@ void PageLoader<Word>::note_lost(const Arrived& arrived, StoredPages<Word>& page
 template <class Word>
 bool PageLoader<Word>::is_idle() const {
   const std::lock_guard lock(mutex_);
-  return next_ >= wanted_.size() && !loading_ && arrived_.empty();
+  return is_done() && arrived_.empty();
 }
 
 template <class Word>
 void PageLoader<Word>::wait() const {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !arrived_.empty() || (next_ >= wanted_.size() && !loading_); });
+  changed_.wait(lock, [this] { return !arrived_.empty() || is_done(); });
 }
 
 template <class Word>
@@ -216,13 +249,19 @@ std::string PageLoader<Word>::problem() const {
 template <class Word>
 PageCounts PageLoader<Word>::counts() const {
   const std::lock_guard lock(mutex_);
-  return counts_;
+  PageCounts all;
+  for (const auto& reader : readers_) all += reader->counts;
+  // Several readers may meet with the same damage.
+  all.damaged = damaged_.size();
+  return all;
 }
 
 template <class Word>
 std::uint64_t PageLoader<Word>::page_reads() const {
   const std::lock_guard lock(mutex_);
-  return page_reads_;
+  std::uint64_t all = 0;
+  for (const auto& reader : readers_) all += reader->page_reads;
+  return all;
 }
 
 template class PageLoader<std::uint8_t>;

@@ -54,7 +54,7 @@ std::size_t sharpen(PagedFrames<Sample>& frames, PageLoader<Sample>& loader, con
   return most;
 }
 
-void fly(const StoreOptions& options) {
+void fly(const StoreOptions& options, std::size_t threads) {
   const MemoryVolume<Sample> volume = waves({90, 44, 60});
   OpenStore<Sample> store, other;
   for (OpenStore<Sample>* each : {&store, &other}) {
@@ -62,7 +62,8 @@ void fly(const StoreOptions& options) {
     each->open();
   }
   PagedFrames<Sample> frames(store.pages()), expected(other.pages());
-  PageLoader<Sample> loader(store.pages(), 1 << 20);
+  PageLoader<Sample> loader(
+      store.pages(), 1 << 20, [] {}, threads);
   CameraPath path(volume.grid.box(), 3);
   std::size_t most = 0;
   for (int n = 0; n < 6; ++n) {
@@ -79,12 +80,14 @@ void fly(const StoreOptions& options) {
   EXPECT_EQ(loader.problem(), "");
 }
 
-TEST(PageLoader, BringsWhatFramesLackUntilTheyAreThoseThatWait) { fly({}); }
+TEST(PageLoader, BringsWhatFramesLackUntilTheyAreThoseThatWait) {
+  for (const std::size_t threads : {1, 3}) fly({}, threads);
+}
 
 TEST(PageLoader, BringsStoredGradientsToo) {
   StoreOptions options;
   options.gradients = true;
-  fly(options);
+  for (const std::size_t threads : {1, 4}) fly(options, threads);
 }
 
 TEST(PageLoader, CanBeDestroyedAtAnyTime) {
@@ -94,7 +97,8 @@ TEST(PageLoader, CanBeDestroyedAtAnyTime) {
   PagedFrames<Sample> frames(store.pages());
   for (int n = 0; n < 20; ++n) {
     frames.refine(request(path));
-    PageLoader<Sample> loader(store.pages(), 1 << 20);
+    PageLoader<Sample> loader(
+        store.pages(), 1 << 20, [] {}, 1 + n % 3);
     loader.want(frames.missing_pages());
     for (int waits = 0; waits < n % 4; ++waits) loader.wait();
     if (n % 3 == 0) loader.take(frames.pages(), frames.gradients());
@@ -149,7 +153,8 @@ void expect_survival(const std::function<void(const std::filesystem::path&)>& ha
   const MemoryVolume<Sample> volume = waves({90, 44, 60});
   OpenStore<Sample> store(volume);
   PagedFrames<Sample> frames(store.pages());
-  PageLoader<Sample> loader(store.pages(), 0);
+  PageLoader<Sample> loader(
+      store.pages(), 0, [] {}, 2);
   CameraPath path(volume.grid.box(), 3);
   FrameFigures figures;
   frames.refine(request(path));
