@@ -51,6 +51,30 @@ void CrossedPage::forget_counts() {
   for (Group& group : groups) group.added = group.lost = 0;
 }
 
+std::span<const std::uint16_t> CrossedPage::uncounted(std::size_t wanted) const {
+  if (wanted <= counted) return {};
+  const std::size_t begin = groups[counted].begin, end = groups[wanted - 1].end;
+  return std::span(places).subspan(begin, end - begin);
+}
+
+void CrossedPage::set_counted(std::size_t wanted, std::span<const std::int16_t> changes) {
+  const std::size_t begin = groups[counted].begin, end = begin + changes.size();
+  added.resize(end);
+  if (!lost.empty()) lost.resize(end);
+  for (; counted < wanted; ++counted) {
+    Group& group = groups[counted];
+    for (std::size_t n = group.begin; n < group.end; ++n) {
+      const std::int16_t more = changes[n - begin];
+      added[n] = static_cast<std::uint8_t>(std::max<std::int16_t>(more, 0));
+      group.added += added[n];
+      if (more >= 0) continue;
+      lost.resize(end);
+      lost[n] = static_cast<std::uint8_t>(-more);
+      group.lost += lost[n];
+    }
+  }
+}
+
 void CrossedPage::find_members(std::size_t wanted) {
   while (members.size() < wanted) {
     const Group& group = groups[members.size()];
@@ -148,31 +172,26 @@ std::int64_t CrossedPageReader<Sample>::added_at(LatticePoint q) {
 }
 
 template <class Sample>
-void CrossedPageReader<Sample>::count(int lod, LatticePoint block, std::size_t groups, CrossedPage& page) {
-  if (groups <= page.counted) return;
-  const std::size_t begin = page.groups[page.counted].begin, end = page.groups[groups - 1].end;
+void CrossedPageReader<Sample>::find_changes(int lod, LatticePoint block,
+                                             std::span<const std::uint16_t> places,
+                                             std::span<std::int16_t> changes) {
   PageMask wanted;
-  for (std::size_t n = begin; n < end; ++n) wanted.add(page.places[n]);
+  for (const std::uint16_t place : places) wanted.add(place);
   page_.load(lod, block, wanted);
-  page.added.resize(end);
-  if (!page.lost.empty()) page.lost.resize(end);
-  for (; page.counted < groups; ++page.counted) {
-    CrossedPage::Group& group = page.groups[page.counted];
-    // Nothing is kept of a group of which some page cannot be had.
-    std::uint32_t added = 0, lost = 0;
-    for (std::size_t n = group.begin; n < group.end; ++n) {
-      const std::int64_t more = added_at(CrossedPage::point(page.places[n]));
-      ADAMAS_ASSERT(std::abs(more) <= std::numeric_limits<std::uint8_t>::max());
-      page.added[n] = static_cast<std::uint8_t>(std::max<std::int64_t>(more, 0));
-      added += page.added[n];
-      if (more >= 0) continue;
-      page.lost.resize(end);
-      page.lost[n] = static_cast<std::uint8_t>(-more);
-      lost += page.lost[n];
-    }
-    group.added = added;
-    group.lost = lost;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const std::int64_t more = added_at(CrossedPage::point(places[n]));
+    ADAMAS_ASSERT(std::abs(more) <= std::numeric_limits<std::uint8_t>::max());
+    changes[n] = static_cast<std::int16_t>(more);
   }
+}
+
+template <class Sample>
+void CrossedPageReader<Sample>::count(int lod, LatticePoint block, std::size_t groups, CrossedPage& page) {
+  const std::span<const std::uint16_t> places = page.uncounted(groups);
+  if (places.empty()) return;
+  std::vector<std::int16_t> changes(places.size());
+  find_changes(lod, block, places, changes);
+  page.set_counted(groups, changes);
 }
 
 template class CrossedPageReader<std::uint8_t>;

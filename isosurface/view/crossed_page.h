@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "isosurface/extraction/page_diamonds.h"
@@ -41,6 +42,10 @@ struct CrossedPage {
   [[nodiscard]] Change change(std::size_t n) const { return {added[n], lost.empty() ? 0u : lost[n]}; }
 
   void forget_counts();
+  /// The places in the groups before `groups` for which that is not known.
+  [[nodiscard]] std::span<const std::uint16_t> uncounted(std::size_t groups) const;
+  /// Sets it for these; negative changes take triangles away.
+  void set_counted(std::size_t groups, std::span<const std::int16_t> changes);
   /// Finds these of so many groups.
   void find_members(std::size_t groups);
   [[nodiscard]] std::size_t bytes() const {
@@ -81,7 +86,11 @@ class CrossedPageReader {
                    const PageBounds<typename StoredDiamonds<Sample>::Word>& bounds);
   /// Frees the memory of bounds that will hardly be needed again, of a page that was read.
   void drop_bounds(int lod, LatticePoint block);
-  /// Finds how many triangles splits add in the groups up to `groups`. Throws PageLost.
+  /// How many triangles the splits at some places of a page add. Throws PageLost. Several readers may do this
+  /// at the same time where pages are not loaded.
+  void find_changes(int lod, LatticePoint block, std::span<const std::uint16_t> places,
+                    std::span<std::int16_t> changes);
+  /// Finds that of the groups before `groups`.
   void count(int lod, LatticePoint block, std::size_t groups, CrossedPage& page);
 
  private:

@@ -250,14 +250,19 @@ SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, const Progre
 
 template <class Sample>
 void PagedFrames<Sample>::find_changed_cells(FrameFigures& figures) {
-  for (ViewedPage* const page : pages_.shown()) note_changes(*page, *page->split, figures);
+  // Chunks of another step are made anew in any case.
+  const std::uint32_t step = diamonds_.pages().step();
+  const bool keeps_some =
+      std::ranges::any_of(chunks_, [step](const ViewedPage* page) { return page->chunk_step == step; });
+  for (ViewedPage* const page : pages_.shown()) note_changes(*page, *page->split, keeps_some, figures);
   for (ViewedPage* const page : chunks_) {
-    if (pages_.split_of(page->lod, page->block) == nullptr) note_changes(*page, {}, figures);
+    if (pages_.split_of(page->lod, page->block) == nullptr) note_changes(*page, {}, keeps_some, figures);
   }
 }
 
 template <class Sample>
-void PagedFrames<Sample>::note_changes(ViewedPage& page, const PageMask& now, FrameFigures& figures) {
+void PagedFrames<Sample>::note_changes(ViewedPage& page, const PageMask& now, bool of_cells,
+                                       FrameFigures& figures) {
   const PageMask* const before = page.chunk == nullptr ? nullptr : &page.chunk->split;
   if (before != nullptr && *before == now) return;
   for (std::int32_t row = 0; row < kSide * kSide; ++row) {
@@ -267,7 +272,7 @@ void PagedFrames<Sample>::note_changes(ViewedPage& page, const PageMask& now, Fr
     if ((split | merged) == 0) continue;
     figures.splits += static_cast<std::uint64_t>(std::popcount(split));
     figures.merges += static_cast<std::uint64_t>(std::popcount(merged));
-    if (chunks_.empty()) continue;
+    if (!of_cells) continue;
     for (unsigned bits = split | merged; bits != 0; bits &= bits - 1) {
       const LatticePoint q{std::countr_zero(bits), row % kSide, row / kSide};
       const Diamond diamond(diamonds_.lattice_step(page.lod) * (kSide * page.block + q));

@@ -114,7 +114,8 @@ class PagedFrames {
   /// Finds in which cells of the last frame's chunks triangles are not as they were, and counts splits and
   /// merges.
   void find_changed_cells(FrameFigures& figures);
-  void note_changes(ViewedPage& page, const PageMask& now, FrameFigures& figures);
+  /// The same of a page, where `now` is split; `of_cells`: the cells too.
+  void note_changes(ViewedPage& page, const PageMask& now, bool of_cells, FrameFigures& figures);
   void note_cell(LatticePoint p);
   std::vector<NewChunk> make_chunks(const Progress& progress);
   /// Puts what was found in the place of the last frame.

@@ -183,7 +183,7 @@ std::size_t ViewedPages<Sample>::find_groups(ViewedPage& page, const PageView& v
   const std::size_t groups = loads_ ? page.groups_wanted : page.groups_in_memory;
   if (counts_ && groups > known.counted) {
     bytes_ -= known.bytes();
-    reader_.count(page.lod, page.block, groups, known);
+    if (!count_by_threads(page, groups)) reader_.count(page.lod, page.block, groups, known);
     bytes_ += known.bytes();
   }
   return groups;

@@ -182,6 +182,11 @@ class ViewedPages {
   void find_in_sight(const Check& check);
   /// Reads, by several threads, what the walk will want of these and what is in memory.
   void read_ahead_of_walk();
+  /// Calls work(begin, end, reader) for parts of so much work by several threads, which load no pages.
+  template <class Work>
+  void with_readers(std::size_t count, std::size_t grain, Work&& work);
+  /// Counts the groups of one page before `groups`; false where there are few, or pages are not in memory.
+  bool count_by_threads(ViewedPage& page, std::size_t groups);
   void read_from_memory(ViewedPage& page, const PageView& view, CrossedPageReader<Sample>& reader);
   /// Adds the diamonds of a page.
   void look_at(ViewedPage& page, const PageView& view, Added& added);
