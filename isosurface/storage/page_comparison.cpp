@@ -106,15 +106,8 @@ bool PageComparison<Word>::says_directory(const PageId& id) {
 
 template <class Word>
 bool PageComparison<Word>::has_same_bounds(const PageId& id) {
-  if (before_.has(id, PageParts::kAll) && after_.has(id, PageParts::kAll)) {
-    const PageBounds<Word>&before = *before_.bounds(id), &after = *after_.bounds(id);
-    bool same = true;
-    for_each_own_place(page_shape(before_.grid(), id), [&](std::size_t place) {
-      same = same && before.low[place] == after.low[place] && before.high[place] == after.high[place] &&
-             before.errors[place] == after.errors[place];
-    });
-    return same;
-  }
+  if (before_.has(id, PageParts::kAll) && after_.has(id, PageParts::kAll))
+    return are_same_bounds(page_shape(before_.grid(), id), *before_.bounds(id), *after_.bounds(id));
   return says_directory(id);
 }
 

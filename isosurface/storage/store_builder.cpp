@@ -229,7 +229,7 @@ class StoreBuilder {
     job.earlier[0] = {before.page.samples, before.around.samples};
     job.earlier_count = std::min(count, before.earlier_count + 1);
     if (job.earlier_count > 1) job.earlier[1] = before.earlier[0];
-    job.has_earlier_bounds = are_same_bounds(job.shape, before.page, job.page);
+    job.has_earlier_bounds = are_same_bounds<Word>(job.shape, before.page, job.page);
   }
 
   /// From the steps of the blocks before. What is damaged is no help.
@@ -244,15 +244,6 @@ class StoreBuilder {
       }
       job.earlier_count = n + 1;
     }
-  }
-
-  static bool are_same_bounds(const PageShape& shape, const PageBounds<Word>& a, const PageBounds<Word>& b) {
-    bool same = true;
-    for_each_own_place(shape, [&](std::size_t place) {
-      same = same && a.low[place] == b.low[place] && a.high[place] == b.high[place] &&
-             a.errors[place] == b.errors[place];
-    });
-    return same;
   }
 
   [[nodiscard]] std::unique_ptr<Surveys<Word>> empty_surveys() const {

@@ -93,4 +93,15 @@ void for_each_own_place(const PageShape& shape, F&& f) {
   }
 }
 
+/// Whether the page's own points have the same bounds in two pages of a shape.
+template <class Word>
+bool are_same_bounds(const PageShape& shape, const PageBounds<Word>& a, const PageBounds<Word>& b) {
+  bool same = true;
+  for_each_own_place(shape, [&](std::size_t place) {
+    same = same && a.low[place] == b.low[place] && a.high[place] == b.high[place] &&
+           a.errors[place] == b.errors[place];
+  });
+  return same;
+}
+
 }  // namespace adamas
