@@ -27,6 +27,13 @@ constexpr LatticePoint operator-(LatticePoint a, LatticePoint b) { return {a.i -
 constexpr LatticePoint operator-(LatticePoint a) { return {-a.i, -a.j, -a.k}; }
 constexpr LatticePoint operator*(std::int32_t s, LatticePoint a) { return {s * a.i, s * a.j, s * a.k}; }
 
+/// The nth of the 27 steps from -1 to 1 along each axis, i running fastest.
+constexpr LatticePoint step_around(int n) { return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}; }
+/// Whether all coordinates are from 0 to below those of `end`.
+constexpr bool is_below(LatticePoint p, LatticePoint end) {
+  return p.i >= 0 && p.j >= 0 && p.k >= 0 && p.i < end.i && p.j < end.j && p.k < end.k;
+}
+
 /// The least number of trailing zero bits of the three coordinates; 32 for the origin.
 constexpr int trailing_zeros(LatticePoint p) {
   return std::countr_zero(static_cast<std::uint32_t>(p.i | p.j | p.k));

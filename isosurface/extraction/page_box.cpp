@@ -19,9 +19,8 @@ void PageBox<Sample>::load(LatticePoint block) {
   std::array<LatticePoint, 26> guessed;
   std::size_t guesses = 0;
   for (int n = 0; n < 27; ++n) {
-    const LatticePoint step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}, at = block + step;
-    if (std::min({at.i, at.j, at.k}) < 0 || at.i >= blocks.i || at.j >= blocks.j || at.k >= blocks.k)
-      continue;
+    const LatticePoint step = step_around(n), at = block + step;
+    if (!is_below(at, blocks)) continue;
     const Side side = step == LatticePoint{} ? Side::kBoth : diamonds_.side({0, at});
     if (side == Side::kBoth) {
       copy(step);

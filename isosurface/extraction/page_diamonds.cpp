@@ -114,10 +114,8 @@ void PageDiamonds<Sample>::get_from_neighbours(std::uint32_t pages) {
   const LatticePoint blocks = diamonds_.grid().blocks(lod_);
   for (pages &= ~kOwnPage; pages != 0; pages &= pages - 1) {
     const int n = std::countr_zero(pages);
-    const LatticePoint step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}, block = block_ + step;
-    if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
-        block.k >= blocks.k)
-      continue;
+    const LatticePoint step = step_around(n), block = block_ + step;
+    if (!is_below(block, blocks)) continue;
     const PageSamples<Word>* page = diamonds_.pages().held({lod_, block});
     if (page == nullptr) {
       get_coarser(step);

@@ -95,9 +95,7 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int lod) {
   LatticeMap<std::uint8_t> met;
   std::vector<std::pair<std::uint64_t, LatticePoint>> found;
   const auto add = [&](LatticePoint block) {
-    if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
-        block.k >= blocks.k || !met.insert(block).second || !grid.contains({lod, block}))
-      return;
+    if (!is_below(block, blocks) || !met.insert(block).second || !grid.contains({lod, block})) return;
     found.emplace_back(ZOrder::interleave(block), block);
   };
   for (const PageOfLod& parent : pages(lod + 1)) {
@@ -105,8 +103,7 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int lod) {
     const std::array<unsigned, 9> rows =
         limits_.any() ? allowed_children(lod + 1, parent) : pages_of_children(*parent.split);
     for (std::int32_t n = 0; n < 27; ++n) {
-      if ((rows[static_cast<std::size_t>(n / 3)] >> n % 3 & 1) != 0)
-        add(2 * parent.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
+      if ((rows[static_cast<std::size_t>(n / 3)] >> n % 3 & 1) != 0) add(2 * parent.block + step_around(n));
     }
   }
   // Where the LOD's last points lie in a page's first plane, its diamonds are children of diamonds of the

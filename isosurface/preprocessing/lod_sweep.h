@@ -88,7 +88,7 @@ class LeafRanges {
   void find_flat(LatticePoint p) const {
     Word &low = values_.low(p.j, p.k)[p.i], &high = values_.high(p.j, p.k)[p.i];
     for (int n = 0; n < 27; ++n) {
-      const LatticePoint d{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+      const LatticePoint d = step_around(n);
       const LatticePoint q = p + d;
       int along = 0, across = 0;
       for (int axis = 0; axis < 3; ++axis) ((p[axis] & 1) != 0 ? along : across) += std::abs(d[axis]);

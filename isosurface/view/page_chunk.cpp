@@ -177,10 +177,8 @@ void ChunkMaker<Sample>::add_cell(unsigned cell, PageChunk& chunk) {
 
 template <class Sample>
 void ChunkMaker<Sample>::find_split(std::size_t n, Neighbours& neighbours) {
-  const auto step = static_cast<std::int32_t>(n);
   neighbours.known |= 1u << n;
-  neighbours.split[n] = source_.split_of(
-      neighbours.lod, neighbours.block + LatticePoint{step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1});
+  neighbours.split[n] = source_.split_of(neighbours.lod, neighbours.block + step_around(static_cast<int>(n)));
 }
 
 template <class Sample>

@@ -80,10 +80,7 @@ ViewedPage& ViewedPages<Sample>::page(int lod, LatticePoint block) {
 
 template <class Sample>
 void ViewedPages<Sample>::add_candidate(int lod, LatticePoint block) {
-  const LatticePoint blocks = diamonds_.grid().blocks(lod);
-  if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
-      block.k >= blocks.k)
-    return;
+  if (!is_below(block, diamonds_.grid().blocks(lod))) return;
   ViewedPage* known = find(lod, block);
   if (known == nullptr) {
     if (lod < diamonds_.grid().top() && !diamonds_.grid().contains({lod, block})) return;
@@ -103,8 +100,7 @@ void ViewedPages<Sample>::find_candidates(int lod) {
   if (lod >= diamonds_.grid().top()) return add_candidate(lod, {0, 0, 0});
   for (const ViewedPage* parent : active_[static_cast<std::size_t>(lod) + 1]) {
     for (std::int32_t n = 0; n < 27; ++n) {
-      if ((parent->children >> n & 1) != 0)
-        add_candidate(lod, 2 * parent->block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
+      if ((parent->children >> n & 1) != 0) add_candidate(lod, 2 * parent->block + step_around(n));
     }
   }
   // Where the LOD's last points lie in a page's first plane, its diamonds are children of diamonds of the

@@ -40,7 +40,7 @@ template <class Sample>
 int ViewedPages<Sample>::greatest_of_parents(const ViewedPage& page) {
   int greatest = 0;
   for (std::int32_t n = 0; n < 27; ++n) {
-    const LatticePoint step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+    const LatticePoint step = step_around(n);
     const LatticePoint own{page.block.i / 2, page.block.j / 2, page.block.k / 2};
     const ViewedPage* const parent = find(page.lod + 1, own + step);
     if (parent == nullptr || parent->looked_at != walk_ || parent->crossed->groups.empty()) continue;
@@ -68,11 +68,8 @@ bool ViewedPages<Sample>::for_each_member_page(const ViewedPage& page, std::uint
   if (page.lod >= grid.top()) return visit(PageId{grid.top(), {0, 0, 0}});
   const LatticePoint blocks = grid.blocks(page.lod);
   for (std::uint32_t bits = members; bits != 0; bits &= bits - 1) {
-    const int n = std::countr_zero(bits);
-    const LatticePoint block = page.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-    if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
-        block.k >= blocks.k)
-      continue;
+    const LatticePoint block = page.block + step_around(std::countr_zero(bits));
+    if (!is_below(block, blocks)) continue;
     if (!visit(page_with_points(grid, {page.lod, block}))) return false;
   }
   return true;
@@ -161,7 +158,7 @@ void ViewedPages<Sample>::note_missing_groups(const ViewedPage& page, const Page
 template <class Sample>
 void ViewedPages<Sample>::suspect_round(const ViewedPage& page) {
   for (std::int32_t n = 0; n < 27; ++n) {
-    ViewedPage* const near = find(page.lod, page.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
+    ViewedPage* const near = find(page.lod, page.block + step_around(n));
     if (near != nullptr) near->suspect = walk_;
   }
 }

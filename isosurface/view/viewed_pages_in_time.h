@@ -38,11 +38,8 @@ bool ViewedPages<Sample>::is_still(const ViewedPage& page) {
   if (!comparison.has_same_samples(id) || !comparison.has_same_bounds(id)) return false;
   const LatticePoint blocks = grid.blocks(page.lod);
   for (std::int32_t n = 0; n < 27; ++n) {
-    const LatticePoint block = page.block + LatticePoint{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-    if (std::min({block.i, block.j, block.k}) < 0 || block.i >= blocks.i || block.j >= blocks.j ||
-        block.k >= blocks.k)
-      continue;
-    if (!comparison.has_same_samples({page.lod, block})) return false;
+    const LatticePoint block = page.block + step_around(n);
+    if (is_below(block, blocks) && !comparison.has_same_samples({page.lod, block})) return false;
   }
   return true;
 }
