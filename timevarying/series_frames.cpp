@@ -57,6 +57,17 @@ class SeriesFramesOf final : public SeriesFrames {
       return pages.is_lost(page.id) || pages.has(page.id, parts_of(page));
     });
   }
+  [[nodiscard]] std::vector<LoadedStep> loaded_steps() override {
+    take_arrived();
+    std::vector<LoadedStep> loaded;
+    steps_.for_each_in_memory([&](const StoredPages<Word>& pages) {
+      const auto there = std::ranges::count_if(needed_, [&](const MissingPage& page) {
+        return pages.is_lost(page.id) || pages.holds(page.id, parts_of(page));
+      });
+      loaded.push_back({pages.step(), static_cast<std::uint64_t>(there), needed_.size()});
+    });
+    return loaded;
+  }
   [[nodiscard]] bool is_paging() const override { return is_paging_; }
   [[nodiscard]] bool is_reading_ahead() override {
     take_arrived();

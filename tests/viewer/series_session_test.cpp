@@ -103,8 +103,8 @@ TEST_F(SeriesSessions, ReadAheadAndShowTheSame) {
   finished(*session);
   // Nobody has asked for the next step: its pages come all the same.
   const auto is_ready = [&](std::uint32_t step) {
-    const std::vector<std::uint32_t> ready = session->ready_steps();
-    return std::ranges::find(ready, step) != ready.end();
+    const std::vector<LoadedPart> loaded = session->loaded_steps();
+    return std::ranges::find(loaded, LoadedPart{step, 1}) != loaded.end();
   };
   for (int n = 0; n < 10'000 && !(is_ready(1) && is_ready(2) && is_ready(3)); ++n)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

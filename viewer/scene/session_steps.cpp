@@ -38,14 +38,18 @@ std::uint32_t ViewSession::step() const {
   return documents_.empty() ? 0 : state_.documents[longest_series()].step;
 }
 
+std::uint32_t ViewSession::drawn_step() const {
+  const UpdateReport report = documents_.empty() ? UpdateReport{} : documents_[longest_series()]->report();
+  return report.step.value_or(step());
+}
+
 void ViewSession::set_step(std::uint32_t step) {
   for (std::size_t n = 0; n < documents_.size(); ++n)
     state_.documents[n].step = step_of(*documents_[n], step);
 }
 
-std::vector<std::uint32_t> ViewSession::ready_steps() const {
-  return documents_.empty() ? std::vector<std::uint32_t>{}
-                            : documents_[longest_series()]->steps_ahead().ready;
+std::vector<LoadedPart> ViewSession::loaded_steps() const {
+  return documents_.empty() ? std::vector<LoadedPart>{} : documents_[longest_series()]->steps_ahead().loaded;
 }
 
 bool ViewSession::is_ready(std::uint32_t step) const {
@@ -54,7 +58,7 @@ bool ViewSession::is_ready(std::uint32_t step) const {
     if (document->facts().times.size() < 2) return true;
     const StepsAhead ahead = document->steps_ahead();
     // What does not come, for want of memory, is not waited for.
-    return !ahead.is_reading || std::ranges::find(ahead.ready, step_of(*document, step)) != ahead.ready.end();
+    return !ahead.is_reading || ahead.has_all_of(step_of(*document, step));
   });
 }
 
@@ -81,9 +85,38 @@ void ViewSession::act_on_steps(Action action) {
       return set_step(now + 1);
     case Action::kFirstStep:
       return set_step(0);
+    case Action::kTime:
+      state_.has_time = !state_.has_time;
+      return;
+    case Action::kExportFilm:
+    case Action::kExportFrames:
+      if (times().size() > 1 && !is_exporting)
+        wants_export = action == Action::kExportFilm ? ExportForm::kFilm : ExportForm::kFrames;
+      return;
     default:
       return set_step(std::numeric_limits<std::uint32_t>::max());
   }
+}
+
+void ViewSession::note_lost_step() {
+  bool is_lost = false;
+  for (const auto& document : documents_) {
+    if (document->facts().times.size() < 2) continue;
+    const UpdateReport report = document->report();
+    if (!report.is_current) return;
+    is_lost = is_lost || !report.problem.empty();
+  }
+  if (is_lost) {
+    lost_steps_.insert(step());
+  } else {
+    lost_steps_.erase(step());
+  }
+}
+
+ViewState ViewSession::remembered() const {
+  ViewState state = state_;
+  state.pace = clock_.pace();
+  return state;
 }
 
 void ViewSession::advance_steps(double seconds) {

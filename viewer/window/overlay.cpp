@@ -78,6 +78,25 @@ void draw_colour_bar(ImDrawList& list, const ViewSession& session, float width, 
   }
 }
 
+/// The time of the step that is drawn, at the lower right.
+void draw_time(ImDrawList& list, const ViewSession& session, float width, float bottom) {
+  const std::vector<double>& times = session.times();
+  if (times.size() < 2) return;
+  const std::uint32_t step = session.drawn_step();
+  const std::string time = "time " + tidy_number(times[step]);
+  const std::string number = fmt::format("step {} of 0 to {}", step, times.size() - 1);
+  // As wide for all steps, so that the text stays in its place while they are played.
+  const std::string widest = fmt::format("step {0} of 0 to {0}", times.size() - 1);
+  const float large = 1.4F * ImGui::GetFontSize(), margin = 0.5F * line_height();
+  ImFont* const font = ImGui::GetFont();
+  const float room =
+      std::max(ImGui::CalcTextSize(widest.c_str()).x, font->CalcTextSizeA(large, width, 0, time.c_str()).x);
+  const float left = width - room - 3 * margin, top = bottom - large - line_height() - 4 * margin;
+  list.AddRectFilled({left - margin, top - margin}, {width - margin, bottom - 2 * margin}, kPale, 4);
+  list.AddText(font, large, {left, top - 0.4F * margin}, kText, time.c_str());
+  list.AddText({left, top + large}, kText, number.c_str());
+}
+
 /// The materials of which something is shown, under each other.
 void draw_materials(ImDrawList& list, const ViewSession& session, float height) {
   constexpr std::size_t kMost = 24;
@@ -139,6 +158,7 @@ void draw_overlay(const ViewSession& session) {
   if (state.has_axes) draw_axes(list, state.viewpoint, bottom);
   if (state.has_colour_bar) draw_colour_bar(list, session, size.x, size.y);
   if (!session.shown_field()) draw_materials(list, session, bottom);
+  if (state.has_time) draw_time(list, session, size.x, bottom);
   draw_handle(list, session);
   const UpdateReport report = session.report();
   if (!report.problem.empty()) {

@@ -352,6 +352,7 @@ void PanelState::add(const FrameTimes& times) {
 void show_panels(ViewSession& session, Input& input, PanelState& panels) {
   show_help(session);
   show_picked(session, input);
+  show_export_panel(session, panels.exporting);
   if (!session.has_panels) return;
   show_step_panel(session);
   const float height = ImGui::GetIO().DisplaySize.y - step_panel_height(session);
