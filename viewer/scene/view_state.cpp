@@ -26,7 +26,7 @@ Json json(const Viewpoint& v) {
 }
 
 Json json(const StepPace& pace) {
-  return {{"steps_per_second", pace.steps_per_second},
+  return {{"speed", pace.steps_per_second},
           {"repeat", kRepeats[static_cast<std::size_t>(pace.repeat)]},
           {"backward", pace.is_backward}};
 }
@@ -106,7 +106,7 @@ class Reader {
   }
   StepPace pace(const Json& from) const {
     StepPace result;
-    result.steps_per_second = number(from, "steps_per_second", kSlowest, kFastest);
+    result.steps_per_second = number(from, "speed", kSlowest, kFastest);
     result.repeat = choice<Repeat>(from, "repeat", kRepeats);
     result.is_backward = flag(from, "backward");
     return result;

@@ -11,7 +11,7 @@ void show_export_panel(ViewSession& session, ExportNotice& notice) {
   if (!session.is_exporting && notice.outcome.empty()) return;
   const float em = ImGui::GetFontSize(), width = ImGui::GetIO().DisplaySize.x;
   ImGui::SetNextWindowPos({0.5F * width, 0.8F * em}, ImGuiCond_Always, {0.5F, 0});
-  ImGui::SetNextWindowSize({std::min(36 * em, width), 0});
+  ImGui::SetNextWindowSize({std::min(32 * em, width), 0});
   bool is_open = true;
   ImGui::Begin("Export", session.is_exporting ? nullptr : &is_open,
                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |

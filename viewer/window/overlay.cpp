@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -78,22 +79,31 @@ void draw_colour_bar(ImDrawList& list, const ViewSession& session, float width, 
   }
 }
 
+std::string time_text(double time) { return "time " + tidy_number(time); }
+
+/// As wide as the times of some of the steps, so that the text stays in its place while they are played.
+float widest_time(const std::vector<double>& times, float font_size) {
+  constexpr std::size_t kSome = 64;
+  float widest = 0;
+  for (std::size_t n = 0; n < times.size(); n += 1 + times.size() / kSome) {
+    const std::string text = time_text(times[n]);
+    widest = std::max(widest, ImGui::GetFont()->CalcTextSizeA(font_size, FLT_MAX, 0, text.c_str()).x);
+  }
+  return widest;
+}
+
 /// The time of the step that is drawn, at the lower right.
 void draw_time(ImDrawList& list, const ViewSession& session, float width, float bottom) {
   const std::vector<double>& times = session.times();
   if (times.size() < 2) return;
   const std::uint32_t step = session.drawn_step();
-  const std::string time = "time " + tidy_number(times[step]);
   const std::string number = fmt::format("step {} of 0 to {}", step, times.size() - 1);
-  // As wide for all steps, so that the text stays in its place while they are played.
-  const std::string widest = fmt::format("step {0} of 0 to {0}", times.size() - 1);
+  const std::string longest = fmt::format("step {0} of 0 to {0}", times.size() - 1);
   const float large = 1.4F * ImGui::GetFontSize(), margin = 0.5F * line_height();
-  ImFont* const font = ImGui::GetFont();
-  const float room =
-      std::max(ImGui::CalcTextSize(widest.c_str()).x, font->CalcTextSizeA(large, width, 0, time.c_str()).x);
-  const float left = width - room - 3 * margin, top = bottom - large - line_height() - 4 * margin;
-  list.AddRectFilled({left - margin, top - margin}, {width - margin, bottom - 2 * margin}, kPale, 4);
-  list.AddText(font, large, {left, top - 0.4F * margin}, kText, time.c_str());
+  const float room = std::max(ImGui::CalcTextSize(longest.c_str()).x, widest_time(times, large));
+  const float left = width - room - 2.5F * margin, top = bottom - large - line_height() - 3 * margin;
+  list.AddRectFilled({left - margin, top - margin}, {width - margin, bottom - margin}, kPale, 4);
+  list.AddText(ImGui::GetFont(), large, {left, top - 0.4F * margin}, kText, time_text(times[step]).c_str());
   list.AddText({left, top + large}, kText, number.c_str());
 }
 

@@ -97,7 +97,8 @@ bool StepExport::go_on() {
   } catch (const Error& error) {
     std::string text = error.what();
     if (!written_.empty())
-      text = replaced(text, written_.string(), free_name(folder(), stem(), ending()).string());
+      text = replaced(text, written_.string(),
+                      free_name(folder(), stem(), ending()).lexically_normal().string());
     outcome_ = "Nothing was written: " + text;
     thread_.reset();
     discard();
@@ -145,8 +146,9 @@ void StepExport::finish() {
   output_.reset();
   const fs::path path = rename_to_free_name(written_, stem(), ending());
   written_.clear();
-  outcome_ = fmt::format("{} was written: {} {}", path.string(), frames_.size() - lost_.size(),
-                         makes_film_ ? "steps" : "images");
+  names_.reset();
+  outcome_ = fmt::format("{} was written: {} {}", path.lexically_normal().string(),
+                         frames_.size() - lost_.size(), makes_film_ ? "steps" : "images");
   if (has_no_film_maker_) outcome_ += ", no film: the program ffmpeg is not on PATH";
   if (!lost_.empty()) outcome_ += fmt::format(", without {}: {}", named(lost_), problem_);
 }
@@ -156,6 +158,7 @@ void StepExport::discard() {
   std::error_code code;
   if (!written_.empty()) fs::remove_all(written_, code);
   written_.clear();
+  names_.reset();
 }
 
 }  // namespace adamas

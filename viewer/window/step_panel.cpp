@@ -50,9 +50,9 @@ void show_slider(ViewSession& session, float width) {
   constexpr float kLeastWidth = 4;
   const float middle = left(session.step()) + 0.5F * part, half = 0.5F * std::max(part, kLeastWidth);
   list.AddRectFilled({middle - half, at.y}, {middle + half, at.y + size.y}, IM_COL32(214, 92, 16, 200), 2);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "Green: how much of a step is in memory for this view\nRed: damaged, it cannot be shown");
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::SetNextWindowPos({ImGui::GetIO().MousePos.x, at.y - 0.5F * em()}, ImGuiCond_Always, {0.5F, 1});
+  ImGui::SetTooltip("Green: how much of a step is in memory for this view\nRed: damaged, it cannot be shown");
 }
 
 void show_pace(StepPace& pace) {
