@@ -2,6 +2,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -122,7 +124,7 @@ Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& vi
   const std::vector<FlightFrame> path = flight_frames(options, size, view);
   OffscreenPictures pictures(view, size.width, size.height);
   FlightFigures figures;
-  std::string first_problem;
+  std::vector<std::pair<std::uint32_t, std::string>> lost;
   for (std::size_t n = 0; n < path.size(); ++n) {
     session.console.step("flying", static_cast<double>(n) / static_cast<double>(path.size()));
     if (path[n].step) view.set_step(*path[n].step);
@@ -132,16 +134,16 @@ Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& vi
     } else {
       const std::string& problem = pictures.report().problem;
       if (!path[n].step) fail("{}", problem);
-      if (first_problem.empty()) first_problem = problem;
-      session.console.clear();
-      session.console.note_damage("{}: the frame of step {} is left out", problem, *path[n].step);
+      lost.emplace_back(*path[n].step, problem);
       output.leave_out();
       figures.add_problem(problem);
     }
     figures.tell_step(view);
   }
   session.console.clear();
-  if (figures.drawn() == 0) fail("{}", first_problem);
+  if (figures.drawn() == 0) fail("{}", lost.front().second);
+  for (const auto& [step, problem] : lost)
+    session.console.note_damage("{}: the frame of step {} is left out", problem, step);
   figures.print(pictures.drawn_by(), session.console);
   return {{"drawn_by", pictures.drawn_by()}, {"frames", figures.frames()}};
 }

@@ -278,19 +278,6 @@ TEST_F(SeriesSessions, TellHowMuchOfEachStepIsInMemoryHoweverFarAway) {
   const std::vector<LoadedPart> all = loaded();
   for (std::uint32_t step = 0; step < std::min<std::size_t>(kMany, all.size()); ++step)
     EXPECT_EQ(all[step], (LoadedPart{step, 1}));
-  // A view that needs other pages has parts of the steps alone.
-  session->state().pixels = 200;
-  session->set_step(kMany - 1);
-  session->advance(0);
-  finished(*session);
-  EXPECT_TRUE(wait_for([&] { return loaded().size() == kMany; })) << "coarse pages are there";
-  session->state().documents[0].surfaces[0].isovalue = 85.5;
-  session->state().pixels = 0.25;
-  finished(*session);
-  for (const LoadedPart& each : loaded()) {
-    EXPECT_GT(each.part, 0);
-    EXPECT_LE(each.part, 1);
-  }
 }
 
 TEST_F(SeriesSessions, KeepTheStepInTheirState) {
