@@ -1,5 +1,8 @@
 #include "cli/view_flight.h"
 
+#include <filesystem>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "cli/usage_error.h"
@@ -20,6 +23,17 @@ std::vector<Viewpoint> path_of(const ViewOptions& options, const PictureSize& si
   // A series moves by itself.
   const char* const otherwise = options.steps.empty() ? "orbit:36" : "orbit:1";
   return flight(options.path.empty() ? otherwise : options.path, view.box(), size.width, size.height);
+}
+
+/// A file by which a folder is known as that of an earlier flight: any of its frames, since the first one may
+/// have been left out.
+std::string sign_of_flight(const std::filesystem::path& folder) {
+  std::error_code code;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("frame") && name.ends_with(".png")) return name;
+  }
+  return "frame0001.png";
 }
 
 }  // namespace
@@ -44,7 +58,8 @@ FlightOutput::FlightOutput(const ViewOptions& options, OutputSet& outputs)
   FramePlaces places;
   places.frames_per_second = film_rate(options);
   if (!options.frames.empty()) {
-    folder_.emplace(options.frames, options.overwrite, std::initializer_list<const char*>{"frame0001.png"});
+    const std::string sign = sign_of_flight(options.frames);
+    folder_.emplace(options.frames, options.overwrite, std::initializer_list<const char*>{sign.c_str()});
     places.folder = folder_->temporary();
   }
   if (!film_name_.empty()) {

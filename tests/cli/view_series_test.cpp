@@ -94,6 +94,12 @@ TEST_F(ViewSeries, LeavesOutAStepThatIsDamagedAndNamesIt) {
     EXPECT_EQ(film.status, 3) << film.err;
     EXPECT_EQ(read("film.gif").substr(0, 4), "GIF8");
   }
+  // A folder without its first frame is one of a flight, too.
+  std::vector<std::string> later{"view", "b.adm",    "--isovalue", "80.5",   "--offscreen", "--steps",
+                                 "7,9",  "--frames", "later",      "--size", "160,120",     "--overwrite"};
+  EXPECT_EQ(run(later).status, 3);
+  EXPECT_EQ(names("later"), (std::set<std::string>{"frame0002.png", "frame0003.png"}));
+  EXPECT_EQ(run(later).status, 3);
   // What shows nothing at all has failed.
   expect_failure({"view", "b.adm", "--isovalue", "80.5", "--offscreen", "--steps", "7,7", "--json", "g.json"},
                  {"b.adm", "damaged"});
