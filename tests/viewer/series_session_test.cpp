@@ -308,6 +308,13 @@ TEST_F(SeriesSessions, KeepTheStepInTheirState) {
   EXPECT_FALSE(finished(*single).empty());
 }
 
+TEST(NamedSteps, AreAFewOfThem) {
+  EXPECT_EQ(named_steps({3}), "step 3");
+  EXPECT_EQ(named_steps({3, 1}), "steps 1 and 3");
+  EXPECT_EQ(named_steps({1, 2, 3, 4, 5, 9}), "steps 1, 2, 3, 4, 5 and 9");
+  EXPECT_EQ(named_steps({1, 2, 3, 4, 5, 9, 10, 30}), "steps 1, 2, 3, 4, 5, 9 and 2 more");
+}
+
 TEST_F(SeriesSessions, RememberHowTheyArePlayed) {
   const auto session = session_at(0, true);
   session->clock().pace() = {12.5, Repeat::kThereAndBack, true, 0.5};

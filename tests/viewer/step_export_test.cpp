@@ -189,6 +189,11 @@ TEST_F(StepExports, SayInALineWhatWentWrong) {
     EXPECT_TRUE(test::says(outcome, "waves-images-001/frame0001.png"));
     EXPECT_EQ(outcome.find("partial"), std::string::npos) << outcome;
   }
+  if (!find_program("ffmpeg").empty()) {
+    const test::FileSizeLimit full(1000);
+    const std::string outcome = outcome_of(*begun(ExportForm::kFilm));
+    EXPECT_TRUE(test::says(outcome, "waves-film-001.mp4: ffmpeg could not make the film"));
+  }
   EXPECT_EQ(written(), std::set<std::string>{});
   if (::geteuid() != 0) {
     fs::permissions(folder.folder(), fs::perms::owner_read | fs::perms::owner_exec);

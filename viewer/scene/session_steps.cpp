@@ -1,5 +1,7 @@
 // The steps of series in a session: which one is seen, and how they are played.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -127,6 +129,17 @@ void ViewSession::advance_steps(double seconds) {
     state_.viewpoint = along(bookmarked(), step(), times().size());
   const std::vector<std::uint32_t> expected = clock_.following(step(), kStepsAhead);
   for (const auto& document : documents_) document->expect(expected);
+}
+
+std::string named_steps(const std::set<std::uint32_t>& steps) {
+  constexpr std::size_t kMost = 6;
+  std::string text = steps.size() == 1 ? "step" : "steps";
+  std::size_t named = 0;
+  for (auto it = steps.begin(); it != steps.end() && named < kMost; ++it, ++named) {
+    const bool is_last = named > 0 && named + 1 == steps.size();
+    text += fmt::format("{} {}", named == 0 ? "" : is_last ? " and" : ",", *it);
+  }
+  return named < steps.size() ? text + fmt::format(" and {} more", steps.size() - named) : text;
 }
 
 }  // namespace adamas

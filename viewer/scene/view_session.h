@@ -152,6 +152,9 @@ class ViewSession {
   double played_ = 0;  ///< how far, in viewpoints
 };
 
+/// "step 3", or "steps 3, 4 and 5"; of many some are named alone, and how many more there are.
+std::string named_steps(const std::set<std::uint32_t>& steps);
+
 /// The path as a text that flight() reads.
 std::string path_text(const std::vector<Viewpoint>& path);
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -12,20 +11,7 @@
 
 namespace adamas {
 
-namespace {
-
 namespace fs = std::filesystem;
-
-/// "step 3", "steps 3, 4, 5 and 20 more".
-std::string named(const std::vector<std::uint32_t>& steps) {
-  constexpr std::size_t kMost = 6;
-  std::string text = steps.size() == 1 ? "step" : "steps";
-  for (std::size_t n = 0; n < std::min(kMost, steps.size()); ++n)
-    text += fmt::format("{} {}", n == 0 ? "" : ",", steps[n]);
-  return steps.size() > kMost ? text + fmt::format(" and {} more", steps.size() - kMost) : text;
-}
-
-}  // namespace
 
 StepExport::StepExport(const ViewSession& session, const ExportRequest& request)
     : state_(session.state()),
@@ -133,7 +119,7 @@ bool StepExport::draw_step() {
   if (!report.is_current) return false;
   if (!report.problem.empty()) {
     if (lost_.empty()) problem_ = report.problem;
-    lost_.push_back(*frame.step);
+    lost_.insert(*frame.step);
     output_->leave_out();
     return true;
   }
@@ -150,7 +136,7 @@ void StepExport::finish() {
   outcome_ = fmt::format("{} was written: {} {}", path.lexically_normal().string(),
                          frames_.size() - lost_.size(), makes_film_ ? "steps" : "images");
   if (has_no_film_maker_) outcome_ += ", no film: the program ffmpeg is not on PATH";
-  if (!lost_.empty()) outcome_ += fmt::format(", without {}: {}", named(lost_), problem_);
+  if (!lost_.empty()) outcome_ += fmt::format(", without {}: {}", named_steps(lost_), problem_);
 }
 
 void StepExport::discard() {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -73,7 +74,7 @@ class StepExport {
   std::unique_ptr<ViewSession> session_;  ///< of its own; null before it is open
   std::vector<FlightFrame> frames_;
   std::size_t next_ = 0;
-  std::vector<std::uint32_t> lost_;
+  std::set<std::uint32_t> lost_;
   std::string problem_;  ///< of the first of these
   std::unique_ptr<SessionPictures> pictures_;
   std::shared_ptr<PartialNames> names_;

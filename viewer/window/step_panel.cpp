@@ -82,21 +82,19 @@ void show_export(ViewSession& session) {
   ImGui::EndDisabled();
 }
 
-/// Which step is seen, and which ones cannot be.
+/// Which steps cannot be seen, and which one is.
 void show_text(const ViewSession& session) {
   const std::uint32_t step = session.step();
-  std::string text =
+  const std::string seen =
       fmt::format("step {} of 0 to {}, time {}{}", step, session.times().size() - 1,
                   tidy_number(session.times()[step]), session.report().is_current ? "" : " (coming)");
   const std::set<std::uint32_t>& lost = session.lost_steps();
-  if (lost.empty()) return ImGui::TextUnformatted(text.c_str());
-  constexpr std::size_t kMost = 6;
-  std::size_t named = 0;
-  text += lost.size() == 1 ? "; damaged: step" : "; damaged: steps";
-  for (auto it = lost.begin(); it != lost.end() && named < kMost; ++it, ++named)
-    text += fmt::format("{} {}", named == 0 ? "" : ",", *it);
-  if (named < lost.size()) text += fmt::format(" and {} more", lost.size() - named);
-  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kLost), "%s", text.c_str());
+  if (!lost.empty()) {
+    const std::string text = "damaged: " + named_steps(lost);
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kLost), "%s", text.c_str());
+    ImGui::SameLine();
+  }
+  ImGui::TextUnformatted(seen.c_str());
 }
 
 }  // namespace
