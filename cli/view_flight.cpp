@@ -30,8 +30,10 @@ std::vector<Viewpoint> path_of(const ViewOptions& options, const PictureSize& si
 std::string sign_of_flight(const std::filesystem::path& folder) {
   std::error_code code;
   for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("frame") && name.ends_with(".png")) return name;
+    const std::string stem = entry.path().stem().string();
+    const bool is_frame = stem.starts_with("frame") && stem.size() > 5 &&
+                          stem.find_first_not_of("0123456789", 5) == std::string::npos;
+    if (is_frame && entry.path().extension() == ".png") return entry.path().filename().string();
   }
   return "frame0001.png";
 }

@@ -99,7 +99,12 @@ TEST_F(StepPanels, AskForExportsOneAtATime) {
   EXPECT_EQ(session.wants_export, ExportForm::kFilm);
   EXPECT_TRUE(input.key("I"));
   EXPECT_EQ(session.wants_export, ExportForm::kFrames);
-  // While one is made there is no other one, and Escape ends that and not the program.
+  // Escape ends that, as soon as it is asked for, and not the program.
+  input.key("Escape");
+  EXPECT_TRUE(session.wants_export_end);
+  EXPECT_FALSE(session.wants_end);
+  session.wants_export_end = false;
+  // While one is made there is no other one.
   session.wants_export.reset();
   session.is_exporting = true;
   input.key("F");

@@ -175,7 +175,7 @@ def try_exports(window, folder):
     check(window.settled() == before, "the view is not as it was after an export")
     check(before in contents, "the image of the step that is seen is not what is seen")
     # Escape stops what is being written, and ends nothing else.
-    window.do("key", "f", "key", "Escape")
+    window.do("key", "--delay", "0", "f", "Escape")
     check(window.settled() == before, "the window is gone after an export was stopped")
     if shutil.which("ffmpeg"):
         window.do("key", "f")

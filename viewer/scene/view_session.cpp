@@ -303,7 +303,7 @@ void ViewSession::act(Action action) {
       wants_screenshot = true;
       return;
     case Action::kQuit:
-      (is_exporting ? wants_export_end : wants_end) = true;
+      (is_exporting || wants_export ? wants_export_end : wants_end) = true;
       return;
   }
 }
