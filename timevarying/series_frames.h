@@ -36,7 +36,7 @@ class SeriesFrames {
   /// Whether the pages that the last frame has used are in memory of another step too.
   [[nodiscard]] virtual bool is_ready(std::uint32_t step) = 0;
   /// How much of that is in memory of each step that has any pages there, in ascending order. Only a limited
-  /// number of steps has (StepPages), however long the series is. Nothing before steps are expected.
+  /// number of steps has (StepPages), however long the series is. Not known before steps were expected.
   [[nodiscard]] virtual std::vector<LoadedStep> loaded_steps() = 0;
   /// Whether pages are on their way that the last frame lacks. Each comes once at most for a view: where the
   /// memory has no room for what a view needs, some stay missing.

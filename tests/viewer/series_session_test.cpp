@@ -278,6 +278,14 @@ TEST_F(SeriesSessions, TellHowMuchOfEachStepIsInMemoryHoweverFarAway) {
   const std::vector<LoadedPart> all = loaded();
   for (std::uint32_t step = 0; step < std::min<std::size_t>(kMany, all.size()); ++step)
     EXPECT_EQ(all[step], (LoadedPart{step, 1}));
+  // That is so, too, where no step is to come.
+  session->clock().pace().repeat = Repeat::kOnce;
+  for (const std::uint32_t step : {kMany - 2, kMany - 1}) {
+    session->set_step(step);
+    session->advance(0);
+    finished(*session);
+  }
+  EXPECT_EQ(loaded().size(), kMany);
 }
 
 TEST_F(SeriesSessions, KeepTheStepInTheirState) {

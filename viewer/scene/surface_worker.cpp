@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <ranges>
 #include <span>
 #include <utility>
 
@@ -167,10 +166,10 @@ StepsAhead SurfaceWorker::looked_ahead(std::size_t isovalues) {
   for (std::size_t n = 0; n < surfaces_.size(); ++n)
     surfaces_[n].frames->expect(n < shown.size() ? expecting_ : std::vector<std::uint32_t>{});
   StepsAhead ahead;
-  if (expecting_.empty() || shown.empty()) return ahead;
+  if (file_.steps() == 1 || shown.empty()) return ahead;
   // What is asked about last stays in memory longest: the step that comes next.
-  for (const std::uint32_t next : std::views::reverse(expecting_)) {
-    for (const Surface& surface : shown) static_cast<void>(surface.frames->is_ready(next));
+  for (auto next = expecting_.rbegin(); next != expecting_.rend(); ++next) {
+    for (const Surface& surface : shown) static_cast<void>(surface.frames->is_ready(*next));
   }
   std::map<std::uint32_t, std::uint64_t> pages;
   std::uint64_t needed = 0;
