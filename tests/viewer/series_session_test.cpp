@@ -249,6 +249,22 @@ TEST_F(SeriesSessions, PlayPastAStepThatIsDamagedAndNameIt) {
   }
 }
 
+TEST_F(SeriesSessions, NameADamagedStepThatIsThereOnlyAfterItWasLookedFor) {
+  build(path, 10, 3);
+  test::damage_step(path, 6);
+  const auto session = session_at(0, true);
+  session->state().cut.is_on = false;
+  session->set_step(6);
+  session->parts();
+  while (!session->report().is_current) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  session->advance(0);
+  EXPECT_EQ(session->lost_steps(), std::set<std::uint32_t>{6});
+  // That says nothing of the step that comes next.
+  session->set_step(9);
+  session->advance(0);
+  EXPECT_EQ(session->lost_steps(), std::set<std::uint32_t>{6});
+}
+
 TEST_F(SeriesSessions, TellHowMuchOfEachStepIsInMemoryHoweverFarAway) {
   constexpr std::uint32_t kMany = 24;
   build(path, kMany, 3);

@@ -101,6 +101,8 @@ void ViewSession::act_on_steps(Action action) {
 }
 
 void ViewSession::note_lost_step() {
+  // What was reported is of another step where that has changed since.
+  if (asked_step_ != step()) return;
   bool is_lost = false;
   for (const auto& document : documents_) {
     if (document->facts().times.size() < 2) continue;
@@ -123,6 +125,7 @@ ViewState ViewSession::remembered() const {
 
 void ViewSession::advance_steps(double seconds) {
   if (times().size() < 2) return;
+  note_lost_step();
   const std::vector<std::uint32_t> next = clock_.following(step(), 1);
   set_step(clock_.advance(step(), seconds, next.empty() || is_ready(next[0])));
   if (has_keyed_camera && clock_.is_playing() && state_.bookmarks.size() > 1)

@@ -97,6 +97,7 @@ std::vector<DrawnPart> ViewSession::parts() {
     std::vector<DrawnPart> some = documents_[n]->parts(state_, state_.documents[n]);
     result.insert(result.end(), some.begin(), some.end());
   }
+  asked_step_ = step();
   note_lost_step();
   if (state_.has_box && !documents_.empty()) add_box(result);
   if (state_.culled_from) add_culled_view(result);

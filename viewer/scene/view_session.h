@@ -141,7 +141,8 @@ class ViewSession {
   std::vector<std::unique_ptr<Document>> documents_;
   std::vector<DocumentOptions> opened_with_;
   std::set<std::uint32_t> lost_steps_;
-  SharedMesh box_lines_, view_lines_;  ///< of drawn_box_, drawn_view_
+  std::optional<std::uint32_t> asked_step_;  ///< what the documents were asked for last
+  SharedMesh box_lines_, view_lines_;        ///< of drawn_box_, drawn_view_
   Box3 drawn_box_;
   std::optional<Viewpoint> drawn_view_;
   std::vector<DocumentState> depths_of_;  ///< what was shown when depths were set
