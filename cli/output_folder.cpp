@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <system_error>
 
-#include "cli/output_set.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace adamas {
 

@@ -5,6 +5,7 @@
 
 #include "cli/usage_error.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/io/referred_files.h"
 
 namespace adamas {
@@ -39,13 +40,6 @@ void check_apart(const std::string& option, const std::filesystem::path& output,
 }
 
 }  // namespace
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
-    text.replace(at, from.size(), to);
-  }
-  return text;
-}
 
 void OutputSet::check_outputs_apart_from(const std::filesystem::path& input) const {
   for (const auto& [option, file] : files_) check_apart(option, file->path(), input);

@@ -10,9 +10,6 @@
 
 namespace adamas {
 
-/// The text with every `from` replaced by `to`, as for messages about files that still have temporary names.
-std::string replaced(std::string text, const std::string& from, const std::string& to);
-
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {
  public:

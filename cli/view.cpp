@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -80,40 +83,74 @@ Figures figures_of(const OffscreenPictures& pictures) {
           {"draw_seconds", pictures.draw_seconds()}};
 }
 
-/// Draws the frames.
+/// What the frames of a flight come to.
+class FlightFigures {
+ public:
+  /// A frame that was drawn.
+  void add(const OffscreenPictures& pictures) {
+    frames_.push_back(figures_of(pictures));
+    ++drawn_;
+    seconds_ += pictures.report().seconds + pictures.draw_seconds();
+    largest_ = std::max(largest_, pictures.report().largest_error_pixels);
+    most_ = std::max(most_, pictures.report().triangles);
+  }
+  /// One that could not be had.
+  void add_problem(const std::string& problem) { frames_.push_back({{"problem", problem}}); }
+  void tell_step(const ViewSession& view) {
+    if (view.times().size() < 2) return;
+    frames_.back()["step"] = view.step();
+    frames_.back()["time"] = view.times()[view.step()];
+  }
+  [[nodiscard]] std::size_t drawn() const { return drawn_; }
+  [[nodiscard]] const Figures& frames() const { return frames_; }
+  void print(const std::string& drawn_by, Console& console) const {
+    console.table({{"frames", std::to_string(drawn_)},
+                   {"most triangles", std::to_string(most_)},
+                   {"largest error", fmt::format("{:.3g} pixels (estimate)", largest_)},
+                   {"seconds a frame", fmt::format("{:.3f}", seconds_ / static_cast<double>(drawn_))},
+                   {"drawn by", drawn_by}});
+  }
+
+ private:
+  Figures frames_ = Figures::array();
+  std::size_t drawn_ = 0;
+  double seconds_ = 0, largest_ = 0;
+  std::uint64_t most_ = 0;
+};
+
+/// Draws the frames. Those of steps that cannot be had are left out, as long as there are others.
 Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& view, FlightOutput& output,
             Session& session) {
   const std::vector<FlightFrame> path = flight_frames(options, size, view);
   OffscreenPictures pictures(view, size.width, size.height);
-  Figures all = Figures::array();
-  double seconds = 0, largest = 0;
-  std::uint64_t most = 0;
+  FlightFigures figures;
+  std::vector<std::pair<std::uint32_t, std::string>> lost;
   for (std::size_t n = 0; n < path.size(); ++n) {
     session.console.step("flying", static_cast<double>(n) / static_cast<double>(path.size()));
     if (path[n].step) view.set_step(*path[n].step);
-    output.add(pictures.draw(path[n].viewpoint));
-    all.push_back(figures_of(pictures));
-    if (view.times().size() > 1) {
-      all.back()["step"] = view.step();
-      all.back()["time"] = view.times()[view.step()];
+    if (const std::optional<Raster> picture = pictures.draw(path[n].viewpoint)) {
+      output.add(*picture);
+      figures.add(pictures);
+    } else {
+      const std::string& problem = pictures.report().problem;
+      if (!path[n].step) fail("{}", problem);
+      lost.emplace_back(*path[n].step, problem);
+      output.leave_out();
+      figures.add_problem(problem);
     }
-    seconds += pictures.report().seconds + pictures.draw_seconds();
-    largest = std::max(largest, pictures.report().largest_error_pixels);
-    most = std::max(most, pictures.report().triangles);
+    figures.tell_step(view);
   }
   session.console.clear();
-  session.console.table(
-      {{"frames", std::to_string(path.size())},
-       {"most triangles", std::to_string(most)},
-       {"largest error", fmt::format("{:.3g} pixels (estimate)", largest)},
-       {"seconds a frame", fmt::format("{:.3f}", seconds / static_cast<double>(path.size()))},
-       {"drawn by", pictures.drawn_by()}});
-  return {{"drawn_by", pictures.drawn_by()}, {"frames", std::move(all)}};
+  if (figures.drawn() == 0) fail("{}", lost.front().second);
+  for (const auto& [step, problem] : lost)
+    session.console.note_damage("{}: the frame of step {} is left out", problem, step);
+  figures.print(pictures.drawn_by(), session.console);
+  return {{"drawn_by", pictures.drawn_by()}, {"frames", figures.frames()}};
 }
 
 void run_offscreen(const ViewOptions& options, Session& session) {
   const PictureSize size = picture_size(options, {1024, 768});
-  FlightOutput output(options, size, session.outputs);
+  FlightOutput output(options, session.outputs);
   ViewSession view(size.width, size.height);
   open_files(options, view, session);
   restore_state(options, view);
@@ -144,7 +181,7 @@ void run_window(const ViewOptions& options, Session& session) {
   std::vector<std::string> names;
   for (const auto& document : view.documents()) names.push_back(document->facts().name);
   const std::filesystem::path memory = remembered_states_file();
-  if (!memory.empty()) remember_state(memory, names, view.state());
+  if (!memory.empty()) remember_state(memory, names, view.remembered());
 }
 
 void run(const ViewOptions& options, Session& session) {

@@ -1,11 +1,12 @@
 #include "cli/view_flight.h"
 
-#include <fmt/format.h>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
 
 #include "cli/usage_error.h"
-#include "core/picture/canvas.h"
 #include "isosurface/view/flight.h"
-#include "viewer/scene/camera_control.h"
 
 namespace adamas {
 
@@ -24,49 +25,71 @@ std::vector<Viewpoint> path_of(const ViewOptions& options, const PictureSize& si
   return flight(options.path.empty() ? otherwise : options.path, view.box(), size.width, size.height);
 }
 
+/// A file by which a folder is known as that of an earlier flight: any of its frames, since the first one may
+/// have been left out.
+std::string sign_of_flight(const std::filesystem::path& folder) {
+  std::error_code code;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
+    const std::string stem = entry.path().stem().string();
+    const bool is_frame = stem.starts_with("frame") && stem.size() > 5 &&
+                          stem.find_first_not_of("0123456789", 5) == std::string::npos;
+    if (is_frame && entry.path().extension() == ".png") return entry.path().filename().string();
+  }
+  return "frame0001.png";
+}
+
 }  // namespace
 
 std::vector<FlightFrame> flight_frames(const ViewOptions& options, const PictureSize& size,
                                        const ViewSession& view) {
   const std::vector<Viewpoint> path = path_of(options, size, view);
-  std::vector<FlightFrame> frames;
-  const auto steps = steps_of(options);
-  if (steps) {
+  if (const auto steps = steps_of(options)) {
     const auto [first, last] = *steps;
     if (view.times().size() < 2) wrong_usage("--steps: expected a stored series, found none");
     if (last >= view.times().size())
       wrong_usage("--steps: expected steps below {}, found '{}'", view.times().size(), options.steps);
-    const std::size_t count = last - first + 1;
-    for (std::size_t n = 0; n < count; ++n)
-      frames.push_back({along(path, n, count), first + static_cast<std::uint32_t>(n)});
-    return frames;
+    return frames_of_steps(path, first, last);
   }
+  std::vector<FlightFrame> frames;
   for (const Viewpoint& viewpoint : path) frames.push_back({viewpoint, std::nullopt});
   return frames;
 }
 
-FlightOutput::FlightOutput(const ViewOptions& options, const PictureSize& size, OutputSet& outputs)
-    : film_name_(options.film), size_(size), rate_(film_rate(options)), outputs_(outputs) {
-  if (!options.frames.empty())
-    folder_.emplace(options.frames, options.overwrite, std::initializer_list<const char*>{"frame0001.png"});
-  if (film_name_.empty()) return;
-  require_film_maker(film_name_);
-  outputs.declare("--film", film_name_, film_endings());
+FlightOutput::FlightOutput(const ViewOptions& options, OutputSet& outputs)
+    : film_name_(options.film), outputs_(outputs) {
+  FramePlaces places;
+  places.frames_per_second = film_rate(options);
+  if (!options.frames.empty()) {
+    const std::string sign = sign_of_flight(options.frames);
+    folder_.emplace(options.frames, options.overwrite, std::initializer_list<const char*>{sign.c_str()});
+    places.folder = folder_->temporary();
+  }
+  if (!film_name_.empty()) {
+    require_film_maker(film_name_);
+    outputs.declare("--film", film_name_, film_endings());
+    outputs.write(film_name_, [&places](const auto& path) { places.film = path; });
+  }
+  files_.emplace(std::move(places));
+}
+
+void FlightOutput::naming_outputs(const std::function<void()>& work) {
+  const auto in_folder = [&] {
+    if (folder_) {
+      folder_->fill(work);
+    } else {
+      work();
+    }
+  };
+  if (film_name_.empty()) return in_folder();
+  outputs_.write(film_name_, [&in_folder](const auto&) { in_folder(); });
 }
 
 void FlightOutput::add(const Raster& picture) {
-  ++frames_;
-  if (folder_)
-    folder_->fill([&] { write_png(folder_->file(fmt::format("frame{:04}.png", frames_)), picture); });
-  if (film_name_.empty()) return;
-  outputs_.write(film_name_, [&](const auto& path) {
-    if (!film_) film_ = std::make_unique<Film>(path, size_.width, size_.height, rate_);
-    film_->add(picture);
-  });
+  naming_outputs([&] { files_->add(picture); });
 }
 
 void FlightOutput::finish() {
-  if (film_) outputs_.write(film_name_, [this](const auto&) { film_->finish(); });
+  naming_outputs([this] { files_->finish(); });
 }
 
 void FlightOutput::commit() {

@@ -1,21 +1,16 @@
 #pragma once
 
-#include <cstddef>
-#include <memory>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "cli/output_folder.h"
 #include "cli/view_options.h"
-#include "core/picture/film.h"
+#include "viewer/scene/flight_frames.h"
+#include "viewer/window/frame_files.h"
 
 namespace adamas {
-
-/// A picture of a flight without a window.
-struct FlightFrame {
-  Viewpoint viewpoint;
-  std::optional<std::uint32_t> step;  ///< none: that of the state
-};
 
 /// The pictures that are asked for: from each viewpoint of the path one; with --steps one of each step, for
 /// which the camera goes along the path meanwhile. Throws UsageError where the session has no such steps.
@@ -26,21 +21,23 @@ std::vector<FlightFrame> flight_frames(const ViewOptions& options, const Picture
 class FlightOutput {
  public:
   /// Throws Error where neither can be written, before long work.
-  FlightOutput(const ViewOptions& options, const PictureSize& size, OutputSet& outputs);
+  FlightOutput(const ViewOptions& options, OutputSet& outputs);
 
   void add(const Raster& picture);
+  /// Instead of a picture that cannot be had.
+  void leave_out() { files_->leave_out(); }
   /// To be called before the session's outputs get their names.
   void finish();
   void commit();
 
  private:
+  /// Does what may throw Errors, which name outputs as they will be called.
+  void naming_outputs(const std::function<void()>& work);
+
   std::optional<OutputFolder> folder_;
-  std::unique_ptr<Film> film_;
   std::string film_name_;
-  PictureSize size_;
-  double rate_;
   OutputSet& outputs_;
-  std::size_t frames_ = 0;
+  std::optional<FrameFiles> files_;
 };
 
 }  // namespace adamas

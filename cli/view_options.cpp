@@ -150,6 +150,9 @@ void add_contents_options(const Command& command, ViewOptions& options) {
                   "Lit by a light beside the eye, or as a sphere is with silhouettes")
       .one_of({"lit", "sphere"});
   command.add_flag("--plain", options.plain, "Without axes, box, colour bar");
+  command.add_flag("--show-time", options.show_time,
+                   "Of a series: the time and the number of the step are written on the picture, as a window "
+                   "does unless --plain is given");
 }
 
 void add_budget_options(const Command& command, ViewOptions& options) {
@@ -307,6 +310,8 @@ void apply_view_options(const ViewOptions& options, ViewSession& view) {
     view.set_step(static_cast<std::uint32_t>(parse_count("--step", options.step, 0)));
   if (options.occlusion) state.leaves_out_hidden = true;
   if (options.plain) state.has_axes = state.has_box = state.has_colour_bar = false;
+  if (options.plain || options.offscreen) state.has_time = false;
+  if (options.show_time) state.has_time = true;
   if (const std::optional<Plane> plane = plane_of(options)) {
     state.cut.is_on = true;
     state.cut.plane = *plane;

@@ -17,8 +17,8 @@ struct ViewOptions {
   std::string memory = "256M", step, steps, colour_by, pixels, max_triangles, frame_time, paging,
               interpolation, path, frames, size, shading, field, range, colour_map, plane, origin, normal,
               state, culled_from, film, frame_rate;
-  bool offscreen = false, overwrite = false, edges = false, plain = false, no_cut = false, no_section = false,
-       occlusion = false, fresh = false;
+  bool offscreen = false, overwrite = false, edges = false, plain = false, show_time = false, no_cut = false,
+       no_section = false, occlusion = false, fresh = false;
 };
 
 struct PictureSize {

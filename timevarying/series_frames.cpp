@@ -58,6 +58,17 @@ class SeriesFramesOf final : public SeriesFrames {
       return pages.is_lost(page.id) || pages.has(page.id, parts_of(page));
     });
   }
+  [[nodiscard]] std::vector<LoadedStep> loaded_steps() override {
+    take_arrived();
+    std::vector<LoadedStep> loaded;
+    steps_.for_each_in_memory([&](const StoredPages<Word>& pages) {
+      const auto there = std::ranges::count_if(needed_, [&](const MissingPage& page) {
+        return pages.is_lost(page.id) || pages.holds(page.id, parts_of(page));
+      });
+      loaded.push_back({pages.step(), static_cast<std::uint64_t>(there), needed_.size()});
+    });
+    return loaded;
+  }
   [[nodiscard]] bool is_paging() const override { return is_paging_; }
   [[nodiscard]] bool is_reading_ahead() override {
     take_arrived();
@@ -141,7 +152,7 @@ class SeriesFramesOf final : public SeriesFrames {
     if (resident_only) wanted = frames_.missing_pages();
     std::erase_if(wanted, [&](const MissingPage& page) { return is_full_ || come_.contains(key(page)); });
     is_paging_ = !wanted.empty();
-    if (!expected_.empty()) needed_ = frames_.needed_pages();
+    if (steps_.file().steps() > 1) needed_ = frames_.needed_pages();
     for (const std::uint32_t step : expected_) {
       if (step == frames_.pages().step()) continue;
       StoredPages<Word>& pages = steps_.ahead(step, frames_.pages());
@@ -162,7 +173,7 @@ class SeriesFramesOf final : public SeriesFrames {
   std::set<Key> come_;  ///< for the view of last_
   bool is_full_ = false, is_paging_ = false, is_resident_ = false;
   std::vector<std::uint32_t> expected_;
-  std::vector<MissingPage> needed_;  ///< by the last frame; as of when steps were expected
+  std::vector<MissingPage> needed_;  ///< by the last frame of a series; none before there is a loader
   std::unique_ptr<PageLoader<Word>> loader_;
 };
 

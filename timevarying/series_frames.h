@@ -15,6 +15,12 @@
 
 namespace adamas {
 
+/// How many of the pages that a frame has used are in memory of a step; damaged ones count as if they were.
+struct LoadedStep {
+  std::uint32_t step = 0;
+  std::uint64_t pages = 0, needed = 0;
+};
+
 /// The surfaces of a store of one step or several, frame after frame. Each is the same whatever frames came
 /// before it; it begins with the mesh of the last one, of whatever step that was.
 class SeriesFrames {
@@ -29,6 +35,9 @@ class SeriesFrames {
   virtual void expect(std::vector<std::uint32_t> steps) = 0;
   /// Whether the pages that the last frame has used are in memory of another step too.
   [[nodiscard]] virtual bool is_ready(std::uint32_t step) = 0;
+  /// How much of that is in memory of each step that has any pages there, in ascending order. Only a limited
+  /// number of steps has (StepPages), however long the series is. Not known before steps were expected.
+  [[nodiscard]] virtual std::vector<LoadedStep> loaded_steps() = 0;
   /// Whether pages are on their way that the last frame lacks. Each comes once at most for a view: where the
   /// memory has no room for what a view needs, some stay missing.
   [[nodiscard]] virtual bool is_paging() const = 0;

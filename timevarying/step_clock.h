@@ -10,13 +10,18 @@ namespace adamas {
 /// What comes after the last step.
 enum class Repeat : std::uint8_t { kOnce, kLoop, kThereAndBack };
 
+/// The slowest and the fastest that steps are played, in steps per second.
+inline constexpr double kSlowest = 0.5, kFastest = 60;
+
 /// How steps are played.
 struct StepPace {
-  double steps_per_second = 10;  ///< more than 0
+  double steps_per_second = 10;  ///< kSlowest to kFastest
   Repeat repeat = Repeat::kLoop;
   bool is_backward = false;
   /// How many seconds longer than its own time a step stays while the next one is not ready.
   double patience = 0.5;
+
+  bool operator==(const StepPace&) const = default;
 };
 
 /// Tells which step of a series is to be shown as time goes by. No step is left out: where steps are not

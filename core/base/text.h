@@ -12,6 +12,9 @@ inline std::string_view trimmed(std::string_view text, std::string_view blanks =
   return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
 }
 
+/// The text with every `from` replaced by `to`, as for messages about files that still have temporary names.
+std::string replaced(std::string text, const std::string& from, const std::string& to);
+
 /// Length in bytes of the character of UTF-8 at the start of the text (RFC 3629: no overlong forms,
 /// surrogates or code points beyond the last); 0 where there is none.
 std::size_t utf8_length(std::string_view text);

@@ -122,6 +122,11 @@ class PageCache {
 
   /// Whether parts of a page are in memory.
   bool has(const PageId& id, PageParts parts);
+  /// The same, without a word to the memory that the page is of use.
+  [[nodiscard]] bool holds(const PageId& id, PageParts parts) const {
+    const std::uint32_t found = lods_[static_cast<std::size_t>(id.lod)].slots[place_in_lod(id)];
+    return found != kNone && (slots_[found].bounds != nullptr || !has_part(parts, PageParts::kBounds));
+  }
   /// Notes that a page, if it is in memory, is needed, and how much; until forget_needs().
   void need(const PageId& id, int importance);
   void forget_needs() { ++needs_; }
@@ -174,9 +179,12 @@ class PageCache {
     std::vector<std::uint32_t> slots;
   };
   [[nodiscard]] std::uint32_t& slot_of(const PageId& id) {
-    Lod& lod = lods_[static_cast<std::size_t>(id.lod)];
+    return lods_[static_cast<std::size_t>(id.lod)].slots[place_in_lod(id)];
+  }
+  [[nodiscard]] std::size_t place_in_lod(const PageId& id) const {
+    const Lod& lod = lods_[static_cast<std::size_t>(id.lod)];
     const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
-    return lod.slots[at(id.block.i) + lod.row * at(id.block.j) + lod.plane * at(id.block.k)];
+    return at(id.block.i) + lod.row * at(id.block.j) + lod.plane * at(id.block.k);
   }
   /// `wanted`: the page is asked for itself, not to predict another. Null where it cannot be had.
   const Slot* get(const PageId& id, PageParts parts, bool wanted);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "isosurface/storage/stored_pages.h"
 
@@ -27,6 +28,11 @@ class StepPages {
   /// The pages of a step that comes after another one, to be read before it is wanted: they leave before
   /// those of that one.
   StoredPages<Word>& ahead(std::uint32_t step, const StoredPages<Word>& current);
+  /// Calls for the pages of each step that has some, in ascending order, and leaves alone which leave first.
+  template <class Visit>
+  void for_each_in_memory(const Visit& visit) const {
+    for (const auto& [step, of_step] : steps_) visit(std::as_const(*of_step.pages));
+  }
   void set_memory(std::size_t bytes) { memory_->limit = bytes; }
   /// Of all steps, those that were dropped included.
   [[nodiscard]] PageCounts counts() const;

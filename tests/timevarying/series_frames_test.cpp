@@ -187,6 +187,40 @@ TEST(SeriesFrames, ReadLessOftenWhereMoreIsReadAtATime) {
   for (const auto& [at_a_time, read] : bytes) EXPECT_LE(read, std::filesystem::file_size(folder / "a.adm"));
 }
 
+TEST(SeriesFrames, TellHowMuchOfStepsIsInMemory) {
+  const test::Scratch folder;
+  const TestSeries<std::uint8_t> series({70, 65, 50}, Motion::kStill, 12);
+  build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(1));
+  StoreFile file(folder / "a.adm");
+  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, std::size_t{1} << 28);
+  FrameRequest fine, coarse;
+  fine.isovalue = 60.5;
+  fine.pixels = 0.1;
+  fine.viewpoint.target = series.steps[0].grid.box().center();
+  fine.viewpoint.eye = fine.viewpoint.target + Vec3{70, 60, 80};
+  coarse = fine;
+  coarse.pixels = 200;
+  for (const std::uint32_t step : {2u, 9u, 3u}) frames->next(step, coarse);
+  frames->next(7, fine);
+  frames->expect({8});
+  while (frames->is_reading_ahead()) frames->wait();
+  // Before is_ready(), which takes steps in.
+  const PageCounts before = frames->counts();
+  const std::vector<LoadedStep> loaded = frames->loaded_steps();
+  EXPECT_EQ(frames->counts().pages, before.pages);
+  EXPECT_EQ(frames->counts().bytes, before.bytes) << "a look reads nothing";
+  std::map<std::uint32_t, LoadedStep> by_step;
+  for (const LoadedStep& each : loaded) EXPECT_TRUE(by_step.emplace(each.step, each).second);
+  for (std::uint32_t step = 0; step < 12; ++step) {
+    SCOPED_TRACE(step);
+    const LoadedStep one = by_step.contains(step) ? by_step.at(step) : LoadedStep{step, 0, 1};
+    EXPECT_EQ(one.pages == one.needed, frames->is_ready(step));
+    EXPECT_EQ(one.pages == one.needed, step == 7 || step == 8);
+    const bool is_coarse = step == 2 || step == 9 || step == 3;
+    EXPECT_EQ(one.pages > 0 && one.pages < one.needed, is_coarse);
+  }
+}
+
 TEST(PlayOrder, GoesThroughAllSteps) {
   using Steps = std::vector<std::uint32_t>;
   EXPECT_EQ(steps_in_order(PlayOrder::kForward, 2, 4), (Steps{2, 3, 4}));

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <imgui.h>
-#include <imgui_internal.h>
 
 #include "ball_store.h"
+#include "panel_clicks.h"
 #include "tests/support/scratch.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/panel_context.h"
@@ -29,36 +29,11 @@ class Panels : public testing::Test {
     show_panels(session, input, panels);
     context.end();
   }
-  /// Moves the mouse, presses and lets go.
-  void click(float x, float y) { drag(x, y, x, y); }
   void drag(float x, float y, float to_x, float to_y) {
-    ImGuiIO& io = ImGui::GetIO();
-    io.MousePos = {x, y};
-    frame();
-    io.MouseDown[0] = true;
-    frame();
-    io.MousePos = {to_x, to_y};
-    frame();
-    frame();
-    io.MouseDown[0] = false;
-    frame();
-    frame();
+    test::drag([this] { frame(); }, {x, y}, {to_x, to_y});
   }
-  /// Where an item of the window is that has this name, tried place by place as a mouse would.
   bool click_item(const char* window, const char* name, std::optional<int> document = {}) {
-    ImGuiWindow* const found = ImGui::FindWindowByName(window);
-    if (found == nullptr) return false;
-    const ImGuiID id = document ? ImHashStr(name, 0, found->GetID(*document)) : found->GetID(name);
-    for (float y = found->Pos.y + 4; y < found->Pos.y + found->Size.y; y += 6) {
-      for (float x = found->Pos.x + 6; x < found->Pos.x + found->Size.x; x += 6) {
-        ImGui::GetIO().MousePos = {x, y};
-        frame();
-        if (ImGui::GetCurrentContext()->HoveredId != id) continue;
-        click(x, y);
-        return true;
-      }
-    }
-    return false;
+    return test::click_item([this] { frame(); }, window, name, document);
   }
 
   test::Scratch folder;

@@ -77,7 +77,7 @@ class ReferencePictures : public testing::TestWithParam<bool> {
   }
 
   void expect_reference(const std::string& name) {
-    const Raster drawn = pictures->draw(flight("orbit:1", session.box(), kWidth, kHeight)[0]);
+    const Raster drawn = pictures->draw(flight("orbit:1", session.box(), kWidth, kHeight)[0]).value();
     const std::filesystem::path path =
         std::filesystem::path(ADAMAS_SOURCE_DIR) / "tests/viewer/golden" / (name + ".png");
     // Written anew where somebody has asked for that, to be looked at.
@@ -137,13 +137,13 @@ TEST_P(ReferencePictures, WithASection) {
 
 TEST_P(ReferencePictures, ADifferenceThatCanBeSeenIsOne) {
   const Viewpoint viewpoint = flight("orbit:1", session.box(), kWidth, kHeight)[0];
-  const Raster first = pictures->draw(viewpoint);
+  const Raster first = pictures->draw(viewpoint).value();
   session.state().documents[0].surfaces[0].isovalue = 97;
-  const Difference moved = difference(first, pictures->draw(viewpoint));
+  const Difference moved = difference(first, pictures->draw(viewpoint).value());
   EXPECT_GT(moved.mean, 0.2) << "a surface that is a third of a voxel farther out";
   session.state().documents[0].surfaces[0].isovalue = 100;
   session.state().documents[0].surfaces[0].colour = {0.93, 0.80, 0.66};
-  EXPECT_GT(difference(first, pictures->draw(viewpoint)).mean, 0.2) << "another colour";
+  EXPECT_GT(difference(first, pictures->draw(viewpoint).value()).mean, 0.2) << "another colour";
 }
 
 }  // namespace

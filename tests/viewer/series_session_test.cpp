@@ -4,11 +4,10 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <thread>
 
 #include "core/base/error.h"
-#include "isosurface/storage/store_file.h"
+#include "tests/support/damaged_step.h"
 #include "tests/support/test_series.h"
 #include "viewer/scene/view_session.h"
 #include "viewer/window/input.h"
@@ -103,8 +102,8 @@ TEST_F(SeriesSessions, ReadAheadAndShowTheSame) {
   finished(*session);
   // Nobody has asked for the next step: its pages come all the same.
   const auto is_ready = [&](std::uint32_t step) {
-    const std::vector<std::uint32_t> ready = session->ready_steps();
-    return std::ranges::find(ready, step) != ready.end();
+    const std::vector<LoadedPart> loaded = session->loaded_steps();
+    return std::ranges::find(loaded, LoadedPart{step, 1}) != loaded.end();
   };
   for (int n = 0; n < 10'000 && !(is_ready(1) && is_ready(2) && is_ready(3)); ++n)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -180,24 +179,8 @@ TEST_F(SeriesSessions, TakeTheCameraAlongTheBookmarks) {
 
 TEST_F(SeriesSessions, TellOfAStepThatIsDamagedAndGoOn) {
   build(path, 10, 3);
-  {
-    // Step 7 may be coded with it, step 8 is not.
-    StoreFile file(path);
-    std::fstream bytes(path, std::ios::in | std::ios::out | std::ios::binary);
-    for (std::uint64_t number = 1; number < std::uint64_t{2} << (3 * file.grid().top()); ++number) {
-      const PageId id = file.grid().page(number);
-      if (!file.grid().contains(id)) continue;
-      const auto entry = file.entry(6, id);
-      ASSERT_TRUE(entry);
-      for (const std::uint64_t offset : {entry->offset, entry->copy}) {
-        if (offset == 0 || entry->size == 0) continue;
-        bytes.seekg(static_cast<std::streamoff>(offset + entry->size / 2));
-        const auto byte = static_cast<char>(bytes.get() ^ 0x55);
-        bytes.seekp(static_cast<std::streamoff>(offset + entry->size / 2));
-        bytes.put(byte);
-      }
-    }
-  }
+  // Step 7 may be coded with it, step 8 is not.
+  test::damage_step(path, 6);
   const auto session = session_at(0, true);
   const std::vector<DrawnPart> first = finished(*session);
   session->state().cut.is_on = false;
@@ -233,6 +216,94 @@ TEST_F(SeriesSessions, TellOfAStepThatIsDamagedAndGoOn) {
   EXPECT_EQ(ahead->report().problem, "");
 }
 
+TEST_F(SeriesSessions, PlayPastAStepThatIsDamagedAndNameIt) {
+  build(path, 10, 3);
+  test::damage_step(path, 6);
+  for (const bool waits : {true, false}) {
+    SCOPED_TRACE(waits);
+    const auto session = session_at(5, waits);
+    session->state().cut.is_on = false;
+    finished(*session);
+    EXPECT_TRUE(session->lost_steps().empty());
+    session->clock().pace() = {50, Repeat::kOnce, false, 0.5};
+    session->play_steps();
+    std::vector<std::uint32_t> shown{session->step()};
+    for (int n = 0; n < 100'000 && session->clock().is_playing(); ++n) {
+      session->advance(0.001);
+      finished(*session);
+      if (session->step() != shown.back()) shown.push_back(session->step());
+      if (session->step() == 6) {
+        EXPECT_EQ(session->drawn_step(), 5u) << "the last one stays to be seen";
+      } else if (session->step() != 7) {
+        EXPECT_EQ(session->drawn_step(), session->step());
+      }
+    }
+    EXPECT_EQ(shown, (std::vector<std::uint32_t>{5, 6, 7, 8, 9}));
+    EXPECT_TRUE(session->lost_steps().contains(6));
+    for (const std::uint32_t lost : session->lost_steps()) EXPECT_TRUE(lost == 6 || lost == 7) << lost;
+    EXPECT_TRUE(are_same(finished(*session), [&] {
+      const auto fresh = session_at(9, true);
+      fresh->state().cut.is_on = false;
+      return finished(*fresh);
+    }()));
+  }
+}
+
+TEST_F(SeriesSessions, NameADamagedStepThatIsThereOnlyAfterItWasLookedFor) {
+  build(path, 10, 3);
+  test::damage_step(path, 6);
+  const auto session = session_at(0, true);
+  session->state().cut.is_on = false;
+  session->set_step(6);
+  session->parts();
+  while (!session->report().is_current) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  session->advance(0);
+  EXPECT_EQ(session->lost_steps(), std::set<std::uint32_t>{6});
+  // That says nothing of the step that comes next.
+  session->set_step(9);
+  session->advance(0);
+  EXPECT_EQ(session->lost_steps(), std::set<std::uint32_t>{6});
+}
+
+TEST_F(SeriesSessions, TellHowMuchOfEachStepIsInMemoryHoweverFarAway) {
+  constexpr std::uint32_t kMany = 24;
+  build(path, kMany, 3);
+  const auto session = session_at(0, true);
+  session->state().cut.is_on = false;
+  const auto loaded = [&] {
+    while (session->documents()[0]->steps_ahead().is_reading)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return session->loaded_steps();
+  };
+  const auto wait_for = [&](const auto& holds) {
+    for (int n = 0; n < 10'000 && !holds(); ++n) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return holds();
+  };
+  for (std::uint32_t step = 0; step < kMany; ++step) {
+    session->set_step(step);
+    session->advance(0);
+    finished(*session);
+    const auto has_it = [&] {
+      const std::vector<LoadedPart> now = loaded();
+      return std::ranges::find(now, LoadedPart{step, 1}) != now.end();
+    };
+    EXPECT_TRUE(wait_for(has_it)) << step;
+  }
+  // All that was seen is still there, the first step as well as the last.
+  EXPECT_TRUE(wait_for([&] { return loaded().size() == kMany; }));
+  const std::vector<LoadedPart> all = loaded();
+  for (std::uint32_t step = 0; step < std::min<std::size_t>(kMany, all.size()); ++step)
+    EXPECT_EQ(all[step], (LoadedPart{step, 1}));
+  // That is so, too, where no step is to come.
+  session->clock().pace().repeat = Repeat::kOnce;
+  for (const std::uint32_t step : {kMany - 2, kMany - 1}) {
+    session->set_step(step);
+    session->advance(0);
+    finished(*session);
+  }
+  EXPECT_EQ(loaded().size(), kMany);
+}
+
 TEST_F(SeriesSessions, KeepTheStepInTheirState) {
   const auto session = session_at(4, true);
   EXPECT_EQ(session->step(), 4u);
@@ -259,6 +330,23 @@ TEST_F(SeriesSessions, KeepTheStepInTheirState) {
   EXPECT_EQ(single->step(), 0u);
   EXPECT_EQ(single->report().problem, "");
   EXPECT_FALSE(finished(*single).empty());
+}
+
+TEST(NamedSteps, AreAFewOfThem) {
+  EXPECT_EQ(named_steps({3}), "step 3");
+  EXPECT_EQ(named_steps({3, 1}), "steps 1 and 3");
+  EXPECT_EQ(named_steps({1, 2, 3, 4, 5, 9}), "steps 1, 2, 3, 4, 5 and 9");
+  EXPECT_EQ(named_steps({1, 2, 3, 4, 5, 9, 10, 30}), "steps 1, 2, 3, 4, 5, 9 and 2 more");
+}
+
+TEST_F(SeriesSessions, RememberHowTheyArePlayed) {
+  const auto session = session_at(0, true);
+  session->clock().pace() = {12.5, Repeat::kThereAndBack, true, 0.5};
+  const ViewState kept = view_state(to_text(session->remembered()), "state");
+  const auto other = session_at(0, true);
+  EXPECT_FALSE(other->clock().pace() == session->clock().pace());
+  other->restore(kept);
+  EXPECT_EQ(other->clock().pace(), session->clock().pace());
 }
 
 TEST_F(SeriesSessions, ShowSeriesTogetherAndRefuseColoursOfOtherSteps) {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 #include <imgui.h>
-#include <imgui_internal.h>
 
+#include "panel_clicks.h"
 #include "tests/support/test_series.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/panel_context.h"
@@ -41,26 +41,10 @@ class StepPanels : public testing::Test {
     return found != nullptr && found->Active ? found : nullptr;
   }
   void click(float x, float y) {
-    ImGui::GetIO().MousePos = {x, y};
-    frame();
-    ImGui::GetIO().MouseDown[0] = true;
-    frame();
-    ImGui::GetIO().MouseDown[0] = false;
-    frame();
+    test::drag([this] { frame(); }, {x, y}, {x, y});
   }
-  /// Clicks at an item by its name, tried place by place as a mouse would.
   bool click_item(const char* name) {
-    const ImGuiID id = panel()->GetID(name);
-    for (float y = panel()->Pos.y + 4; y < kHeight; y += 6) {
-      for (float x = 4; x < kWidth; x += 6) {
-        ImGui::GetIO().MousePos = {x, y};
-        frame();
-        if (ImGui::GetCurrentContext()->HoveredId != id) continue;
-        click(x, y);
-        return true;
-      }
-    }
-    return false;
+    return test::click_item([this] { frame(); }, "Steps", name);
   }
 
   test::Scratch folder;
@@ -103,6 +87,54 @@ TEST_F(StepPanels, ClicksGoToStepsAndPlay) {
   EXPECT_TRUE(session.clock().is_playing());
   ASSERT_TRUE(click_item("Pause"));
   EXPECT_FALSE(session.clock().is_playing());
+}
+
+TEST_F(StepPanels, AskForExportsOneAtATime) {
+  open(4);
+  ASSERT_TRUE(click_item("Film"));
+  EXPECT_EQ(session.wants_export, ExportForm::kFilm);
+  ASSERT_TRUE(click_item("Images"));
+  EXPECT_EQ(session.wants_export, ExportForm::kFrames);
+  EXPECT_TRUE(input.key("F"));
+  EXPECT_EQ(session.wants_export, ExportForm::kFilm);
+  EXPECT_TRUE(input.key("I"));
+  EXPECT_EQ(session.wants_export, ExportForm::kFrames);
+  // Escape ends that, as soon as it is asked for, and not the program.
+  input.key("Escape");
+  EXPECT_TRUE(session.wants_export_end);
+  EXPECT_FALSE(session.wants_end);
+  session.wants_export_end = false;
+  // While one is made there is no other one.
+  session.wants_export.reset();
+  session.is_exporting = true;
+  input.key("F");
+  EXPECT_FALSE(session.wants_export);
+  input.key("Escape");
+  EXPECT_TRUE(session.wants_export_end);
+  EXPECT_FALSE(session.wants_end);
+  session.wants_export_end = false;
+  frame();
+  frame();
+  ASSERT_TRUE(test::click_item([this] { frame(); }, "Export", "Stop (Escape)"));
+  EXPECT_TRUE(session.wants_export_end);
+  // What came of it stays to be read, with panels or without, until it is put away.
+  session.is_exporting = false;
+  panels.exporting.outcome = "waves-film-001.mp4 was written";
+  session.act(Action::kPanels);
+  frame();
+  frame();
+  ASSERT_TRUE(test::click_item([this] { frame(); }, "Export", "#CLOSE"));
+  EXPECT_EQ(panels.exporting.outcome, "");
+  frame();
+  EXPECT_FALSE(ImGui::FindWindowByName("Export")->Active);
+  input.key("Escape");
+  EXPECT_TRUE(session.wants_end);
+}
+
+TEST_F(StepPanels, AskForNoExportWithoutASeries) {
+  open(1);
+  input.key("F");
+  EXPECT_FALSE(session.wants_export);
 }
 
 }  // namespace

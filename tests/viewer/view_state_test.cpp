@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "core/base/error.h"
@@ -33,6 +34,10 @@ ViewState some_state() {
   mesh.field = "velocity:1";
   mesh.range = {-2, 5.5};
   state.documents = {store, mesh};
+  state.has_time = false;
+  state.pace.steps_per_second = 4.5;
+  state.pace.repeat = Repeat::kOnce;
+  state.pace.is_backward = true;
   return state;
 }
 
@@ -40,10 +45,21 @@ TEST(ViewState, IsTheSameAfterItsText) {
   const ViewState state = some_state(), again = view_state(to_text(state), "state");
   EXPECT_EQ(to_text(again), to_text(state));
   EXPECT_EQ(again.frame_milliseconds, 16.5);
+  EXPECT_FALSE(again.has_time);
+  EXPECT_EQ(again.pace, state.pace);
   EXPECT_EQ(again.documents, state.documents);
   EXPECT_EQ(again.viewpoint.eye, state.viewpoint.eye);
   EXPECT_EQ(again.bookmarks[0].name, state.bookmarks[0].name);
   EXPECT_EQ(again.cut.plane.normal, state.cut.plane.normal);
+}
+
+TEST(ViewState, OlderTextsSayNothingOfTimeAndPace) {
+  nlohmann::json text = nlohmann::json::parse(to_text(some_state()));
+  for (const char* key : {"time", "pace"}) ASSERT_EQ(text.erase(key), 1u);
+  const ViewState old = view_state(text.dump(), "state");
+  EXPECT_TRUE(old.has_time);
+  EXPECT_EQ(old.pace, StepPace{});
+  EXPECT_EQ(old.max_triangles, some_state().max_triangles);
 }
 
 TEST(ViewState, OtherTextsAreRefusedInALine) {
@@ -69,6 +85,8 @@ TEST(ViewState, OtherTextsAreRefusedInALine) {
   EXPECT_NE(with("\"cool-warm\"", "\"rainbow\"").find("rainbow"), std::string::npos);
   EXPECT_NE(with("123456", "-4").find("max_triangles"), std::string::npos);
   EXPECT_NE(with("16.5", "-1").find("frame_milliseconds"), std::string::npos);
+  EXPECT_NE(with("4.5", "0").find("speed: expected a number from 0.5 to 60"), std::string::npos);
+  EXPECT_NE(with("\"once\"", "\"twice\"").find("unknown word 'twice'"), std::string::npos);
   EXPECT_NE(with("0.75", "1e999").find("s.json"), std::string::npos);
   EXPECT_NE(with("\"edges\": true", "\"edges\": 1").find("expected true or false"), std::string::npos);
   // Cut off, or changed anywhere: an error or another state, never a crash.

@@ -160,14 +160,39 @@ def try_steps(window):
     window.do("key", "period")
 
 
+def try_exports(window, folder):
+    """The view stays as it is, and what is there is left alone."""
+    before = window.settled()
+    with open(os.path.join(folder, "steps-images-001"), "w", encoding="utf-8") as file:
+        file.write("mine")
+    window.do("key", "i")
+    images = os.path.join(folder, "steps-images-002")
+    wait_for(lambda: os.path.exists(images), "I writes no images")
+    names = [f"frame{n + 1:04}.png" for n in range(STEPS)]
+    check(sorted(os.listdir(images)) == names, "the images are not those of the steps")
+    contents = {open(os.path.join(images, name), "rb").read() for name in names}
+    check(len(contents) == STEPS, "images of different steps are the same")
+    check(window.settled() == before, "the view is not as it was after an export")
+    check(before in contents, "the image of the step that is seen is not what is seen")
+    # Escape stops what is being written, and ends nothing else.
+    window.do("key", "--delay", "0", "f", "Escape")
+    check(window.settled() == before, "the window is gone after an export was stopped")
+    if shutil.which("ffmpeg"):
+        window.do("key", "f")
+        wait_for(lambda: any(name.startswith("steps-film-") for name in os.listdir(folder)), "F writes no film")
+    check(not any(name.startswith(".partial-") for name in os.listdir(folder)), "an export has left a part")
+
+
 def run_series(adamas_in_folder, open_window, folder):
     adamas_in_folder("store", *write_steps(folder), "--dimensions", "25", "--type", "uint8", "-o", "steps.adm")
     window = open_window("steps.adm", "--isovalue", "80")
     try_steps(window)
+    try_exports(window, folder)
     window.end()
     with open(os.path.join(folder, "state", "adamas", "view.json"), encoding="utf-8") as file:
         state = json.load(file)[0]["state"]
     check(state["documents"][0].get("step") == 1, "the step is not remembered")
+    check(state["pace"]["repeat"] == "loop", "how steps are played is not remembered")
 
 
 def run(adamas):

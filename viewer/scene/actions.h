@@ -35,6 +35,9 @@ enum class Action {
   kNextStep,
   kFirstStep,
   kLastStep,
+  kTime,
+  kExportFilm,
+  kExportFrames,
   kScreenshot,
   kQuit,
 };
@@ -46,7 +49,7 @@ struct KeyBinding {
 };
 
 /// All keys, as the help shows them.
-inline constexpr std::array<KeyBinding, 30> kKeyBindings{{
+inline constexpr std::array<KeyBinding, 33> kKeyBindings{{
     {Action::kViewFront, "1", "View from the front, along y"},
     {Action::kViewRight, "3", "View from the right, against x"},
     {Action::kViewTop, "7", "View from above, against z"},
@@ -75,6 +78,9 @@ inline constexpr std::array<KeyBinding, 30> kKeyBindings{{
     {Action::kNextStep, ".", "The next step"},
     {Action::kFirstStep, "Home", "The first step"},
     {Action::kLastStep, "End", "The last step"},
+    {Action::kTime, "D", "Time of the step"},
+    {Action::kExportFilm, "F", "Write the steps as a film; Escape stops it"},
+    {Action::kExportFrames, "I", "Write the steps as images"},
     {Action::kScreenshot, "F12", "Screenshot"},
     {Action::kQuit, "Escape", "End"},
 }};

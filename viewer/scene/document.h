@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -38,7 +39,9 @@ struct UpdateReport {
   /// Pages that the surface does without for now, so that it is coarser there; and those that it wants and
   /// that cannot be had.
   std::uint64_t pages_missing = 0, pages_lost = 0;
-  double seconds = 0;      ///< to work it out
+  double seconds = 0;  ///< to work it out
+  /// Of a series: whose surfaces are shown, an earlier one until another is there; none before the first.
+  std::optional<std::uint32_t> step;
   bool is_current = true;  ///< it is what the state asks for
   std::string problem;     ///< why it could not be had; empty: nothing
 };
@@ -51,10 +54,22 @@ struct Reading {
   bool is_pending = false;      ///< more of it is being worked out: it may be asked for again
 };
 
-/// Steps of a series near the one that was found last.
+/// How much of what a view needs is in memory of a step of a series.
+struct LoadedPart {
+  std::uint32_t step = 0;
+  double part = 0;  ///< of the pages that the last surfaces are made of; 1: all
+
+  bool operator==(const LoadedPart&) const = default;
+};
+
+/// Steps of a series besides the one that was found last.
 struct StepsAhead {
-  std::vector<std::uint32_t> ready;  ///< whose pages are in memory, those that the last surfaces are made of
-  bool is_reading = false;           ///< more are on their way
+  std::vector<LoadedPart> loaded;  ///< those of all steps of which there is anything, in ascending order
+  bool is_reading = false;         ///< more is on its way of those that are expected
+
+  [[nodiscard]] bool has_all_of(std::uint32_t step) const {
+    return std::ranges::find(loaded, LoadedPart{step, 1}) != loaded.end();
+  }
 };
 
 /// An open file, as parts of pictures. What takes long goes on in a thread of its own: parts() never waits.

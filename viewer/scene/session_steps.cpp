@@ -1,5 +1,7 @@
 // The steps of series in a session: which one is seen, and how they are played.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -38,14 +40,18 @@ std::uint32_t ViewSession::step() const {
   return documents_.empty() ? 0 : state_.documents[longest_series()].step;
 }
 
+std::uint32_t ViewSession::drawn_step() const {
+  const UpdateReport report = documents_.empty() ? UpdateReport{} : documents_[longest_series()]->report();
+  return report.step.value_or(step());
+}
+
 void ViewSession::set_step(std::uint32_t step) {
   for (std::size_t n = 0; n < documents_.size(); ++n)
     state_.documents[n].step = step_of(*documents_[n], step);
 }
 
-std::vector<std::uint32_t> ViewSession::ready_steps() const {
-  return documents_.empty() ? std::vector<std::uint32_t>{}
-                            : documents_[longest_series()]->steps_ahead().ready;
+std::vector<LoadedPart> ViewSession::loaded_steps() const {
+  return documents_.empty() ? std::vector<LoadedPart>{} : documents_[longest_series()]->steps_ahead().loaded;
 }
 
 bool ViewSession::is_ready(std::uint32_t step) const {
@@ -54,7 +60,7 @@ bool ViewSession::is_ready(std::uint32_t step) const {
     if (document->facts().times.size() < 2) return true;
     const StepsAhead ahead = document->steps_ahead();
     // What does not come, for want of memory, is not waited for.
-    return !ahead.is_reading || std::ranges::find(ahead.ready, step_of(*document, step)) != ahead.ready.end();
+    return !ahead.is_reading || ahead.has_all_of(step_of(*document, step));
   });
 }
 
@@ -81,19 +87,62 @@ void ViewSession::act_on_steps(Action action) {
       return set_step(now + 1);
     case Action::kFirstStep:
       return set_step(0);
+    case Action::kTime:
+      state_.has_time = !state_.has_time;
+      return;
+    case Action::kExportFilm:
+    case Action::kExportFrames:
+      if (times().size() > 1 && !is_exporting)
+        wants_export = action == Action::kExportFilm ? ExportForm::kFilm : ExportForm::kFrames;
+      return;
     default:
       return set_step(std::numeric_limits<std::uint32_t>::max());
   }
 }
 
+void ViewSession::note_lost_step() {
+  // What was reported is of another step where that has changed since.
+  if (asked_step_ != step()) return;
+  bool is_lost = false;
+  for (const auto& document : documents_) {
+    if (document->facts().times.size() < 2) continue;
+    const UpdateReport report = document->report();
+    if (!report.is_current) return;
+    is_lost = is_lost || !report.problem.empty();
+  }
+  if (is_lost) {
+    lost_steps_.insert(step());
+  } else {
+    lost_steps_.erase(step());
+  }
+}
+
+ViewState ViewSession::remembered() const {
+  ViewState state = state_;
+  state.pace = clock_.pace();
+  return state;
+}
+
 void ViewSession::advance_steps(double seconds) {
   if (times().size() < 2) return;
+  note_lost_step();
   const std::vector<std::uint32_t> next = clock_.following(step(), 1);
   set_step(clock_.advance(step(), seconds, next.empty() || is_ready(next[0])));
   if (has_keyed_camera && clock_.is_playing() && state_.bookmarks.size() > 1)
     state_.viewpoint = along(bookmarked(), step(), times().size());
   const std::vector<std::uint32_t> expected = clock_.following(step(), kStepsAhead);
   for (const auto& document : documents_) document->expect(expected);
+}
+
+std::string named_steps(const std::set<std::uint32_t>& steps) {
+  constexpr std::size_t kMost = 6;
+  std::string text = steps.size() == 1 ? "step" : "steps";
+  std::size_t named = 0;
+  for (auto it = steps.begin(); it != steps.end() && named < kMost; ++it, ++named) {
+    const bool is_last = named > 0 && named + 1 == steps.size();
+    text += fmt::format("{} {}", named == 0 ? "" : is_last ? " and" : ",", *it);
+  }
+  return named < steps.size() ? text + fmt::format(" and {} more", steps.size() - named) : text;
 }
 
 }  // namespace adamas

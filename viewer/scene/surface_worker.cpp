@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -135,7 +136,7 @@ void SurfaceWorker::run() {
       continue;
     }
     if (done == wanted && is_current()) {
-      StepsAhead ahead = look_ahead(wanted.step, wanted.isovalues.size());
+      StepsAhead ahead = look_ahead(wanted.isovalues.size());
       const std::lock_guard lock(mutex_);
       ahead_ = std::move(ahead);
       continue;
@@ -150,9 +151,9 @@ void SurfaceWorker::run() {
   }
 }
 
-StepsAhead SurfaceWorker::look_ahead(std::uint32_t step, std::size_t isovalues) {
+StepsAhead SurfaceWorker::look_ahead(std::size_t isovalues) {
   try {
-    return looked_ahead(step, isovalues);
+    return looked_ahead(isovalues);
   } catch (const Error&) {
     // Steps that cannot be had are told of when they are wanted.
     for (const Surface& surface : surfaces_) surface.frames->expect({});
@@ -160,22 +161,25 @@ StepsAhead SurfaceWorker::look_ahead(std::uint32_t step, std::size_t isovalues) 
   }
 }
 
-StepsAhead SurfaceWorker::looked_ahead(std::uint32_t step, std::size_t isovalues) {
+StepsAhead SurfaceWorker::looked_ahead(std::size_t isovalues) {
   const auto shown = std::span(surfaces_).first(std::min(isovalues, surfaces_.size()));
   for (std::size_t n = 0; n < surfaces_.size(); ++n)
     surfaces_[n].frames->expect(n < shown.size() ? expecting_ : std::vector<std::uint32_t>{});
   StepsAhead ahead;
-  if (expecting_.empty() || shown.empty()) return ahead;
-  // What is asked about last stays in memory longest: the steps that come next.
-  constexpr std::uint32_t kNear = 8;
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t n = step - std::min(step, kNear); n < std::min(step + kNear + 1, file_.steps()); ++n) {
-    if (std::ranges::find(expecting_, n) == expecting_.end()) near.push_back(n);
+  if (file_.steps() == 1 || shown.empty()) return ahead;
+  // What is asked about last stays in memory longest: the step that comes next.
+  for (auto next = expecting_.rbegin(); next != expecting_.rend(); ++next) {
+    for (const Surface& surface : shown) static_cast<void>(surface.frames->is_ready(*next));
   }
-  near.insert(near.end(), expecting_.rbegin(), expecting_.rend());
-  for (const std::uint32_t n : near) {
-    const auto has = [n](const Surface& surface) { return surface.frames->is_ready(n); };
-    if (std::ranges::all_of(shown, has)) ahead.ready.push_back(n);
+  std::map<std::uint32_t, std::uint64_t> pages;
+  std::uint64_t needed = 0;
+  for (const Surface& surface : shown) {
+    const std::vector<LoadedStep> loaded = surface.frames->loaded_steps();
+    if (!loaded.empty()) needed += loaded.front().needed;
+    for (const LoadedStep& one : loaded) pages[one.step] += one.pages;
+  }
+  for (const auto& [step, count] : pages) {
+    if (count > 0) ahead.loaded.push_back({step, static_cast<double>(count) / static_cast<double>(needed)});
   }
   ahead.is_reading =
       std::ranges::any_of(shown, [](const Surface& s) { return s.frames->is_reading_ahead(); });
@@ -237,13 +241,14 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
       found->step = last->step;
     }
   }
+  found->report.step = found->step;
   found->report.seconds = passed();
   if (roughness == 1) budget_.note(found->report.seconds, is_stopped);
   if (is_stopped) return false;
   // Where there is a problem it is not tried again.
   const bool is_done = has_failed || (budget_.is_whole() && !is_paging());
   found->report.is_current = roughness == 1 && is_done;
-  StepsAhead ahead = look_ahead(wanted.step, wanted.isovalues.size());
+  StepsAhead ahead = look_ahead(wanted.isovalues.size());
   {
     const std::lock_guard lock(mutex_);
     found_ = std::move(found);

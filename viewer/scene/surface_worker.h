@@ -110,8 +110,8 @@ class SurfaceWorker {
   /// The same.
   bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
   /// Reads ahead what the last surfaces, of so many isovalues, are made of.
-  StepsAhead look_ahead(std::uint32_t step, std::size_t isovalues);
-  [[nodiscard]] StepsAhead looked_ahead(std::uint32_t step, std::size_t isovalues);
+  StepsAhead look_ahead(std::size_t isovalues);
+  [[nodiscard]] StepsAhead looked_ahead(std::size_t isovalues);
   /// Colours follow the step, too.
   void set_step_of_colours(std::uint32_t step);
   [[nodiscard]] bool is_paging() const;

@@ -38,6 +38,8 @@ void ViewSession::open(const std::string& path, const DocumentOptions& options, 
   std::unique_ptr<Document> document = open_document(path, options, progress);
   state_.documents.push_back(document->first_state());
   documents_.push_back(std::move(document));
+  opened_with_.push_back(options);
+  lost_steps_.clear();
   clock_.set_steps(static_cast<std::uint32_t>(std::max<std::size_t>(1, times().size())));
   set_step(step());
   if (documents_.size() > 1) return;
@@ -51,6 +53,7 @@ void ViewSession::restore(const ViewState& state) {
   state_ = state;
   state_.viewpoint = sized_as(state_.viewpoint, now);
   state_.culled_from.reset();
+  clock_.pace() = state.pace;
   state_.documents.resize(documents_.size());
   for (std::size_t n = 0; n < documents_.size(); ++n) {
     const DocumentFacts& facts = documents_[n]->facts();
@@ -94,6 +97,8 @@ std::vector<DrawnPart> ViewSession::parts() {
     std::vector<DrawnPart> some = documents_[n]->parts(state_, state_.documents[n]);
     result.insert(result.end(), some.begin(), some.end());
   }
+  asked_step_ = step();
+  note_lost_step();
   if (state_.has_box && !documents_.empty()) add_box(result);
   if (state_.culled_from) add_culled_view(result);
   return result;
@@ -291,12 +296,15 @@ void ViewSession::act(Action action) {
     case Action::kNextStep:
     case Action::kFirstStep:
     case Action::kLastStep:
+    case Action::kTime:
+    case Action::kExportFilm:
+    case Action::kExportFrames:
       return act_on_steps(action);
     case Action::kScreenshot:
       wants_screenshot = true;
       return;
     case Action::kQuit:
-      wants_end = true;
+      (is_exporting || wants_export ? wants_export_end : wants_end) = true;
       return;
   }
 }

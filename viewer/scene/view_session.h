@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,9 @@ struct Picked {
   std::size_t number = 0, surface = 0;  ///< of the document, and of its surfaces
 };
 
+/// What the steps of a series are written as: one film, or a picture of each.
+enum class ExportForm : std::uint8_t { kFilm, kFrames };
+
 /// Files that are looked at together, and how: all of a viewer that needs neither a window nor OpenGL. What
 /// the panels change is state() itself.
 class ViewSession {
@@ -36,9 +41,14 @@ class ViewSession {
   /// Takes a state over, for the files that are open; materials and fields that they have not are left out.
   void restore(const ViewState& state);
 
+  /// What is to be remembered of how the files are looked at.
+  [[nodiscard]] ViewState remembered() const;
+
   [[nodiscard]] ViewState& state() { return state_; }
   [[nodiscard]] const ViewState& state() const { return state_; }
   [[nodiscard]] const std::vector<std::unique_ptr<Document>>& documents() const { return documents_; }
+  /// How they were opened.
+  [[nodiscard]] const std::vector<DocumentOptions>& opened_with() const { return opened_with_; }
   /// Of all files, in space.
   [[nodiscard]] Box3 box() const;
   /// Ignores sizes below one pixel, as windows have when they are folded away.
@@ -76,10 +86,14 @@ class ViewSession {
   [[nodiscard]] const std::vector<double>& times() const;
   /// Which of these is seen.
   [[nodiscard]] std::uint32_t step() const;
+  /// Which of them the surfaces are of that are drawn by now: an earlier one until those of that are there.
+  [[nodiscard]] std::uint32_t drawn_step() const;
+  /// Those that could not be shown when they were wanted.
+  [[nodiscard]] const std::set<std::uint32_t>& lost_steps() const { return lost_steps_; }
   /// Shows a step of all series; of shorter ones the last step.
   void set_step(std::uint32_t step);
-  /// Steps near that one of which all that is drawn is in memory, as far as that is known.
-  [[nodiscard]] std::vector<std::uint32_t> ready_steps() const;
+  /// How much of what is drawn is in memory of each step of which there is anything, in ascending order.
+  [[nodiscard]] std::vector<LoadedPart> loaded_steps() const;
   /// Plays the steps, or pauses.
   void play_steps();
   [[nodiscard]] StepClock& clock() { return clock_; }
@@ -103,6 +117,8 @@ class ViewSession {
 
   // What the window does when it is asked, and takes back.
   bool has_panels = true, has_help = false, wants_screenshot = false, wants_end = false;
+  std::optional<ExportForm> wants_export;
+  bool is_exporting = false, wants_export_end = false;
 
  private:
   void drop_old_depths();
@@ -111,6 +127,8 @@ class ViewSession {
   /// Whether what there is to be drawn is whole, and that of another step would be.
   [[nodiscard]] bool is_ready(std::uint32_t step) const;
   void advance_steps(double seconds);
+  /// Once what the state asks for is there, or cannot be had.
+  void note_lost_step();
   void act_on_steps(Action action);
   void look(const Vec3& direction, const Vec3& up);
   void next_field();
@@ -121,7 +139,10 @@ class ViewSession {
 
   ViewState state_;
   std::vector<std::unique_ptr<Document>> documents_;
-  SharedMesh box_lines_, view_lines_;  ///< of drawn_box_, drawn_view_
+  std::vector<DocumentOptions> opened_with_;
+  std::set<std::uint32_t> lost_steps_;
+  std::optional<std::uint32_t> asked_step_;  ///< what the documents were asked for last
+  SharedMesh box_lines_, view_lines_;        ///< of drawn_box_, drawn_view_
   Box3 drawn_box_;
   std::optional<Viewpoint> drawn_view_;
   std::vector<DocumentState> depths_of_;  ///< what was shown when depths were set
@@ -131,6 +152,9 @@ class ViewSession {
   std::vector<Viewpoint> path_;
   double played_ = 0;  ///< how far, in viewpoints
 };
+
+/// "step 3", or "steps 3, 4 and 5"; of many some are named alone, and how many more there are.
+std::string named_steps(const std::set<std::uint32_t>& steps);
 
 /// The path as a text that flight() reads.
 std::string path_text(const std::vector<Viewpoint>& path);

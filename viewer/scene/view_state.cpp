@@ -16,12 +16,19 @@ using Json = nlohmann::json;
 
 constexpr std::array<const char*, 2> kShadings{"lit", "sphere"};
 constexpr std::array<const char*, 3> kCameraModes{"trackball", "turntable", "fly"};
+constexpr std::array<const char*, 3> kRepeats{"once", "loop", "there and back"};
 
 Json json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 Json json(const Viewpoint& v) {
   return {{"eye", json(v.eye)},       {"target", json(v.target)}, {"up", json(v.up)},
           {"angle", v.field_of_view}, {"height", v.height},       {"near", v.near}};
+}
+
+Json json(const StepPace& pace) {
+  return {{"speed", pace.steps_per_second},
+          {"repeat", kRepeats[static_cast<std::size_t>(pace.repeat)]},
+          {"backward", pace.is_backward}};
 }
 
 Json json(const DocumentState& state) {
@@ -97,6 +104,13 @@ class Reader {
     }
     return result;
   }
+  StepPace pace(const Json& from) const {
+    StepPace result;
+    result.steps_per_second = number(from, "speed", kSlowest, kFastest);
+    result.repeat = choice<Repeat>(from, "repeat", kRepeats);
+    result.is_backward = flag(from, "backward");
+    return result;
+  }
   DocumentState document(const Json& from) const {
     DocumentState result;
     for (const Json& each : list(from, "surfaces")) {
@@ -142,6 +156,8 @@ std::string to_text(const ViewState& state) {
               {"axes", state.has_axes},
               {"colour_bar", state.has_colour_bar},
               {"box", state.has_box},
+              {"time", state.has_time},
+              {"pace", json(state.pace)},
               {"leaves_out_hidden", state.leaves_out_hidden},
               {"pixels", state.pixels},
               {"max_triangles", state.max_triangles},
@@ -178,9 +194,11 @@ ViewState view_state(std::string_view text, const std::string& name) {
   result.leaves_out_hidden = read.flag(from, "leaves_out_hidden");
   result.pixels = read.number(from, "pixels", 1e-3, 1e6);
   result.max_triangles = static_cast<std::uint64_t>(read.number(from, "max_triangles", 1, 1e12));
-  // Older states have none.
+  // Older states have none of these three.
   if (from.contains("frame_milliseconds"))
     result.frame_milliseconds = read.number(from, "frame_milliseconds", 0, 1e6);
+  if (from.contains("time")) result.has_time = read.flag(from, "time");
+  if (from.contains("pace")) result.pace = read.pace(from.at("pace"));
   const Json& cut = read.at(from, "cut");
   result.cut = {read.flag(cut, "on"),
                 {read.vector(cut, "origin"), read.vector(cut, "normal")},

@@ -13,6 +13,7 @@
 #include "core/picture/colour.h"
 #include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/viewpoint.h"
+#include "timevarying/step_clock.h"
 
 namespace adamas {
 
@@ -69,6 +70,7 @@ struct ViewState {
   Shading shading = Shading::kLit;
   std::string colour_map = "sequential";
   bool has_edges = false, has_axes = true, has_colour_bar = true, has_box = true;
+  bool has_time = true;                   ///< of a series: the time of the step is written on the picture
   double pixels = 1;                      ///< the greatest isosurface error in the picture
   std::uint64_t max_triangles = 500'000;  ///< of all surfaces of a store
   double frame_milliseconds = 0;          ///< that a mesh of a store may take while the view moves; 0: any
@@ -81,6 +83,7 @@ struct ViewState {
   std::shared_ptr<const DepthPyramid> depths;
   std::vector<Bookmark> bookmarks;
   std::vector<DocumentState> documents;  ///< in the order of the files
+  StepPace pace;                         ///< of playing series; as of when a state is kept or taken over
 };
 
 /// The state as JSON. view_state() reads it; it throws Error that begins with `name` for another text, and

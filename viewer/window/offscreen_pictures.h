@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/picture/raster.h"
@@ -16,13 +17,14 @@ class OffscreenPictures {
   OffscreenPictures(ViewSession& session, int width, int height);
   ~OffscreenPictures();
 
-  /// What there is to be seen from a viewpoint, once it is worked out. Throws Error where that fails.
-  Raster draw(const Viewpoint& viewpoint);
+  /// What there is to be seen from a viewpoint, once it is worked out; nothing where there is a problem,
+  /// which report() tells. Throws Error where drawing fails.
+  std::optional<Raster> draw(const Viewpoint& viewpoint);
 
   // Of the last picture.
   [[nodiscard]] const UpdateReport& report() const { return report_; }
-  [[nodiscard]] const DrawFigures& drawn() const { return drawn_; }
-  [[nodiscard]] double draw_seconds() const { return draw_seconds_; }
+  [[nodiscard]] const DrawFigures& drawn() const;
+  [[nodiscard]] double draw_seconds() const;
   /// How OpenGL was had, and what draws.
   [[nodiscard]] const std::string& drawn_by() const;
 
@@ -37,8 +39,6 @@ class OffscreenPictures {
   ViewSession& session_;
   std::unique_ptr<Parts> parts_;
   UpdateReport report_;
-  DrawFigures drawn_;
-  double draw_seconds_ = 0;
 };
 
 }  // namespace adamas

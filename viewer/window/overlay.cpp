@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -78,6 +79,34 @@ void draw_colour_bar(ImDrawList& list, const ViewSession& session, float width, 
   }
 }
 
+std::string time_text(double time) { return "time " + tidy_number(time); }
+
+/// As wide as the times of some of the steps, so that the text stays in its place while they are played.
+float widest_time(const std::vector<double>& times, float font_size) {
+  constexpr std::size_t kSome = 64;
+  float widest = 0;
+  for (std::size_t n = 0; n < times.size(); n += 1 + times.size() / kSome) {
+    const std::string text = time_text(times[n]);
+    widest = std::max(widest, ImGui::GetFont()->CalcTextSizeA(font_size, FLT_MAX, 0, text.c_str()).x);
+  }
+  return widest;
+}
+
+/// The time of the step that is drawn, at the lower right.
+void draw_time(ImDrawList& list, const ViewSession& session, float width, float bottom) {
+  const std::vector<double>& times = session.times();
+  if (times.size() < 2) return;
+  const std::uint32_t step = session.drawn_step();
+  const std::string number = fmt::format("step {} of 0 to {}", step, times.size() - 1);
+  const std::string longest = fmt::format("step {0} of 0 to {0}", times.size() - 1);
+  const float large = 1.4F * ImGui::GetFontSize(), margin = 0.5F * line_height();
+  const float room = std::max(ImGui::CalcTextSize(longest.c_str()).x, widest_time(times, large));
+  const float left = width - room - 2.5F * margin, top = bottom - large - line_height() - 3 * margin;
+  list.AddRectFilled({left - margin, top - margin}, {width - margin, bottom - margin}, kPale, 4);
+  list.AddText(ImGui::GetFont(), large, {left, top - 0.4F * margin}, kText, time_text(times[step]).c_str());
+  list.AddText({left, top + large}, kText, number.c_str());
+}
+
 /// The materials of which something is shown, under each other.
 void draw_materials(ImDrawList& list, const ViewSession& session, float height) {
   constexpr std::size_t kMost = 24;
@@ -139,6 +168,7 @@ void draw_overlay(const ViewSession& session) {
   if (state.has_axes) draw_axes(list, state.viewpoint, bottom);
   if (state.has_colour_bar) draw_colour_bar(list, session, size.x, size.y);
   if (!session.shown_field()) draw_materials(list, session, bottom);
+  if (state.has_time) draw_time(list, session, size.x, bottom);
   draw_handle(list, session);
   const UpdateReport report = session.report();
   if (!report.problem.empty()) {

@@ -49,10 +49,14 @@ PanelContext::PanelContext(double scale) : context_(ImGui::CreateContext()) {
 }
 
 PanelContext::~PanelContext() {
-  ImGui::SetCurrentContext(context_);
+  ImGuiContext* const current = ImGui::GetCurrentContext();
+  make_current();
   if (uses_opengl_) ImGui_ImplOpenGL3_Shutdown();
   ImGui::DestroyContext(context_);
+  if (current != context_) ImGui::SetCurrentContext(current);
 }
+
+void PanelContext::make_current() { ImGui::SetCurrentContext(context_); }
 
 void PanelContext::use_opengl() {
   ImGui::SetCurrentContext(context_);

@@ -17,6 +17,8 @@ class PanelContext {
 
   /// Draws by the OpenGL context that is current, from now on. Throws Error where that does not work.
   void use_opengl();
+  /// What Dear ImGui is told and asked concerns these panels from now on, as after begin().
+  void make_current();
   /// Begins and ends what is shown on a picture of this size, `seconds` after the one before.
   void begin(int width, int height, double seconds);
   void end();

@@ -5,8 +5,10 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "core/picture/colour_map.h"
 #include "core/picture/ticks.h"
@@ -326,18 +328,24 @@ void show_help(ViewSession& session) {
   ImGui::SetNextWindowPos({0.5F * size.x, 0.5F * size.y}, ImGuiCond_Appearing, {0.5F, 0.5F});
   ImGui::Begin("Keys and mouse", &session.has_help,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::BeginTable("keys", 2);
-  const auto row = [](const std::string& key, const std::string& what) {
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(key.c_str());
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(what.c_str());
-  };
-  row("Left button", "Turn; a click tells what is there");
-  row("Shift, or middle", "Move");
-  row("Right, or wheel", "Zoom");
-  row("Arrows, Page Up, Down", "Move, where the mouse flies");
-  for (const KeyBinding& binding : kKeyBindings) row(std::string(binding.key), std::string(binding.what));
+  std::vector<std::array<std::string, 2>> rows{{"Left button", "Turn; a click tells what is there"},
+                                               {"Shift, or middle", "Move"},
+                                               {"Right, or wheel", "Zoom"},
+                                               {"Arrows, Page Up, Down", "Move, where the mouse flies"}};
+  for (const KeyBinding& binding : kKeyBindings)
+    rows.push_back({std::string(binding.key), std::string(binding.what)});
+  ImGui::BeginTable("keys", 4);
+  // Two columns side by side, each read from above to below.
+  const std::size_t half = (rows.size() + 1) / 2;
+  for (std::size_t n = 0; n < half; ++n) {
+    for (std::size_t row = n; row < rows.size(); row += half) {
+      for (const std::string& text : rows[row]) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(text.c_str());
+      }
+    }
+    ImGui::TableNextRow();
+  }
   ImGui::EndTable();
   ImGui::End();
 }
@@ -352,6 +360,7 @@ void PanelState::add(const FrameTimes& times) {
 void show_panels(ViewSession& session, Input& input, PanelState& panels) {
   show_help(session);
   show_picked(session, input);
+  show_export_panel(session, panels.exporting);
   if (!session.has_panels) return;
   show_step_panel(session);
   const float height = ImGui::GetIO().DisplaySize.y - step_panel_height(session);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "viewer/scene/view_session.h"
+#include "viewer/window/export_panel.h"
 #include "viewer/window/input.h"
 
 namespace adamas {
@@ -23,6 +24,7 @@ struct PanelState {
   std::vector<FrameTimes> history;  ///< the last frames, the newest last
   std::string path;                 ///< of a file to be opened
   std::string message;              ///< what was done last, or why it was not
+  ExportNotice exporting;
   bool wants_open = false, wants_path_saved = false;
 
   void add(const FrameTimes& times);

@@ -1,5 +1,7 @@
 #include "viewer/window/session_picture.h"
 
+#include <chrono>
+
 #include "viewer/window/overlay.h"
 
 namespace adamas {
@@ -27,6 +29,26 @@ DrawFigures draw_session(const ViewSession& session, const PictureContents& cont
   panels.end();
   panels.draw();
   return figures;
+}
+
+SessionPictures::SessionPictures(int width, int height, double scale)
+    : target_(width, height), panels_(scale) {
+  panels_.use_opengl();
+}
+
+Raster SessionPictures::draw(ViewSession& session) {
+  const PictureContents contents = session_picture(session);
+  const auto before = std::chrono::steady_clock::now();
+  figures_ = draw_session(session, contents, renderer_, target_, panels_);
+  Raster raster = target_.read();
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  return raster;
+}
+
+std::shared_ptr<const DepthPyramid> SessionPictures::depths(ViewSession& session) {
+  const PictureContents contents = session_picture(session);
+  const DrawFigures figures = renderer_.draw(contents, target_.framebuffer(), width(), height());
+  return depths_of(target_, session.state().viewpoint, figures);
 }
 
 }  // namespace adamas

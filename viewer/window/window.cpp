@@ -22,11 +22,13 @@
 #include "core/picture/picture_file.h"
 #include "viewer/gl/picture_target.h"
 #include "viewer/gl/renderer.h"
+#include "viewer/window/free_name.h"
 #include "viewer/window/input.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/panel_context.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/session_picture.h"
+#include "viewer/window/step_export.h"
 
 namespace adamas {
 
@@ -143,7 +145,8 @@ class Viewer {
           frames_to_draw_ > 0) {
         glfwPollEvents();
       } else {
-        glfwWaitEventsTimeout(session_.report().is_current ? kSecondsOfSleep : kSecondsOfWait);
+        const bool is_waiting = export_ || !session_.report().is_current;
+        glfwWaitEventsTimeout(is_waiting ? kSecondsOfWait : kSecondsOfSleep);
       }
       frames_to_draw_ = std::max(0, frames_to_draw_ - 1);
       const double now = glfwGetTime();
@@ -280,6 +283,7 @@ class Viewer {
     const UpdateReport report = session_.report();
     panel_state_.add({1000 * report.seconds, drawn.count(), report.triangles, report.largest_error_pixels});
     do_what_is_wanted(contents, width, height);
+    go_on_with_export(width, height);
   }
 
   void check_context() {
@@ -305,25 +309,39 @@ class Viewer {
     const bool had_panels = std::exchange(session_.has_panels, false);
     draw_session(session_, contents, renderer_, target, panels_);
     session_.has_panels = had_panels;
-    const std::filesystem::path path = free_name("adamas", ".png");
+    const std::filesystem::path path = free_name(options_.pictures, "adamas", ".png");
     write_png(path, target.read());
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     panel_state_.message = path.string() + " was written";
   }
 
   void save_path() {
-    const std::filesystem::path path = free_name("adamas-path", ".txt");
+    const std::filesystem::path path = free_name(options_.pictures, "adamas-path", ".txt");
     write_bytes(path, path_text(session_.path()));
     panel_state_.message = path.string() + " was written; --camera-path takes it";
   }
 
-  /// The first name with a number that no file has.
-  [[nodiscard]] std::filesystem::path free_name(const std::string& stem, const std::string& extension) const {
-    for (int n = 1;; ++n) {
-      std::filesystem::path path = options_.pictures / fmt::format("{}-{:03}{}", stem, n, extension);
-      std::error_code code;
-      if (!std::filesystem::exists(path, code)) return path;
+  void go_on_with_export(int width, int height) {
+    if (const auto form = std::exchange(session_.wants_export, std::nullopt)) {
+      const ExportRequest request{*form, width, height, window_.scale()};
+      export_ = std::make_unique<StepExport>(session_, request);
+      panel_state_.exporting = {};
+      session_.is_exporting = true;
     }
+    const bool is_stopped = std::exchange(session_.wants_export_end, false);
+    if (!export_) return;
+    const bool goes_on = !is_stopped && export_->go_on();
+    panel_state_.exporting.done = export_->done();
+    panel_state_.exporting.steps = export_->steps();
+    if (!goes_on) {
+      panel_state_.exporting.outcome = is_stopped ? "Stopped: nothing was written" : export_->outcome();
+      export_.reset();
+      session_.is_exporting = false;
+      wake();
+    }
+    // Its pictures have panels and a framebuffer of their own.
+    panels_.make_current();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
   }
 
   ViewSession& session_;
@@ -335,6 +353,7 @@ class Viewer {
   std::unique_ptr<PanelInput> panel_input_;
   Input input_;
   PanelState panel_state_;
+  std::unique_ptr<StepExport> export_;  ///< null where nothing is exported
   int frames_to_draw_ = 3;
 };
 

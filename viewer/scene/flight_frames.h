@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "isosurface/view/viewpoint.h"
+
+namespace adamas {
+
+/// A picture of a flight.
+struct FlightFrame {
+  Viewpoint viewpoint;
+  std::optional<std::uint32_t> step;  ///< none: that of the state
+};
+
+/// A frame of each step from one to another, while the camera goes along the path, of one viewpoint or more.
+std::vector<FlightFrame> frames_of_steps(const std::vector<Viewpoint>& path, std::uint32_t first,
+                                         std::uint32_t last);
+
+}  // namespace adamas

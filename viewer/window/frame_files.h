@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "core/picture/film.h"
+#include "core/picture/raster.h"
+
+namespace adamas {
+
+/// Where the pictures of a flight go; what is empty is not written.
+struct FramePlaces {
+  std::filesystem::path folder;  ///< one that is there, of frame0001.png and so on
+  std::filesystem::path film;
+  double frames_per_second = 10;  ///< of the film
+};
+
+/// Writes pictures one after another, as files and as a film.
+class FrameFiles {
+ public:
+  explicit FrameFiles(FramePlaces places) : places_(std::move(places)) {}
+
+  /// Throws Error where it cannot be written. The first one starts the film, which needs the thread that
+  /// called then to live on.
+  void add(const Raster& picture);
+  /// Instead of a picture that cannot be had: its number is no file's, and the film goes on without it.
+  void leave_out() { ++count_; }
+  /// Waits for the film. Throws Error where it failed.
+  void finish();
+
+ private:
+  FramePlaces places_;
+  std::unique_ptr<Film> film_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace adamas
