@@ -107,10 +107,12 @@ void PageLoader<Word>::run(Reader& reader) {
     reader.page_reads = reader.file->page_reads();
     if (problem_.empty()) problem_ = arrived.problem;
     if (arrived.damaged) damaged_.emplace(wanted.step, grid_.number(*arrived.damaged));
+    const bool is_first = arrived_.empty();
     arrived_.push_back(std::move(arrived));
     lock.unlock();
     changed_.notify_all();
-    notify_();
+    // Who takes the first one takes all.
+    if (is_first) notify_();
     lock.lock();
   }
 }

@@ -29,7 +29,7 @@ class PageLoader {
  public:
   /// A loader for pages of memories of all steps of a store. `memory`: bytes that its own pages may take,
   /// with those that wait to be taken. `arrived` is called in one of the loader's threads when there is
-  /// something to take. Throws Error where the file cannot be opened again.
+  /// something to take where there was nothing. Throws Error where the file cannot be opened again.
   PageLoader(
       StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived = [] {},
       std::size_t threads = 1);
