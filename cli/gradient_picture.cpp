@@ -73,10 +73,10 @@ void draw_gradients(const GradientPicture& picture, Session& session) {
     wrong_usage("--gradients: expected a .png as output, found {}", picture.output);
   StoreInput input;
   input.path = picture.store;
-  input.step = picture.time;
+  input.step = picture.step;
   const std::unique_ptr<StoreFile> file = open_store(input, session);
   const VolumeGrid& grid = file->header().grid;
-  StoredGradients gradients(*file, wanted_step(input, *file, session, "--time"), store_memory(input));
+  StoredGradients gradients(*file, wanted_step(input, *file, session), store_memory(input));
   const std::vector<Vec3> polygon = plane_in_samples(grid, picture.plane);
   if (polygon.size() < 3)
     fail("{}: expected a plane that cuts {}, found {}", picture.store, box_text(grid.box()),

@@ -13,7 +13,7 @@ struct GradientPicture {
   Plane plane;
   std::string output;  ///< a .png
   double width = 0;    ///< in pixels
-  std::string time{};  ///< of a series: the number of a step
+  std::string step{};  ///< of a series: the number of a step
 };
 
 /// Draws the directions of gradients, each of the sample that is nearest to a pixel: red, green and blue for

@@ -151,6 +151,10 @@ TEST_F(FileSeries, MembersWithTimes) {
   run_well({"store", "a.h5", "--array", "run", "-o", "a.adm"});
   expect_steps("a.adm", {1, 0});
   EXPECT_EQ(times("a.adm"), (std::vector<double>{1.5, 3}));
+  // Slices go by time too.
+  run_well({"slice", "a.h5", "--array", "run/s0", "--plane", "z=0", "-o", "s.vtp", "-q"});
+  run_well({"slice", "a.h5", "--array", "run", "--plane", "z=0", "-o", "s_%d.vtp", "-q"});
+  EXPECT_TRUE(read("s.vtp") == read("s_1.vtp"));
   // A simulation has gone on.
   make({3, 1.5, 4, 4.5});
   const RunResult result = run({"store", "a.h5", "--array", "run", "-o", "a.adm", "--append", "-q"});
@@ -178,6 +182,11 @@ TEST_F(FileSeries, TheFirstOfFourAxesIsTime) {
   }
   expect_failure({"store", "a.h5", "--time", "5", "-o", "b.adm"}, {"a.h5: all", "from 0 to 4", "found 5"});
   expect_failure({"slice", "a.h5", "--plane", "z=0", "-o", "s.png"}, {"a.h5: all", "--time (0 to 4)"});
+  expect_wrong_usage({"slice", "a.h5", "--step", "1", "--plane", "z=0", "-o", "s.png"},
+                     {"a.h5", "--time says"});
+  run_well({"slice", "a.h5", "--time", "3", "--plane", "z=0", "-o", "s.vtp", "-q"});
+  run_well({"slice", "a.h5", "--plane", "z=0", "-o", "s.pvd", "-q"});
+  EXPECT_TRUE(read("s.vtp") == read("s_0003.vtp"));
   {
     Hdf5File file(folder() / "t.h5");
     file.add("all", {5, 2, 3, 4}, StoredType::kUint8, all.data());
