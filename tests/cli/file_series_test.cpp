@@ -1,5 +1,6 @@
 // Series that lie in one file: NIfTI of several times, groups and four axes of HDF5.
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -151,6 +152,15 @@ TEST_F(FileSeries, MembersWithTimes) {
   run_well({"store", "a.h5", "--array", "run", "-o", "a.adm"});
   expect_steps("a.adm", {1, 0});
   EXPECT_EQ(times("a.adm"), (std::vector<double>{1.5, 3}));
+  run_well({"info", "a.h5", "--array", "run", "--json", "info.json"});
+  const auto known = read_json("info.json");
+  EXPECT_EQ(known["kind"], "series");
+  EXPECT_EQ(known["steps"], 2);
+  EXPECT_EQ(known["times"], (std::vector<double>{1.5, 3}));
+  // The first by time.
+  const auto later = samples(1);
+  EXPECT_EQ(known["first_step"]["arrays"][0]["min"], *std::min_element(later.begin(), later.end()));
+  EXPECT_EQ(known["first_step"]["arrays"][0]["max"], *std::max_element(later.begin(), later.end()));
   // Slices go by time too.
   run_well({"slice", "a.h5", "--array", "run/s0", "--plane", "z=0", "-o", "s.vtp", "-q"});
   run_well({"slice", "a.h5", "--array", "run", "--plane", "z=0", "-o", "s_%d.vtp", "-q"});
