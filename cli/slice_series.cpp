@@ -51,6 +51,8 @@ class StepSlices {
     if (!originals_.empty()) one.original = originals_[step.number].file;
     if (!last) one.no_interfaces = true;
     CutInput result = cut_input(one, polygons, session_);
+    // The name of all, not that of one step of several data sets.
+    result.input.sample_name = request_.volume.array;
     const SliceInput& input = result.input;
     if (input.data && !input.mesh) {
       forms_.check(step.name, *input.data);

@@ -16,6 +16,8 @@ using namespace figure_style;
 namespace {
 
 constexpr double kLightestEdgeShare = 0.5;
+/// Of small pictures: smaller letters would not be read.
+constexpr double kLeastFont = 11;
 
 Box3 framed_box(const InterfacePicture& picture) {
   Box3 box = picture.domain;
@@ -93,13 +95,13 @@ void draw_axes(Canvas& canvas, const Camera& camera, const Vec2& centre, double 
 
 std::string draw_interfaces(const InterfacePicture& picture, PictureFormat format,
                             const InterfacePictureOptions& options) {
-  const double f = options.font_size > 0 ? options.font_size : options.width / 70;
+  const double f = options.font_size > 0 ? options.font_size : std::max(options.width / 70, kLeastFont);
   if (!(options.width >= 100 && options.width <= 8000 && options.height >= 100 && options.height <= 8000 &&
-        options.samples >= 1 && options.samples <= 4 && f <= options.width / 10)) {
+        options.samples >= 1 && options.samples <= 4 && options.font_size <= options.width / 10)) {
     fail(
         "interface picture: expected sides of 100 to 8000 and 1 to 4 samples, found {} x {}, {} samples, "
         "font size {}",
-        options.width, options.height, options.samples, f);
+        options.width, options.height, options.samples, options.font_size);
   }
   Canvas canvas(format, options.width, options.height);
   const Box3 box = framed_box(picture), shown = picture.focus.value_or(box);
