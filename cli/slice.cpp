@@ -66,7 +66,7 @@ void run(SliceRequest& request, Session& session) {
   if (request.gradients) {
     if (is_store(request.input.path))
       static_cast<void>(sample_origin(request.input, request.volume, request.original));
-    return draw_gradients({request.input.path, plane, request.output, size.width, request.step}, session);
+    return draw_gradients({request.input.path, plane, request.output, size, request.step}, session);
   }
   const bool polygons = file_extension(request.output) == ".vtp";
   const CutInput cut = cut_input(request, polygons, session);

@@ -69,6 +69,7 @@ class SliceDrawing {
   /// What is below the panels, in a picture of that width.
   double height_below(double width);
   void draw_panel(Canvas& canvas, std::size_t index, PictureFormat format) const;
+  void draw_colours(Canvas& canvas, const SlicePanel& panel, const Box2& box) const;
   void draw_areas(Canvas& canvas, const SlicePanel& panel, const Box2& box, PictureFormat format) const;
   void draw_bar(Canvas& canvas) const;
   [[nodiscard]] std::vector<LegendEntry> legend_entries() const;
@@ -181,8 +182,21 @@ void SliceDrawing::place_ticks() {
   y_ticks_ = linear_ticks(window_.min.y, window_.max.y, tick_count(panel_size_.y, 3 * f));
 }
 
+void SliceDrawing::draw_colours(Canvas& canvas, const SlicePanel& panel, const Box2& box) const {
+  Raster raster(static_cast<int>(panel_size_.x), static_cast<int>(panel_size_.y));
+  const double sx = window_.size().x / raster.width(), sy = window_.size().y / raster.height();
+  for (int y = 0; y < raster.height(); ++y) {
+    for (int x = 0; x < raster.width(); ++x) {
+      const Vec2 place{window_.min.x + (x + 0.5) * sx, window_.max.y - (y + 0.5) * sy};
+      if (const auto colour = panel.colour_at(place)) raster.set(x, y, *colour);
+    }
+  }
+  canvas.image(raster, box);
+}
+
 void SliceDrawing::draw_areas(Canvas& canvas, const SlicePanel& panel, const Box2& box,
                               PictureFormat format) const {
+  if (panel.colour_at) draw_colours(canvas, panel, box);
   if (panel.polygons.empty()) return;
   const int width = static_cast<int>(panel_size_.x) * kSamplesPerPixel,
             height = static_cast<int>(panel_size_.y) * kSamplesPerPixel;
