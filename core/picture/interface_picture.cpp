@@ -91,6 +91,15 @@ void draw_axes(Canvas& canvas, const Camera& camera, const Vec2& centre, double 
   }
 }
 
+/// Text in a white box.
+void draw_message(Canvas& canvas, const std::string& text, const Vec2& centre, double font_size) {
+  const TextStyle style{.size = font_size, .colour = kInk};
+  const std::string shown = shortened(text, style, 1.8 * centre.x);
+  const Vec2 half{0.5 * text_width(shown, style) + 0.5 * font_size, font_size};
+  canvas.fill_box({centre - half, centre + half}, {1, 1, 1});
+  canvas.text(shown, {centre.x, centre.y + 0.35 * font_size}, style, Anchor::kMiddle);
+}
+
 }  // namespace
 
 std::string draw_interfaces(const InterfacePicture& picture, PictureFormat format,
@@ -115,7 +124,7 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
   const int samples = options.samples;
   const Camera camera(picture.projection, shown, picture.direction, samples * width, samples * height);
   Rasteriser rasteriser(camera, samples * width, samples * height);
-  rasteriser.draw(picture.triangles);
+  rasteriser.draw(picture.triangles, picture.normals);
   RasteriserStyle style{.triangle_edges = options.triangle_edges, .outlines = options.outlines};
   style.crease_angle = options.crease_angle;
   style.edge_width = samples * options.width / 1600;
@@ -129,6 +138,8 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
   const TextStyle title{.size = kTitleFont * f, .colour = kInk, .bold = true};
   canvas.text(shortened(picture.title, title, options.width - 2 * kMargin * f),
               {kMargin * f, (kMargin + kTitleFont) * f}, title);
+  if (!picture.message.empty())
+    draw_message(canvas, picture.message, {0.5 * options.width, top + 0.5 * height}, f);
   if (options.axes) draw_axes(canvas, camera, {(kMargin + 3.2) * f, top + height - 3.2 * f}, f);
   legend.draw(canvas, {kMargin * f, options.height - kMargin * f - legend.height()});
   return canvas.finish(picture.title);

@@ -102,6 +102,20 @@ TEST_F(StoredSeriesSlices, Films) {
   EXPECT_GT(read("f.mp4").size(), 1000u);
 }
 
+TEST_F(StoredSeriesSlices, PicturesOfSurfacesTellWhatTheyShow) {
+  const auto picture = [this](std::vector<std::string> more) {
+    more.insert(more.begin(), {"isosurface", "a.adm", "--step", "3", "-q", "--picture", "p.svg"});
+    const RunResult result = run(more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read("p.svg");
+  };
+  const std::string smooth = picture({"--isovalue", "50"});
+  EXPECT_NE(smooth.find("a.adm, time 3, step 3, isovalue 50"), std::string::npos);
+  EXPECT_EQ(smooth.find("no surface"), std::string::npos);
+  EXPECT_FALSE(smooth == picture({"--isovalue", "50", "--no-normals"}));
+  EXPECT_NE(picture({"--isovalue", "2000"}).find("no surface at isovalue 2000"), std::string::npos);
+}
+
 TEST_F(StoredSeriesSlices, NotesNameTheFileOnce) {
   run_well({"generate", "mixing", "--dimensions", "8", "--steps", "2", "-o", "m.pvd", "-q"});
   const RunResult result =
