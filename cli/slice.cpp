@@ -132,12 +132,6 @@ void add_slice(const Command& app, Session& session) {
               "their names in quotes, as \"run_%04d.vti\". A stored series and a file with several times are "
               "series too where several pictures are asked for")
       .type_name("FILE...");
-  command
-      .add_option("--step", options->step,
-                  "Of a series, one picture: the number of a step, from 0 on (of a stored one default 0)")
-      .type_name("N");
-  command.add_option("--steps", options->steps, "Of a series: all steps, or those from A to B")
-      .type_name("A,B");
   command.add_option("--plane", options->plane, "The plane, at right angles to an axis")
       .type_name("x=N|y=N|z=N");
   command.add_option("--origin", options->origin, "A point of the plane").type_name("x,y,z");
@@ -155,6 +149,12 @@ void add_slice(const Command& app, Session& session) {
           "ffmpeg), a pattern of pictures as S_%04d.png, or a list of polygons (.pvd)")
       .required()
       .type_name("FILE");
+  command
+      .add_option("--step", options->step,
+                  "Of a series, one picture: the number of a step, from 0 on (of a stored one default 0)")
+      .type_name("N");
+  command.add_option("--steps", options->steps, "Of a series: all steps, or those from A to B")
+      .type_name("A,B");
   command.add_option("--frame-rate", options->frame_rate, "Steps of a film per second (default 10)")
       .type_name("N");
   add_drawing_options(command, *options);
