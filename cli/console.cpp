@@ -52,7 +52,9 @@ void Console::write(std::string_view text) {
 void Console::write_note(const std::string& text) {
   clear();
   std::fflush(stdout);
-  to_stderr("adamas: note: " + (about.empty() ? "" : visible_text(about) + ": ") + text + "\n");
+  // Many notes begin with the name of their file.
+  const std::string name = about.empty() ? "" : visible_text(about) + ": ";
+  to_stderr("adamas: note: " + (text.starts_with(name) ? "" : name) + text + "\n");
 }
 
 void Console::flush() {

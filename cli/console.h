@@ -22,7 +22,8 @@ class Console final : public Progress {
  public:
   bool quiet = false;
   bool verbose = false;
-  /// Of several things that are done one after another, which one: put before notes; empty for none.
+  /// Of several things that are done one after another, which one: put before notes that do not begin
+  /// with it; empty for none.
   std::string about;
 
   /// Results; left out with `quiet`.

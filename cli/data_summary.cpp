@@ -61,11 +61,31 @@ void print_range(StoreFile& file, Console& console, Figures& figures) {
   });
 }
 
+struct CodingText {
+  const char* name;
+  const char* meaning;
+};
+
 /// `is_plain`: whether no page is smaller than its samples.
-const char* coding_name(SampleCoding coding, bool is_plain) {
-  if (coding == SampleCoding::kRanks) return "interpolation of ranks";
-  if (coding == SampleCoding::kInterpolation) return "interpolation";
-  return is_plain ? "none" : "split-edge";
+CodingText coding_text(SampleCoding coding, bool is_plain) {
+  if (coding == SampleCoding::kRanks) {
+    return {"interpolation of ranks",
+            "samples have few different values, and the numbers of these are predicted from neighbours"};
+  }
+  if (coding == SampleCoding::kInterpolation)
+    return {"interpolation", "samples are predicted from all neighbours that are known already"};
+  if (is_plain) return {"none", "samples are in the file as they are"};
+  return {"split-edge", "samples are predicted from the ends of the edge whose middle they are"};
+}
+
+/// Whether times follow each other at one distance, to a millionth of it.
+bool evenly_spaced(const std::vector<double>& times) {
+  const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    const double even = times.front() + static_cast<double>(n) * spacing;
+    if (!(std::abs(times[n] - even) <= 1e-6 * spacing)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -137,7 +157,8 @@ void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
   if (rows.size() > 1) console.table(rows);
 }
 
-Figures print_volume(VolumeReader reader, const std::string& path, Session& session) {
+Figures print_volume(VolumeReader reader, const std::string& path, const std::string& array,
+                     Session& session) {
   const VolumeGrid& grid = reader.grid();
   FileSummary summary;
   summary.kind = file_extension(path).starts_with(".nii") ? "NIfTI" : "volume";
@@ -151,7 +172,8 @@ Figures print_volume(VolumeReader reader, const std::string& path, Session& sess
   summary.directions = grid.directions;
   summary.origin = grid.origin;
   summary.space = grid.space;
-  summary.arrays.push_back({file_stem(path), stored_name(reader.source().stored), "points", 1, 0, 0});
+  summary.arrays.push_back(
+      {array.empty() ? file_stem(path) : array, stored_name(reader.source().stored), "points", 1, 0, 0});
   set_range(reader, summary.arrays.front(), session.console);
   Figures figures{{"file", path}, {"kind", summary.kind}};
   session.console.print("{}: {}\n", path, summary.kind);
@@ -160,6 +182,26 @@ Figures print_volume(VolumeReader reader, const std::string& path, Session& sess
   print_arrays(summary, session.console, figures);
   if (const std::string note = reader.note(); !note.empty()) session.console.note("{}", note);
   return figures;
+}
+
+std::string steps_text(const std::vector<double>& times) {
+  if (times.size() < 2) return fmt::format("1 step, time {:.6g}", times.empty() ? 0 : times.front());
+  std::string text =
+      fmt::format("{} steps, times from {:.6g} to {:.6g}", times.size(), times.front(), times.back());
+  if (evenly_spaced(times)) {
+    const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    return text + fmt::format(", {:.6g} apart", spacing);
+  }
+  constexpr std::size_t kFirst = 4, kLast = 2;
+  text += ", not evenly spaced: ";
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    if (times.size() > kFirst + kLast + 1 && n == kFirst) {
+      text += ", ...";
+      n = times.size() - kLast;
+    }
+    text += fmt::format("{}{:.6g}", n > 0 ? ", " : "", times[n]);
+  }
+  return text;
 }
 
 void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,
@@ -190,7 +232,7 @@ Figures print_store(const std::string& path, Session& session) {
   const std::uint64_t before = grid.bytes() * file->steps();
   const StoreBytes bytes = file->bytes();
   const int levels = file->grid().top() + 1;
-  const char* coding = coding_name(header.coding, bytes.samples >= before);
+  const CodingText coding = coding_text(header.coding, bytes.samples >= before);
   console.print("{}: stored {}\n", path, file->steps() > 1 ? "series of volumes" : "volume");
   console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
   if (grid.is_scaled())
@@ -198,8 +240,7 @@ Figures print_store(const std::string& path, Session& session) {
   print_places(grid, console);
   const std::vector<double> times = file->times();
   if (file->steps() > 1)
-    console.print("  {} steps in {} blocks, times from {:.6g} to {:.6g}\n", file->steps(), file->blocks(),
-                  times.front(), times.back());
+    console.print("  {}; in {} block{}\n", steps_text(times), file->blocks(), file->blocks() == 1 ? "" : "s");
   if (file->unfinished_bytes() > 0)
     console.note("{}: {} bytes at its end are of steps that were never finished", path,
                  file->unfinished_bytes());
@@ -216,7 +257,7 @@ Figures print_store(const std::string& path, Session& session) {
                   {"times", times},
                   {"levels", levels},
                   {"pages", file->grid().page_count()},
-                  {"coding", coding},
+                  {"coding", coding.name},
                   {"gradients", header.gradients},
                   {"bytes_input", before},
                   {"bytes_data", bytes.samples},
@@ -225,8 +266,13 @@ Figures print_store(const std::string& path, Session& session) {
                   {"bytes_file", file->size()}};
   add_places(grid, figures);
   print_range(*file, console, figures);
-  console.print("  levels 0 to {}, {} pages, coding {}, {} gradients\n\n", levels - 1,
-                file->grid().page_count(), coding, header.gradients ? "with" : "without");
+  const auto pages = file->grid().page_count();
+  const std::string coarsest =
+      levels > 1 ? fmt::format(" to every {}th along each axis", std::uint64_t{1} << (levels - 1)) : "";
+  console.print("  levels 0 to {}, all samples{}; {} pages{}\n", levels - 1, coarsest, pages,
+                file->steps() > 1 ? fmt::format(" a step, {} in all", pages * file->steps()) : "");
+  console.print("  coding {}, {} gradients: {}\n\n", coding.name, header.gradients ? "with" : "without",
+                coding.meaning);
   print_store_bytes(before, bytes, file->size(), console);
   return figures;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "adamas/volume.h"
 #include "cli/command.h"
@@ -30,8 +31,13 @@ void print_grid(const FileSummary& s, Console& console, Figures& figures);
 /// A line for each array.
 void print_arrays(const FileSummary& s, Console& console, Figures& figures);
 
-/// What is in a volume, which is read plane by plane.
-Figures print_volume(VolumeReader reader, const std::string& path, Session& session);
+/// How many steps there are and when: "6 steps, times from 0 to 1, 0.2 apart"; times that are not evenly
+/// spaced, to a millionth of the mean distance, are named, the first and the last ones of many.
+std::string steps_text(const std::vector<double>& times);
+
+/// What is in a volume, which is read plane by plane. `array`: its name, or empty for that of the file.
+Figures print_volume(VolumeReader reader, const std::string& path, const std::string& array,
+                     Session& session);
 
 /// A table of what the bytes of a store are.
 void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,

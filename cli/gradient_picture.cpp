@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/figures.h"
+#include "cli/slice_scale.h"
 #include "cli/store_options.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
@@ -14,42 +15,10 @@
 #include "core/geometry/place_text.h"
 #include "core/geometry/plane.h"
 #include "core/io/input_file.h"
-#include "core/picture/canvas.h"
-#include "core/picture/raster.h"
 
 namespace adamas {
 
 namespace {
-
-/// The pixels of a rectangle of the plane.
-struct PixelGrid {
-  PlaneFrame frame;
-  Vec3 corner;  ///< the upper left one
-  double step;
-  int width, height;
-
-  [[nodiscard]] Vec3 place(int x, int y) const {
-    return corner + ((x + 0.5) * step) * frame.right - ((y + 0.5) * step) * frame.up;
-  }
-};
-
-PixelGrid pixels_round(const std::vector<Vec3>& polygon, const Plane& plane, double width) {
-  PixelGrid grid{plane_frame(plane), {}, 0, static_cast<int>(width), 0};
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double left = kInfinity, right = -kInfinity, bottom = kInfinity, top = -kInfinity;
-  for (const Vec3& corner : polygon) {
-    const Vec3 way = corner - polygon[0];
-    left = std::min(left, dot(way, grid.frame.right));
-    right = std::max(right, dot(way, grid.frame.right));
-    bottom = std::min(bottom, dot(way, grid.frame.up));
-    top = std::max(top, dot(way, grid.frame.up));
-  }
-  grid.corner = polygon[0] + left * grid.frame.right + top * grid.frame.up;
-  grid.step = (right - left) / grid.width;
-  constexpr double kMostRows = 16000;
-  grid.height = static_cast<int>(std::clamp(std::round((top - bottom) / grid.step), 1.0, kMostRows));
-  return grid;
-}
 
 /// The sample that is nearest to a place; none beyond the data.
 std::optional<LatticePoint> nearest_sample(const VolumeGrid& grid, const Vec3& place) {
@@ -64,40 +33,99 @@ std::optional<LatticePoint> nearest_sample(const VolumeGrid& grid, const Vec3& p
   return p;
 }
 
+Colour colour_of(const Vec3& direction) {
+  return {0.5 * (direction.x + 1), 0.5 * (direction.y + 1), 0.5 * (direction.z + 1)};
+}
+
+/// What the colours mean: those along the axes, which are i, j and k of a grid that lies otherwise.
+std::vector<LegendEntry> colour_legend(const VolumeGrid& grid) {
+  const std::string names = grid.is_straight() ? "xyz" : "ijk";
+  std::vector<LegendEntry> entries;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      Vec3 direction;
+      direction[static_cast<int>(axis)] = sign;
+      entries.push_back({fmt::format("{}{}", sign > 0 ? '+' : '-', names[axis]), colour_of(direction)});
+    }
+  }
+  entries.push_back({"no gradient", colour_of({})});
+  return entries;
+}
+
+/// The colours of the nearest samples' gradients at places of the plane, and how many have none.
+class GradientColours {
+ public:
+  GradientColours(StoreFile& file, std::uint32_t step, std::size_t memory, const PlaneFrame& frame,
+                  const Vec3& in_plane, Console& console)
+      : gradients_(file, step, memory),
+        grid_(file.header().grid),
+        frame_(frame),
+        in_plane_(in_plane),
+        console_(console) {
+    const auto [x, y] = frame.coordinates(in_plane);
+    at_ = {x, y};
+  }
+
+  std::optional<Colour> at(const Vec2& place) {
+    console_.step("drawing", -1);
+    const Vec2 way = place - at_;
+    const auto sample = nearest_sample(grid_, in_plane_ + way.x * frame_.right + way.y * frame_.up);
+    if (!sample) return {};
+    const Vec3 direction = gradients_.direction(*sample).value_or(Vec3{});
+    ++drawn_;
+    without_ += norm(direction) == 0 ? 1 : 0;
+    return colour_of(direction);
+  }
+  [[nodiscard]] double part_without() const {
+    return drawn_ > 0 ? static_cast<double>(without_) / static_cast<double>(drawn_) : 0;
+  }
+
+ private:
+  StoredGradients gradients_;
+  const VolumeGrid& grid_;
+  PlaneFrame frame_;
+  Vec3 in_plane_;  ///< a point of the plane
+  Vec2 at_;        ///< its coordinates
+  Console& console_;
+  std::uint64_t drawn_ = 0, without_ = 0;
+};
+
 }  // namespace
 
 void draw_gradients(const GradientPicture& picture, Session& session) {
   if (!is_store(picture.store))
     wrong_usage("--gradients: expected a store from adamas store --gradients, found {}", picture.store);
-  if (file_extension(picture.output) != ".png")
-    wrong_usage("--gradients: expected a .png as output, found {}", picture.output);
+  if (file_extension(picture.output) == ".vtp")
+    wrong_usage("--gradients: expected a picture as output, found {}", picture.output);
   StoreInput input;
   input.path = picture.store;
-  input.step = picture.time;
+  input.step = picture.step;
   const std::unique_ptr<StoreFile> file = open_store(input, session);
   const VolumeGrid& grid = file->header().grid;
-  StoredGradients gradients(*file, wanted_step(input, *file, session, "--time"), store_memory(input));
+  const std::uint32_t step = wanted_step(input, *file, session);
   const std::vector<Vec3> polygon = plane_in_samples(grid, picture.plane);
   if (polygon.size() < 3)
     fail("{}: expected a plane that cuts {}, found {}", picture.store, box_text(grid.box()),
          to_string(picture.plane));
-  const PixelGrid pixels = pixels_round(polygon, picture.plane, picture.width);
-  Raster raster(pixels.width, pixels.height);
-  std::uint64_t without = 0;
-  for (int y = 0; y < pixels.height; ++y) {
-    session.console.step("drawing", static_cast<double>(y) / pixels.height);
-    for (int x = 0; x < pixels.width; ++x) {
-      raster.set(x, y, {1, 1, 1});
-      const auto sample = nearest_sample(grid, pixels.place(x, y));
-      if (!sample) continue;
-      const Vec3 g = gradients.direction(*sample).value_or(Vec3{});
-      without += norm(g) == 0 ? 1 : 0;
-      raster.set(x, y, {0.5 * (g.x + 1), 0.5 * (g.y + 1), 0.5 * (g.z + 1)});
-    }
+  const PlaneFrame frame = plane_frame(picture.plane);
+  GradientColours colours(*file, step, store_memory(input), frame, polygon[0], session.console);
+  SlicePicture drawn;
+  drawn.title = std::filesystem::path(picture.store).filename().string() + ", " + to_string(picture.plane);
+  drawn.x_label = frame.right_name;
+  drawn.y_label = frame.up_name;
+  drawn.window.emplace();
+  for (const Vec3& corner : polygon) {
+    const auto [x, y] = frame.coordinates(corner);
+    drawn.window->extend({x, y});
   }
-  const double part = static_cast<double>(without) / (static_cast<double>(pixels.width) * pixels.height);
+  drawn.materials = colour_legend(grid);
+  drawn.panels.resize(1);
+  drawn.panels[0].title = "directions of gradients";
+  drawn.panels[0].colour_at = [&colours](const Vec2& place) { return colours.at(place); };
+  if (file->steps() > 1) add_step_title(file->times()[step], step, drawn);
+  session.outputs.write(picture.output, [&](const auto& path) { write_slice(drawn, path, picture.size); });
+  const double part = colours.part_without();
   session.console.table({{"pixels without a gradient", fmt::format("{:.2f}%", 100 * part)}});
-  session.outputs.write(picture.output, [&](const auto& path) { write_png(path, raster); });
   const Figures figures{{"plane", to_string(picture.plane)}, {"part_without_gradient", part}};
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
   session.outputs.commit();

@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "core/geometry/vec3.h"
+#include "core/picture/slice_picture.h"
 
 namespace adamas {
 
@@ -11,15 +12,15 @@ namespace adamas {
 struct GradientPicture {
   std::string store;
   Plane plane;
-  std::string output;  ///< a .png
-  double width = 0;    ///< in pixels
-  std::string time{};  ///< of a series: the number of a step
+  std::string output;
+  SliceOptions size;
+  std::string step{};  ///< of a series: the number of a step
 };
 
 /// Draws the directions of gradients, each of the sample that is nearest to a pixel: red, green and blue for
 /// -1 to 1 along the axes of the grid (the dissertation's figure 4.4), so that grey stands for none; white
-/// beyond the data. Writes it and ends the run. Throws UsageError for another output, and Error for a store
-/// without gradients and a plane that does not cut it.
+/// beyond the data; a legend tells it. Writes it and ends the run. Throws UsageError for another output, and
+/// Error for a store without gradients and a plane that does not cut it.
 void draw_gradients(const GradientPicture& picture, Session& session);
 
 }  // namespace adamas

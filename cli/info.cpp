@@ -10,7 +10,9 @@
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
+#include "cli/series_input.h"
 #include "cli/store_options.h"
+#include "cli/stored_steps.h"
 #include "cli/usage_error.h"
 #include "cli/volume_options.h"
 #include "core/io/array_names.h"
@@ -229,28 +231,17 @@ void check_options(const Options& all) {
   }
 }
 
-void run(const Options& given, Session& session) {
-  const Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
+/// Prints what is in one file, or in one time of it.
+Figures print_one(const Options& all, Session& session) {
   const InputOptions& options = all.input;
   protect_inputs(options, options.path, session.outputs);
   check_options(all);
   if (!all.volume.stack) check_input_file(options.path);
-  if (is_store(options.path)) {
-    const Figures figures = print_store(options.path, session);
-    session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-    return session.outputs.commit();
-  }
-  if (is_saved_hierarchy(options.path)) {
-    const Figures figures = print_hierarchy(options.path, session);
-    session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-    return session.outputs.commit();
-  }
+  if (is_store(options.path)) return print_store(options.path, session);
+  if (is_saved_hierarchy(options.path)) return print_hierarchy(options.path, session);
   session.console.step("reading " + options.path, -1);
-  if (auto volume = find_volume(options, all.volume, session)) {
-    const Figures figures = print_volume(std::move(*volume), options.path, session);
-    session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-    return session.outputs.commit();
-  }
+  if (auto volume = find_volume(options, all.volume, session))
+    return print_volume(std::move(*volume), options.path, all.volume.array, session);
   // Unless an option says otherwise, labels and fractions belong to cells.
   const bool materials = !options.labels.empty() || !options.fractions.empty();
   const FileSummary summary =
@@ -259,6 +250,47 @@ void run(const Options& given, Session& session) {
   session.console.print("{}: {}\n", options.path, summary.kind);
   print_grid(summary, session.console, figures);
   print_details(summary, options, session.console, figures);
+  return figures;
+}
+
+/// The steps of a series of files, or of the series that one file is; none where the input is none.
+std::vector<InputStep> steps_of(const Options& all) {
+  const InputOptions& options = all.input;
+  std::vector<InputStep> steps;
+  if (all.volume.stack || is_store(options.path)) return steps;
+  VolumeInput volume = all.volume;
+  for (const SeriesEntry& entry : series_steps({options.path})) {
+    volume.path = entry.file;
+    steps.push_back({entry.time, entry.file, volume});
+  }
+  if (!steps.empty() || !options.grid_option().empty() || is_saved_hierarchy(options.path)) return steps;
+  check_input_file(options.path);
+  steps = find_input_steps({options.path}, volume).steps;
+  if (steps.size() == 1) steps.clear();
+  return steps;
+}
+
+/// Prints how many steps a series has and when they are, and what the first one is.
+Figures print_series(const Options& all, const std::vector<InputStep>& steps, Session& session) {
+  std::vector<double> times;
+  for (const InputStep& step : steps) {
+    session.outputs.protect(step.input.path);
+    times.push_back(step.time);
+  }
+  const std::string& path = all.input.path;
+  session.console.print("{}: series of {}\n\nthe first of them, ", path, steps_text(times));
+  Options first{all.input, steps.front().input};
+  first.input.path = steps.front().input.path;
+  Figures figures{{"file", path}, {"kind", "series"}, {"steps", times.size()}, {"times", times}};
+  figures["first_step"] = print_one(first, session);
+  return figures;
+}
+
+void run(const Options& given, Session& session) {
+  const Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
+  session.outputs.protect(all.input.path);
+  const std::vector<InputStep> steps = steps_of(all);
+  const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.outputs.commit();
 }
@@ -274,7 +306,9 @@ void add_info(const Command& app, Session& session) {
           "input", options->input.path,
           "Any file that can be read: " + grid_files() +
               ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .ply, .arec, .txt), a surface "
-              "(.obj, .off, .ply, .stl) or a store (.adm)")
+              "(.obj, .off, .ply, .stl) or a store (.adm). Or a series: a .pvd, a pattern of names in "
+              "quotes, "
+              "as \"run_%04d.vti\", or a file with several times")
       .type_name("FILE");
   add_material_options(command, options->input);
   command

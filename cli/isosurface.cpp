@@ -75,6 +75,12 @@ void append(Contour contour, std::vector<Vec3> normals, double isovalue, Triangl
   surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
 
+/// The store and, of a series, time and step.
+std::string picture_title(const StoreFile& file, std::uint32_t step) {
+  const std::string name = std::filesystem::path(file.name()).filename().string();
+  return file.steps() > 1 ? fmt::format("{}, time {:.6g}, step {}", name, file.times()[step], step) : name;
+}
+
 template <class Sample>
 void extract_all(const Options& options, StoreFile& file, Session& session) {
   Console& console = session.console;
@@ -82,8 +88,8 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   SurfaceRequest request = request_of(options, grid);
   const std::string& name = options.input.path;
   check_surface_request(name, grid, request, wanted_region(options));
-  StoredPages<OrderedWord<Sample>> pages(file, wanted_step(options.input, file, session),
-                                         store_memory(options.input));
+  const std::uint32_t step = wanted_step(options.input, file, session);
+  StoredPages<OrderedWord<Sample>> pages(file, step, store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;
   surface.value_name = "isovalue";
@@ -94,8 +100,9 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
     request.isovalue = grid.sample(isovalue);
     request.others_follow = ends.size() + 1 < isovalues.size();
     CompleteSurface found = naming(name, [&] {
-      return extract_complete(extractor, request, options.certify,
-                              !options.no_normals && !options.output.empty(), console);
+      return extract_complete(
+          extractor, request, options.certify,
+          !options.no_normals && (!options.output.empty() || !options.picture.file.empty()), console);
     });
     figures.add(request, found, extractor.range());
     append(std::move(found.surface.contour), std::move(found.normals.normals), isovalue, surface);
@@ -105,7 +112,8 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   session.outputs.write(options.output, [&](const auto& path) { write_surface(path, surface, console); });
   if (!options.picture.file.empty()) console.step("drawing", -1);
   session.outputs.write(options.picture.file, [&](const auto& path) {
-    write_isosurface_picture(path, surface, ends, isovalues, wanted_region(options).value_or(grid.box()),
+    const Box3 shown = wanted_region(options).value_or(grid.box());
+    write_isosurface_picture(path, surface, {picture_title(file, step), isovalues, ends, shown},
                              options.picture);
   });
   figures.report(surface, pages.counts());

@@ -123,18 +123,26 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
 }
 
 void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
-                              const std::vector<std::size_t>& ends, const std::vector<double>& isovalues,
-                              const Box3& domain, const PictureOptions& camera) {
+                              const IsosurfacePicture& what, const PictureOptions& camera) {
+  const bool several = what.isovalues.size() > 1;
   InterfacePicture picture;
-  picture.domain = domain;
+  picture.title = what.title;
+  std::string values;
+  for (const double isovalue : what.isovalues)
+    values += fmt::format("{}{:.6g}", values.empty() ? "" : ", ", isovalue);
+  picture.title += (several ? ", isovalues " : ", isovalue ") + values;
+  if (surface.triangles.empty()) picture.message = "no surface at isovalue " + values;
+  picture.domain = what.domain;
   camera.aim(picture);
   picture.triangles.reserve(surface.triangles.size());
-  for (std::size_t n = 0; n < ends.size(); ++n) {
-    const Colour colour = ends.size() > 1 ? material_colour(n) : kBone;
-    if (ends.size() > 1) picture.materials.push_back({fmt::format("{:.6g}", isovalues[n]), colour});
-    for (std::size_t t = picture.triangles.size(); t < ends[n]; ++t) {
+  for (std::size_t n = 0; n < what.ends.size(); ++n) {
+    const Colour colour = several ? material_colour(n) : kBone;
+    if (several) picture.materials.push_back({fmt::format("{:.6g}", what.isovalues[n]), colour});
+    for (std::size_t t = picture.triangles.size(); t < what.ends[n]; ++t) {
       const auto [a, b, c] = surface.triangles[t];
       picture.triangles.push_back({{surface.points[a], surface.points[b], surface.points[c]}, colour});
+      if (surface.normals.empty()) continue;
+      picture.normals.push_back({surface.normals[a], surface.normals[b], surface.normals[c]});
     }
   }
   write_interfaces(picture, path, camera.sizes());

@@ -42,10 +42,17 @@ class IsosurfaceFigures {
   std::optional<SurfaceCertificate> distance_;  ///< the greatest of all surfaces
 };
 
-/// A picture of isosurfaces as a picture file. `isovalues[n]` is that of the triangles before `ends[n]`, from
-/// the one before it on; several have colours and a legend.
+/// What a picture of isosurfaces shows.
+struct IsosurfacePicture {
+  std::string title;              ///< but for the isovalue
+  std::vector<double> isovalues;  ///< several have colours and a legend
+  std::vector<std::size_t> ends;  ///< `isovalues[n]` is that of the triangles before `ends[n]`, from the one
+                                  ///< before it on
+  Box3 domain;
+};
+
+/// Draws isosurfaces to a picture file, smooth where they have normals; says so where there is no triangle.
 void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
-                              const std::vector<std::size_t>& ends, const std::vector<double>& isovalues,
-                              const Box3& domain, const PictureOptions& camera);
+                              const IsosurfacePicture& what, const PictureOptions& camera);
 
 }  // namespace adamas

@@ -36,11 +36,14 @@ bool shows_anything(const PlotSeries& series) {
   return std::any_of(series.y.begin(), series.y.end(), [](double y) { return std::isfinite(y); });
 }
 
-/// Two lines for each material in its colour, dashed what the input has, and with marks what the mesh has;
-/// both as parts of the greatest that the input ever has, so that small materials are seen too.
+/// Two lines for each material in its colour and with markers of its own: dashed and open what the input has,
+/// and filled what the mesh has; both as parts of the greatest that the input ever has, so that small
+/// materials are seen too.
 Plot material_plot(const SeriesRecord& record, const std::string& label, double LedgerRow::*input,
                    double LedgerRow::*mesh) {
-  Plot plot = over_time(label + " / greatest in the input (dashed: input)");
+  Plot plot = over_time(label + ", as a part of the greatest in the input");
+  plot.series.push_back(
+      {.name = "the input", .dashed = true, .colour = Colour{0.4, 0.4, 0.4}, .marker = 0, .open = true});
   const auto& materials = record.steps.front().ledger;
   for (std::size_t m = 0; m < std::min(materials.size(), kMostMaterials); ++m) {
     double greatest = 0;
@@ -51,11 +54,12 @@ Plot material_plot(const SeriesRecord& record, const std::string& label, double 
         return step.ledger[m].*value / greatest;
       });
       series.colour = material_colour(m);
+      series.marker = m;
       return series;
     };
     PlotSeries of_input = of("", input);
-    of_input.markers = false;
     of_input.dashed = true;
+    of_input.open = true;
     plot.series.push_back(std::move(of_input));
     plot.series.push_back(of(materials[m].material, mesh));
   }
@@ -74,7 +78,9 @@ Plot error_plot(const SeriesRecord& record) {
   return plot;
 }
 
+/// Fields that the mesh has exactly are named in the legend alone.
 Plot field_plot(const SeriesRecord& record) {
+  std::string exact;
   Plot plot = over_time("mean field error / range", AxisKind::kLogarithmic);
   for (std::size_t f = 0; f < record.fields.size(); ++f) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -89,8 +95,11 @@ Plot field_plot(const SeriesRecord& record) {
           // Errors of a field that the mesh reproduces exactly are round-off, which would stretch the axis.
           return error > 1e-12 ? error : kNone;
         });
+    if (!shows_anything(series)) exact += (exact.empty() ? "" : ", ") + series.name;
     plot.series.push_back(std::move(series));
   }
+  if (!exact.empty())
+    plot.series.push_back({.name = "without error: " + exact, .line = false, .markers = false});
   return plot;
 }
 
@@ -99,8 +108,8 @@ Plot field_plot(const SeriesRecord& record) {
 std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
   std::vector<SeriesCurve> curves;
   const auto add = [&curves](const std::string& name, Plot plot, const std::string& caption) {
-    std::erase_if(plot.series, [](const PlotSeries& series) { return !shows_anything(series); });
-    if (plot.series.empty()) return;
+    if (std::none_of(plot.series.begin(), plot.series.end(), shows_anything)) return;
+    std::erase_if(plot.series, [](const PlotSeries& s) { return !s.x.empty() && !shows_anything(s); });
     curves.push_back({name, caption, std::move(plot)});
   };
   Plot sizes = over_time("tetrahedra");
@@ -118,10 +127,12 @@ std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
   add("series-field-error", field_plot(record),
       "Mean field errors over time, as parts of each field's range over all steps.");
   add("series-volumes", material_plot(record, "volume", &LedgerRow::volume_input, &LedgerRow::volume_mesh),
-      "Volumes of the materials over time: in the mesh, and dashed in the input, as parts of the greatest in "
+      "Volumes of the materials over time: in the mesh, and dashed with open markers in the input, as parts "
+      "of the greatest in "
       "the input.");
   add("series-masses", material_plot(record, "mass", &LedgerRow::mass_input, &LedgerRow::mass_mesh),
-      "Masses of the materials over time: in the mesh, and dashed in the input, as parts of the greatest in "
+      "Masses of the materials over time: in the mesh, and dashed with open markers in the input, as parts "
+      "of the greatest in "
       "the input.");
   return curves;
 }

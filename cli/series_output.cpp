@@ -59,13 +59,13 @@ SeriesOutput::SeriesOutput(std::string output, const std::string& steps, double 
 }
 
 SeriesOutput::SeriesOutput(std::string output, std::vector<double> times, const std::string& ending,
-                           OutputSet& outputs)
+                           OutputSet& outputs, std::size_t first)
     : output_(std::move(output)), is_series_(file_extension(output_) == ".pvd"), times_(std::move(times)) {
   const std::filesystem::path list = output_;
   if (is_series_) outputs.declare("-o", output_);
   for (std::size_t i = 0; i < times_.size(); ++i) {
     const std::string name =
-        is_series_ ? step_file(list, i, ending) : numbered_name(list.filename().string(), i);
+        is_series_ ? step_file(list, first + i, ending) : numbered_name(list.filename().string(), first + i);
     if (name.empty())
       wrong_usage("-o: expected a list of steps (.pvd) or a pattern of names, as F_%04d{}, found '{}'",
                   ending, output_);

@@ -28,9 +28,10 @@ class SeriesOutput {
                const std::vector<const char*>& endings, OutputSet& outputs);
 
   /// A series of steps at these times, whose files end in `ending` (where a name has no ending of its own):
-  /// those of a list F.pvd, or, of a pattern as F_%04d.png, the files alone. Declares the outputs. Throws
-  /// UsageError for a name that is neither.
-  SeriesOutput(std::string output, std::vector<double> times, const std::string& ending, OutputSet& outputs);
+  /// those of a list F.pvd, or, of a pattern as F_%04d.png, the files alone, numbered from `first` on.
+  /// Declares the outputs. Throws UsageError for a name that is neither.
+  SeriesOutput(std::string output, std::vector<double> times, const std::string& ending, OutputSet& outputs,
+               std::size_t first = 0);
 
   /// Writes one file under the name given.
   using Writer = std::function<void(const std::filesystem::path&)>;

@@ -6,8 +6,8 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/gradient_picture.h"
-#include "cli/series_input.h"
 #include "cli/slice_request.h"
+#include "cli/slice_scale.h"
 #include "cli/slice_series.h"
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
@@ -46,19 +46,27 @@ void check_options(const SliceRequest& request, OutputSet& outputs) {
 }
 
 void run(SliceRequest& request, Session& session) {
-  const std::vector<SeriesEntry> steps =
-      request.volume.stack ? std::vector<SeriesEntry>() : series_steps(request.inputs);
+  const SliceSteps steps = find_slice_steps(request, session);
   if (!request.inputs.empty()) request.input.path = request.inputs.front();
   Console& console = session.console;
   const Plane plane = parse_any_plane(request);
   const SliceOptions size = picture_size(request);
   check_options(request, session.outputs);
-  if (!steps.empty()) return slice_series(request, steps, session);
-  if (!request.frame_rate.empty()) wrong_usage("--frame-rate: expected a series (.pvd or several files)");
+  std::optional<StepOfSeries> step;
+  if (!steps.chosen.empty()) {
+    if (request.step.empty() || names_series(request.output)) return slice_series(request, steps, session);
+    const SliceStep& only = steps.chosen.front();
+    session.outputs.protect(only.file);
+    step = StepOfSeries{only.time, only.number};
+    request.input.path = only.file;
+    request.step.clear();
+  }
+  if (!request.frame_rate.empty()) wrong_usage("--frame-rate: expected a series, and a film as output");
   session.outputs.declare("-o", request.output, {".png", ".svg", ".pdf", ".vtp"});
   if (request.gradients) {
-    return draw_gradients({request.input.path, plane, request.output, size.width, request.volume.time},
-                          session);
+    if (is_store(request.input.path))
+      static_cast<void>(sample_origin(request.input, request.volume, request.original));
+    return draw_gradients({request.input.path, plane, request.output, size, request.step}, session);
   }
   const bool polygons = file_extension(request.output) == ".vtp";
   const CutInput cut = cut_input(request, polygons, session);
@@ -68,7 +76,9 @@ void run(SliceRequest& request, Session& session) {
   console.step("drawing", -1);
   session.outputs.write(request.output, [&](const auto& path) {
     if (polygons) return write_unstructured_mesh(path, section_polygons(cut));
-    write_slice(make_picture(request, cut), path, size);
+    SlicePicture picture = make_picture(request, cut);
+    if (const auto& of = step ? step : cut.input.step) add_step_title(of->time, of->number, picture);
+    write_slice(picture, path, size);
   });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.outputs.commit();
@@ -119,8 +129,8 @@ void add_slice(const Command& app, Session& session) {
           "What to cut: " + grid_files() +
               ", a mesh from adamas resample (.vtu), interfaces (.vtp, .ply, .arec, .txt), or a store from "
               "adamas store (.adm). Or a series of data or meshes: a .pvd, several files, or a pattern of "
-              "their "
-              "names in quotes, as \"run_%04d.vti\"")
+              "their names in quotes, as \"run_%04d.vti\". A stored series and a file with several times are "
+              "series too where several pictures are asked for")
       .type_name("FILE...");
   command.add_option("--plane", options->plane, "The plane, at right angles to an axis")
       .type_name("x=N|y=N|z=N");
@@ -139,6 +149,12 @@ void add_slice(const Command& app, Session& session) {
           "ffmpeg), a pattern of pictures as S_%04d.png, or a list of polygons (.pvd)")
       .required()
       .type_name("FILE");
+  command
+      .add_option("--step", options->step,
+                  "Of a series, one picture: the number of a step, from 0 on (of a stored one default 0)")
+      .type_name("N");
+  command.add_option("--steps", options->steps, "Of a series: all steps, or those from A to B")
+      .type_name("A,B");
   command.add_option("--frame-rate", options->frame_rate, "Steps of a film per second (default 10)")
       .type_name("N");
   add_drawing_options(command, *options);

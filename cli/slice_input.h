@@ -13,6 +13,12 @@
 
 namespace adamas {
 
+/// Which step of a series something is of.
+struct StepOfSeries {
+  double time = 0;
+  std::size_t number = 0;
+};
+
 /// What a slice is cut from: the input's own data and interfaces, a resampled mesh, both, or interfaces
 /// alone.
 struct SliceInput {
@@ -23,6 +29,8 @@ struct SliceInput {
   std::optional<ResamplingSource> network;  ///< given interfaces without data
   /// Of samples whose axes are not x, y and z: the data are in its frame.
   std::optional<VolumeGrid> turned;
+  std::optional<StepOfSeries> step{};
+  std::string sample_name{};  ///< of samples: the name of their array; empty where that is not known
 
   /// Whether the data have no materials.
   [[nodiscard]] bool plain() const { return data && !mesh && is_plain(*data); }

@@ -85,7 +85,7 @@ SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle&
     panel.lines.push_back(to_lines(frame, "cells", cell_stroke(), section.cell_edges));
   if (!style.interfaces) return panel;
   if (input.interfaces) {
-    panel.lines.push_back(to_lines(frame, "original interfaces",
+    panel.lines.push_back(to_lines(frame, input.mesh ? "original interfaces" : "interfaces",
                                    input.mesh ? original_below() : original_interface_stroke(),
                                    section_edges(*input.interfaces, style.plane, input.box())));
   }
@@ -159,6 +159,7 @@ CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& styl
 
 std::string shown_field(const SliceInput& input, const SliceStyle& style) {
   const bool of_data = !input.mesh;
+  if (of_data && !input.sample_name.empty()) return input.sample_name;
   const auto field = choose_field(input, of_data ? SliceMode::kInput : SliceMode::kMaterials, style);
   return field ? field_label(fields_of(input, of_data), *field) : std::string();
 }
@@ -173,6 +174,9 @@ SlicePicture make_slice_picture(const SliceInput& input, const std::vector<Slice
   picture.field_label = shown_field(input, style);
   for (std::size_t i = 0; i < modes.size(); ++i)
     picture.panels.push_back(make_panel(input, modes[i], style, sections[i]));
+  // A panel alone needs no title but how its field is interpolated.
+  if (modes.size() == 1 && (modes[0] == SliceMode::kInput || style.field.empty()))
+    picture.panels[0].title.clear();
   if (style.field.empty()) picture.materials = material_legend(input, sections);
   return picture;
 }

@@ -132,7 +132,8 @@ CutInput cut_input(const SliceRequest& request, bool polygons, Session& session)
   };
   result.input =
       origin != SampleOrigin::kNone
-          ? load_samples(request.input, request.volume, origin, style.field, style.plane, check, session)
+          ? load_samples(request.input, request.volume, request.step, origin, style.field, style.plane, check,
+                         session)
           : load_slice_input(from, request.original, style.interfaces && !polygons, check, session.console);
   choose_cells(request, result.input, size, result.modes.size(), style);
   for (const SliceMode mode : result.modes) {

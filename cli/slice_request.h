@@ -17,6 +17,7 @@ struct SliceRequest {
   std::vector<std::string> inputs;
   InputOptions input;
   VolumeInput volume;
+  std::string step, steps;
   std::string plane, origin, normal, original, mode, range, colour_map, size, frame_rate, output;
   bool gradients = false, draw_cells = false, no_draw_cells = false, no_interfaces = false;
 };

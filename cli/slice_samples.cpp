@@ -122,11 +122,13 @@ void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& 
 
 SampleSlab store_slab(const StoreInput& input, const Plane& plane, Session& session) {
   const std::unique_ptr<StoreFile> file = open_store(input, session);
-  const std::uint32_t step = wanted_step(input, *file, session, "--time");
+  const std::uint32_t step = wanted_step(input, *file, session);
   const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
     restore(*file, step, part, store_memory(input), sink, session.console);
   };
-  return slab(input.path, file->header().grid, plane, read, session);
+  SampleSlab result = slab(input.path, file->header().grid, plane, read, session);
+  if (file->steps() > 1) result.step = StepOfSeries{file->times()[step], step};
+  return result;
 }
 
 SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Session& session) {
@@ -150,8 +152,11 @@ SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
     if (!original.empty())
       wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", input.path);
     if (about_grid) wrong_usage("{}: expected data with materials as INPUT, found {}", option, input.path);
-    if (!of_volume.empty() && of_volume != "--time")
-      wrong_usage("{}: expected a volume as INPUT, found {}", of_volume, input.path);
+    if (!of_volume.empty()) {
+      wrong_usage("{}: expected a {} as INPUT, found {}{}", of_volume,
+                  of_volume == "--time" ? "file with several times" : "volume", input.path,
+                  of_volume == "--time" ? ": --step says which step of a store" : "");
+    }
     return SampleOrigin::kStore;
   }
   if (!of_volume.empty()) {
@@ -168,14 +173,14 @@ SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
   return samples ? SampleOrigin::kVolume : SampleOrigin::kNone;
 }
 
-SliceInput load_samples(const InputOptions& input, VolumeInput volume, SampleOrigin origin,
-                        std::string& field, const Plane& plane,
+SliceInput load_samples(const InputOptions& input, VolumeInput volume, const std::string& step,
+                        SampleOrigin origin, std::string& field, const Plane& plane,
                         const std::function<void(const SliceInput&)>& check, Session& session) {
   SliceInput result;
   result.name = input.path;
   StoreInput store;
   store.path = volume.path = input.path;
-  store.step = volume.time;
+  store.step = step;
   if (origin == SampleOrigin::kVolume && volume.array.empty() && is_aslant_image(input.path)) {
     volume.array = std::exchange(field, {});
   }
@@ -183,6 +188,8 @@ SliceInput load_samples(const InputOptions& input, VolumeInput volume, SampleOri
                         ? store_slab(store, plane, session)
                         : volume_slab(open_volume_input(volume, session), plane, session);
   result.data = std::make_unique<MultiMaterialData>(std::move(slab.data));
+  result.step = slab.step;
+  result.sample_name = volume.array;
   if (!slab.grid.is_straight()) result.turned = std::move(slab.grid);
   check(result);
   return result;

@@ -21,6 +21,7 @@ inline constexpr const char* kSampleField = "value";
 struct SampleSlab {
   MultiMaterialData data;  ///< in the frame of `grid`
   VolumeGrid grid;         ///< the whole volume
+  std::optional<StepOfSeries> step{};
 };
 
 /// The samples that a plane's cross section depends on: those next to it along each axis, so of a plane at
@@ -38,10 +39,11 @@ enum class SampleOrigin { kNone, kStore, kVolume };
 /// image whose axes run aslant; `original`: the option of that name.
 SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume, const std::string& original);
 
-/// The samples round the plane, `field` naming the array of an image that has several. `check` looks at what
-/// was read. Throws UsageError at options that they do not know, and Error where the plane does not cut them.
-SliceInput load_samples(const InputOptions& input, VolumeInput volume, SampleOrigin origin,
-                        std::string& field, const Plane& plane,
+/// The samples round the plane, `step` naming that of a stored series, and `field` the array of an image that
+/// has several. `check` looks at what was read. Throws UsageError at options that they do not know, and Error
+/// where the plane does not cut them.
+SliceInput load_samples(const InputOptions& input, VolumeInput volume, const std::string& step,
+                        SampleOrigin origin, std::string& field, const Plane& plane,
                         const std::function<void(const SliceInput&)>& check, Session& session);
 
 }  // namespace adamas

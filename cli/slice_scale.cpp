@@ -28,6 +28,10 @@ void SliceScale::apply(std::size_t step, double time, SlicePicture& picture) con
   picture.title = title_;
   if (!picture.range && range_ && range_->low < range_->high) picture.range = range_;
   if (!picture.materials.empty()) picture.materials = materials_;
+  add_step_title(time, step, picture);
+}
+
+void add_step_title(double time, std::size_t step, SlicePicture& picture) {
   std::string& title = picture.panels.front().title;
   title = fmt::format("time {:.6g}, step {}{}{}", time, step, title.empty() ? "" : ": ", title);
 }

@@ -28,6 +28,9 @@ class SliceScale {
   std::vector<LegendEntry> materials_;
 };
 
+/// Puts the time and the number of a step before the title of the first panel.
+void add_step_title(double time, std::size_t step, SlicePicture& picture);
+
 /// Frames of a film where no other number is asked for, per second.
 inline constexpr double kFrameRate = 10;
 

@@ -30,29 +30,34 @@ SeriesPictures kind_of(const std::string& output) {
 /// The steps of a series one after another.
 class StepSlices {
  public:
-  StepSlices(const SliceRequest& request, const std::vector<SeriesEntry>& steps, Session& session)
-      : request_(request), steps_(steps), session_(session) {
+  StepSlices(const SliceRequest& request, const SliceSteps& steps, Session& session)
+      : request_(request), steps_(steps.chosen), session_(session) {
     if (request.original.empty()) return;
     originals_ = series_steps({request.original});
-    if (!originals_.empty() && originals_.size() != steps.size())
-      fail("{}: expected {} steps as {} has, found {}", request.original, steps.size(),
-           request.inputs.front(), originals_.size());
+    if (!originals_.empty() && originals_.size() != steps.all)
+      fail("{}: expected {} steps as {} has, found {}", request.original, steps.all, request.inputs.front(),
+           originals_.size());
   }
 
   /// `last`: it is drawn now, if at all. Before, interfaces are not needed, and notes are for the last time.
   CutInput cut(std::size_t n, bool polygons, bool last) {
-    session_.console.about = steps_[n].file;
+    const SliceStep& step = steps_[n];
+    session_.console.about = step.name;
     const bool quiet = std::exchange(session_.console.quiet, session_.console.quiet || !last);
     SliceRequest one = request_;
-    one.input.path = steps_[n].file;
-    if (!originals_.empty()) one.original = originals_[n].file;
+    one.input.path = step.file;
+    one.volume = step.volume;
+    one.step = step.stored;
+    if (!originals_.empty()) one.original = originals_[step.number].file;
     if (!last) one.no_interfaces = true;
     CutInput result = cut_input(one, polygons, session_);
+    // The name of all, not that of one step of several data sets.
+    result.input.sample_name = request_.volume.array;
     const SliceInput& input = result.input;
     if (input.data && !input.mesh) {
-      forms_.check(one.input.path, *input.data);
+      forms_.check(step.name, *input.data);
     } else {
-      forms_.check(one.input.path, input.materials(), input.box());
+      forms_.check(step.name, input.materials(), input.box());
     }
     session_.console.quiet = quiet;
     session_.console.about.clear();
@@ -61,15 +66,15 @@ class StepSlices {
 
  private:
   const SliceRequest& request_;
-  const std::vector<SeriesEntry>& steps_;
+  const std::vector<SliceStep>& steps_;
   Session& session_;
   std::vector<SeriesEntry> originals_;
   SeriesForms forms_;
 };
 
-Figures step_figures(const CutInput& cut, std::size_t n, const SeriesEntry& entry) {
+Figures step_figures(const CutInput& cut, const SliceStep& step) {
   const CrossSection& section = cut.sections.back();
-  Figures figures{{"step", n}, {"time", entry.time}, {"file", entry.file}, {"area", section.area}};
+  Figures figures{{"step", step.number}, {"time", step.time}, {"file", step.file}, {"area", section.area}};
   figures["materials"] = Figures::array();
   for (MaterialId m(0); m.value < section.material_area.size() && !cut.input.plain(); ++m.value)
     figures["materials"].push_back({{"name", cut.input.materials()[m]}, {"area", section.material_area[m]}});
@@ -80,7 +85,7 @@ Figures step_figures(const CutInput& cut, std::size_t n, const SeriesEntry& entr
 /// Where the pictures of a series go.
 class PictureOutput {
  public:
-  PictureOutput(const SliceRequest& request, const std::vector<SeriesEntry>& steps, OutputSet& outputs)
+  PictureOutput(const SliceRequest& request, const std::vector<SliceStep>& steps, OutputSet& outputs)
       : kind_(kind_of(request.output)),
         size_(picture_size(request)),
         output_(request.output),
@@ -96,7 +101,7 @@ class PictureOutput {
       return;
     }
     std::vector<double> times;
-    for (const SeriesEntry& step : steps) times.push_back(step.time);
+    for (const SliceStep& step : steps) times.push_back(step.time);
     const std::string ending =
         kind_ == SeriesPictures::kPolygons ? ".vtp" : std::filesystem::path(output_).extension().string();
     if (kind_ == SeriesPictures::kPictures && ending != ".png" && ending != ".svg" && ending != ".pdf")
@@ -104,7 +109,7 @@ class PictureOutput {
           "-o: expected of a series a film (.mp4, .webm, .gif), a pattern of pictures as S_%04d.png or a "
           "list of polygons (.pvd), found '{}'",
           output_);
-    files_.emplace(output_, std::move(times), ending, outputs);
+    files_.emplace(output_, std::move(times), ending, outputs, steps.front().number);
   }
 
   [[nodiscard]] SeriesPictures kind() const { return kind_; }
@@ -141,11 +146,12 @@ class PictureOutput {
 
 }  // namespace
 
-void slice_series(const SliceRequest& request, const std::vector<SeriesEntry>& steps, Session& session) {
+void slice_series(const SliceRequest& request, const SliceSteps& all, Session& session) {
   if (request.gradients) wrong_usage("--gradients: expected one store, found a series");
-  for (const SeriesEntry& step : steps) session.outputs.protect(step.file);
+  const std::vector<SliceStep>& steps = all.chosen;
+  for (const SliceStep& step : steps) session.outputs.protect(step.file);
   PictureOutput output(request, steps, session.outputs);
-  StepSlices slices(request, steps, session);
+  StepSlices slices(request, all, session);
   const bool polygons = output.kind() == SeriesPictures::kPolygons;
   const std::string series = std::filesystem::path(request.inputs.front()).filename().string();
   SliceScale scale(series + ", " + to_string(parse_any_plane(request)));
@@ -155,15 +161,15 @@ void slice_series(const SliceRequest& request, const std::vector<SeriesEntry>& s
   Figures rows = Figures::array();
   for (std::size_t n = 0; n < steps.size(); ++n) {
     const CutInput cut = slices.cut(n, polygons, true);
-    rows.push_back(step_figures(cut, n, steps[n]));
-    session.console.step("drawing " + steps[n].file,
+    rows.push_back(step_figures(cut, steps[n]));
+    session.console.step("drawing " + steps[n].name,
                          static_cast<double>(n) / static_cast<double>(steps.size()));
     if (polygons) {
       output.add(n, section_polygons(cut));
       continue;
     }
     SlicePicture picture = make_picture(request, cut);
-    scale.apply(n, steps[n].time, picture);
+    scale.apply(steps[n].number, steps[n].time, picture);
     output.add(n, picture);
   }
   output.finish();
@@ -171,7 +177,7 @@ void slice_series(const SliceRequest& request, const std::vector<SeriesEntry>& s
       {"plane", to_string(parse_any_plane(request))}, {"range", nullptr}, {"steps", std::move(rows)}};
   const auto shown = value_range(request) ? value_range(request) : scale.range();
   if (shown) figures["range"] = {shown->low, shown->high};
-  session.console.print("  {} steps{}\n", steps.size(),
+  session.console.print("  {} step{}{}\n", steps.size(), steps.size() == 1 ? "" : "s",
                         shown ? fmt::format(", values from {:.6g} to {:.6g}", shown->low, shown->high) : "");
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.outputs.commit();

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <vector>
-
-#include "cli/slice_request.h"
-#include "core/io/series_file.h"
+#include "cli/slice_steps.h"
 
 namespace adamas {
 
 /// Cuts the steps of a series: a picture or polygons of each, or a film, with one scale of colours and one
 /// legend over all of them. Throws UsageError and Error.
-void slice_series(const SliceRequest& request, const std::vector<SeriesEntry>& steps, Session& session);
+void slice_series(const SliceRequest& request, const SliceSteps& steps, Session& session);
 
 }  // namespace adamas

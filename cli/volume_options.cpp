@@ -187,8 +187,7 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
       .group("Input");
   command
       .add_option("--time", input.time,
-                  "Of a file with several times (NIfTI, HDF5 along four axes, a stored series): the number "
-                  "of one, from 0 on")
+                  "Of a file with several times (NIfTI, HDF5 along four axes): the number of one, from 0 on")
       .type_name("N")
       .group("Input");
   command

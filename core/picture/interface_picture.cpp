@@ -16,6 +16,8 @@ using namespace figure_style;
 namespace {
 
 constexpr double kLightestEdgeShare = 0.5;
+/// Of small pictures: smaller letters would not be read.
+constexpr double kLeastFont = 11;
 
 Box3 framed_box(const InterfacePicture& picture) {
   Box3 box = picture.domain;
@@ -89,17 +91,26 @@ void draw_axes(Canvas& canvas, const Camera& camera, const Vec2& centre, double 
   }
 }
 
+/// Text in a white box.
+void draw_message(Canvas& canvas, const std::string& text, const Vec2& centre, double font_size) {
+  const TextStyle style{.size = font_size, .colour = kInk};
+  const std::string shown = shortened(text, style, 1.8 * centre.x);
+  const Vec2 half{0.5 * text_width(shown, style) + 0.5 * font_size, font_size};
+  canvas.fill_box({centre - half, centre + half}, {1, 1, 1});
+  canvas.text(shown, {centre.x, centre.y + 0.35 * font_size}, style, Anchor::kMiddle);
+}
+
 }  // namespace
 
 std::string draw_interfaces(const InterfacePicture& picture, PictureFormat format,
                             const InterfacePictureOptions& options) {
-  const double f = options.font_size > 0 ? options.font_size : options.width / 70;
+  const double f = options.font_size > 0 ? options.font_size : std::max(options.width / 70, kLeastFont);
   if (!(options.width >= 100 && options.width <= 8000 && options.height >= 100 && options.height <= 8000 &&
-        options.samples >= 1 && options.samples <= 4 && f <= options.width / 10)) {
+        options.samples >= 1 && options.samples <= 4 && options.font_size <= options.width / 10)) {
     fail(
         "interface picture: expected sides of 100 to 8000 and 1 to 4 samples, found {} x {}, {} samples, "
         "font size {}",
-        options.width, options.height, options.samples, f);
+        options.width, options.height, options.samples, options.font_size);
   }
   Canvas canvas(format, options.width, options.height);
   const Box3 box = framed_box(picture), shown = picture.focus.value_or(box);
@@ -113,7 +124,7 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
   const int samples = options.samples;
   const Camera camera(picture.projection, shown, picture.direction, samples * width, samples * height);
   Rasteriser rasteriser(camera, samples * width, samples * height);
-  rasteriser.draw(picture.triangles);
+  rasteriser.draw(picture.triangles, picture.normals);
   RasteriserStyle style{.triangle_edges = options.triangle_edges, .outlines = options.outlines};
   style.crease_angle = options.crease_angle;
   style.edge_width = samples * options.width / 1600;
@@ -127,6 +138,8 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
   const TextStyle title{.size = kTitleFont * f, .colour = kInk, .bold = true};
   canvas.text(shortened(picture.title, title, options.width - 2 * kMargin * f),
               {kMargin * f, (kMargin + kTitleFont) * f}, title);
+  if (!picture.message.empty())
+    draw_message(canvas, picture.message, {0.5 * options.width, top + 0.5 * height}, f);
   if (options.axes) draw_axes(canvas, camera, {(kMargin + 3.2) * f, top + height - 3.2 * f}, f);
   legend.draw(canvas, {kMargin * f, options.height - kMargin * f - legend.height()});
   return canvas.finish(picture.title);

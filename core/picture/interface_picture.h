@@ -33,6 +33,8 @@ struct PictureBlock {
 struct InterfacePicture {
   std::string title{};
   std::vector<PictureTriangle> triangles{};
+  std::vector<CornerNormals> normals{};  ///< of each triangle, for shading as a smooth surface; empty: flat
+  std::string message{};                 ///< in the middle, as where there is no triangle
   Box3 domain{};                ///< drawn as a wireframe and framed; empty: that of the triangles, not drawn
   std::optional<Box3> focus{};  ///< framed instead
   std::vector<LegendEntry>

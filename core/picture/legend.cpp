@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
 
 namespace adamas {
 namespace {
@@ -15,28 +18,76 @@ double symbol_width(const LegendEntry& entry) { return entry.area ? kAreaWidth :
 
 }  // namespace
 
-void draw_marker(Canvas& canvas, Marker marker, const Vec2& c, double radius, const Colour& colour) {
-  const auto polygon = [&](std::initializer_list<Vec2> offsets) {
-    std::vector<Vec2> points;
-    for (const Vec2& offset : offsets) points.push_back(c + radius * offset);
-    canvas.fill(points, colour);
-  };
+namespace {
+
+std::vector<Vec2> regular(std::size_t corners, double inner) {
+  std::vector<Vec2> points;
+  for (std::size_t n = 0; n < corners; ++n) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(corners);
+    points.push_back((n % 2 == 0 ? 1.15 : inner) * Vec2{std::sin(angle), -std::cos(angle)});
+  }
+  return points;
+}
+
+/// Two bars across each other, turned.
+std::vector<Vec2> cross_shape(double angle) {
+  constexpr double kLong = 1.15, kShort = 0.38;
+  const double c = std::cos(angle), s = std::sin(angle);
+  std::vector<Vec2> points;
+  Vec2 along{0, -1};
+  for (int n = 0; n < 4; ++n) {
+    const Vec2 across{-along.y, along.x};
+    for (const Vec2& p :
+         {kLong * along - kShort * across, kLong * along + kShort * across, kShort * along + kShort * across})
+      points.push_back({c * p.x - s * p.y, s * p.x + c * p.y});
+    along = across;
+  }
+  return points;
+}
+
+/// Corners for the radius 1.
+std::vector<Vec2> marker_shape(Marker marker) {
   switch (marker) {
     case Marker::kNone:
-      break;
+      return {};
     case Marker::kDisc:
-      canvas.disc(c, radius, colour);
-      break;
+      return regular(32, 1.15);
     case Marker::kSquare:
-      polygon({{-0.88, -0.88}, {0.88, -0.88}, {0.88, 0.88}, {-0.88, 0.88}});
-      break;
+      return {{-0.88, -0.88}, {0.88, -0.88}, {0.88, 0.88}, {-0.88, 0.88}};
     case Marker::kTriangle:
-      polygon({{0, -1.2}, {1.1, 0.75}, {-1.1, 0.75}});
-      break;
+      return {{0, -1.2}, {1.1, 0.75}, {-1.1, 0.75}};
     case Marker::kDiamond:
-      polygon({{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}});
-      break;
+      return {{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}};
+    case Marker::kDownTriangle:
+      return {{0, 1.2}, {1.1, -0.75}, {-1.1, -0.75}};
+    case Marker::kPlus:
+      return cross_shape(0);
+    case Marker::kHexagon:
+      return regular(6, 1.15);
+    case Marker::kCross:
+      return cross_shape(std::numbers::pi / 4);
+    case Marker::kLeftTriangle:
+      return {{-1.2, 0}, {0.75, -1.1}, {0.75, 1.1}};
+    case Marker::kStar:
+      return regular(10, 0.5);
+    case Marker::kRightTriangle:
+      return {{1.2, 0}, {-0.75, -1.1}, {-0.75, 1.1}};
+    case Marker::kBar:
+      return {{-0.45, -1.25}, {0.45, -1.25}, {0.45, 1.25}, {-0.45, 1.25}};
   }
+  return {};
+}
+
+}  // namespace
+
+void draw_marker(Canvas& canvas, Marker marker, const Vec2& centre, double radius, const Colour& colour,
+                 double outline) {
+  if (marker == Marker::kDisc && outline == 0) return canvas.disc(centre, radius, colour);
+  std::vector<Vec2> points = marker_shape(marker);
+  if (points.empty()) return;
+  for (Vec2& p : points) p = centre + radius * p;
+  if (outline == 0) return canvas.fill(points, colour);
+  canvas.polyline(points, {.colour = colour, .width = outline}, true);
 }
 
 Legend::Legend(const std::vector<LegendEntry>& entries, double width, double font_size)
@@ -69,7 +120,8 @@ void Legend::draw(Canvas& canvas, const Vec2& corner) const {
     } else {
       if (entry.stroke.width > 0)
         canvas.polyline(std::array{Vec2{at.x, middle}, Vec2{at.x + width, middle}}, entry.stroke);
-      draw_marker(canvas, entry.marker, {at.x + 0.5 * width, middle}, 0.3 * f, entry.colour);
+      draw_marker(canvas, entry.marker, {at.x + 0.5 * width, middle}, 0.3 * f, entry.colour,
+                  entry.open ? 0.08 * f : 0);
     }
     canvas.text(entry.name, {at.x + width + kSymbolGap * f, at.y}, {.size = f});
   }

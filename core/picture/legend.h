@@ -8,10 +8,25 @@
 namespace adamas {
 
 /// Shapes of the points of a series.
-enum class Marker { kNone, kDisc, kSquare, kTriangle, kDiamond };
+enum class Marker {
+  kNone,
+  kDisc,
+  kSquare,
+  kTriangle,
+  kDiamond,
+  kDownTriangle,
+  kPlus,
+  kHexagon,
+  kCross,
+  kLeftTriangle,
+  kStar,
+  kRightTriangle,
+  kBar
+};
 
-/// Draws a marker of the given radius.
-void draw_marker(Canvas& canvas, Marker marker, const Vec2& centre, double radius, const Colour& colour);
+/// Draws a marker of the given radius; only its outline where that has a width.
+void draw_marker(Canvas& canvas, Marker marker, const Vec2& centre, double radius, const Colour& colour,
+                 double outline = 0);
 
 /// One entry of a legend: an area's colour, or a line with or without a marker.
 struct LegendEntry {
@@ -20,6 +35,7 @@ struct LegendEntry {
   bool area = true;
   Stroke stroke{};  ///< of a line; width 0 leaves the line out
   Marker marker = Marker::kNone;
+  bool open = false;  ///< the outline of the marker alone
 };
 
 /// Entries in rows from left to right, wrapped to a width.

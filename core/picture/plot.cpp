@@ -15,7 +15,13 @@ using namespace figure_style;
 namespace {
 
 constexpr Colour kGrid{0.90, 0.90, 0.91};
-constexpr std::array kMarkers{Marker::kDisc, Marker::kSquare, Marker::kTriangle, Marker::kDiamond};
+constexpr std::array kMarkers{Marker::kDisc,    Marker::kSquare,        Marker::kTriangle,
+                              Marker::kDiamond, Marker::kDownTriangle,  Marker::kPlus,
+                              Marker::kHexagon, Marker::kCross,         Marker::kLeftTriangle,
+                              Marker::kStar,    Marker::kRightTriangle, Marker::kBar};
+/// Lengths on and off in units of the font size. Of two lines in one place the lower shows in the gaps.
+const std::array<std::vector<double>, 4> kDashes{
+    {{0.5, 0.3}, {1.1, 0.35}, {0.9, 0.3, 0.2, 0.3}, {0.25, 0.25}}};
 
 bool usable(double value, const PlotAxis& axis) {
   return std::isfinite(value) && (axis.kind == AxisKind::kLinear || value > 0);
@@ -105,8 +111,18 @@ LegendEntry PlotDrawing::style(std::size_t index) const {
   LegendEntry entry{
       .name = series.name, .colour = series.colour.value_or(material_colour(index)), .area = false};
   entry.stroke = {.colour = entry.colour, .width = series.line ? 0.13 * font_ : 0};
-  if (series.dashed) entry.stroke.dashes = {0.5 * font_, 0.3 * font_};
-  if (series.markers) entry.marker = kMarkers[index % kMarkers.size()];
+  const auto before = [&](bool PlotSeries::*property) {
+    return static_cast<std::size_t>(
+        std::count_if(plot_.series.begin(), plot_.series.begin() + static_cast<std::ptrdiff_t>(index),
+                      [property](const PlotSeries& other) { return other.*property; }));
+  };
+  if (series.dashed) {
+    for (const double length : kDashes[before(&PlotSeries::dashed) % kDashes.size()])
+      entry.stroke.dashes.push_back(length * font_);
+  }
+  if (series.markers)
+    entry.marker = kMarkers[series.marker.value_or(before(&PlotSeries::markers)) % kMarkers.size()];
+  entry.open = series.open;
   return entry;
 }
 
@@ -172,7 +188,9 @@ void PlotDrawing::draw_series(Canvas& canvas, std::size_t index) const {
     if (!usable(plot_, series, i)) continue;
     const Vec2 p = place_point(i);
     const bool inside = p.x >= box_.min.x && p.x <= box_.max.x && p.y >= box_.min.y && p.y <= box_.max.y;
-    if (inside) draw_marker(canvas, entry.marker, p, 0.3 * font_, entry.colour);
+    if (!inside) continue;
+    draw_marker(canvas, entry.marker, p, (series.open ? 0.5 : 0.3) * font_, entry.colour,
+                series.open ? 0.08 * font_ : 0);
   }
 }
 

@@ -26,8 +26,11 @@ struct PlotSeries {
   std::vector<double> x{}, y{};
   bool line = true;
   bool markers = true;
-  bool dashed = false;
+  bool dashed = false;             ///< each series in a pattern of its own
   std::optional<Colour> colour{};  ///< default: by the series' place
+  std::optional<std::size_t>
+      marker{};       ///< number of its shape; default: by its place among those with markers
+  bool open = false;  ///< the markers are outlines, larger than filled ones
 };
 
 /// A diagram of lines and points, as error against number of tetrahedra.

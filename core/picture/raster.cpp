@@ -12,6 +12,8 @@ namespace adamas {
 namespace {
 
 constexpr int kGreatestSide = 32767;
+/// In pixels: more than the round-off of coordinates, and not to be seen.
+constexpr double kSeam = 1e-6;
 
 std::uint8_t rounded_mean(std::uint64_t sum, std::uint64_t count) {
   return static_cast<std::uint8_t>(count > 0 ? (2 * sum + count) / (2 * count) : 0);
@@ -86,8 +88,8 @@ double LinearField::at(const Vec2& p) const {
 void fill_polygon(Raster& raster, std::span<const Vec2> points, const Colour& colour) {
   const auto bytes = to_bytes(colour);
   const Raster::Pixel pixel{bytes[0], bytes[1], bytes[2], 255};
-  scan_convex_polygon(points, raster.width(), raster.height(),
-                      [&](int x, int y) { raster.at(x, y) = pixel; });
+  scan_convex_polygon(
+      points, raster.width(), raster.height(), [&](int x, int y) { raster.at(x, y) = pixel; }, kSeam);
 }
 
 void fill_field_polygon(Raster& raster, std::span<const Vec2> points, std::span<const double> values,
@@ -100,9 +102,10 @@ void fill_field_polygon(Raster& raster, std::span<const Vec2> points, std::span<
   }
   const LinearField field = LinearField::fit(points, values);
   const double scale = high > low ? 1 / (high - low) : 0, offset = high > low ? 0 : 0.5;
-  scan_convex_polygon(points, raster.width(), raster.height(), [&](int x, int y) {
+  const auto fill = [&](int x, int y) {
     raster.set(x, y, map.at(offset + scale * (field.at({x + 0.5, y + 0.5}) - low)));
-  });
+  };
+  scan_convex_polygon(points, raster.width(), raster.height(), fill, kSeam);
 }
 
 }  // namespace adamas

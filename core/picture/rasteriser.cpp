@@ -56,8 +56,10 @@ Rasteriser::Rasteriser(const Camera& camera, int width, int height)
   depth_.assign(pixels, kInfinity);
 }
 
-void Rasteriser::draw(std::span<const PictureTriangle> triangles) {
+void Rasteriser::draw(std::span<const PictureTriangle> triangles, std::span<const CornerNormals> normals) {
   ADAMAS_ASSERT(triangles_.empty() && triangles.size() < kNone);
+  ADAMAS_ASSERT(normals.empty() || normals.size() == triangles.size());
+  corner_normals_ = normals;
   triangles_ = triangles;
   planes_.resize(triangles.size());
   normals_.resize(triangles.size());
@@ -104,9 +106,33 @@ const Colour& Rasteriser::facing_colour(std::uint32_t triangle) const {
   return t.back && turned_[triangle] != 0 ? *t.back : t.colour;
 }
 
-Colour Rasteriser::shaded_colour(std::uint32_t number) const {
+Rasteriser::SmoothNormal::SmoothNormal(const Rasteriser& rasteriser, std::uint32_t number) {
+  const PictureTriangle& triangle = rasteriser.triangles_[number];
+  const Vec3& flat = rasteriser.normals_[number];
+  normals_ = rasteriser.corner_normals_[number];
+  const double side = rasteriser.turned_[number] != 0 ? -1 : 1;
+  for (Vec3& normal : normals_) normal = side * normal;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (rasteriser.camera_.distance_of(triangle.points[i]) < rasteriser.camera_.near()) {
+      normals_[0] = flat;
+      return;
+    }
+    corners_[i] = rasteriser.camera_.project(triangle.points[i]).at;
+  }
+  area_ = cross(corners_[1] - corners_[0], corners_[2] - corners_[0]);
+}
+
+Vec3 Rasteriser::SmoothNormal::at(const Vec2& pixel) const {
+  if (!(std::abs(area_) > 0)) return normals_[0];
+  const Vec2 way = pixel - corners_[0];
+  const double b = std::clamp(cross(way, corners_[2] - corners_[0]) / area_, 0.0, 1.0);
+  const double c = std::clamp(cross(corners_[1] - corners_[0], way) / area_, 0.0, 1.0 - b);
+  const Vec3 normal = (1 - b - c) * normals_[0] + b * normals_[1] + c * normals_[2];
+  return squared_norm(normal) > 0 ? normalized(normal) : normals_[0];
+}
+
+Colour Rasteriser::shaded_colour(std::uint32_t number, const Vec3& normal) const {
   const PictureTriangle& triangle = triangles_[number];
-  const Vec3& normal = normals_[number];
   const Vec3 centre = (1.0 / 3) * (triangle.points[0] + triangle.points[1] + triangle.points[2]);
   const double head = std::abs(dot(normal, camera_.towards(centre)));
   // A soft light from above on the left, dimmest on what faces away from it.
@@ -122,11 +148,20 @@ Raster Rasteriser::shade(const RasteriserStyle& style) const {
   Raster raster(width_, height_);
   std::uint32_t last = kNone;
   Colour colour;
+  std::optional<SmoothNormal> smooth;
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const std::uint32_t number = triangle_at(x, y);
       if (number == kNone) continue;
-      if (number != last) colour = shaded_colour(number), last = number;
+      if (number != last) {
+        last = number;
+        if (corner_normals_.empty()) {
+          colour = shaded_colour(number, normals_[number]);
+        } else {
+          smooth.emplace(*this, number);
+        }
+      }
+      if (smooth) colour = shaded_colour(number, smooth->at({x + 0.5, y + 0.5}));
       raster.set(x, y, colour);
     }
   }

@@ -19,6 +19,9 @@ struct PictureTriangle {
   std::optional<Colour> back{};  ///< of its back; default: as the front
 };
 
+/// Unit normals at a triangle's corners, on the side that its own normal points to.
+using CornerNormals = std::array<Vec3, 3>;
+
 /// What is drawn besides the shaded triangles.
 struct RasteriserStyle {
   bool triangle_edges = false;
@@ -36,9 +39,10 @@ class Rasteriser {
   /// The camera must have been made for this width and height. Throws Error for sides outside 1..32767.
   Rasteriser(const Camera& camera, int width, int height);
 
-  /// The triangles, which must outlive the rasteriser. Of equally deep ones the first wins. Throws Error for
-  /// points that are not finite.
-  void draw(std::span<const PictureTriangle> triangles);
+  /// The triangles, which must outlive the rasteriser. Of equally deep ones the first wins. With `normals`,
+  /// as many, which must outlive it too, they are shaded as a smooth surface; without, each is flat. Throws
+  /// Error for points that are not finite.
+  void draw(std::span<const PictureTriangle> triangles, std::span<const CornerNormals> normals = {});
   /// Index of the nearest triangle at a pixel, kNone where there is none.
   [[nodiscard]] std::uint32_t triangle_at(int x, int y) const { return triangle_[index(x, y)]; }
   /// The colour of a triangle's side that faces the camera.
@@ -52,6 +56,19 @@ class Rasteriser {
   void draw_line(Raster& raster, const Vec3& from, const Vec3& to, double width, const Colour& colour) const;
 
  private:
+  /// The normal of a smooth surface over the picture of a triangle.
+  class SmoothNormal {
+   public:
+    SmoothNormal(const Rasteriser& rasteriser, std::uint32_t number);
+    /// Of unit length, on the side of the triangle that faces the camera.
+    [[nodiscard]] Vec3 at(const Vec2& pixel) const;
+
+   private:
+    CornerNormals normals_{};
+    std::array<Vec2, 3> corners_{};
+    double area_ = 0;  ///< twice the triangle's; 0: the normal is the first one everywhere
+  };
+
   // Depth as an affine function of the pixel position.
   struct DepthPlane {
     Vec2 origin, gradient;
@@ -63,7 +80,7 @@ class Rasteriser {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
   void draw_triangle(std::uint32_t number);
-  [[nodiscard]] Colour shaded_colour(std::uint32_t number) const;
+  [[nodiscard]] Colour shaded_colour(std::uint32_t number, const Vec3& normal) const;
   void draw_edges(Raster& raster, const RasteriserStyle& style) const;
   void draw_outlines(Raster& raster, const RasteriserStyle& style) const;
   [[nodiscard]] bool outline_between(int x, int y, int u, int v, const RasteriserStyle& style,
@@ -72,6 +89,7 @@ class Rasteriser {
   Camera camera_;
   int width_, height_;
   std::span<const PictureTriangle> triangles_;
+  std::span<const CornerNormals> corner_normals_;
   std::vector<DepthPlane> planes_;
   std::vector<Vec3> normals_;  // towards the camera
   std::vector<char> turned_;   // whether a triangle's back faces the camera

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "core/picture/vec2.h"
@@ -12,16 +13,23 @@ namespace adamas {
 /// polygon, row by row: visit(int x, int y). Centres on an edge belong to the polygon on its right (in a row,
 /// to the half-open interval from the left to the right crossing), and a crossing depends on the edge alone,
 /// not on its direction, so polygons that share an edge neither leave out nor share a pixel. Either
-/// orientation; coordinates must be finite.
+/// orientation; coordinates must be finite. With a `tolerance`, centres that are so far outside belong to it
+/// too, so that nothing is left out either between polygons of which one has more points on their common
+/// edge, which round-off puts beside it.
 template <class Visit>
-void scan_convex_polygon(std::span<const Vec2> points, int width, int height, Visit&& visit) {
+void scan_convex_polygon(std::span<const Vec2> points, int width, int height, Visit&& visit,
+                         double tolerance = 0) {
   if (points.size() < 3) return;
   double low = points[0].y, high = points[0].y;
   for (const Vec2& p : points) low = std::min(low, p.y), high = std::max(high, p.y);
-  const int first_row = static_cast<int>(std::clamp(std::ceil(low - 0.5), 0.0, static_cast<double>(height)));
-  const int last_row = static_cast<int>(std::clamp(std::ceil(high - 0.5), 0.0, static_cast<double>(height)));
+  const auto pixel = [](double at, int count) {
+    return static_cast<int>(std::clamp(std::ceil(at - 0.5), 0.0, static_cast<double>(count)));
+  };
+  const int first_row = pixel(low - tolerance, height), last_row = pixel(high + tolerance, height);
+  // A row that touches the polygon from above or below takes its first or its last part.
+  const double last = std::max(low, std::nextafter(high, low));
   for (int y = first_row; y < last_row; ++y) {
-    const double centre = y + 0.5;
+    const double centre = std::clamp(y + 0.5, low, last);
     double left = std::numeric_limits<double>::infinity(), right = -left;
     for (std::size_t i = 0; i < points.size(); ++i) {
       Vec2 a = points[i], b = points[i + 1 < points.size() ? i + 1 : 0];
@@ -32,8 +40,7 @@ void scan_convex_polygon(std::span<const Vec2> points, int width, int height, Vi
       right = std::max(right, x);
     }
     if (!(left < right)) continue;
-    const int begin = static_cast<int>(std::clamp(std::ceil(left - 0.5), 0.0, static_cast<double>(width)));
-    const int end = static_cast<int>(std::clamp(std::ceil(right - 0.5), 0.0, static_cast<double>(width)));
+    const int begin = pixel(left - tolerance, width), end = pixel(right + tolerance, width);
     for (int x = begin; x < end; ++x) visit(x, y);
   }
 }

@@ -17,6 +17,10 @@ namespace {
 constexpr int kSamplesPerPixel = 2;  // along each axis
 constexpr double kStrokeReference = 1600;
 constexpr double kBarWidth = 1.2;
+/// Of small pictures: smaller letters would not be read.
+constexpr double kLeastFont = 11;
+/// Where panels would be narrower, in units of the font size, something beside them is left out.
+constexpr double kLeastPanel = 7;
 
 constexpr int kMostTicks = 10;
 
@@ -40,11 +44,11 @@ class SliceDrawing {
       : picture_(picture),
         contents_(survey_slice(picture)),
         window_(shown_window(contents_.window)),
-        font_(options.font_size > 0 ? options.font_size : options.width / 80),
+        font_(options.font_size > 0 ? options.font_size : std::max(options.width / 80, kLeastFont)),
         stroke_scale_(options.width / kStrokeReference),
         legend_({}, 1, 1) {
     if (!(options.width >= 200 && options.width <= 16000 && options.greatest_height >= 200 &&
-          font_ <= options.width / 20)) {
+          options.font_size <= options.width / 20)) {
       fail(
           "slice picture: expected a width of 200 to 16000 and a height from 200, found {} x {}, font size "
           "{}",
@@ -58,22 +62,41 @@ class SliceDrawing {
 
  private:
   void draw_on(Canvas& canvas, PictureFormat format) const;
+  /// Leaves out what there is no room for.
   void place(const SliceOptions& options);
+  void place_panels(const SliceOptions& options);
+  void place_ticks();
+  /// What is below the panels, in a picture of that width.
+  double height_below(double width);
   void draw_panel(Canvas& canvas, std::size_t index, PictureFormat format) const;
+  void draw_colours(Canvas& canvas, const SlicePanel& panel, const Box2& box) const;
   void draw_areas(Canvas& canvas, const SlicePanel& panel, const Box2& box, PictureFormat format) const;
   void draw_bar(Canvas& canvas) const;
   [[nodiscard]] std::vector<LegendEntry> legend_entries() const;
+  [[nodiscard]] std::string label(const std::string& text) const {
+    return shown_.labels ? text : std::string();
+  }
   [[nodiscard]] Box2 panel_box(std::size_t index) const {
     const double x = left_ + static_cast<double>(index) * (panel_size_.x + gap_);
     return {{x, top_}, {x + panel_size_.x, top_ + panel_size_.y}};
   }
 
+  /// What of a picture is drawn.
+  struct Shown {
+    bool labels = true;   ///< of the axes and the colour bar
+    bool numbers = true;  ///< of the axes
+    bool bar = true;
+    bool legend = true;
+  };
+
   const SlicePicture& picture_;
   SliceContents contents_;
+  Shown shown_;
   Box2 window_;
   double font_, stroke_scale_;
   Legend legend_;
-  double width_ = 0, height_ = 0, left_ = 0, top_ = 0, gap_ = 0, label_distance_ = 0, bar_label_width_ = 0;
+  double width_ = 0, height_ = 0, left_ = 0, right_ = 0, top_ = 0, gap_ = 0, label_distance_ = 0,
+         bar_label_width_ = 0;
   Vec2 panel_size_;
   Ticks x_ticks_, y_ticks_, bar_ticks_;
 };
@@ -95,51 +118,85 @@ std::vector<LegendEntry> SliceDrawing::legend_entries() const {
   return entries;
 }
 
-void SliceDrawing::place(const SliceOptions& options) {
-  const double f = font_, count = static_cast<double>(picture_.panels.size());
-  const Vec2 size = window_.size();
-  const double label = widest_possible_label(window_.min.y, window_.max.y, f);
-  const double x_label = widest_possible_label(window_.min.x, window_.max.x, f);
-  bar_label_width_ = widest_possible_label(contents_.range.low, contents_.range.high, f);
-  label_distance_ = (kTickLength + kTickGap) * f + label + 0.7 * f;
-  left_ = std::ceil(kMargin * f + label_distance_ + (picture_.y_label.empty() ? 0 : f));
-  gap_ = std::ceil(std::max(1.5 * f, x_label + 0.5 * f));
-  const double bar = (1 + kBarWidth + kTickLength + kTickGap) * f + bar_label_width_ +
-                     (picture_.field_label.empty() ? 0 : kLabelHeight * f);
-  const double right = std::ceil(kMargin * f + (contents_.has_field ? bar : 0.5 * x_label));
-  const bool titled = std::any_of(picture_.panels.begin(), picture_.panels.end(),
-                                  [](const SlicePanel& p) { return !p.title.empty(); });
-  top_ = std::ceil((kMargin + (picture_.title.empty() ? 0 : kTitleHeight) + (titled ? kLabelHeight : 0)) * f);
+double SliceDrawing::height_below(double width) {
+  const double f = font_;
+  legend_ = Legend(shown_.legend ? legend_entries() : std::vector<LegendEntry>(), width - 2 * kMargin * f, f);
+  return (shown_.numbers ? x_axis_height(label(picture_.x_label), f) : 0) +
+         (legend_.height() > 0 ? 0.8 * f + legend_.height() : 0) + kMargin * f;
+}
 
-  const double across = options.width - left_ - right - (count - 1) * gap_;
-  if (across < 4 * f * count)
+void SliceDrawing::place(const SliceOptions& options) {
+  shown_.bar = contents_.has_field;
+  place_panels(options);
+  for (bool Shown::*part : {&Shown::labels, &Shown::numbers, &Shown::bar}) {
+    if (panel_size_.x >= kLeastPanel * font_) break;
+    shown_.*part = false;
+    place_panels(options);
+  }
+  const auto count = static_cast<double>(picture_.panels.size());
+  if (panel_size_.x < 4 * font_)
     fail("slice picture: expected room for {} panels, found a width of {}", count, options.width);
-  panel_size_.x = std::floor(across / count);
+  const Vec2 size = window_.size();
   panel_size_.y = std::round(panel_size_.x * size.y / size.x);
-  const auto below = [&](double width) {
-    legend_ = Legend(legend_entries(), width - 2 * kMargin * f, f);
-    return x_axis_height(picture_.x_label, f) + (legend_.height() > 0 ? 0.8 * f + legend_.height() : 0) +
-           kMargin * f;
-  };
-  const double room = std::max(options.greatest_height - top_ - below(options.width), 8 * f);
+  const double least = 8 * font_;
+  if (options.greatest_height - top_ - height_below(options.width) < least) shown_.legend = false;
+  const double room = std::max(options.greatest_height - top_ - height_below(options.width), least);
   if (panel_size_.y > room) {
     panel_size_.y = std::floor(room);
     panel_size_.x = std::max(std::round(panel_size_.y * size.x / size.y), 2.0);
   }
-  const TextStyle title_style{.size = kTitleFont * f, .bold = true};
+  const TextStyle title_style{.size = kTitleFont * font_, .bold = true};
   const double title_width =
-      std::min(text_width(picture_.title, title_style) + 2 * kMargin * f, options.width);
-  const double needed = left_ + right + count * panel_size_.x + (count - 1) * gap_;
-  width_ = std::max({needed, title_width, std::min(24 * f, options.width)});
+      std::min(text_width(picture_.title, title_style) + 2 * kMargin * font_, options.width);
+  const double needed = left_ + right_ + count * panel_size_.x + (count - 1) * gap_;
+  width_ = std::max({needed, title_width, std::min(24 * font_, options.width)});
   left_ += std::floor(0.5 * (width_ - needed));
-  height_ = std::ceil(top_ + panel_size_.y + below(width_));
-  x_ticks_ = linear_ticks(window_.min.x, window_.max.x, tick_count(panel_size_.x, x_label + 2.5 * f));
-  y_ticks_ = linear_ticks(window_.min.y, window_.max.y, tick_count(panel_size_.y, 3 * f));
+  height_ = std::ceil(top_ + panel_size_.y + height_below(width_));
+  place_ticks();
+}
+
+void SliceDrawing::place_panels(const SliceOptions& options) {
+  const double f = font_, count = static_cast<double>(picture_.panels.size());
+  const double y_number = shown_.numbers ? widest_possible_label(window_.min.y, window_.max.y, f) : 0;
+  const double x_number = shown_.numbers ? widest_possible_label(window_.min.x, window_.max.x, f) : 0;
+  bar_label_width_ = widest_possible_label(contents_.range.low, contents_.range.high, f);
+  label_distance_ = (kTickLength + kTickGap) * f + y_number + 0.7 * f;
+  left_ = std::ceil(kMargin * f + (shown_.numbers ? label_distance_ : 0) +
+                    (label(picture_.y_label).empty() ? 0 : f));
+  gap_ = std::ceil(std::max(1.5 * f, x_number + 0.5 * f));
+  const double bar = (1 + kBarWidth + kTickLength + kTickGap) * f + bar_label_width_ +
+                     (label(picture_.field_label).empty() ? 0 : kLabelHeight * f);
+  right_ = std::ceil(kMargin * f + (shown_.bar ? bar : 0.5 * x_number));
+  const bool titled = std::any_of(picture_.panels.begin(), picture_.panels.end(),
+                                  [](const SlicePanel& p) { return !p.title.empty(); });
+  top_ = std::ceil((kMargin + (picture_.title.empty() ? 0 : kTitleHeight) + (titled ? kLabelHeight : 0)) * f);
+  panel_size_.x = std::floor((options.width - left_ - right_ - (count - 1) * gap_) / count);
+}
+
+void SliceDrawing::place_ticks() {
+  const double f = font_;
   bar_ticks_ = linear_ticks(contents_.range.low, contents_.range.high, tick_count(panel_size_.y, 3 * f));
+  if (!shown_.numbers) return;
+  const double x_number = widest_possible_label(window_.min.x, window_.max.x, f);
+  x_ticks_ = linear_ticks(window_.min.x, window_.max.x, tick_count(panel_size_.x, x_number + 2.5 * f));
+  y_ticks_ = linear_ticks(window_.min.y, window_.max.y, tick_count(panel_size_.y, 3 * f));
+}
+
+void SliceDrawing::draw_colours(Canvas& canvas, const SlicePanel& panel, const Box2& box) const {
+  Raster raster(static_cast<int>(panel_size_.x), static_cast<int>(panel_size_.y));
+  const double sx = window_.size().x / raster.width(), sy = window_.size().y / raster.height();
+  for (int y = 0; y < raster.height(); ++y) {
+    for (int x = 0; x < raster.width(); ++x) {
+      const Vec2 place{window_.min.x + (x + 0.5) * sx, window_.max.y - (y + 0.5) * sy};
+      if (const auto colour = panel.colour_at(place)) raster.set(x, y, *colour);
+    }
+  }
+  canvas.image(raster, box);
 }
 
 void SliceDrawing::draw_areas(Canvas& canvas, const SlicePanel& panel, const Box2& box,
                               PictureFormat format) const {
+  if (panel.colour_at) draw_colours(canvas, panel, box);
   if (panel.polygons.empty()) return;
   const int width = static_cast<int>(panel_size_.x) * kSamplesPerPixel,
             height = static_cast<int>(panel_size_.y) * kSamplesPerPixel;
@@ -180,8 +237,11 @@ void SliceDrawing::draw_panel(Canvas& canvas, std::size_t index, PictureFormat f
   canvas.unclip();
   const std::array<Vec2, 4> frame{box.min, Vec2{box.max.x, box.min.y}, box.max, Vec2{box.min.x, box.max.y}};
   canvas.polyline(frame, {.colour = kFrame, .width = 0.06 * font_}, true);
-  draw_x_axis(canvas, box, x_scale, x_ticks_, picture_.x_label, font_);
-  if (index == 0) draw_y_axis(canvas, box, y_scale, y_ticks_, picture_.y_label, label_distance_, font_);
+  if (shown_.numbers) {
+    draw_x_axis(canvas, box, x_scale, x_ticks_, label(picture_.x_label), font_);
+    if (index == 0)
+      draw_y_axis(canvas, box, y_scale, y_ticks_, label(picture_.y_label), label_distance_, font_);
+  }
   const TextStyle style{.size = font_, .colour = kInk};
   canvas.text(shortened(panel.title, style, panel_size_.x + 0.8 * gap_),
               {box.min.x, box.min.y - 0.55 * font_}, style);
@@ -223,7 +283,7 @@ void SliceDrawing::draw_bar(Canvas& canvas) const {
   }
   const double label_x = bar.max.x + (kTickLength + kTickGap + 1.4) * f + bar_label_width_;
   const TextStyle style{.size = f, .colour = kInk};
-  canvas.text(shortened(picture_.field_label, style, last.size().y),
+  canvas.text(shortened(label(picture_.field_label), style, last.size().y),
               {label_x, 0.5 * (last.min.y + last.max.y)}, style, Anchor::kMiddle, 90);
 }
 
@@ -232,7 +292,7 @@ void SliceDrawing::draw_on(Canvas& canvas, PictureFormat format) const {
   canvas.text(shortened(picture_.title, title, width_ - 2 * kMargin * font_),
               {kMargin * font_, (kMargin + kTitleFont) * font_}, title);
   for (std::size_t i = 0; i < picture_.panels.size(); ++i) draw_panel(canvas, i, format);
-  if (contents_.has_field) draw_bar(canvas);
+  if (shown_.bar) draw_bar(canvas);
   legend_.draw(canvas, {kMargin * font_, height_ - kMargin * font_ - legend_.height()});
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,9 @@ struct SlicePanel {
   std::string title{};
   std::vector<FieldPolygon> polygons{};
   std::vector<LineSet> lines{};
+  /// Below the polygons: the colours of places in the plane, asked for each pixel in rows from above; white
+  /// where there is none.
+  std::function<std::optional<Colour>(const Vec2&)> colour_at{};
 };
 
 /// Panels side by side that show the same part of a plane with the same colour map.

@@ -150,8 +150,9 @@ class Page {
            escape_markup(picture_.title) + "</title>\n<style>" + std::string(kStyle) +
            "</style>\n</head>\n<body data-state=\"loading\">\n<div id=\"view\"></div>\n<div "
            "id=\"panel\">\n<h1>" +
-           escape_markup(picture_.title) +
-           "</h1>\n<h2>Materials</h2>\n<div id=\"materials\"></div>\n<h2>Clipping plane</h2>\n"
+           escape_markup(picture_.title) + "</h1>\n" +
+           (picture_.message.empty() ? "" : "<p>" + escape_markup(picture_.message) + "</p>\n") +
+           "<h2>Materials</h2>\n<div id=\"materials\"></div>\n<h2>Clipping plane</h2>\n"
            "<select id=\"clip-axis\"><option value=\"\">none</option><option>x</option><option>y</option>"
            "<option>z</option></select>\n"
            "<input id=\"clip-place\" type=\"range\" min=\"0\" max=\"1000\" value=\"500\" disabled>\n"

@@ -1,5 +1,6 @@
 // Series that lie in one file: NIfTI of several times, groups and four axes of HDF5.
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -151,6 +152,19 @@ TEST_F(FileSeries, MembersWithTimes) {
   run_well({"store", "a.h5", "--array", "run", "-o", "a.adm"});
   expect_steps("a.adm", {1, 0});
   EXPECT_EQ(times("a.adm"), (std::vector<double>{1.5, 3}));
+  run_well({"info", "a.h5", "--array", "run", "--json", "info.json"});
+  const auto known = read_json("info.json");
+  EXPECT_EQ(known["kind"], "series");
+  EXPECT_EQ(known["steps"], 2);
+  EXPECT_EQ(known["times"], (std::vector<double>{1.5, 3}));
+  // The first by time.
+  const auto later = samples(1);
+  EXPECT_EQ(known["first_step"]["arrays"][0]["min"], *std::min_element(later.begin(), later.end()));
+  EXPECT_EQ(known["first_step"]["arrays"][0]["max"], *std::max_element(later.begin(), later.end()));
+  // Slices go by time too.
+  run_well({"slice", "a.h5", "--array", "run/s0", "--plane", "z=0", "-o", "s.vtp", "-q"});
+  run_well({"slice", "a.h5", "--array", "run", "--plane", "z=0", "-o", "s_%d.vtp", "-q"});
+  EXPECT_TRUE(read("s.vtp") == read("s_1.vtp"));
   // A simulation has gone on.
   make({3, 1.5, 4, 4.5});
   const RunResult result = run({"store", "a.h5", "--array", "run", "-o", "a.adm", "--append", "-q"});
@@ -178,6 +192,11 @@ TEST_F(FileSeries, TheFirstOfFourAxesIsTime) {
   }
   expect_failure({"store", "a.h5", "--time", "5", "-o", "b.adm"}, {"a.h5: all", "from 0 to 4", "found 5"});
   expect_failure({"slice", "a.h5", "--plane", "z=0", "-o", "s.png"}, {"a.h5: all", "--time (0 to 4)"});
+  expect_wrong_usage({"slice", "a.h5", "--step", "1", "--plane", "z=0", "-o", "s.png"},
+                     {"a.h5", "--time says"});
+  run_well({"slice", "a.h5", "--time", "3", "--plane", "z=0", "-o", "s.vtp", "-q"});
+  run_well({"slice", "a.h5", "--plane", "z=0", "-o", "s.pvd", "-q"});
+  EXPECT_TRUE(read("s.vtp") == read("s_0003.vtp"));
   {
     Hdf5File file(folder() / "t.h5");
     file.add("all", {5, 2, 3, 4}, StoredType::kUint8, all.data());

@@ -60,6 +60,8 @@ TEST_F(Series, EachMeshIsThatOfItsStepAlone) {
     split += step["adaptation"]["split"].get<std::size_t>();
   }
   EXPECT_GT(merged, 0u);
+  // The mesh has this field exactly.
+  EXPECT_NE(read("c.svg").find("without error: constant"), std::string::npos);
   EXPECT_GT(split, 0u);
   EXPECT_NE(read("m.pvd").find("timestep=\"1\" part=\"0\" file=\"m_0003.vtu\""), std::string::npos);
   // A line per step below the heads, all of them as long.
@@ -71,7 +73,8 @@ TEST_F(Series, EachMeshIsThatOfItsStepAlone) {
     EXPECT_EQ(found, commas) << line;
   }
   EXPECT_EQ(count, 5u);
-  for (const char* text : {"tetrahedra", "certified", "pool", "smooth", "volume / greatest in the input"})
+  for (const char* text :
+       {"tetrahedra", "certified", "pool", "smooth", "volume, as a part of the greatest in the input"})
     EXPECT_NE(read("c.svg").find(text), std::string::npos) << text;
 }
 

@@ -21,6 +21,17 @@ TEST_F(Slices, SlicesOfAllModes) {
                      {"--original"});
 }
 
+TEST_F(Slices, APanelAloneHasNoTitleThatTellsNothing) {
+  make_scene("sphere", 8);
+  run_well({"slice", "scene.vtr", "--plane", "y=0.5", "-o", "s.svg"});
+  EXPECT_EQ(read("s.svg").find("input"), std::string::npos);
+  EXPECT_EQ(read("s.svg").find("original"), std::string::npos);
+  run_well({"resample", "scene.vtr", "--interface-error", "3%", "-o", "m.vtu"});
+  run_well({"slice", "m.vtu", "--original", "scene.vtr", "--plane", "y=0.5", "--mode", "all", "-o", "s.svg"});
+  EXPECT_NE(read("s.svg").find("input"), std::string::npos);
+  EXPECT_NE(read("s.svg").find("original interfaces"), std::string::npos);
+}
+
 TEST_F(Slices, LinesOfSlicesCanBeTold) {
   make_scene("sphere", 24);
   run_well({"resample", "scene.vtr", "--interface-error", "3%", "-o", "m.vtu"});

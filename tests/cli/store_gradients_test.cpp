@@ -74,6 +74,11 @@ TEST_F(StoreGradients, AreSeenInAPlane) {
   }
   EXPECT_GT(without[0], without[1]) << "regions are filled from their borders";
   EXPECT_GE(without[1], without[2]);
+  // A legend tells what the colours mean.
+  run_well({"slice", "g.adm", "--plane", "z=16", "--gradients", "-o", "g.svg"});
+  for (const std::string half : {"rgb(100%,50%,50%)", "rgb(0%,50%,50%)", "rgb(50%,100%,50%)",
+                                 "rgb(50%,0%,50%)", "rgb(50%,50%,100%)", "rgb(50%,50%,0%)"})
+    EXPECT_NE(read("g.svg").find(half), std::string::npos) << half;
   run_well({"store", "b.vti", "-o", "plain.adm"});
   const auto expect = [this](const std::vector<std::string>& options, int status, const std::string& part) {
     std::vector<std::string> all{"slice", "--gradients"};
@@ -84,7 +89,7 @@ TEST_F(StoreGradients, AreSeenInAPlane) {
   };
   expect({"plain.adm", "--plane", "z=16", "-o", "p.png"}, 1, "plain.adm");
   expect({"b.vti", "--plane", "z=16", "-o", "p.png"}, 2, "--gradients: expected a store");
-  expect({"g.adm", "--plane", "z=16", "-o", "p.svg"}, 2, "--gradients: expected a .png");
+  expect({"g.adm", "--plane", "z=16", "-o", "p.vtp"}, 2, "--gradients: expected a picture");
   expect({"g.adm", "--plane", "z=160", "-o", "p.png"}, 1, "expected a plane that cuts");
 }
 

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/picture/axes.h"
@@ -174,6 +176,48 @@ TEST(Plot, BadInputIsAnError) {
   plot.y.low = 3, plot.y.high = 3;
   EXPECT_THROW(draw_plot(plot, PictureFormat::kPng), Error);
   EXPECT_THROW(draw_plot(error_plot(), PictureFormat::kPng, {.width = 10}), Error);
+}
+
+TEST(Plot, EverySeriesHasAMarkerOfItsOwn) {
+  Plot plot;
+  plot.x = {.low = 0.0, .high = 13.0};
+  plot.y = {.low = 0.0, .high = 2.0};
+  const Colour colour{0, 0, 0.5};
+  for (int n = 0; n < 12; ++n) {
+    // Those without markers do not use up any.
+    plot.series.push_back({.x = {1, 2}, .y = {0.1, 0.1}, .markers = false});
+    plot.series.push_back({.x = {n + 1.0}, .y = {1}, .line = false, .colour = colour});
+  }
+  const Raster raster =
+      test::decode_png(draw_plot(plot, PictureFormat::kPng, {.width = 2600, .height = 600}));
+  const std::vector<Vec2> centres = blobs(raster, colour, 60);
+  ASSERT_EQ(centres.size(), 12u);
+  std::set<std::string> shapes;
+  const auto bytes = to_bytes(colour);
+  for (int n = 0; n < 12; ++n) {
+    const int at_x = static_cast<int>(centres[0].x + (centres[11].x - centres[0].x) * n / 11);
+    const int at_y = static_cast<int>(centres[0].y);
+    std::string shape;
+    for (int y = at_y - 18; y <= at_y + 18; ++y) {
+      for (int x = at_x - 18; x <= at_x + 18; x += 2)
+        shape += raster.at(x, y) == Raster::Pixel{bytes[0], bytes[1], bytes[2], 255} ? '#' : '.';
+      shape += '\n';
+    }
+    EXPECT_TRUE(shapes.insert(shape).second) << n << "\n" << shape;
+  }
+}
+
+TEST(Plot, OpenMarkersAreSeenRoundFilledOnes) {
+  const Colour inner{0, 0, 0.5}, outer{0.8, 0, 0};
+  Plot plot;
+  plot.series = {{.x = {1}, .y = {1}, .colour = outer, .marker = 1, .open = true},
+                 {.x = {1}, .y = {1}, .colour = inner, .marker = 1}};
+  const Raster raster = test::decode_png(draw_plot(plot, PictureFormat::kPng));
+  const Box2 filled = box_of(raster, inner), open = box_of(raster, outer);
+  EXPECT_LT(open.min.x, filled.min.x);
+  EXPECT_GT(open.max.x, filled.max.x);
+  EXPECT_LT(open.min.y, filled.min.y);
+  EXPECT_GT(open.max.y, filled.max.y);
 }
 
 }  // namespace

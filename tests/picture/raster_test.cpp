@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "core/base/error.h"
@@ -96,6 +97,41 @@ TEST(Raster, TriangulationsOfASquareCoverEveryPixelOnce) {
     }
     for (const int n : count) ASSERT_EQ(n, 1) << triangles.size();
   }
+}
+
+TEST(Raster, NothingIsLeftOutBesideEdgesWithMorePointsOnOneSide) {
+  std::mt19937_64 random(4);
+  const auto place = [&random] {
+    return Vec2{static_cast<double>(random() % kSize) + 0.5, static_cast<double>(random() % kSize) + 0.5};
+  };
+  std::uniform_real_distribution<double> unit(0, 1);
+  int left_out = 0;
+  for (int round = 0; round < 1000; ++round) {
+    // The ends of the edge are pixel centres, so that others may lie on it.
+    const Vec2 a = place(), b = place();
+    if (norm(b - a) < 4) continue;
+    const Vec2 aside = Vec2{a.y - b.y, b.x - a.x};
+    std::vector<double> parts{unit(random), unit(random), unit(random)};
+    std::sort(parts.begin(), parts.end());
+    std::vector<Vec2> whole{a, b, 0.5 * (a + b) + 100 * aside}, divided{a};
+    for (const double part : parts) divided.push_back(a + part * (b - a));
+    divided.push_back(b);
+    divided.push_back(0.5 * (a + b) - 100 * aside);
+    Raster filled(kSize, kSize), exact(kSize, kSize);
+    for (const auto& polygon : {whole, divided}) {
+      fill_polygon(filled, polygon, {0, 0, 0});
+      scan_convex_polygon(polygon, kSize, kSize, [&exact](int x, int y) { exact.set(x, y, {0, 0, 0}); });
+    }
+    const auto steps = std::gcd(std::abs(std::lround(b.x - a.x)), std::abs(std::lround(b.y - a.y)));
+    for (long n = 1; n < steps; ++n) {
+      const double part = static_cast<double>(n) / static_cast<double>(steps);
+      const int x = static_cast<int>(a.x + part * (b.x - a.x)),
+                y = static_cast<int>(a.y + part * (b.y - a.y));
+      ASSERT_EQ(filled.at(x, y).a, 255) << round << ": " << x << ", " << y;
+      left_out += exact.at(x, y).a == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(left_out, 0) << "there is nothing to mend";
 }
 
 TEST(Raster, FieldsAreEvaluatedAtPixelCentres) {

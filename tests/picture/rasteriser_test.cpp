@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "core/base/error.h"
@@ -212,6 +213,98 @@ TEST(Rasteriser, EachSideHasItsColour) {
   const std::vector<PictureTriangle> plain{{points, front}};
   rasteriser.draw(plain);
   EXPECT_EQ(rasteriser.facing_colour(0), front);
+}
+
+/// Triangles of a sphere about a point, by angles, with their corners' directions from it.
+struct Sphere {
+  std::vector<PictureTriangle> triangles;
+  std::vector<CornerNormals> normals;
+
+  Sphere(const Vec3& centre, double radius, int parts) {
+    const auto direction = [parts](int i, int j) {
+      const double u = std::numbers::pi * i / parts,
+                   v = 2 * std::numbers::pi * (j % (2 * parts)) / (2 * parts);
+      return Vec3{std::sin(u) * std::cos(v), std::sin(u) * std::sin(v), std::cos(u)};
+    };
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      if (norm(cross(b - a, c - a)) < 1e-9) return;
+      triangles.push_back({{centre + radius * a, centre + radius * b, centre + radius * c}, {0.8, 0.7, 0.6}});
+      normals.push_back({a, b, c});
+    };
+    for (int i = 0; i < parts; ++i) {
+      for (int j = 0; j < 2 * parts; ++j) {
+        add(direction(i, j), direction(i + 1, j), direction(i + 1, j + 1));
+        add(direction(i, j), direction(i + 1, j + 1), direction(i, j + 1));
+      }
+    }
+  }
+};
+
+Raster shaded(const std::vector<PictureTriangle>& triangles, const std::vector<CornerNormals>& normals) {
+  const Camera camera(Projection::kPerspective, kBox, {-0.62, 0.72, -0.42}, kWidth, kHeight);
+  Rasteriser rasteriser(camera, kWidth, kHeight);
+  rasteriser.draw(triangles, normals);
+  return rasteriser.shade({.outlines = false});
+}
+
+bool same_pixels(const Raster& a, const Raster& b) {
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      if (!(a.at(x, y) == b.at(x, y))) return false;
+    }
+  }
+  return true;
+}
+
+TEST(Rasteriser, NormalsOfTheTrianglesThemselvesChangeNothing) {
+  std::mt19937_64 random(5);
+  const std::vector<PictureTriangle> triangles = random_triangles(random, 40, kBox);
+  std::vector<CornerNormals> normals;
+  for (const PictureTriangle& t : triangles) {
+    const Vec3 normal = normalized(cross(t.points[1] - t.points[0], t.points[2] - t.points[0]));
+    normals.push_back({normal, normal, normal});
+  }
+  const Raster flat = shaded(triangles, {}), smooth = shaded(triangles, normals);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      ASSERT_EQ(flat.at(x, y).a, smooth.at(x, y).a);
+      ASSERT_NEAR(flat.at(x, y).r, smooth.at(x, y).r, 1);
+    }
+  }
+}
+
+TEST(Rasteriser, NormalsMakeACoarseSphereLookLikeAFineOne) {
+  const Sphere coarse(kBox.center(), 0.9, 8), fine(kBox.center(), 0.9, 200);
+  const Raster truth = shaded(fine.triangles, {}), flat = shaded(coarse.triangles, {}),
+               smooth = shaded(coarse.triangles, coarse.normals);
+  const auto difference = [&truth](const Raster& raster) {
+    double sum = 0, count = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        if (truth.at(x, y).a == 0 || raster.at(x, y).a == 0) continue;
+        sum += std::abs(truth.at(x, y).r - raster.at(x, y).r);
+        ++count;
+      }
+    }
+    EXPECT_GT(count, 400);
+    return sum / count;
+  };
+  EXPECT_LT(difference(smooth), 0.35 * difference(flat));
+}
+
+TEST(Rasteriser, TheOrderOfCornersDoesNotMatterToNormals) {
+  const Sphere sphere(kBox.center(), 0.9, 8);
+  std::vector<PictureTriangle> turned = sphere.triangles;
+  std::vector<CornerNormals> normals = sphere.normals;
+  for (PictureTriangle& t : turned) std::swap(t.points[1], t.points[2]);
+  for (CornerNormals& n : normals) n = {-n[0], -n[2], -n[1]};
+  const Raster one = shaded(sphere.triangles, sphere.normals), other = shaded(turned, normals);
+  int differences = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) differences += std::abs(one.at(x, y).r - other.at(x, y).r) > 1 ? 1 : 0;
+  }
+  EXPECT_EQ(differences, 0);
+  EXPECT_FALSE(same_pixels(one, shaded(sphere.triangles, {})));
 }
 
 }  // namespace

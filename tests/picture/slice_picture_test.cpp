@@ -80,6 +80,42 @@ TEST(SlicePicture, IsAsWideAsAskedForAndNeverTallerThanAllowed) {
   EXPECT_LE(low.height(), 520);
 }
 
+TEST(SlicePicture, LettersOfSmallPicturesAreNotSmall) {
+  SlicePicture picture;
+  picture.title = "H";
+  picture.panels.resize(1);
+  for (const double width : {200.0, 300.0, 800.0}) {
+    const Raster raster = test::decode_png(
+        draw_slice(picture, PictureFormat::kPng, {.width = width, .greatest_height = width}));
+    // The title stands alone in the upper left corner, above the panel.
+    int least = raster.height(), greatest = -1;
+    for (int y = 0; y < 30; ++y) {
+      for (int x = 0; x < 30; ++x) {
+        if (raster.at(x, y).r > 100) continue;
+        least = std::min(least, y);
+        greatest = std::max(greatest, y);
+      }
+    }
+    EXPECT_GE(greatest - least + 1, 9) << width;
+  }
+}
+
+TEST(SlicePicture, WhatThereIsNoRoomForIsLeftOut) {
+  const auto shows = [](double side, const char* text) {
+    const std::string svg =
+        draw_slice(three_panels(), PictureFormat::kSvg, {.width = side, .greatest_height = side});
+    return svg.find(text) != std::string::npos;
+  };
+  for (const char* text : {"y [cm]", "density [g/cm³]"}) {
+    EXPECT_TRUE(shows(1600, text)) << text;
+    EXPECT_FALSE(shows(300, text)) << text;
+  }
+  const Raster small = test::decode_png(
+      draw_slice(three_panels(), PictureFormat::kPng, {.width = 250, .greatest_height = 250}));
+  EXPECT_LE(small.width(), 250);
+  EXPECT_LE(small.height(), 260);
+}
+
 TEST(SlicePicture, SvgHoldsTheTexts) {
   const std::string svg = draw_slice(three_panels(), PictureFormat::kSvg);
   EXPECT_NE(svg.find("<svg"), std::string::npos);

@@ -1,0 +1,109 @@
+#include "cli/slice_steps.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/option_values.h"
+#include "cli/series_input.h"
+#include "cli/store_options.h"
+#include "cli/stored_steps.h"
+#include "cli/usage_error.h"
+#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
+#include "core/io/volume_stack.h"
+#include "core/picture/film.h"
+
+namespace adamas {
+
+namespace {
+
+std::vector<SliceStep> steps_of_store(const SliceRequest& request, Session& session) {
+  StoreInput input;
+  input.path = request.inputs[0];
+  std::vector<SliceStep> steps;
+  for (const double time : open_store(input, session)->times()) {
+    const std::string number = std::to_string(steps.size());
+    steps.push_back(
+        {time, steps.size(), input.path + ", step " + number, input.path, request.volume, number});
+  }
+  return steps;
+}
+
+/// The steps of the one file that is the input.
+std::vector<SliceStep> steps_within(const SliceRequest& request, Session& session) {
+  if (is_store(request.inputs[0])) return steps_of_store(request, session);
+  std::vector<SliceStep> steps;
+  for (InputStep& step : find_input_steps(request.inputs, request.volume).steps) {
+    steps.push_back(
+        {step.time, steps.size(), std::move(step.name), step.input.path, std::move(step.input), {}});
+  }
+  return steps;
+}
+
+/// The first and the last step of --steps A,B or --step N; all where neither is given.
+std::pair<std::size_t, std::size_t> wanted_steps(const SliceRequest& request, std::size_t count) {
+  if (request.step.empty() && request.steps.empty()) return {0, count - 1};
+  if (!request.step.empty()) {
+    const std::size_t step = parse_count("--step", request.step, 0);
+    if (step >= count)
+      wrong_usage("--step: expected less than the {} steps of {}, found {}", count, request.inputs[0],
+                  request.step);
+    return {step, step};
+  }
+  const std::size_t comma = request.steps.find(',');
+  if (comma == std::string::npos) wrong_usage("--steps: expected A,B, found '{}'", request.steps);
+  const std::size_t first = parse_count("--steps", request.steps.substr(0, comma), 0);
+  const std::size_t last = parse_count("--steps", request.steps.substr(comma + 1), 0);
+  if (first > last || last >= count)
+    wrong_usage("--steps: expected steps from 0 to {} in ascending order, found '{}'", count - 1,
+                request.steps);
+  return {first, last};
+}
+
+/// What is there to say where the input is no series.
+[[noreturn]] void refuse_series(const SliceRequest& request, const std::string& option) {
+  const std::string& input = request.inputs.empty() ? request.input.path : request.inputs[0];
+  wrong_usage(
+      "{}: expected a series as INPUT (a .pvd, several files, a stored series, or a file with several "
+      "times), found {}",
+      option, input.empty() ? "none" : input);
+}
+
+}  // namespace
+
+bool names_series(const std::string& output) {
+  return is_film(output) || file_extension(output) == ".pvd" ||
+         !numbered_name(std::filesystem::path(output).filename().string(), 0).empty();
+}
+
+SliceSteps find_slice_steps(const SliceRequest& request, Session& session) {
+  if (!request.step.empty() && !request.steps.empty())
+    wrong_usage("--step and --steps: expected one of them");
+  std::vector<SliceStep> steps;
+  if (!request.volume.stack) {
+    for (const SeriesEntry& entry : series_steps(request.inputs))
+      steps.push_back({entry.time, steps.size(), entry.file, entry.file, request.volume, {}});
+  }
+  const bool several = names_series(request.output) || !request.steps.empty();
+  const bool one_file = request.inputs.size() == 1 && !request.volume.stack;
+  if (steps.empty() && several && one_file) {
+    check_input_file(request.inputs[0]);
+    steps = steps_within(request, session);
+    if (steps.size() == 1) steps.clear();
+  }
+  if (steps.empty()) {
+    if (several) refuse_series(request, request.steps.empty() ? "-o " + request.output : "--steps");
+    if (request.step.empty() || (one_file && is_store(request.inputs[0]))) return {};
+    const InputFormat* format = one_file ? find_format_by_name(request.inputs[0]) : nullptr;
+    if (format == nullptr || !format->several_times) refuse_series(request, "--step");
+    wrong_usage(
+        "--step: expected a stored series or a series of files, found {}: --time says which of its times",
+        request.inputs[0]);
+  }
+  const auto [first, last] = wanted_steps(request, steps.size());
+  SliceSteps result{{}, steps.size()};
+  for (std::size_t n = first; n <= last; ++n) result.chosen.push_back(std::move(steps[n]));
+  return result;
+}
+
+}  // namespace adamas
