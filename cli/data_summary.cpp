@@ -162,21 +162,21 @@ Figures print_volume(VolumeReader reader, const std::string& path, Session& sess
   return figures;
 }
 
-void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,
-                       Console& console) {
+void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t all_bytes,
+                       Console& console, const std::string& all) {
   const auto text = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
   const auto ratio = [uncompressed](std::uint64_t n) {
     return n > 0 ? fmt::format("{:.2f}", static_cast<double>(uncompressed) / static_cast<double>(n)) : "-";
   };
   const std::uint64_t parts = bytes.samples + bytes.bounds + bytes.gradients;
-  const std::uint64_t others = file_bytes - std::min(parts, file_bytes);
+  const std::uint64_t others = all_bytes - std::min(parts, all_bytes);
   console.table({{"", "bytes", "ratio"},
                  {"uncompressed", text(uncompressed), ""},
                  {"samples", text(bytes.samples), ratio(bytes.samples)},
                  {"errors and ranges", text(bytes.bounds), ""},
                  {"gradients", text(bytes.gradients), ""},
                  {"directory and copies", text(others), ""},
-                 {"file", text(file_bytes), ratio(file_bytes)}});
+                 {all, text(all_bytes), ratio(all_bytes)}});
 }
 
 Figures print_store(const std::string& path, Session& session) {
@@ -198,8 +198,8 @@ Figures print_store(const std::string& path, Session& session) {
   print_places(grid, console);
   const std::vector<double> times = file->times();
   if (file->steps() > 1)
-    console.print("  {} steps in {} blocks, times from {:.6g} to {:.6g}\n", file->steps(), file->blocks(),
-                  times.front(), times.back());
+    console.print("  {} steps in {}, times from {:.6g} to {:.6g}\n", file->steps(),
+                  counted(file->blocks(), "block"), times.front(), times.back());
   if (file->unfinished_bytes() > 0)
     console.note("{}: {} bytes at its end are of steps that were never finished", path,
                  file->unfinished_bytes());
@@ -225,8 +225,8 @@ Figures print_store(const std::string& path, Session& session) {
                   {"bytes_file", file->size()}};
   add_places(grid, figures);
   print_range(*file, console, figures);
-  console.print("  levels 0 to {}, {} pages, coding {}, {} gradients\n\n", levels - 1,
-                file->grid().page_count(), coding, header.gradients ? "with" : "without");
+  console.print("  levels 0 to {}, {}, coding {}, {} gradients\n\n", levels - 1,
+                counted(file->grid().page_count(), "page"), coding, header.gradients ? "with" : "without");
   print_store_bytes(before, bytes, file->size(), console);
   return figures;
 }

@@ -33,9 +33,10 @@ void print_arrays(const FileSummary& s, Console& console, Figures& figures);
 /// What is in a volume, which is read plane by plane.
 Figures print_volume(VolumeReader reader, const std::string& path, Session& session);
 
-/// A table of what the bytes of a store are.
-void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,
-                       Console& console);
+/// A table of what the bytes of a store are, or those of the steps that were added to it: `all_bytes`, which
+/// the last row calls `all`.
+void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t all_bytes,
+                       Console& console, const std::string& all = "file");
 
 /// What a store is, as `info` tells it.
 Figures print_store(const std::string& path, Session& session);

@@ -97,7 +97,11 @@ TEST_F(FileSeries, TimesOfNiftiInTheirUnits) {
 TEST_F(FileSeries, TimesOfNiftiAreAddedBehind) {
   write_nifti("a.nii", 3, 2, 8);
   run_well({"store", "a.nii", "-o", "a.adm", "--append"});
-  run_well({"store", "a.nii", "-o", "a.adm", "--append"});
+  const RunResult again = run({"store", "a.nii", "-o", "a.adm", "--append"});
+  EXPECT_EQ(
+      again.err,
+      "adamas: note: a.nii: a time between steps but none of the first: 3 steps, taken to be at 6 to 10, "
+      "behind the last one of a.adm at 4\n");
   expect_steps("a.adm", {0, 1, 2, 0, 1, 2});
   EXPECT_EQ(times("a.adm"), (std::vector<double>{0, 2, 4, 6, 8, 10}));
 }
@@ -132,7 +136,8 @@ TEST_F(FileSeries, MembersOfAGroupInNaturalOrder) {
   expect_steps("one.adm", {3});
   run_well({"store", "a.h5", "--array", "/", "-o", "root.adm"});
   expect_steps("root.adm", {5});
-  run_well({"store", "a.h5", "--array", "/run/", "-o", "a.adm", "--append"});
+  const RunResult again = run({"store", "a.h5", "--array", "/run/", "-o", "a.adm", "--append"});
+  EXPECT_NE(again.err.find("a.h5: no times: 3 steps, taken to be at 3 to 5"), std::string::npos) << again.err;
   EXPECT_EQ(times("a.adm"), (std::vector<double>{0, 1, 2, 3, 4, 5}));
   expect_failure({"store", "a.h5", "-o", "b.adm"}, {"a.h5", "the name of a data set", "'run/step9'"});
   expect_failure({"store", "a.h5", "--array", "none", "-o", "b.adm"}, {"a.h5", "'none'"});

@@ -90,7 +90,7 @@ TYPED_TEST(SeriesStoreOf, GivesStepsBackThatWereAdded) {
     while (end < series.steps.size()) {
       const std::size_t begin = end;
       end = std::min(series.steps.size(), begin + 1 + random() % 5);
-      append_series(folder / "a.adm", series.source(begin, end), with_blocks(4));
+      append_series(StoreLock(folder / "a.adm"), series.source(begin, end), with_blocks(4));
     }
     expect_steps(folder / "a.adm", series);
     if (this->HasFatalFailure()) return;
@@ -103,9 +103,10 @@ TYPED_TEST(SeriesStoreOf, GivesPlainStepsBackThatWereAdded) {
   const TestSeries<TypeParam> series({12, 17, 20}, Motion::kWaves, 10);
   const auto path = folder / "a.adm";
   build_series(path, "a.adm", series.source(0, 3), with_blocks(4));
-  const StoreFigures plain = append_series(path, series.source(3, 6), with_blocks(4, SampleCoding::kPlain));
+  const StoreFigures plain =
+      append_series(StoreLock(path), series.source(3, 6), with_blocks(4, SampleCoding::kPlain));
   EXPECT_GE(plain.bytes.samples, 3 * series.steps[0].grid.bytes());
-  const StoreFigures coded = append_series(path, series.source(6, 10), with_blocks(4));
+  const StoreFigures coded = append_series(StoreLock(path), series.source(6, 10), with_blocks(4));
   EXPECT_LT(coded.bytes.samples, plain.bytes.samples);
   expect_steps(path, series);
 }
@@ -132,7 +133,7 @@ TEST(SeriesStore, IsTheSameOnAnyNumberOfThreads) {
     set_thread_limit(static_cast<std::size_t>(threads));
     const auto path = folder / std::to_string(threads);
     build_series(path, "a.adm", series.source(0, 6), with_blocks(4));
-    append_series(path, series.source(6, 10), with_blocks(4));
+    append_series(StoreLock(path), series.source(6, 10), with_blocks(4));
   }
   set_thread_limit(0);
   EXPECT_EQ(test::bytes_of(folder / "1"), test::bytes_of(folder / "3"));
@@ -151,7 +152,7 @@ TEST_P(SeriesStoreInGroups, OpensWithAllFinishedStepsWhereverAddingEnds) {
   build_series(path, "a.adm", series.source(0, 2), in_groups(8, GetParam()));
   for (std::size_t begin = 2; begin < 6; begin += 2) {
     const std::string before = test::bytes_of(path);
-    append_series(path, series.source(begin, begin + 2), with_blocks(8));
+    append_series(StoreLock(path), series.source(begin, begin + 2), with_blocks(8));
     const std::string after = test::bytes_of(path);
     ASSERT_EQ(after.substr(StorePrologue::kBytes, before.size() - StorePrologue::kBytes),
               before.substr(StorePrologue::kBytes));
@@ -164,7 +165,7 @@ TEST_P(SeriesStoreInGroups, OpensWithAllFinishedStepsWhereverAddingEnds) {
       file.check_directory();
     }
     // And steps can be added again, with the same bytes.
-    append_series(cut, series.source(begin, begin + 2), with_blocks(8));
+    append_series(StoreLock(cut), series.source(begin, begin + 2), with_blocks(8));
     ASSERT_EQ(test::bytes_of(cut), after);
   }
   expect_steps(path, series);
@@ -175,7 +176,7 @@ TEST_P(SeriesStoreInGroups, AnswersToFlippedBitsAndTruncation) {
   const TestSeries<std::uint8_t> series({18, 9, 17}, Motion::kWaves, 5);
   const auto path = folder / "a.adm";
   build_series(path, "a.adm", series.source(0, 3), in_groups(8, GetParam()));
-  append_series(path, series.source(3, 5), with_blocks(8));
+  append_series(StoreLock(path), series.source(3, 5), with_blocks(8));
   const std::string whole = test::bytes_of(path);
   for (std::size_t at = 0; at < whole.size(); at += 5 + at % 7) {
     std::string bytes = whole;
@@ -204,10 +205,25 @@ TEST(SeriesStore, RefusesOtherStepsThanThoseAfterItsLast) {
   const TestSeries<std::uint8_t> series({9, 9, 9}, Motion::kWaves, 3);
   build_series(path, "a.adm", series.source(0, 2), with_blocks(8));
   const std::string before = test::bytes_of(path);
-  EXPECT_THROW(append_series(path, series.source(1, 2), with_blocks(8)), Error);
+  EXPECT_THROW(append_series(StoreLock(path), series.source(1, 2), with_blocks(8)), Error);
   const TestSeries<std::uint8_t> other({9, 9, 8}, Motion::kWaves, 3);
-  EXPECT_THROW(append_series(path, other.source(2, 3), with_blocks(8)), Error);
+  EXPECT_THROW(append_series(StoreLock(path), other.source(2, 3), with_blocks(8)), Error);
   EXPECT_EQ(test::bytes_of(path), before);
+}
+
+TEST(SeriesStore, IsLockedForOneAtATime) {
+  const test::Scratch folder;
+  const auto path = folder / "a.adm";
+  const TestSeries<std::uint8_t> series({9, 9, 9}, Motion::kWaves, 3);
+  EXPECT_THROW(StoreLock{path}, Error);
+  build_series(path, "a.adm", series.source(0, 2), with_blocks(8));
+  {
+    const StoreLock lock(path);
+    EXPECT_THROW(StoreLock{path}, Error);
+    EXPECT_EQ(StoreFile(path).steps(), 2u);
+  }
+  append_series(StoreLock(path), series.source(2, 3), with_blocks(8));
+  expect_steps(path, series);
 }
 
 }  // namespace
