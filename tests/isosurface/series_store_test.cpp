@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "isosurface/storage/page_payload.h"
+#include "isosurface/storage/restore.h"
 #include "isosurface/storage/verify.h"
 #include "tests/support/prepared_volume.h"
 #include "tests/support/test_series.h"
@@ -33,7 +34,7 @@ void expect_steps(const std::filesystem::path& path, const TestSeries<Sample>& s
   ASSERT_EQ(file.times(), series.source().times);
   const VerifiedStore verified = verify_store(file, 0, SilentProgress::instance());
   ASSERT_EQ(verified.pages, file.grid().page_count() * file.steps());
-  ASSERT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front();
+  ASSERT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front().what;
   for (std::uint32_t n = 0; n < file.steps(); ++n) {
     const std::uint32_t step = (n * 7 + 3) % file.steps();
     SCOPED_TRACE(testing::Message() << "step " << step);
@@ -224,6 +225,58 @@ TEST(SeriesStore, IsLockedForOneAtATime) {
   }
   append_series(StoreLock(path), series.source(2, 3), with_blocks(8));
   expect_steps(path, series);
+}
+
+/// However many are asked for at once, and with room for few of them or for none.
+TEST(SeriesStore, RestoresManyStepsInOneCall) {
+  const test::Scratch folder;
+  const auto path = folder / "a.adm";
+  const TestSeries<std::uint8_t> series({19, 18, 9}, Motion::kWaves, 70);
+  build_series(path, "a.adm", series.source(), with_blocks(16));
+  StoreFile file(path);
+  const RestoredPart part = restored_part(file.header().grid, 0, {}, "a.adm");
+  for (const std::size_t memory : {std::size_t{1}, std::size_t{1} << 14, std::size_t{1} << 26}) {
+    std::vector<std::vector<std::byte>> found(70);
+    const auto sink = [&found](std::uint32_t step, std::span<const std::byte> plane) {
+      found[step].insert(found[step].end(), plane.begin(), plane.end());
+    };
+    restore_steps(file, {3, 69}, part, memory, sink, SilentProgress::instance());
+    for (std::size_t step = 0; step < 70; ++step) {
+      const auto expected = std::as_bytes(std::span(series.steps[step].samples));
+      ASSERT_TRUE(step < 3 ? found[step].empty() : std::ranges::equal(found[step], expected)) << step;
+    }
+    EXPECT_TRUE(damaged_steps(file, {0, 69}, part, memory, SilentProgress::instance()).empty());
+  }
+}
+
+/// By restoring each step alone.
+TEST(SeriesStore, FindsTheStepsThatAreDamaged) {
+  const test::Scratch folder;
+  const auto path = folder / "a.adm";
+  const TestSeries<std::uint8_t> series({19, 18, 9}, Motion::kWaves, 20);
+  build_series(path, "a.adm", series.source(), with_blocks(16));
+  const std::string whole = test::bytes_of(path);
+  std::size_t partly = 0;
+  for (std::size_t at = 40; at < whole.size() / 2; at += whole.size() / 60) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 4);
+    test::put_bytes(path, bytes);
+    StoreFile file(path);
+    const RestoredPart part = restored_part(file.header().grid, 0, {}, "a.adm");
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t step = 0; step < 20; ++step) {
+      try {
+        restore(
+            file, step, part, 0, [](auto) {}, SilentProgress::instance());
+      } catch (const DamagedPage&) {
+        expected.push_back(step);
+      }
+    }
+    EXPECT_EQ(damaged_steps(file, {0, 19}, part, 1 << 24, SilentProgress::instance()), expected) << at;
+    EXPECT_EQ(verify_store(file, 0, SilentProgress::instance()).bad_steps, expected) << at;
+    partly += expected.empty() || expected.size() == 20 ? 0 : 1;
+  }
+  EXPECT_GT(partly, 5u);
 }
 
 }  // namespace
