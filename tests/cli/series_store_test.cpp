@@ -35,7 +35,8 @@ TEST_F(SeriesStores, StepsAreRestoredTogetherOrAlone) {
   for (int step = 0; step < 19; ++step) inputs.push_back(file(step % 5));
   run_well(store(inputs, "a.adm"));
   for (const std::string memory : {"256M", "4K", "1"}) {
-    run_well({"restore", "a.adm", "--steps", "3,18", "--memory", memory, "-o", "back.pvd", "-q"});
+    run_well(
+        {"restore", "a.adm", "--steps", "3,18", "--memory", memory, "-o", "back.pvd", "--overwrite", "-q"});
     for (int step = 3; step < 19; ++step) {
       const std::string name = (step < 10 ? "back_000" : "back_00") + std::to_string(step) + ".vti";
       const std::string bytes = read(name);
@@ -75,7 +76,7 @@ TEST_F(SeriesStores, LaterStepsOfAListAreAdded) {
   run_well(store({"s_%d.raw"}, "all.adm"));
   run_well({"restore", "all.adm", "--steps", "0,2", "-o", "back.pvd", "-q"});
   run_well({"store", "back.pvd", "-o", "a.adm", "-q"});
-  run_well({"restore", "all.adm", "-o", "back.pvd", "-q"});
+  run_well({"restore", "all.adm", "-o", "back.pvd", "--overwrite", "-q"});
   const RunResult result = run({"store", "back.pvd", "-o", "a.adm", "--append", "-q"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(info("a.adm")["times"], (std::vector<double>{0, 1, 2, 3, 4}));
