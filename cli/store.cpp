@@ -58,6 +58,7 @@ void report(const StoredSteps& steps, const StoreFigures& store, const Before& b
                   {"steps", steps.count()},
                   {"dimensions", grid.dimensions},
                   {"type", sample_name(grid.type)},
+                  {"array", steps.array().empty() ? Figures() : Figures(steps.array())},
                   {"bytes_input", input},
                   {"bytes_data", store.bytes.samples},
                   {"bytes_gradients", store.bytes.gradients},
@@ -128,6 +129,7 @@ void append(const Options& options, InputSteps input, Session& session) {
 
 void run(const Options& options, Session& session) {
   InputSteps input = find_input_steps(options.inputs, options.input);
+  if (!input.remark.empty()) session.console.note("{}", input.remark);
   std::error_code unknown;
   if (options.append && std::filesystem::exists(options.output, unknown)) {
     append(options, std::move(input), session);

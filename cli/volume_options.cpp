@@ -186,9 +186,10 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
       .type_name("x,y,z")
       .group("Input");
   command
-      .add_option("--time", input.time,
-                  "Of a file with several times (NIfTI, HDF5 along four axes, a stored series): the number "
-                  "of one, from 0 on")
+      .add_option(
+          "--time", input.time,
+          "Of a file with several times (NIfTI, HDF5 along four axes; for slice a stored series too): the "
+          "number of one, from 0 on")
       .type_name("N")
       .group("Input");
   command

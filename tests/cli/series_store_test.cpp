@@ -167,6 +167,49 @@ TEST_F(SeriesStores, ListsThatAreNone) {
   expect_failure({"store", "e.pvd", "-o", "a.adm"}, {"none.vti"});
 }
 
+TEST_F(SeriesStores, ADataSetWithoutTimeAmongOthersIsRefused) {
+  write("f.pvd",
+        "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"1\" file=\"x.vti\"/>"
+        "<DataSet file=\"y.vti\"/></Collection></VTKFile>");
+  expect_failure({"store", "f.pvd", "-o", "a.adm"}, {"f.pvd", "timestep", "y.vti"});
+}
+
+/// Where a file has several arrays, the one that is taken is told, once for all steps.
+TEST_F(SeriesStores, TheArrayThatIsTakenIsTold) {
+  run_well({"generate", "mixing", "--dimensions", "12", "--steps", "3", "-o", "m.pvd", "-q"});
+  const RunResult first = run({"store", "m.pvd", "-o", "a.adm", "--json", "j.json"});
+  EXPECT_EQ(first.err,
+            "adamas: note: m_0000.vti: the array 'entropy' is taken, not 'density': --array names another\n");
+  EXPECT_EQ(read_json("j.json")["array"], "entropy");
+  run_well({"store", "m.pvd", "--array", "density", "-o", "b.adm", "--json", "j.json"});
+  EXPECT_EQ(read_json("j.json")["array"], "density");
+  EXPECT_NE(read("a.adm"), read("b.adm"));
+  run_well(store({file(0)}, "c.adm", {"--json", "j.json"}));
+  EXPECT_TRUE(read_json("j.json")["array"].is_null());
+}
+
+TEST_F(SeriesStores, ValuesOnCellsAreToldAsSuch) {
+  for (const std::string name : {"s.vtr", "s.vti"}) {
+    run_well({"generate", "scene", "sphere", "--dimensions", "6", "-o", name, "-q"});
+    expect_failure({"store", name, "-o", "a.adm"}, {name, "values on cells alone", "Volume Fraction"});
+  }
+}
+
+/// What of the places is another is told.
+TEST_F(SeriesStores, WhatDiffersOfTheGridIsTold) {
+  const auto make = [this](const std::string& output, const std::vector<std::string>& more) {
+    run_well(store({file(0)}, "t.adm", more));
+    run_well({"restore", "t.adm", "-o", output, "-q"});
+  };
+  make("a.vti", {});
+  make("far.vti", {"--first-sample", "1,2,3"});
+  make("wide.vti", {"--spacing", "1,1,2"});
+  expect_failure({"store", "a.vti", "far.vti", "-o", "x.adm"},
+                 {"far.vti", "place of a.vti, (0, 0, 0), found (1, 2, 3)"});
+  expect_failure({"store", "a.vti", "wide.vti", "-o", "x.adm"},
+                 {"wide.vti", "spacing of a.vti, (1, 1, 1), found (1, 1, 2)"});
+}
+
 /// The program is killed 200 times while it adds steps: the store has all steps that were finished, and no
 /// others.
 TEST_F(SeriesStores, AreWholeWhereverTheProgramIsKilled) {
