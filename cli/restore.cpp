@@ -223,11 +223,10 @@ void run(const Options& options, Session& session) {
 
 void add_restore(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  const Command command = add_command(app, session, "restore",
-                                      "The samples of a store back as a volume, bit for bit; where they have "
-                                      "a scale, their values as float32",
-                                      "adamas restore head.adm --level 2 -o small.vti",
-                                      [options, &session] { run(*options, session); });
+  const Command command = add_command(
+      app, session, "restore",
+      "The samples of a store back as a volume, bit for bit; with a scale, their values (float32)",
+      "adamas restore head.adm --level 2 -o small.vti", [options, &session] { run(*options, session); });
   add_store_input(command, options->input);
   command.add_option("--level", options->level, "Every 2^N-th sample along each axis")
       .type_name("N")
