@@ -21,6 +21,8 @@ struct Session {
   std::string json;     ///< --json, empty where not given
   std::string threads;  ///< --threads
   std::string config;   ///< --config
+  /// What a run has changed for good although it ends early: put behind the message that says so.
+  std::string kept;
   Console console;
   OutputSet outputs;
   /// Set by the chosen command; called when the command line is known to be sound.

@@ -204,21 +204,21 @@ std::string steps_text(const std::vector<double>& times) {
   return text;
 }
 
-void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,
-                       Console& console) {
+void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t all_bytes,
+                       Console& console, const std::string& all) {
   const auto text = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
   const auto ratio = [uncompressed](std::uint64_t n) {
     return n > 0 ? fmt::format("{:.2f}", static_cast<double>(uncompressed) / static_cast<double>(n)) : "-";
   };
   const std::uint64_t parts = bytes.samples + bytes.bounds + bytes.gradients;
-  const std::uint64_t others = file_bytes - std::min(parts, file_bytes);
+  const std::uint64_t others = all_bytes - std::min(parts, all_bytes);
   console.table({{"", "bytes", "ratio"},
                  {"uncompressed", text(uncompressed), ""},
                  {"samples", text(bytes.samples), ratio(bytes.samples)},
                  {"errors and ranges", text(bytes.bounds), ""},
                  {"gradients", text(bytes.gradients), ""},
                  {"directory and copies", text(others), ""},
-                 {"file", text(file_bytes), ratio(file_bytes)}});
+                 {all, text(all_bytes), ratio(all_bytes)}});
 }
 
 Figures print_store(const std::string& path, Session& session) {
@@ -239,8 +239,7 @@ Figures print_store(const std::string& path, Session& session) {
     console.print("  values are {:.9g} times the samples plus {:.9g}\n", grid.slope, grid.intercept);
   print_places(grid, console);
   const std::vector<double> times = file->times();
-  if (file->steps() > 1)
-    console.print("  {}; in {} block{}\n", steps_text(times), file->blocks(), file->blocks() == 1 ? "" : "s");
+  if (file->steps() > 1) console.print("  {}; in {}\n", steps_text(times), counted(file->blocks(), "block"));
   if (file->unfinished_bytes() > 0)
     console.note("{}: {} bytes at its end are of steps that were never finished", path,
                  file->unfinished_bytes());
@@ -269,7 +268,7 @@ Figures print_store(const std::string& path, Session& session) {
   const auto pages = file->grid().page_count();
   const std::string coarsest =
       levels > 1 ? fmt::format(" to every {}th along each axis", std::uint64_t{1} << (levels - 1)) : "";
-  console.print("  levels 0 to {}, all samples{}; {} pages{}\n", levels - 1, coarsest, pages,
+  console.print("  levels 0 to {}, all samples{}; {}{}\n", levels - 1, coarsest, counted(pages, "page"),
                 file->steps() > 1 ? fmt::format(" a step, {} in all", pages * file->steps()) : "");
   console.print("  coding {}, {} gradients: {}\n\n", coding.name, header.gradients ? "with" : "without",
                 coding.meaning);

@@ -39,9 +39,10 @@ std::string steps_text(const std::vector<double>& times);
 Figures print_volume(VolumeReader reader, const std::string& path, const std::string& array,
                      Session& session);
 
-/// A table of what the bytes of a store are.
-void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t file_bytes,
-                       Console& console);
+/// A table of what the bytes of a store are, or those of the steps that were added to it: `all_bytes`, which
+/// the last row calls `all`.
+void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t all_bytes,
+                       Console& console, const std::string& all = "file");
 
 /// What a store is, as `info` tells it.
 Figures print_store(const std::string& path, Session& session);

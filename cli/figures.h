@@ -31,6 +31,9 @@ std::string difference_text(double before, double after);
 /// "1.5 GiB".
 std::string bytes_text(double bytes);
 
+/// "1 site", "2 sites".
+std::string counted(std::size_t count, const std::string& thing);
+
 /// A cell of a table of comma-separated values: in quotes where it would be taken for several.
 std::string csv_text(const std::string& text);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
@@ -16,11 +17,6 @@
 namespace adamas {
 
 namespace {
-
-/// "1 site", "2 sites".
-std::string counted(std::size_t count, const std::string& thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
-}
 
 /// Says what was mended in volume fractions, unless it is round-off.
 void note_mended_fractions(const MultiMaterialData& data, Console& console) {

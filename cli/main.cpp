@@ -57,20 +57,25 @@ int run(adamas::CommandLine& command_line, adamas::Session& session, int argc, c
   }
 }
 
+/// The message of a run that ends early, with what it has changed for good.
+std::string with_kept(const std::string& message, const adamas::Session& session) {
+  return session.kept.empty() ? message : message + "; " + session.kept;
+}
+
 /// Runs the program and returns its exit status, whatever is thrown.
 int run_to_the_end(adamas::CommandLine& command_line, adamas::Session& session, int argc, char** argv) {
   try {
     return run(command_line, session, argc, argv);
   } catch (const adamas::Cancelled&) {
     session.console.clear();
-    std::fputs("adamas: cancelled\n", stderr);
+    std::fprintf(stderr, "adamas: %s\n", with_kept("cancelled", session).c_str());
     return kInterrupted;
   } catch (const std::bad_alloc&) {
     session.console.clear();
-    complain("expected enough memory, found too little");
+    complain(with_kept("expected enough memory, found too little", session));
   } catch (const std::exception& e) {
     session.console.clear();
-    complain(e.what());
+    complain(with_kept(e.what(), session));
   } catch (...) {
     session.console.clear();
     complain("stopped for a reason that is not known");

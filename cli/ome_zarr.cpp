@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "cli/restored_steps.h"
 #include "cli/usage_error.h"
 #include "core/base/text.h"
 #include "core/io/input_file.h"
@@ -148,7 +149,7 @@ std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, st
       }
       steps[step - some.first].write_plane(plane);
     };
-    counts += restore_steps(file, some, part, content.memory, sink, session.console);
+    counts += restore_some(file, some, all, part, content.memory, sink, session);
     rest.first = some.last + 1;
   }
   return array.bytes();

@@ -4,6 +4,8 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -30,18 +32,6 @@ struct Options {
 
 constexpr std::int32_t kWidth = 1024, kHeight = 768;
 
-/// The first and the last step of --steps.
-std::array<std::uint32_t, 2> wanted_steps(const Options& options, const StoreFile& file) {
-  if (options.steps.empty()) return {0, file.steps() - 1};
-  const auto numbers = parse_numbers("--steps", options.steps, 2);
-  const bool are_steps = std::ranges::all_of(
-      numbers, [&](double n) { return n >= 0 && n < file.steps() && n == std::floor(n); });
-  if (!are_steps || numbers[0] > numbers[1])
-    wrong_usage("--steps: expected two of the {} steps of {}, A,B with A up to B, found '{}'", file.steps(),
-                options.input.path, options.steps);
-  return {static_cast<std::uint32_t>(numbers[0]), static_cast<std::uint32_t>(numbers[1])};
-}
-
 PlayOrder wanted_order(const std::string& text) {
   if (text == "backward") return PlayOrder::kBackward;
   if (text == "there-and-back") return PlayOrder::kThereAndBack;
@@ -52,6 +42,10 @@ PlayOrder wanted_order(const std::string& text) {
 struct Frames {
   std::vector<Viewpoint> path;
   FrameRequest request;
+  /// How frames tell the greatest error, which is in pixels: with a camera so, without one in units of
+  /// length.
+  const char* error_key = "largest_error_pixels";
+  double error_unit = 1;
 
   Frames(const Options& options, const VolumeGrid& grid) {
     request.isovalue = grid.sample(parse_numbers("--isovalue", options.isovalue, 1)[0]);
@@ -60,7 +54,9 @@ struct Frames {
     if (options.path.empty()) {
       path = {from_everywhere(grid.frame_box(), kHeight, kHeight)};
       const double error = options.error.empty() ? 0 : parse_surface_error(options.error, grid);
-      request.pixels = error / grid.greatest_stretch() * path[0].height_pixels / path[0].height;
+      error_key = "largest_error";
+      error_unit = grid.greatest_stretch() * path[0].height / path[0].height_pixels;
+      request.pixels = error / error_unit;
     } else {
       path = flight(options.path, grid.frame_box(), kWidth, kHeight);
       request.pixels = options.pixels.empty() ? 1 : parse_positive("--pixels", options.pixels);
@@ -68,20 +64,31 @@ struct Frames {
   }
 };
 
+/// How far surfaces have moved.
+struct Moved {
+  SurfaceCertificate greatest;
+  std::size_t transitions = 0;
+  /// One of the two has a surface, the other has none.
+  std::size_t begins_or_ends = 0;
+  std::size_t damaged = 0;  ///< that could not be measured
+};
+
 /// What playing has come to.
 struct Played {
   Figures frames = Figures::array();
   std::vector<double> seconds;
   std::uint64_t triangles = 0, most_triangles = 0;
-  std::optional<SurfaceCertificate> greatest_motion;
+  std::optional<Moved> moved;
+  std::set<std::uint32_t> damaged_steps;
+  std::string damage;  ///< what is wrong with the first one
 
-  void add(std::uint32_t step, const FrameFigures& figures, double frame_seconds, std::uint64_t reads,
-           std::uint64_t bytes) {
+  void add(std::uint32_t step, const FrameFigures& figures, const Frames& wanted, double frame_seconds,
+           std::uint64_t reads, std::uint64_t bytes) {
     frames.push_back({{"step", step},
                       {"triangles", figures.triangles},
                       {"splits", figures.splits},
                       {"merges", figures.merges},
-                      {"largest_error_pixels", figures.largest_error},
+                      {wanted.error_key, figures.largest_error * wanted.error_unit},
                       {"page_faults", reads},
                       {"bytes_read", bytes},
                       {"seconds", frame_seconds}});
@@ -89,14 +96,36 @@ struct Played {
     triangles += figures.triangles;
     most_triangles = std::max(most_triangles, figures.triangles);
   }
+  void add_damaged(std::uint32_t step, const std::string& what) {
+    if (damaged_steps.empty()) damage = what;
+    damaged_steps.insert(step);
+  }
+  [[nodiscard]] std::vector<std::uint32_t> damaged() const {
+    return {damaged_steps.begin(), damaged_steps.end()};
+  }
 };
+
+/// Calls `work`; returns what is damaged where it cannot be done since something is, and nothing where it is
+/// done.
+template <class Fn>
+std::optional<std::string> found_damaged(Fn&& work) {
+  try {
+    work();
+    return {};
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
 
 /// Adds to each frame how far the surface of all samples has moved since the frame before.
 void measure_motion(const Options& options, StoreFile& file, Played& played, Session& session) {
   const std::unique_ptr<SurfaceMotion> motion = SurfaceMotion::open(file, store_memory(options.input));
   const double isovalue = file.header().grid.sample(parse_numbers("--isovalue", options.isovalue, 1)[0]);
-  std::map<std::array<std::uint32_t, 2>, SurfaceCertificate> known;
-  SurfaceCertificate greatest;
+  std::map<std::array<std::uint32_t, 2>, std::optional<SurfaceCertificate>> known;
+  Moved& all = played.moved.emplace();
+  std::string damage;
   for (std::size_t n = 1; n < played.frames.size(); ++n) {
     session.console.step("measuring motion",
                          static_cast<double>(n) / static_cast<double>(played.frames.size()));
@@ -104,18 +133,48 @@ void measure_motion(const Options& options, StoreFile& file, Played& played, Ses
                         now = played.frames[n]["step"].get<std::uint32_t>();
     const auto [from, to] = std::minmax({before, now});
     const auto [found, is_new] = known.try_emplace({from, to});
-    if (is_new) found->second = motion->between(from, to, isovalue);
-    const SurfaceCertificate& moved = found->second;
-    played.frames[n]["motion_certified"] = moved.certified;
-    played.frames[n]["motion_found"] = moved.found;
-    greatest = {std::max(greatest.certified, moved.certified), std::max(greatest.found, moved.found)};
+    std::optional<SurfaceCertificate>& moved = found->second;
+    const std::array<std::uint32_t, 2> steps{from, to};
+    if (is_new) {
+      const auto lost = found_damaged([&] { moved = motion->between(steps[0], steps[1], isovalue); });
+      if (lost) damage = *lost;
+    }
+    ++all.transitions;
+    if (!moved) {
+      ++all.damaged;
+      continue;
+    }
+    played.frames[n]["motion_certified"] = moved->certified;
+    played.frames[n]["motion_found"] = moved->found;
+    if (std::isfinite(moved->certified)) {
+      all.greatest = {std::max(all.greatest.certified, moved->certified),
+                      std::max(all.greatest.found, moved->found)};
+    } else {
+      ++all.begins_or_ends;
+    }
   }
   session.console.clear();
-  played.greatest_motion = greatest;
+  if (all.damaged > 0)
+    session.console.note_damage("{}: how far the surface moves is not known from {} to the next", damage,
+                                counted(all.damaged, "frame"));
+}
+
+std::string motion_text(const Moved& moved, bool have_surface) {
+  const std::size_t measured = moved.transitions - moved.begins_or_ends - moved.damaged;
+  if (!have_surface && moved.begins_or_ends == 0) return "-, no frame has a surface";
+  std::string text = "-";
+  if (measured > 0)
+    text = fmt::format("{:.4g} at most, {:.4g} found, from a frame to the next", moved.greatest.certified,
+                       moved.greatest.found);
+  if (moved.begins_or_ends > 0)
+    text += fmt::format("; {} of {} {} without a surface", moved.begins_or_ends,
+                        counted(moved.transitions, "transition"),
+                        moved.begins_or_ends == 1 ? "begins or ends" : "begin or end");
+  return text;
 }
 
 Played play(const Options& options, StoreFile& file, Session& session) {
-  const auto [first, last] = wanted_steps(options, file);
+  const auto [first, last] = wanted_steps(options.steps, options.input, file);
   const std::vector<std::uint32_t> order =
       steps_in_order(wanted_order(options.order), first, last,
                      static_cast<std::uint32_t>(parse_count("--times", options.times)),
@@ -129,17 +188,23 @@ Played play(const Options& options, StoreFile& file, Session& session) {
     session.console.step("playing", static_cast<double>(n) / static_cast<double>(order.size()));
     wanted.request.viewpoint = wanted.path[n % wanted.path.size()];
     const auto before = std::chrono::steady_clock::now();
-    const FrameFigures figures = frames->next(order[n], wanted.request);
+    FrameFigures figures;
+    const auto damage = found_damaged([&] { figures = frames->next(order[n], wanted.request); });
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - before;
     const std::size_t end = std::min(order.size(), n + 1 + ahead);
     frames->expect({order.begin() + static_cast<std::ptrdiff_t>(n) + 1,
                     order.begin() + static_cast<std::ptrdiff_t>(end)});
+    if (damage) {
+      played.add_damaged(order[n], *damage);
+      continue;
+    }
     const std::uint64_t all_reads = frames->page_reads(), all_bytes = frames->counts().bytes;
-    played.add(order[n], figures, passed.count(), all_reads - reads, all_bytes - bytes);
+    played.add(order[n], figures, wanted, passed.count(), all_reads - reads, all_bytes - bytes);
     reads = all_reads;
     bytes = all_bytes;
   }
   session.console.clear();
+  if (played.frames.empty()) fail("{}: {} cannot be played", played.damage, steps_text(played.damaged()));
   return played;
 }
 
@@ -163,9 +228,7 @@ void report(const Played& played, const StoreFile& file, Session& session) {
                                       sorted[sorted.size() / 2], sorted.back())},
       {"page faults", std::to_string(reads)},
       {"read", fmt::format("{}, {:.0f}% of the file", bytes_text(static_cast<double>(bytes)), 100 * part)}};
-  if (const auto& moved = played.greatest_motion)
-    rows.push_back({"moved", fmt::format("{:.4g} at most, {:.4g} found, from a frame to the next",
-                                         moved->certified, moved->found)});
+  if (played.moved) rows.push_back({"moved", motion_text(*played.moved, played.most_triangles > 0)});
   session.console.table(rows);
   const Figures all{{"frames", played.frames},
                     {"triangles_mean", static_cast<double>(played.triangles) / count},
@@ -173,6 +236,7 @@ void report(const Played& played, const StoreFile& file, Session& session) {
                     {"page_faults", reads},
                     {"bytes_read", bytes},
                     {"bytes_file", file.size()},
+                    {"damaged_steps", played.damaged()},
                     {"part_read", part},
                     {"seconds", session.console.seconds()},
                     {"peak_memory_bytes", peak_memory_bytes()}};
@@ -199,6 +263,8 @@ void run(const Options& options, Session& session) {
   if (options.motion) naming(options.input.path, [&] { measure_motion(options, *file, played, session); });
   report(played, *file, session);
   session.outputs.commit();
+  if (!played.damaged_steps.empty())
+    session.console.note_damage("{}: {} left out", played.damage, steps_text(played.damaged()));
 }
 
 }  // namespace
@@ -229,7 +295,10 @@ void add_play(const Command& app, Session& session) {
   command.add_option("--max-triangles", options->max_triangles, "Never more triangles, whatever the error")
       .type_name("N");
   command.add_option("--steps", options->steps, "From step A to step B (default: all)").type_name("A,B");
-  command.add_option("--order", options->order, "In which order steps are played")
+  command
+      .add_option("--order", options->order,
+                  "In which order steps are played; random: as many jumps as there are steps, "
+                  "some of which may come again while others do not come")
       .one_of({"forward", "backward", "there-and-back", "random"})
       .show_default();
   command.add_option("--times", options->times, "How often they are played").type_name("N").show_default();

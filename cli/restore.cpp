@@ -11,6 +11,7 @@
 #include "cli/figures.h"
 #include "cli/ome_zarr.h"
 #include "cli/option_values.h"
+#include "cli/restored_steps.h"
 #include "cli/store_options.h"
 #include "cli/usage_error.h"
 #include "cli/volume_options.h"
@@ -35,23 +36,12 @@ struct Wanted {
   std::size_t memory = 0;
 };
 
-/// The steps of --steps A,B, both included; all where nothing is given.
-std::pair<std::uint32_t, std::uint32_t> wanted_steps(const Options& options, const StoreFile& file,
-                                                     Session& session) {
-  if (!options.input.step.empty()) {
-    if (!options.steps.empty()) wrong_usage("--step and --steps: expected one of them");
-    const std::uint32_t step = wanted_step(options.input, file, session);
-    return {step, step};
-  }
-  if (options.steps.empty()) return {0, file.steps() - 1};
-  const std::size_t comma = options.steps.find(',');
-  if (comma == std::string::npos) wrong_usage("--steps: expected A,B, found '{}'", options.steps);
-  const std::size_t first = parse_count("--steps", options.steps.substr(0, comma), 0);
-  const std::size_t last = parse_count("--steps", options.steps.substr(comma + 1), 0);
-  if (first > last || last >= file.steps())
-    wrong_usage("--steps: expected steps from 0 to {} in ascending order, found '{}'", file.steps() - 1,
-                options.steps);
-  return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
+/// One step where one is named, those of --steps otherwise.
+StepRange restored_steps(const Options& options, const StoreFile& file, Session& session) {
+  if (options.input.step.empty()) return wanted_steps(options.steps, options.input, file);
+  if (!options.steps.empty()) wrong_usage("--step and --steps: expected one of them");
+  const std::uint32_t step = wanted_step(options.input, file, session);
+  return {step, step};
 }
 
 std::size_t write_step(const Options& options, StoreFile& file, const Wanted& wanted, PageCounts& counts,
@@ -70,15 +60,16 @@ class PvdSeries {
  public:
   PvdSeries(const Options& options, StoreFile& file, const Wanted& wanted, Session& session)
       : list_(options.output), file_(file), wanted_(wanted), session_(session) {
-    const auto [first, last] = wanted_steps(options, file, session);
-    all_ = {first, last};
+    all_ = restored_steps(options, file, session);
     const std::vector<double> times = file.times();
-    for (std::uint32_t step = first; step <= last; ++step) {
+    for (std::uint32_t step = all_.first; step <= all_.last; ++step) {
       entries_.push_back({times[step], step_file(list_, step, ".vti")});
+      if (!options.overwrite) refuse_existing(path(step));
       session.outputs.declare("-o", path(step), {".vti"});
     }
   }
 
+  [[nodiscard]] std::uint64_t steps() const { return entries_.size(); }
   /// Returns the bytes that were written.
   std::size_t write(PageCounts& counts) {
     const RestoredPart& part = wanted_.levels.front();
@@ -94,6 +85,13 @@ class PvdSeries {
   }
 
  private:
+  /// Nobody has named the files of steps, which may be of another series, or what the store was made of.
+  void refuse_existing(const std::string& file) const {
+    std::error_code unknown;
+    if (std::filesystem::exists(file, unknown))
+      fail("{}: expected no file of a step there yet, found {}: --overwrite replaces such files",
+           list_.string(), file);
+  }
   [[nodiscard]] std::string path(std::uint32_t step) const {
     return (list_.parent_path() / entries_[step - all_.first].file).string();
   }
@@ -106,7 +104,7 @@ class PvdSeries {
       const auto sink = [this, &some](std::uint32_t n, std::span<const std::byte> plane) {
         sinks_[n - some.first](plane);
       };
-      counts += restore_steps(file_, some, part, wanted_.memory, sink, session_.console);
+      counts += restore_some(file_, some, all_, part, wanted_.memory, sink, session_);
       return;
     }
     const auto make = [&](const PlaneSink& sink) {
@@ -146,34 +144,49 @@ Wanted find_wanted(const Options& options, const StoreFile& file, Session& sessi
 
 ZarrContent zarr_content(const Options& options, const StoreFile& file, const Wanted& wanted,
                          Session& session) {
-  const auto [first, last] = wanted_steps(options, file, session);
   const bool is_series = options.input.step.empty() && file.steps() > 1;
-  return {wanted.levels, {first, last}, is_series, wanted.memory};
+  return {wanted.levels, restored_steps(options, file, session), is_series, wanted.memory};
 }
 
-void report(const Wanted& wanted, std::size_t bytes, const PageCounts& counts, bool is_pyramid,
-            Session& session) {
+/// What was written.
+struct Written {
+  std::size_t bytes = 0;
+  std::uint64_t steps = 1;
+  PageCounts counts;
+};
+
+void report(const Options& options, const Wanted& wanted, const Written& written, Session& session) {
   const RestoredPart& part = wanted.levels.front();
   const auto [nx, ny, nz] = part.grid.dimensions;
-  session.console.print("{} x {} x {} samples, {}, {}\n", nx, ny, nz, sample_name(part.grid.type),
-                        bytes_text(static_cast<double>(bytes)));
+  const char* type = sample_name(written_type(options.output, part.grid));
+  session.console.print("{} x {} x {} samples, {}{}, {}\n", nx, ny, nz, type,
+                        written.steps > 1 ? ", " + counted(written.steps, "step") : "",
+                        bytes_text(static_cast<double>(written.bytes)));
   Figures figures{{"samples", part.grid.samples()},
+                  {"steps", written.steps},
                   {"dimensions", part.grid.dimensions},
-                  {"type", sample_name(part.grid.type)},
+                  {"type", type},
                   {"level", part.lod}};
-  if (is_pyramid) figures["levels"] = wanted.levels.size();
-  add_page_counts(counts, figures);
+  if (is_zarr(options.output)) figures["levels"] = wanted.levels.size();
+  add_page_counts(written.counts, figures);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
 }
 
+/// Throws UsageError where options do not go together.
+void check_options(const Options& options) {
+  const bool is_folder_or_list = is_zarr(options.output) || file_extension(options.output) == ".pvd";
+  if (options.overwrite && !is_folder_or_list)
+    wrong_usage("--overwrite: expected a series or a folder, -o F.pvd or F.zarr, found '-o {}'",
+                options.output);
+  if (!options.steps.empty() && !is_folder_or_list)
+    wrong_usage("--steps: expected a series as well, -o F.pvd or F.zarr, found '-o {}'", options.output);
+}
+
 void run(const Options& options, Session& session) {
+  check_options(options);
   const bool is_series = file_extension(options.output) == ".pvd";
   std::optional<OmeZarr> zarr;
-  if (options.overwrite && !is_zarr(options.output))
-    wrong_usage("--overwrite: expected a folder, -o F.zarr, found '-o {}'", options.output);
-  if (!is_series && !is_zarr(options.output) && !options.steps.empty())
-    wrong_usage("--steps: expected a series as well, -o F.pvd or F.zarr, found '-o {}'", options.output);
   if (is_zarr(options.output)) {
     zarr.emplace(options.output, options.overwrite);
     zarr->check_apart(options.input.path);
@@ -184,18 +197,24 @@ void run(const Options& options, Session& session) {
   }
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
   const Wanted wanted = find_wanted(options, *file, session);
-  PageCounts counts;
-  std::size_t bytes = 0;
+  Written written;
   if (zarr) {
-    bytes = zarr->write(*file, zarr_content(options, *file, wanted, session), counts, session);
-  } else if (is_series) {
-    bytes = PvdSeries(options, *file, wanted, session).write(counts);
+    const ZarrContent content = zarr_content(options, *file, wanted, session);
+    written.steps = content.steps.last - content.steps.first + 1;
+    written.bytes = zarr->write(*file, content, written.counts, session);
   } else {
-    bytes = write_step(options, *file, wanted, counts, session);
+    note_lost(options.output, wanted.levels.front().grid, session);
+    if (is_series) {
+      PvdSeries series(options, *file, wanted, session);
+      written.steps = series.steps();
+      written.bytes = series.write(written.counts);
+    } else {
+      written.bytes = write_step(options, *file, wanted, written.counts, session);
+    }
   }
   // Each part of the work has counted those of the whole file.
-  counts.bytes = file->bytes_read();
-  report(wanted, bytes, counts, zarr.has_value(), session);
+  written.counts.bytes = file->bytes_read();
+  report(options, wanted, written, session);
   if (zarr) zarr->commit();
   session.outputs.commit();
 }
@@ -205,7 +224,8 @@ void run(const Options& options, Session& session) {
 void add_restore(const Command& app, Session& session) {
   const auto options = std::make_shared<Options>();
   const Command command = add_command(
-      app, session, "restore", "The samples of a store back as a volume, bit for bit",
+      app, session, "restore",
+      "The samples of a store back as a volume, bit for bit; with a scale, their values (float32)",
       "adamas restore head.adm --level 2 -o small.vti", [options, &session] { run(*options, session); });
   add_store_input(command, options->input);
   command.add_option("--level", options->level, "Every 2^N-th sample along each axis")
@@ -225,7 +245,9 @@ void add_restore(const Command& app, Session& session) {
           "series with their coarser levels, as OME-Zarr 0.4")
       .required()
       .type_name("FILE");
-  command.add_flag("--overwrite", options->overwrite, "Of .zarr: replace the folder if it is there");
+  command.add_flag(
+      "--overwrite", options->overwrite,
+      "Of .zarr: replace the folder if it is there; of .pvd: replace the files of steps that are there");
 }
 
 }  // namespace adamas

@@ -1,5 +1,4 @@
 #include <bit>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -7,6 +6,7 @@
 #include "cli/command.h"
 #include "cli/data_summary.h"
 #include "cli/figures.h"
+#include "cli/growing_store.h"
 #include "cli/option_values.h"
 #include "cli/stored_steps.h"
 #include "cli/usage_error.h"
@@ -22,7 +22,7 @@ namespace {
 struct Options {
   std::vector<std::string> inputs;
   VolumeInput input;
-  std::string coding = "interpolation", block_steps = "32", group_pages = "1", smoothing, output;
+  std::string coding, block_steps = "32", group_pages, smoothing, output;
   bool gradients = false, append = false, no_time_smoothing = false;
 };
 
@@ -30,28 +30,44 @@ double ratio(std::uint64_t before, std::uint64_t after) {
   return after > 0 ? static_cast<double>(before) / static_cast<double>(after) : 0;
 }
 
-void report(const StoredSteps& steps, const StoreFigures& store, Session& session) {
+/// What of a store was there before steps were added.
+struct Before {
+  std::uint64_t steps = 0, bytes = 0;
+};
+
+/// Of the steps that this run has stored; what a store had before is told apart.
+void report(const StoredSteps& steps, const StoreFigures& store, const Before& before,
+            const std::string& output, Session& session) {
   Console& console = session.console;
   const VolumeGrid& grid = steps.grid();
   const auto [nx, ny, nz] = grid.dimensions;
-  const std::uint64_t input = steps.input_bytes();
+  const std::uint64_t input = steps.input_bytes(), added = store.file_bytes - before.bytes;
+  const bool is_added = before.steps > 0;
   const double seconds = console.seconds();
   console.print("{} x {} x {} samples, {}{}\n", nx, ny, nz, sample_name(grid.type),
-                steps.count() > 1 ? fmt::format(", {} steps", steps.count()) : "");
-  print_store_bytes(input, store.bytes, store.file_bytes, console);
-  console.print("{} pages in {:.1f} s, {:.1f} M samples/s\n", store.pages, seconds,
+                steps.count() > 1 || is_added
+                    ? fmt::format(", {}{}", counted(steps.count(), "step"), is_added ? " added" : "")
+                    : "");
+  print_store_bytes(input, store.bytes, added, console, is_added ? "added" : "file");
+  if (is_added)
+    console.print("{} has {} now, {}\n", output, counted(before.steps + steps.count(), "step"),
+                  bytes_text(static_cast<double>(store.file_bytes)));
+  console.print("{} in {:.1f} s, {:.1f} M samples/s\n", counted(store.pages, "page"), seconds,
                 static_cast<double>(grid.samples() * steps.count()) / seconds / 1e6);
   Figures figures{{"samples", grid.samples()},
                   {"steps", steps.count()},
                   {"dimensions", grid.dimensions},
                   {"type", sample_name(grid.type)},
+                  {"array", steps.array().empty() ? Figures() : Figures(steps.array())},
                   {"bytes_input", input},
                   {"bytes_data", store.bytes.samples},
                   {"bytes_gradients", store.bytes.gradients},
                   {"bytes_errors", store.bytes.bounds},
+                  {"bytes_added", added},
                   {"bytes_file", store.file_bytes},
+                  {"steps_file", before.steps + steps.count()},
                   {"ratio_data", ratio(input, store.bytes.samples)},
-                  {"ratio", ratio(input, store.file_bytes)},
+                  {"ratio", ratio(input, added)},
                   {"pages", store.pages},
                   {"seconds", seconds},
                   {"peak_memory_bytes", peak_memory_bytes()}};
@@ -77,6 +93,7 @@ StoreOptions store_options(const Options& options) {
   if (block_steps > kMostBlockSteps)
     wrong_usage("--block-steps: expected from 1 to {}, found {}", kMostBlockSteps, options.block_steps);
   store.block_steps = static_cast<std::uint32_t>(block_steps);
+  if (options.group_pages.empty()) return store;
   const std::size_t group_pages = parse_count("--group-pages", options.group_pages, 1);
   if (group_pages > kMostGroupPages || !std::has_single_bit(group_pages))
     wrong_usage("--group-pages: expected a power of two from 1 to {}, found {}", kMostGroupPages,
@@ -85,47 +102,36 @@ StoreOptions store_options(const Options& options) {
   return store;
 }
 
-/// The steps that are to be added to a store: of those that have times the later ones, others behind its last
-/// one, which is at the time `last`.
-std::vector<InputStep> later_steps(InputSteps input, double last) {
-  std::vector<InputStep>& steps = input.steps;
-  if (input.times == StepTimes::kAbsolute) {
-    std::erase_if(steps, [last](const InputStep& step) { return step.time <= last; });
-  } else {
-    const bool spaced = input.times == StepTimes::kSpaced;
-    const double first = spaced ? last + steps[1].time - steps[0].time : std::floor(last) + 1;
-    for (InputStep& step : steps) step.time += first;
-  }
-  return std::move(steps);
+AskedOfStore asked_of_store(const Options& options, const StoreOptions& store) {
+  AskedOfStore asked{{}, {}, options.gradients};
+  if (!options.coding.empty()) asked.coding = store.coding;
+  if (!options.group_pages.empty()) asked.group_pages = store.group_pages;
+  return asked;
 }
 
+/// The store is input and output: it stays whole, whatever becomes of what is added.
 void append(const Options& options, InputSteps input, Session& session) {
-  const StoreOptions store = store_options(options);
-  VolumeGrid grid;
-  std::vector<InputStep> later;
-  {
-    const StoreFile file(options.output);
-    grid = file.header().grid;
-    const std::size_t given = input.steps.size();
-    later = later_steps(std::move(input), file.times().back());
-    if (later.size() < given)
-      session.console.note("{}: {} of {} steps are not later than the last one of {}", options.inputs[0],
-                           given - later.size(), given, options.output);
-  }
+  const StoreOptions how = store_options(options);
+  GrowingStore store(options.output);
+  store.check(asked_of_store(options, how));
+  const std::string name = options.inputs.size() == 1
+                               ? options.inputs[0]
+                               : fmt::format("{} and {} more", options.inputs[0], options.inputs.size() - 1);
+  std::vector<InputStep> later = store.later_steps(std::move(input), name, session);
   if (later.empty()) return;
   const std::string first = later.front().name;
   StoredSteps steps(std::move(later), session);
-  if (steps.grid() != grid) refuse_grid(first, steps.grid(), options.output, grid);
-  const StoreFigures figures = append_series(options.output, steps.source(), store, session.console);
+  if (steps.grid() != store.grid()) refuse_grid(first, steps.grid(), options.output, store.grid());
+  const StoreFigures figures = store.add(steps, how, session);
   steps.close();
-  report(steps, figures, session);
+  report(steps, figures, {store.steps(), store.bytes()}, options.output, session);
 }
 
 void run(const Options& options, Session& session) {
   InputSteps input = find_input_steps(options.inputs, options.input);
+  if (!input.remark.empty()) session.console.note("{}", input.remark);
   std::error_code unknown;
   if (options.append && std::filesystem::exists(options.output, unknown)) {
-    // The store is input and output: it stays whole, whatever becomes of what is added.
     append(options, std::move(input), session);
     session.outputs.commit();
     return;
@@ -138,7 +144,10 @@ void run(const Options& options, Session& session) {
     figures = build_series(path, options.output, steps.source(), store, session.console);
   });
   steps.close();
-  report(steps, figures, session);
+  if (options.append && std::filesystem::exists(options.output, unknown))
+    fail("{}: expected no store there, as when this run began, found one that was made meanwhile",
+         options.output);
+  report(steps, figures, {}, options.output, session);
   session.outputs.commit();
 }
 
@@ -165,9 +174,8 @@ void add_store(const Command& app, Session& session) {
       .add_option("--coding", options->coding,
                   "How samples are predicted: from all neighbours that are known, or only from the two ends "
                   "of the edge whose middle they are; or not at all: samples and gradients as they are, for "
-                  "comparison")
-      .one_of({"interpolation", "split-edge", "none"})
-      .show_default();
+                  "comparison (default interpolation; with --append that of the store)")
+      .one_of({"interpolation", "split-edge", "none"});
   command.add_flag(
       "--gradients", options->gradients,
       "Keep the directions of the samples' gradients too, smoothed, for the normals of surfaces");
@@ -192,13 +200,14 @@ void add_store(const Command& app, Session& session) {
           "--group-pages", options->group_pages,
           "Of a series: how many neighbouring pages lie together in the file step by step, a power of "
           "two up to 512. With one, all steps of a page are side by side, for playing; with many, "
-          "whole steps, for looking at one alone")
-      .type_name("N")
-      .show_default();
+          "whole steps, for looking at one alone (default 1; with --append that of the store)")
+      .type_name("N");
   command.add_flag(
       "--append", options->append,
       "Add the steps behind the last one of OUTPUT, if it is there. Where the input says the time of each, "
-      "as a .pvd, these are the later ones");
+      "as a .pvd or HDF5 may, these are the later ones; otherwise all, as of a NIfTI, which says only how "
+      "far "
+      "apart they are");
   command.add_option("-o,--output", options->output, "The store (.adm)").required().type_name("FILE");
 }
 

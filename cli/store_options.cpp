@@ -41,9 +41,36 @@ std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Sessio
   }
   const std::size_t step = parse_count(option, input.step, 0);
   if (step >= file.steps())
-    wrong_usage("{}: expected less than the {} steps of {}, found {}", option, file.steps(), input.path,
-                input.step);
+    wrong_usage("{}: expected less than {}, since {} has {}, found {}", option, file.steps(), input.path,
+                counted(file.steps(), "step"), input.step);
   return static_cast<std::uint32_t>(step);
+}
+
+StepRange wanted_steps(const std::string& steps, const StoreInput& input, const StoreFile& file) {
+  if (steps.empty()) return {0, file.steps() - 1};
+  const auto numbers = parse_numbers("--steps", steps, 2);
+  const bool are_steps = std::ranges::all_of(
+      numbers, [&](double n) { return n >= 0 && n < file.steps() && n == std::floor(n); });
+  if (!are_steps || numbers[0] > numbers[1])
+    wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{}'",
+                file.steps(), input.path, steps);
+  return {static_cast<std::uint32_t>(numbers[0]), static_cast<std::uint32_t>(numbers[1])};
+}
+
+std::string steps_text(const std::vector<std::uint32_t>& steps) {
+  std::vector<std::string> runs;
+  for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {
+    end = begin + 1;
+    while (end < steps.size() && steps[end] == steps[end - 1] + 1) ++end;
+    // Two in a row are no shorter as a run.
+    if (end - begin == 2) --end;
+    runs.push_back(end - begin == 1 ? std::to_string(steps[begin])
+                                    : fmt::format("{} to {}", steps[begin], steps[end - 1]));
+  }
+  std::string text = steps.size() == 1 ? "step " : "steps ";
+  for (std::size_t n = 0; n < runs.size(); ++n)
+    text += (n == 0 ? "" : n + 1 == runs.size() ? " and " : ", ") + runs[n];
+  return text;
 }
 
 std::size_t store_memory(const StoreInput& input) { return parse_size("--memory", input.memory); }

@@ -3,9 +3,11 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "isosurface/storage/restore.h"
 #include "isosurface/storage/stored_pages.h"
 
 namespace adamas {
@@ -22,6 +24,13 @@ void add_step_option(const Command& command, StoreInput& input);
 /// Throws UsageError where the store has no such.
 std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session,
                           const char* option = "--step");
+
+/// The steps of --steps A,B, both included; all where that is empty. Throws UsageError where the store has no
+/// such.
+StepRange wanted_steps(const std::string& steps, const StoreInput& input, const StoreFile& file);
+
+/// Ascending numbers of steps: "step 3", "steps 3 to 9, 12 and 14".
+std::string steps_text(const std::vector<std::uint32_t>& steps);
 
 /// Bytes that decoded pages may take.
 std::size_t store_memory(const StoreInput& input);

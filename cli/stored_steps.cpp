@@ -17,7 +17,7 @@ namespace {
 InputSteps steps_of_file(const VolumeInput& options) {
   if (!options.time.empty() || !options.dimensions.empty()) return {};
   const VolumeSeries series = find_volume_series(options.path, options.array);
-  InputSteps result{{}, series.times};
+  InputSteps result{{}, series.times, series.remark};
   const auto unpacked = std::make_shared<UnpackedTimes>();
   for (const VolumeStep& step : series.steps) {
     InputStep input{step.time, options.path, options};
@@ -62,7 +62,21 @@ void refuse_grid(const std::string& name, const VolumeGrid& found, const std::st
   };
   if (text(found) != text(wanted))
     fail("{}: expected {} samples as {} has, found {}", name, text(wanted), first, text(found));
-  fail("{}: expected the place, spacing and scale of the samples of {}, found others", name, first);
+  const auto refuse = [&](const char* what, const std::string& of_found, const std::string& of_wanted) {
+    if (of_found != of_wanted)
+      fail("{}: expected the {} of {}, {}, found {}", name, what, first, of_wanted, of_found);
+  };
+  const auto vector = [](const Vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); };
+  refuse("first sample's place", vector(found.origin), vector(wanted.origin));
+  refuse("spacing", vector(found.spacing), vector(wanted.spacing));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    refuse("direction of an axis", vector(found.directions[axis]), vector(wanted.directions[axis]));
+  const auto scale = [](const VolumeGrid& grid) {
+    return fmt::format("{} times the sample plus {}", grid.slope, grid.intercept);
+  };
+  refuse("scale", scale(found), scale(wanted));
+  fail("{}: expected coordinates in the space of {}, '{}', found '{}'", name, first, wanted.space,
+       found.space);
 }
 
 /// A step that is being read: planes for the builder, which asks for some of them twice. Counts the samples
@@ -123,11 +137,20 @@ void StoredSteps::close() {
   open_.reset();
 }
 
+void StoredSteps::note_array(const InputStep& step, const VolumeSource& source) {
+  if (array_.empty()) array_ = source.array;
+  if (source.other_arrays.empty() || source.array == noted_array_) return;
+  noted_array_ = source.array;
+  session_.console.note("{}: the array '{}' is taken, not '{}': --array names another", step.name,
+                        source.array, fmt::format("{}", fmt::join(source.other_arrays, "', '")));
+}
+
 void StoredSteps::open(std::uint32_t n) {
   close();
   const InputStep& step = steps_[n];
   open_ = std::make_unique<Open>(open_volume_input(step.input, session_, true));
   opened_ = n;
+  note_array(step, open_->reader().source());
   const VolumeGrid& grid = open_->reader().grid();
   check_volume_dimensions(step.name, grid);
   if (n > 0 && grid != grid_) refuse_grid(step.name, grid, steps_.front().name, grid_);

@@ -23,6 +23,7 @@ struct InputStep {
 struct InputSteps {
   std::vector<InputStep> steps;
   StepTimes times = StepTimes::kCounted;
+  std::string remark{};  ///< as of VolumeSeries
 };
 
 /// Those of several files, of a pattern or a list (find_series), or of the series that one file is
@@ -49,11 +50,15 @@ class StoredSteps {
   /// Takes in what there is to say of the last step.
   void close();
   [[nodiscard]] std::uint64_t input_bytes() const { return input_bytes_; }
+  /// What the array of the first step is called; empty where nothing says.
+  [[nodiscard]] const std::string& array() const { return array_; }
   [[nodiscard]] std::size_t count() const { return steps_.size(); }
 
  private:
   class Open;
   void open(std::uint32_t n);
+  /// Says which array is taken where a file has several and none was named.
+  void note_array(const InputStep& step, const VolumeSource& source);
 
   std::vector<InputStep> steps_;
   Session& session_;
@@ -61,7 +66,7 @@ class StoredSteps {
   std::unique_ptr<Open> open_;
   std::uint32_t opened_ = 0;
   std::uint64_t input_bytes_ = 0;
-  std::string last_note_;
+  std::string array_, noted_array_, last_note_;
 };
 
 }  // namespace adamas

@@ -17,21 +17,24 @@ void run(const StoreInput& options, Session& session) {
   const std::unique_ptr<StoreFile> file = open_store(options, session);
   const VerifiedStore found = verify_store(*file, memory, session.console);
   session.console.clear();
-  for (const std::string& line : found.problems) session.console.print("{}\n", line);
-  const std::uint64_t untold = found.bad_pages + found.bad_copies - found.problems.size();
-  if (untold > 0) session.console.print("and {} more\n", untold);
+  const bool is_series = file->steps() > 1;
+  for (const PageProblem& each : found.problems)
+    session.console.print("{}{}\n", each.what, is_series ? " at " + steps_text(each.steps) : "");
+  if (found.untold > 0) session.console.print("and {} more\n", found.untold);
   Figures figures{{"pages", found.pages},
                   {"bad_pages", found.bad_pages},
                   {"bad_copies", found.bad_copies},
+                  {"damaged_steps", found.bad_steps},
                   {"seconds", session.console.seconds()}};
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
   session.outputs.commit();
   if (found.bad_pages + found.bad_copies > 0)
     fail(
-        "{}: expected {} pages without damage, found {} that cannot be had and {} of which one of two copies "
-        "is "
+        "{}: expected {} without damage, found {} that cannot be had{} and {} of which one of two copies is "
         "damaged",
-        options.path, found.pages, found.bad_pages, found.bad_copies);
+        options.path, counted(found.pages, "page"), found.bad_pages,
+        is_series && !found.bad_steps.empty() ? ", of " + steps_text(found.bad_steps) + "," : "",
+        found.bad_copies);
   session.console.print("{}\n",
                         found.pages == 1 ? "1 page, sound" : fmt::format("{} pages, all sound", found.pages));
 }

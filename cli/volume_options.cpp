@@ -226,6 +226,20 @@ void declare_volume_output(const std::string& output, OutputSet& outputs) {
   outputs.declare("-o", volume_data_file(output).string());
 }
 
+void note_lost(const std::string& output, const VolumeGrid& grid, Session& session) {
+  if (const std::string lost = lost_places(output, grid); !lost.empty()) session.console.note("{}", lost);
+  if (grid.is_scaled() && !keeps_scale(output)) {
+    session.console.note(
+        "{}: values, {:.9g} times the samples plus {:.9g}, are written as float32: samples with their scale "
+        "are written to .nii and .nii.gz only",
+        output, grid.slope, grid.intercept);
+  }
+}
+
+SampleType written_type(const std::string& output, const VolumeGrid& grid) {
+  return grid.is_scaled() && !keeps_scale(output) ? SampleType::kFloat32 : grid.type;
+}
+
 std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
                                 const std::function<void(const PlaneSink&)>& make, Session& session) {
   OutputSet& outputs = session.outputs;
@@ -236,13 +250,6 @@ std::size_t write_volume_output(const std::string& output, const VolumeGrid& gri
     make([&](std::span<const std::byte> samples) { writer.write_plane(samples); });
     writer.finish();
   };
-  if (const std::string lost = lost_places(output, grid); !lost.empty()) session.console.note("{}", lost);
-  if (grid.is_scaled() && !keeps_scale(output)) {
-    session.console.note(
-        "{}: values, {:.9g} times the samples plus {:.9g}, are written as float32: only .nii and .nii.gz "
-        "have a scale",
-        output, grid.slope, grid.intercept);
-  }
   const std::string data = volume_data_file(output).string();
   if (data.empty()) {
     outputs.write(output, write);

@@ -1,8 +1,10 @@
 #include "core/io/array_names.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include "core/base/text.h"
+#include "core/io/header_text.h"
 
 namespace adamas {
 
@@ -86,6 +88,15 @@ std::optional<int> split_axis(std::string& name) {
 }
 
 }  // namespace
+
+std::string no_points_text(const std::vector<std::string>& on_cells) {
+  if (on_cells.empty()) return "none";
+  constexpr std::size_t kMostNamed = 3, kShown = 60;
+  std::string text = "values on cells alone, which cannot be taken as samples of a volume: ";
+  for (std::size_t n = 0; n < std::min(on_cells.size(), kMostNamed); ++n)
+    text += (n == 0 ? "'" : ", '") + printable(on_cells[n], kShown) + "'";
+  return text + (on_cells.size() > kMostNamed ? ", ..." : "");
+}
 
 std::string plain_name(std::string_view name) {
   std::string result;

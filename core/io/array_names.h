@@ -24,4 +24,8 @@ struct FieldName {
 };
 FieldName parse_field_name(const std::string& array, const std::vector<std::string>& materials);
 
+/// What a file has of which a volume was wanted, but no array on points: the end of a message that names the
+/// first of its arrays on cells.
+std::string no_points_text(const std::vector<std::string>& on_cells);
+
 }  // namespace adamas

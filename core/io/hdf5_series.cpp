@@ -20,6 +20,7 @@ struct Found {
   std::vector<std::string> sets;  ///< those of a group; the one along four axes otherwise
   std::uint64_t count = 0;        ///< of times along the first axis; 0 of a group
   std::vector<double> times;      ///< one for each step, or none
+  std::string remark{};           ///< why there are none though some are stated
 };
 
 /// The data sets along three axes of a group. Times are those of all of them, if all have one.
@@ -38,7 +39,11 @@ Found find_members(hid_t group, const std::string& path) {
     if (time.size() == 1) found.times.push_back(time.front());
     found.sets.push_back(path + (path.ends_with('/') ? "" : "/") + name);
   }
-  if (found.times.size() < found.sets.size()) found.times.clear();
+  if (found.times.size() == found.sets.size()) return found;
+  if (!found.times.empty())
+    found.remark = fmt::format("{} of {} data sets in '{}' have a time: steps are taken to be at 0, 1, 2 ...",
+                               found.times.size(), found.sets.size(), path);
+  found.times.clear();
   return found;
 }
 
@@ -47,7 +52,12 @@ Found find_times_of_set(hid_t set, const std::string& path) {
   std::array<hsize_t, 4> size{};
   H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
   Found found{{path}, size[0], hdf5_times(set)};
-  if (found.times.size() != found.count) found.times.clear();
+  if (found.times.size() == found.count) return found;
+  if (!found.times.empty())
+    found.remark =
+        fmt::format("'{}' has {} numbers as its time, of {} steps: these are taken to be at 0, 1, 2 ...",
+                    path, found.times.size(), found.count);
+  found.times.clear();
   return found;
 }
 
@@ -93,6 +103,7 @@ void send_hdf5_steps(const ReaderRequest& request, ByteSink& sink) {
   for (const std::string& set : found.sets) sink.put(set);
   sink.put(found.count);
   sink.put(found.times);
+  sink.put(found.remark);
 }
 
 VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::string& array) {
@@ -104,6 +115,7 @@ VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::stri
     for (std::uint64_t n = 0; n < sets; ++n) found.sets.push_back(bytes.get_string());
     found.count = bytes.get<std::uint64_t>();
     found.times = bytes.get_vector<double>();
+    found.remark = bytes.get_string();
   });
   std::vector<VolumeStep> steps;
   const bool of_one = found.count > 0 && found.sets.size() == 1;
@@ -115,7 +127,10 @@ VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::stri
     if (found.times.size() > n) step.time = found.times[n];
     steps.push_back(step);
   }
-  return in_order(name, std::move(steps), found.times.size() == steps.size());
+  const bool have_times = found.times.size() == steps.size();
+  VolumeSeries series = in_order(name, std::move(steps), have_times);
+  if (!found.remark.empty()) series.remark = name + ": " + found.remark;
+  return series;
 }
 
 }  // namespace adamas

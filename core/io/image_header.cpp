@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/io/array_names.h"
 #include "core/io/grid_axes.h"
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
@@ -25,20 +26,34 @@ const ImageArray& chosen_array(const ImageHeader& header, const std::string& wan
   if (header.arrays.size() == 1 && header.arrays.front().name.empty()) return header.arrays.front();
   const std::string& name = wanted.empty() ? header.active : wanted;
   std::string names;
+  std::vector<std::string> on_cells;
   const ImageArray* only = nullptr;
   std::size_t count = 0;
   for (const ImageArray& array : header.arrays) {
-    if (array.centering != Centering::kPoints) continue;
+    if (array.centering != Centering::kPoints) {
+      on_cells.push_back(array.name);
+      continue;
+    }
     if (!name.empty() && array.name == name) return array;
     names += (names.empty() ? "'" : ", '") + printable(array.name, kShown) + "'";
     only = &array;
     ++count;
   }
   if (wanted.empty() && count == 1) return *only;
-  if (count == 0) fail("{}: expected an array on points, found none", header.name);
+  if (count == 0) fail("{}: expected an array on points, found {}", header.name, no_points_text(on_cells));
   if (wanted.empty())
     fail("{}: expected one array on points or the name of one, found {}", header.name, names);
   fail("{}: expected an array '{}' on points, found {}", header.name, wanted, names);
+}
+
+/// Names of arrays on points with one value each, but for one of them.
+std::vector<std::string> others(const ImageHeader& header, const ImageArray& chosen) {
+  std::vector<std::string> names;
+  for (const ImageArray& array : header.arrays) {
+    if (&array != &chosen && array.centering == Centering::kPoints && array.source.components == 1)
+      names.push_back(array.name);
+  }
+  return names;
 }
 
 void require_found(const ImageHeader& header, const ImageArray& array) {
@@ -161,6 +176,8 @@ VolumeSource volume_of(const ImageHeader& header, const std::string& array,
                        std::optional<std::uint64_t> time) {
   const ImageArray& chosen = chosen_array(header, array);
   VolumeSource source = chosen.source;
+  source.array = chosen.name;
+  if (array.empty()) source.other_arrays = others(header, chosen);
   source.grid.dimensions = header.dimensions;
   source.grid.spacing = header.spacing;
   source.grid.space = header.space;

@@ -48,14 +48,18 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& path) {
   if (tags.empty() || tags[0].name != "VTKFile" || tags[0].value("type") != "Collection")
     fail("{}: expected a VTKFile of the type Collection, found other XML", name);
   std::vector<SeriesEntry> entries;
+  std::string without_time;
   for (const XmlTag& tag : tags) {
     if (tag.closing || tag.name != "DataSet") continue;
     if (!tag.has("file")) fail("{}: expected the file of a DataSet, found none", name);
     // What has no time is the only step.
     const double time = tag.has("timestep") ? time_of(tag, name) : 0;
+    if (!tag.has("timestep")) without_time = tag.value("file");
     entries.push_back({time, (path.parent_path() / std::string(tag.value("file"))).string()});
   }
   if (entries.empty()) fail("{}: expected a DataSet or more, found none", name);
+  if (entries.size() > 1 && !without_time.empty())
+    fail("{}: expected the timestep of each DataSet, found none of {}", name, without_time);
   std::stable_sort(entries.begin(), entries.end(),
                    [](const SeriesEntry& a, const SeriesEntry& b) { return a.time < b.time; });
   for (std::size_t n = 1; n < entries.size(); ++n) {

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "core/base/error.h"
+#include "core/io/array_names.h"
 #include "core/io/grid_file.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
@@ -16,8 +17,12 @@ namespace {
 const GridArray& chosen_array(const std::string& name, const GridFile& file, const std::string& wanted) {
   const GridArray* found = nullptr;
   std::string names;
+  std::vector<std::string> on_cells;
   for (const GridArray& array : file.arrays) {
-    if (array.centering != Centering::kPoints) continue;
+    if (array.centering != Centering::kPoints) {
+      on_cells.push_back(array.name);
+      continue;
+    }
     names += (names.empty() ? "'" : ", '") + array.name + "'";
     if (!wanted.empty() ? array.name != wanted : array.components != 1) continue;
     if (found != nullptr && wanted.empty()) fail("{}: expected the name of an array, found {}", name, names);
@@ -25,7 +30,8 @@ const GridArray& chosen_array(const std::string& name, const GridFile& file, con
   }
   if (found == nullptr) {
     fail("{}: expected an array {} on points, found {}", name,
-         wanted.empty() ? "of one value per sample" : "'" + wanted + "'", names.empty() ? "none" : names);
+         wanted.empty() ? "of one value per sample" : "'" + wanted + "'",
+         names.empty() ? no_points_text(on_cells) : names);
   }
   if (found->components != 1) {
     fail("{}: array '{}': expected one value per sample, found {}", name, wanted, found->components);
@@ -115,7 +121,7 @@ void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
   }
   const bool wide = !array.integral() && array.type != "float32";
   ImportSink import(request, sink);
-  import.begin(volume, wide ? array.type + " samples are read as float32" : "");
+  import.begin(volume, array.name, wide ? array.type + " samples are read as float32" : "");
   send(array, volume.stored, import);
 }
 

@@ -18,7 +18,7 @@ namespace {
 class DataSet {
  public:
   DataSet(const std::string& name, hid_t file, const std::string& path, std::optional<std::uint64_t> time)
-      : name_(name + ": " + path), set_(H5Dopen2(file, path.c_str(), access().id()), H5Dclose) {
+      : path_(path), name_(name + ": " + path), set_(H5Dopen2(file, path.c_str(), access().id()), H5Dclose) {
     if (!set_.good()) fail("{}: expected a data set, found none", name_);
     const Hdf5Handle type(H5Dget_type(set_.id()), H5Tclose);
     const auto stored = type.good() ? hdf5_stored_type(type.id()) : std::nullopt;
@@ -29,7 +29,7 @@ class DataSet {
   }
 
   void send(ImportSink& sink) {
-    sink.begin(volume_);
+    sink.begin(volume_, path_);
     const auto [nx, ny, nz] = volume_.dimensions;
     const Hdf5Handle space(H5Dget_space(set_.id()), H5Sclose);
     std::vector<std::byte> planes;
@@ -108,7 +108,7 @@ class DataSet {
         1, std::min<std::uint64_t>(chunk[has_times_ ? 1 : 0], kMostBytes / plane_bytes));
   }
 
-  std::string name_;
+  std::string path_, name_;
   Hdf5Handle set_;
   ImportedVolume volume_;
   bool has_times_ = false;  ///< along the first of four axes

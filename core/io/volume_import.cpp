@@ -34,9 +34,10 @@ VolumeSource checked_source(const ReaderRequest& request, const ImportedVolume& 
 
 }  // namespace
 
-void ImportSink::begin(const ImportedVolume& volume, const std::string& remark) {
+void ImportSink::begin(const ImportedVolume& volume, const std::string& array, const std::string& remark) {
   checked_source(request_, volume);
   bytes_.put(volume);
+  bytes_.put(array);
   bytes_.put(remark);
 }
 
@@ -45,6 +46,7 @@ VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& op
   VolumeSource result;
   read_in_child(request, [&](ByteSource& bytes) {
     VolumeSource source = checked_source(request, bytes.get<ImportedVolume>());
+    source.array = bytes.get_string();
     source.remark = bytes.get_string();
     SampleSink sink(source, FileHandle::scratch(options.scratch_folder), progress);
     std::vector<std::byte> piece;

@@ -30,7 +30,7 @@ class ImportSink {
   ImportSink(const ReaderRequest& request, ByteSink& bytes) : request_(request), bytes_(bytes) {}
 
   /// Throws Error where files of that size cannot hold such a volume.
-  void begin(const ImportedVolume& volume, const std::string& remark = {});
+  void begin(const ImportedVolume& volume, const std::string& array = {}, const std::string& remark = {});
   void samples(std::span<const std::byte> bytes) { bytes_.write(bytes.data(), bytes.size()); }
 
  private:

@@ -29,6 +29,7 @@ inline constexpr std::uint64_t kMostVolumeSteps = std::uint64_t{1} << 24;
 struct VolumeSeries {
   std::vector<VolumeStep> steps;  ///< in the order of their times; none where the file holds no series
   StepTimes times = StepTimes::kCounted;
+  std::string remark{};  ///< what the file says of times and nobody follows; mostly empty
 };
 
 /// The series that a file holds: the times of NIfTI, in seconds where the header says a unit of time; of HDF5

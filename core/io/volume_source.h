@@ -45,8 +45,11 @@ struct VolumeSource {
   /// Where the samples are the bytes of this file instead, unpacked.
   std::shared_ptr<const FileHandle> scratch;
   double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept (see keep_scale)
-  std::string remark;               ///< what the header says and nobody follows; mostly empty
-  VolumeGrid grid;                  ///< with the type that the samples become
+  std::string array;                ///< its name; empty where the file has none
+  /// Of a file that says itself which array is shown, where none is named: those that could be taken too.
+  std::vector<std::string> other_arrays;
+  std::string remark;  ///< what the header says and nobody follows; mostly empty
+  VolumeGrid grid;     ///< with the type that the samples become
 
   [[nodiscard]] std::uint64_t values() const { return grid.samples() * components; }
   [[nodiscard]] std::uint64_t sample_file_bytes() const { return values() * stored_bytes(stored); }

@@ -58,7 +58,7 @@ std::string lost_places(const std::filesystem::path& path, const VolumeGrid& gri
                        grid.space.empty() ? "not known" : grid.space);
   }
   if (grid.space.empty() || extension == ".nrrd" || extension == ".nhdr") return {};
-  if (anatomical && extension != ".vti") return {};
+  if (anatomical && extension != ".vti" && extension != ".pvd") return {};
   return fmt::format("{}: coordinates are {}, which the file does not say", path.string(), grid.space);
 }
 

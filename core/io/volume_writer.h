@@ -25,7 +25,8 @@ struct VolumeWriterOptions {
   std::string data_name;            ///< what the header calls that file, where not by its own name
 };
 
-/// What of a grid's places a file does not keep or say, in a line; empty where it does.
+/// What of a grid's places a file does not keep or say, in a line; empty where it does. Of a .pvd: its .vti
+/// files.
 std::string lost_places(const std::filesystem::path& path, const VolumeGrid& grid);
 
 /// Whether such a file can say that samples have a scale (VolumeGrid::slope).

@@ -70,6 +70,25 @@ class Restorer {
     return pages_.counts();
   }
 
+  /// Which of the steps lack a page of the part.
+  std::vector<std::uint32_t> damaged(Progress& progress) {
+    std::vector<std::uint32_t> found;
+    const LatticePoint begin = block_of(part_.first), end = block_of(part_.last);
+    for (LatticePoint block = begin; block.k <= end.k; ++block.k) {
+      progress.step("looking for damage", static_cast<double>(block.k - begin.k) / (end.k - begin.k + 1));
+      for (block.j = begin.j; block.j <= end.j; ++block.j) {
+        for (block.i = begin.i; block.i <= end.i; ++block.i) {
+          for (const Step& step : steps_) {
+            if (step.pages->samples({part_.lod, block}) == nullptr) found.push_back(step.pages->step());
+          }
+        }
+      }
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
  private:
   struct Step {
     StoredPages<Word>* pages;
@@ -86,7 +105,9 @@ class Restorer {
   void copy(StoredPages<Word>& pages, const PageId& id, std::int32_t base, std::vector<Sample>& planes) {
     const PageSamples<Word>* page = pages.samples(id);
     if (page == nullptr)
-      fail("{}: {} is damaged, or one that it is predicted from", file_.name(), page_name(id));
+      throw DamagedPage(fmt::format("{}: {} is damaged{}, or one that it is predicted from", file_.name(),
+                                    page_name(id),
+                                    file_.steps() > 1 ? fmt::format(" at step {}", pages.step()) : ""));
     const BlockSpan x(id.block.i, part_.first.i, part_.last.i), y(id.block.j, part_.first.j, part_.last.j),
         z(id.block.k, part_.first.k, part_.last.k);
     for (std::int32_t k = z.begin; k <= z.end; ++k) {
@@ -101,6 +122,10 @@ class Restorer {
     }
   }
 
+  static LatticePoint block_of(LatticePoint sample) {
+    return {sample.i / PageGrid::kSide, sample.j / PageGrid::kSide, sample.k / PageGrid::kSide};
+  }
+
   static std::size_t working_set(const PageGrid& grid, const StepRange& range, const RestoredPart& part) {
     // The first one needs those that it is coded with too.
     const std::size_t steps = range.last - range.first + 1 + range.first % kWholeSteps;
@@ -112,6 +137,20 @@ class Restorer {
   StepPages<Word> pages_;
   std::vector<Step> steps_;
 };
+
+/// Calls fn(restorer) for one group of steps that are best restored together after another.
+template <class Fn>
+void for_each_group(StoreFile& file, const StepRange& steps, const RestoredPart& part, std::size_t memory,
+                    Fn&& fn) {
+  with_sample_type(part.grid.type, [&](auto sample) {
+    for (StepRange rest = steps; rest.first <= steps.last;) {
+      const StepRange some = restored_together(rest, restored_slab_bytes(part), memory);
+      Restorer<decltype(sample)> restorer(file, some, part, memory);
+      fn(restorer);
+      rest.first = some.last + 1;
+    }
+  });
+}
 
 /// Along one axis of a part: its first and its last sample, in units of 2^lod; none where it is empty.
 std::pair<std::int32_t, std::int32_t> samples_within(double low, double high, std::int32_t last) {
@@ -195,9 +234,19 @@ PageCounts restore_steps(StoreFile& file, const StepRange& steps, const Restored
                          std::size_t memory,
                          const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
                          Progress& progress) {
-  return with_sample_type(part.grid.type, [&](auto sample) {
-    return Restorer<decltype(sample)>(file, steps, part, memory).run(sink, progress);
+  PageCounts counts;
+  for_each_group(file, steps, part, memory, [&](auto& restorer) { counts += restorer.run(sink, progress); });
+  return counts;
+}
+
+std::vector<std::uint32_t> damaged_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
+                                         std::size_t memory, Progress& progress) {
+  std::vector<std::uint32_t> all;
+  for_each_group(file, steps, part, memory, [&](auto& restorer) {
+    const std::vector<std::uint32_t> some = restorer.damaged(progress);
+    all.insert(all.end(), some.begin(), some.end());
   });
+  return all;
 }
 
 }  // namespace adamas

@@ -35,8 +35,15 @@ std::vector<RestoredPart> restored_levels(const VolumeGrid& volume, int lod,
                                           const std::optional<Box3>& region, std::uint64_t enough,
                                           const std::string& name);
 
+/// A page is damaged that is needed, or one that it is predicted from; the message names the page and, of a
+/// series, the step.
+class DamagedPage : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Gives the part's planes of equal k in ascending order to `sink`, as samples of the volume's type. Only
-/// pages that the part needs are read. Throws Error where a page is damaged.
+/// pages that the part needs are read. Throws DamagedPage.
 PageCounts restore(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory,
                    const std::function<void(std::span<const std::byte>)>& sink, Progress& progress);
 
@@ -49,12 +56,16 @@ struct StepRange {
 /// with with later ones, but not more than take `memory` at so many bytes each.
 StepRange restored_together(const StepRange& steps, std::uint64_t bytes_each, std::size_t memory);
 
-/// The same as restore() of several steps side by side, row of pages by row of pages: what a page is coded
-/// with in time has just been decoded. `sink` takes a step and its next plane.
+/// The same as restore() of several steps, those of restored_together() side by side, row of pages by row of
+/// pages: what a page is coded with in time has just been decoded. `sink` takes a step and its next plane.
 PageCounts restore_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
                          std::size_t memory,
                          const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
                          Progress& progress);
+
+/// Which of some steps cannot be restored, in ascending order. All are decoded.
+std::vector<std::uint32_t> damaged_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
+                                         std::size_t memory, Progress& progress);
 
 /// The bytes of planes that restoring holds for each step.
 std::uint64_t restored_slab_bytes(const RestoredPart& part);

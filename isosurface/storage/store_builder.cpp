@@ -352,9 +352,10 @@ StoreFigures build_series(const std::filesystem::path& path, const std::string& 
   return figures;
 }
 
-StoreFigures append_series(const std::filesystem::path& path, const SeriesSource& series,
-                           StoreOptions options, Progress& progress) {
+StoreFigures append_series(const StoreLock& store, const SeriesSource& series, StoreOptions options,
+                           Progress& progress) {
   StoreFigures figures;
+  const std::filesystem::path& path = store.path();
   const StoreFile file(path);
   if (series.grid != file.header().grid) fail("{}: expected steps on its grid, found another", file.name());
   const double last = file.times().back();

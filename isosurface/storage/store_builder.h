@@ -13,6 +13,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/gradients/gradient_smoothing.h"
 #include "isosurface/storage/store_format.h"
+#include "isosurface/storage/store_lock.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
@@ -57,11 +58,11 @@ StoreFigures build_series(const std::filesystem::path& path, const std::string& 
                           const SeriesSource& series, const StoreOptions& options,
                           Progress& progress = SilentProgress::instance());
 
-/// Adds steps, whose times are after those of the store at `path`, behind its last ones, with its coding,
-/// unless they are to be plain, in groups as large as its own, and with gradients if it has some. Who opens
-/// the file meanwhile, or after this was killed, finds all steps of the blocks that are finished.
-StoreFigures append_series(const std::filesystem::path& path, const SeriesSource& series,
-                           StoreOptions options, Progress& progress = SilentProgress::instance());
+/// Adds steps, whose times are after those of the store that is locked, behind its last ones, with its
+/// coding, unless they are to be plain, in groups as large as its own, and with gradients if it has some. Who
+/// opens the file meanwhile, or after this was killed, finds all steps of the blocks that are finished.
+StoreFigures append_series(const StoreLock& store, const SeriesSource& series, StoreOptions options,
+                           Progress& progress = SilentProgress::instance());
 
 /// The same of one volume, a series of one step.
 StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -60,11 +61,10 @@ class Verifier {
       problem(id, "one of its two copies is damaged");
     }
     if (!pages_.copy(id, page_)) {
-      ++result_.bad_pages;
-      problem(id, payload.state == PageState::kDamaged ? "is damaged" : "is predicted from a damaged one");
+      problem_of_bad(id,
+                     payload.state == PageState::kDamaged ? "is damaged" : "is predicted from a damaged one");
     } else if (const char* what = fault(id, page_, entry, has_gradients)) {
-      ++result_.bad_pages;
-      problem(id, what);
+      problem_of_bad(id, what);
     }
   }
 
@@ -127,9 +127,25 @@ class Verifier {
     return page.low[c] > page.high[c] || (page.low[p] <= page.low[c] && page.high[p] >= page.high[c]);
   }
 
+  void problem_of_bad(const PageId& id, const char* what) {
+    ++result_.bad_pages;
+    if (result_.bad_steps.empty() || result_.bad_steps.back() != step_) result_.bad_steps.push_back(step_);
+    problem(id, what);
+  }
+
   void problem(const PageId& id, const char* what) {
-    if (result_.problems.size() >= kMostProblems) return;
-    result_.problems.push_back(fmt::format("{} {}", page_name(id), what));
+    const std::string text = fmt::format("{} {}", page_name(id), what);
+    auto& problems = result_.problems;
+    auto known = std::find_if(problems.begin(), problems.end(),
+                              [&](const PageProblem& each) { return each.what == text; });
+    if (known == problems.end()) {
+      if (problems.size() >= kMostProblems) {
+        ++result_.untold;
+        return;
+      }
+      known = problems.insert(known, {text, {}});
+    }
+    known->steps.push_back(step_);
   }
 
   StoreFile& file_;

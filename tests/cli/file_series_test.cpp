@@ -98,7 +98,11 @@ TEST_F(FileSeries, TimesOfNiftiInTheirUnits) {
 TEST_F(FileSeries, TimesOfNiftiAreAddedBehind) {
   write_nifti("a.nii", 3, 2, 8);
   run_well({"store", "a.nii", "-o", "a.adm", "--append"});
-  run_well({"store", "a.nii", "-o", "a.adm", "--append"});
+  const RunResult again = run({"store", "a.nii", "-o", "a.adm", "--append"});
+  EXPECT_EQ(
+      again.err,
+      "adamas: note: a.nii: a time between steps but none of the first: 3 steps, taken to be at 6 to 10, "
+      "behind the last one of a.adm at 4\n");
   expect_steps("a.adm", {0, 1, 2, 0, 1, 2});
   EXPECT_EQ(times("a.adm"), (std::vector<double>{0, 2, 4, 6, 8, 10}));
 }
@@ -133,7 +137,8 @@ TEST_F(FileSeries, MembersOfAGroupInNaturalOrder) {
   expect_steps("one.adm", {3});
   run_well({"store", "a.h5", "--array", "/", "-o", "root.adm"});
   expect_steps("root.adm", {5});
-  run_well({"store", "a.h5", "--array", "/run/", "-o", "a.adm", "--append"});
+  const RunResult again = run({"store", "a.h5", "--array", "/run/", "-o", "a.adm", "--append"});
+  EXPECT_NE(again.err.find("a.h5: no times: 3 steps, taken to be at 3 to 5"), std::string::npos) << again.err;
   EXPECT_EQ(times("a.adm"), (std::vector<double>{0, 1, 2, 3, 4, 5}));
   expect_failure({"store", "a.h5", "-o", "b.adm"}, {"a.h5", "the name of a data set", "'run/step9'"});
   expect_failure({"store", "a.h5", "--array", "none", "-o", "b.adm"}, {"a.h5", "'none'"});
@@ -175,6 +180,33 @@ TEST_F(FileSeries, MembersWithTimes) {
   expect_failure({"store", "a.h5", "--array", "run", "-o", "b.adm"}, {"a.h5", "1 twice", "run/s0", "run/s2"});
   make({1, std::numeric_limits<double>::infinity()});
   expect_failure({"store", "a.h5", "--array", "run", "-o", "b.adm"}, {"a.h5", "finite", "run/s1"});
+}
+
+/// Times of some steps alone, or of another number of them, are not followed, which is told.
+TEST_F(FileSeries, TimesThatDoNotFitAreNotFollowed) {
+  std::vector<std::uint8_t> all;
+  for (int step = 0; step < 3; ++step) {
+    const auto one = samples(step);
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  {
+    Hdf5File file(folder() / "a.h5");
+    for (int step = 0; step < 3; ++step) add(file, "run/s" + std::to_string(step), step);
+    file.add_numbers("run/s1", "time", {7});
+    file.add("all", {3, 2, 3, 4}, StoredType::kUint8, all.data());
+    file.add_numbers("all", "time", {4, 5});
+  }
+  const RunResult some = run({"store", "a.h5", "--array", "run", "-o", "a.adm"});
+  EXPECT_EQ(
+      some.err,
+      "adamas: note: a.h5: 1 of 3 data sets in 'run' have a time: steps are taken to be at 0, 1, 2 ...\n");
+  expect_steps("a.adm", {0, 1, 2});
+  EXPECT_EQ(times("a.adm"), (std::vector<double>{0, 1, 2}));
+  const RunResult few = run({"store", "a.h5", "--array", "all", "-o", "b.adm"});
+  EXPECT_EQ(few.err,
+            "adamas: note: a.h5: 'all' has 2 numbers as its time, of 3 steps: these are taken to be at 0, 1, "
+            "2 ...\n");
+  expect_steps("b.adm", {0, 1, 2});
 }
 
 TEST_F(FileSeries, TheFirstOfFourAxesIsTime) {

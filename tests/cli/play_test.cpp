@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "tests/cli/program.h"
 
 namespace adamas::test {
@@ -53,6 +57,51 @@ TEST_F(PlayCommand, PlaysSomeStepsAndMovesTheCamera) {
   EXPECT_EQ(seen["frames"].size(), 12u);
   for (const int triangles : of_frames(seen, "triangles")) EXPECT_LE(triangles, 500);
   EXPECT_LE(played({"--steps", "4,4"})["frames"].size(), 1u);
+}
+
+/// Without a camera the error is a length, and within what was asked for.
+TEST_F(PlayCommand, TellsTheErrorInUnitsOfLengthOrInPixels) {
+  run_well({"info", "m.adm", "--json", "info.json", "-q"});
+  const double spacing = read_json("info.json")["spacing"][0];
+  double greatest = 0;
+  for (const double voxels : {0.7, 2.0}) {
+    const nlohmann::json all = played({"--error", std::to_string(voxels) + "voxels"});
+    for (const auto& frame : all["frames"]) {
+      EXPECT_FALSE(frame.contains("largest_error_pixels"));
+      EXPECT_LE(frame["largest_error"], voxels * spacing * (1 + 1e-5));
+      greatest = std::max(greatest, frame["largest_error"].get<double>());
+    }
+  }
+  EXPECT_GT(greatest, 0.7 * spacing);
+  const nlohmann::json seen = played({"--camera-path", "orbit:7", "--pixels", "2"});
+  for (const auto& frame : seen["frames"]) {
+    EXPECT_FALSE(frame.contains("largest_error"));
+    EXPECT_LE(frame["largest_error_pixels"], 2);
+  }
+}
+
+/// Where a surface begins or ends it has not moved any distance; the greatest motion is that of the others.
+TEST_F(PlayCommand, MotionLeavesOutWhereASurfaceBeginsOrEnds) {
+  const RunResult some = run_well({"play", "m.adm", "--isovalue", "12", "--motion", "--json", "p.json"});
+  double greatest = 0;
+  int ends = 0;
+  const nlohmann::json all = read_json("p.json");
+  for (const auto& frame : all["frames"]) {
+    if (frame["step"] == 0) continue;
+    if (frame["motion_certified"].is_null()) {
+      ++ends;
+    } else {
+      greatest = std::max(greatest, frame["motion_certified"].get<double>());
+    }
+  }
+  EXPECT_EQ(ends, 1);
+  EXPECT_GT(greatest, 0);
+  EXPECT_EQ(some.out.find("inf"), std::string::npos) << some.out;
+  EXPECT_NE(some.out.find(fmt::format("{:.4g} at most", greatest)), std::string::npos) << some.out;
+  EXPECT_NE(some.out.find("1 of 11 transitions begins or ends without a surface"), std::string::npos)
+      << some.out;
+  const RunResult none = run_well({"play", "m.adm", "--isovalue", "1e30", "--motion"});
+  EXPECT_NE(none.out.find("no frame has a surface"), std::string::npos) << none.out;
 }
 
 TEST_F(PlayCommand, AnswersWrongUsage) {

@@ -3,44 +3,10 @@
 #include <csignal>
 #include <random>
 
-#include "tests/cli/program.h"
+#include "tests/cli/series_stores.h"
 
 namespace adamas::test {
 namespace {
-
-/// Stores of a few volumes of 9^3 bytes, s_0.raw, s_1.raw, ...
-class SeriesStores : public ProgramTest {
- protected:
-  SeriesStores() {
-    for (int step = 0; step < 5; ++step) write(file(step), samples(step));
-  }
-
-  static std::string file(int step) { return "s_" + std::to_string(step) + ".raw"; }
-  static std::string samples(int step) {
-    std::string bytes;
-    for (int n = 0; n < 729; ++n)
-      bytes += static_cast<char>(n % 9 * (n / 9 % 9) + (n / 81) * 3 + step * (n & 7));
-    return bytes;
-  }
-  /// `store` of some inputs.
-  static std::vector<std::string> store(std::vector<std::string> inputs, const std::string& output,
-                                        const std::vector<std::string>& more = {}) {
-    std::vector<std::string> all{"store"};
-    all.insert(all.end(), inputs.begin(), inputs.end());
-    for (const char* option : {"--dimensions", "9,9,9", "--type", "uint8", "-o"}) all.emplace_back(option);
-    all.push_back(output);
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-  void expect_step(const std::string& store, int step) const {
-    run_well({"restore", store, "--step", std::to_string(step), "-o", "out.raw", "-q"});
-    EXPECT_EQ(read("out.raw"), samples(step)) << store << " step " << step;
-  }
-  [[nodiscard]] nlohmann::json info(const std::string& store) const {
-    run_well({"info", store, "--json", "info.json", "-q"});
-    return read_json("info.json");
-  }
-};
 
 TEST_F(SeriesStores, OfSeveralVolumesAndOfAPattern) {
   run_well(store({file(0), file(1), file(2), file(3), file(4)}, "a.adm"));
@@ -69,7 +35,8 @@ TEST_F(SeriesStores, StepsAreRestoredTogetherOrAlone) {
   for (int step = 0; step < 19; ++step) inputs.push_back(file(step % 5));
   run_well(store(inputs, "a.adm"));
   for (const std::string memory : {"256M", "4K", "1"}) {
-    run_well({"restore", "a.adm", "--steps", "3,18", "--memory", memory, "-o", "back.pvd", "-q"});
+    run_well(
+        {"restore", "a.adm", "--steps", "3,18", "--memory", memory, "-o", "back.pvd", "--overwrite", "-q"});
     for (int step = 3; step < 19; ++step) {
       const std::string name = (step < 10 ? "back_000" : "back_00") + std::to_string(step) + ".vti";
       const std::string bytes = read(name);
@@ -109,7 +76,7 @@ TEST_F(SeriesStores, LaterStepsOfAListAreAdded) {
   run_well(store({"s_%d.raw"}, "all.adm"));
   run_well({"restore", "all.adm", "--steps", "0,2", "-o", "back.pvd", "-q"});
   run_well({"store", "back.pvd", "-o", "a.adm", "-q"});
-  run_well({"restore", "all.adm", "-o", "back.pvd", "-q"});
+  run_well({"restore", "all.adm", "-o", "back.pvd", "--overwrite", "-q"});
   const RunResult result = run({"store", "back.pvd", "-o", "a.adm", "--append", "-q"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(info("a.adm")["times"], (std::vector<double>{0, 1, 2, 3, 4}));
@@ -196,6 +163,49 @@ TEST_F(SeriesStores, ListsThatAreNone) {
   write("e.pvd",
         "<VTKFile type=\"Collection\"><Collection><DataSet file=\"none.vti\"/></Collection></VTKFile>");
   expect_failure({"store", "e.pvd", "-o", "a.adm"}, {"none.vti"});
+}
+
+TEST_F(SeriesStores, ADataSetWithoutTimeAmongOthersIsRefused) {
+  write("f.pvd",
+        "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"1\" file=\"x.vti\"/>"
+        "<DataSet file=\"y.vti\"/></Collection></VTKFile>");
+  expect_failure({"store", "f.pvd", "-o", "a.adm"}, {"f.pvd", "timestep", "y.vti"});
+}
+
+/// Where a file has several arrays, the one that is taken is told, once for all steps.
+TEST_F(SeriesStores, TheArrayThatIsTakenIsTold) {
+  run_well({"generate", "mixing", "--dimensions", "12", "--steps", "3", "-o", "m.pvd", "-q"});
+  const RunResult first = run({"store", "m.pvd", "-o", "a.adm", "--json", "j.json"});
+  EXPECT_EQ(first.err,
+            "adamas: note: m_0000.vti: the array 'entropy' is taken, not 'density': --array names another\n");
+  EXPECT_EQ(read_json("j.json")["array"], "entropy");
+  run_well({"store", "m.pvd", "--array", "density", "-o", "b.adm", "--json", "j.json"});
+  EXPECT_EQ(read_json("j.json")["array"], "density");
+  EXPECT_NE(read("a.adm"), read("b.adm"));
+  run_well(store({file(0)}, "c.adm", {"--json", "j.json"}));
+  EXPECT_TRUE(read_json("j.json")["array"].is_null());
+}
+
+TEST_F(SeriesStores, ValuesOnCellsAreToldAsSuch) {
+  for (const std::string name : {"s.vtr", "s.vti"}) {
+    run_well({"generate", "scene", "sphere", "--dimensions", "6", "-o", name, "-q"});
+    expect_failure({"store", name, "-o", "a.adm"}, {name, "values on cells alone", "Volume Fraction"});
+  }
+}
+
+/// What of the places is another is told.
+TEST_F(SeriesStores, WhatDiffersOfTheGridIsTold) {
+  const auto make = [this](const std::string& output, const std::vector<std::string>& more) {
+    run_well(store({file(0)}, "t.adm", more));
+    run_well({"restore", "t.adm", "-o", output, "-q"});
+  };
+  make("a.vti", {});
+  make("far.vti", {"--first-sample", "1,2,3"});
+  make("wide.vti", {"--spacing", "1,1,2"});
+  expect_failure({"store", "a.vti", "far.vti", "-o", "x.adm"},
+                 {"far.vti", "place of a.vti, (0, 0, 0), found (1, 2, 3)"});
+  expect_failure({"store", "a.vti", "wide.vti", "-o", "x.adm"},
+                 {"wide.vti", "spacing of a.vti, (1, 1, 1), found (1, 1, 2)"});
 }
 
 /// The program is killed 200 times while it adds steps: the store has all steps that were finished, and no

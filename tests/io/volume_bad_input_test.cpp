@@ -173,7 +173,8 @@ TEST(VolumeBadInput, VtiOfOtherKinds) {
   for (const char* step : {"nan", "-1", "0"}) {
     EXPECT_TRUE(says(message("Spacing=\"1", std::string("Spacing=\"") + step), "positive spacing along x"));
   }
-  EXPECT_TRUE(says(message("PointData>", "CellData>"), "expected an array on points, found none"));
+  EXPECT_TRUE(
+      says(message("PointData>", "CellData>"), "expected an array on points, found values on cells alone"));
   EXPECT_TRUE(says(message("\"v\"", "\"w\"", "v"), "expected an array 'v' on points, found 'w'"));
   EXPECT_TRUE(says(message("<DataArray ", "<DataArray Name='u'/><DataArray "),
                    "expected one array on points or the name of one, found 'u', 'v'"));

@@ -92,11 +92,11 @@ TEST(PageGroups, StayOfOneSizeWhereStepsAreAdded) {
   const test::Scratch folder;
   const TestSeries<std::uint8_t> series({36, 20, 33}, Motion::kWaves, 7);
   build_series(folder / "a.adm", "a.adm", series.source(0, 3), in_groups(8, 4));
-  append_series(folder / "a.adm", series.source(3, 7), in_groups(1, 4));
+  append_series(StoreLock(folder / "a.adm"), series.source(3, 7), in_groups(1, 4));
   for (const std::uint32_t step : {0u, 3u, 6u})
     EXPECT_EQ(StoreFile(folder / "a.adm").header(step).group_pages, 8u);
   build_series(folder / "b.adm", "b.adm", series.source(0, 3), in_groups(1, 4));
-  append_series(folder / "b.adm", series.source(3, 7), in_groups(8, 4));
+  append_series(StoreLock(folder / "b.adm"), series.source(3, 7), in_groups(8, 4));
   EXPECT_EQ(StoreFile(folder / "b.adm").header(6).group_pages, 1u);
   expect_same_pages<std::uint8_t>(folder / "a.adm", folder / "b.adm");
 }

@@ -336,7 +336,7 @@ TEST(SeriesGradients, BlocksAreSmoothedByThemselves) {
   const auto planes = [&](std::uint32_t t) { return series.planes(t); };
   build_series(folder / "a.adm", "a.adm", {series.grid, {0, 1, 2, 3, 4, 5, 6}, planes}, options);
   build_series(folder / "b.adm", "b.adm", {series.grid, {0, 1, 2, 3}, planes}, options);
-  append_series(folder / "b.adm",
+  append_series(StoreLock(folder / "b.adm"),
                 {series.grid, {4, 5, 6}, [&](std::uint32_t t) { return series.planes(t + 4); }}, options);
   StoreFile a(folder / "a.adm"), b(folder / "b.adm");
   for (std::uint32_t t = 0; t < 7; ++t) {

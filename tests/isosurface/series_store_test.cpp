@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "isosurface/storage/page_payload.h"
+#include "isosurface/storage/restore.h"
 #include "isosurface/storage/verify.h"
 #include "tests/support/prepared_volume.h"
 #include "tests/support/test_series.h"
@@ -33,7 +34,7 @@ void expect_steps(const std::filesystem::path& path, const TestSeries<Sample>& s
   ASSERT_EQ(file.times(), series.source().times);
   const VerifiedStore verified = verify_store(file, 0, SilentProgress::instance());
   ASSERT_EQ(verified.pages, file.grid().page_count() * file.steps());
-  ASSERT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front();
+  ASSERT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front().what;
   for (std::uint32_t n = 0; n < file.steps(); ++n) {
     const std::uint32_t step = (n * 7 + 3) % file.steps();
     SCOPED_TRACE(testing::Message() << "step " << step);
@@ -90,7 +91,7 @@ TYPED_TEST(SeriesStoreOf, GivesStepsBackThatWereAdded) {
     while (end < series.steps.size()) {
       const std::size_t begin = end;
       end = std::min(series.steps.size(), begin + 1 + random() % 5);
-      append_series(folder / "a.adm", series.source(begin, end), with_blocks(4));
+      append_series(StoreLock(folder / "a.adm"), series.source(begin, end), with_blocks(4));
     }
     expect_steps(folder / "a.adm", series);
     if (this->HasFatalFailure()) return;
@@ -103,9 +104,10 @@ TYPED_TEST(SeriesStoreOf, GivesPlainStepsBackThatWereAdded) {
   const TestSeries<TypeParam> series({12, 17, 20}, Motion::kWaves, 10);
   const auto path = folder / "a.adm";
   build_series(path, "a.adm", series.source(0, 3), with_blocks(4));
-  const StoreFigures plain = append_series(path, series.source(3, 6), with_blocks(4, SampleCoding::kPlain));
+  const StoreFigures plain =
+      append_series(StoreLock(path), series.source(3, 6), with_blocks(4, SampleCoding::kPlain));
   EXPECT_GE(plain.bytes.samples, 3 * series.steps[0].grid.bytes());
-  const StoreFigures coded = append_series(path, series.source(6, 10), with_blocks(4));
+  const StoreFigures coded = append_series(StoreLock(path), series.source(6, 10), with_blocks(4));
   EXPECT_LT(coded.bytes.samples, plain.bytes.samples);
   expect_steps(path, series);
 }
@@ -132,7 +134,7 @@ TEST(SeriesStore, IsTheSameOnAnyNumberOfThreads) {
     set_thread_limit(static_cast<std::size_t>(threads));
     const auto path = folder / std::to_string(threads);
     build_series(path, "a.adm", series.source(0, 6), with_blocks(4));
-    append_series(path, series.source(6, 10), with_blocks(4));
+    append_series(StoreLock(path), series.source(6, 10), with_blocks(4));
   }
   set_thread_limit(0);
   EXPECT_EQ(test::bytes_of(folder / "1"), test::bytes_of(folder / "3"));
@@ -151,7 +153,7 @@ TEST_P(SeriesStoreInGroups, OpensWithAllFinishedStepsWhereverAddingEnds) {
   build_series(path, "a.adm", series.source(0, 2), in_groups(8, GetParam()));
   for (std::size_t begin = 2; begin < 6; begin += 2) {
     const std::string before = test::bytes_of(path);
-    append_series(path, series.source(begin, begin + 2), with_blocks(8));
+    append_series(StoreLock(path), series.source(begin, begin + 2), with_blocks(8));
     const std::string after = test::bytes_of(path);
     ASSERT_EQ(after.substr(StorePrologue::kBytes, before.size() - StorePrologue::kBytes),
               before.substr(StorePrologue::kBytes));
@@ -164,7 +166,7 @@ TEST_P(SeriesStoreInGroups, OpensWithAllFinishedStepsWhereverAddingEnds) {
       file.check_directory();
     }
     // And steps can be added again, with the same bytes.
-    append_series(cut, series.source(begin, begin + 2), with_blocks(8));
+    append_series(StoreLock(cut), series.source(begin, begin + 2), with_blocks(8));
     ASSERT_EQ(test::bytes_of(cut), after);
   }
   expect_steps(path, series);
@@ -175,7 +177,7 @@ TEST_P(SeriesStoreInGroups, AnswersToFlippedBitsAndTruncation) {
   const TestSeries<std::uint8_t> series({18, 9, 17}, Motion::kWaves, 5);
   const auto path = folder / "a.adm";
   build_series(path, "a.adm", series.source(0, 3), in_groups(8, GetParam()));
-  append_series(path, series.source(3, 5), with_blocks(8));
+  append_series(StoreLock(path), series.source(3, 5), with_blocks(8));
   const std::string whole = test::bytes_of(path);
   for (std::size_t at = 0; at < whole.size(); at += 5 + at % 7) {
     std::string bytes = whole;
@@ -204,10 +206,77 @@ TEST(SeriesStore, RefusesOtherStepsThanThoseAfterItsLast) {
   const TestSeries<std::uint8_t> series({9, 9, 9}, Motion::kWaves, 3);
   build_series(path, "a.adm", series.source(0, 2), with_blocks(8));
   const std::string before = test::bytes_of(path);
-  EXPECT_THROW(append_series(path, series.source(1, 2), with_blocks(8)), Error);
+  EXPECT_THROW(append_series(StoreLock(path), series.source(1, 2), with_blocks(8)), Error);
   const TestSeries<std::uint8_t> other({9, 9, 8}, Motion::kWaves, 3);
-  EXPECT_THROW(append_series(path, other.source(2, 3), with_blocks(8)), Error);
+  EXPECT_THROW(append_series(StoreLock(path), other.source(2, 3), with_blocks(8)), Error);
   EXPECT_EQ(test::bytes_of(path), before);
+}
+
+TEST(SeriesStore, IsLockedForOneAtATime) {
+  const test::Scratch folder;
+  const auto path = folder / "a.adm";
+  const TestSeries<std::uint8_t> series({9, 9, 9}, Motion::kWaves, 3);
+  EXPECT_THROW(StoreLock{path}, Error);
+  build_series(path, "a.adm", series.source(0, 2), with_blocks(8));
+  {
+    const StoreLock lock(path);
+    EXPECT_THROW(StoreLock{path}, Error);
+    EXPECT_EQ(StoreFile(path).steps(), 2u);
+  }
+  append_series(StoreLock(path), series.source(2, 3), with_blocks(8));
+  expect_steps(path, series);
+}
+
+/// However many are asked for at once, and with room for few of them or for none.
+TEST(SeriesStore, RestoresManyStepsInOneCall) {
+  const test::Scratch folder;
+  const auto path = folder / "a.adm";
+  const TestSeries<std::uint8_t> series({19, 18, 9}, Motion::kWaves, 70);
+  build_series(path, "a.adm", series.source(), with_blocks(16));
+  StoreFile file(path);
+  const RestoredPart part = restored_part(file.header().grid, 0, {}, "a.adm");
+  for (const std::size_t memory : {std::size_t{1}, std::size_t{1} << 14, std::size_t{1} << 26}) {
+    std::vector<std::vector<std::byte>> found(70);
+    const auto sink = [&found](std::uint32_t step, std::span<const std::byte> plane) {
+      found[step].insert(found[step].end(), plane.begin(), plane.end());
+    };
+    restore_steps(file, {3, 69}, part, memory, sink, SilentProgress::instance());
+    for (std::size_t step = 0; step < 70; ++step) {
+      const auto expected = std::as_bytes(std::span(series.steps[step].samples));
+      ASSERT_TRUE(step < 3 ? found[step].empty() : std::ranges::equal(found[step], expected)) << step;
+    }
+    EXPECT_TRUE(damaged_steps(file, {0, 69}, part, memory, SilentProgress::instance()).empty());
+  }
+}
+
+/// By restoring each step alone.
+TEST(SeriesStore, FindsTheStepsThatAreDamaged) {
+  const test::Scratch folder;
+  const auto path = folder / "a.adm";
+  const TestSeries<std::uint8_t> series({19, 18, 9}, Motion::kWaves, 20);
+  build_series(path, "a.adm", series.source(), with_blocks(16));
+  const std::string whole = test::bytes_of(path);
+  std::size_t partly = 0;
+  for (std::size_t at = 40; at < whole.size() / 2; at += whole.size() / 60) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 4);
+    test::put_bytes(path, bytes);
+    StoreFile file(path);
+    const RestoredPart part = restored_part(file.header().grid, 0, {}, "a.adm");
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t step = 0; step < 20; ++step) {
+      try {
+        restore(
+            file, step, part, 0, [](auto) {}, SilentProgress::instance());
+      } catch (const DamagedPage&) {
+        expected.push_back(step);
+      }
+    }
+    EXPECT_EQ(damaged_steps(file, {0, 19}, part, 1 << 24, SilentProgress::instance()), expected) << at;
+    EXPECT_EQ(verify_store(file, 0, SilentProgress::instance()).bad_steps, expected) << at;
+    partly += expected.empty() || expected.size() == 20 ? 0 : 1;
+  }
+  EXPECT_GT(partly, 5u);
 }
 
 }  // namespace

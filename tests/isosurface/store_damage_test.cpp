@@ -116,7 +116,7 @@ TEST(StoreDamage, PagesThatAreThereTwiceAreRepaired) {
       const VerifiedStore found = verify_store(damaged, 1 << 22, SilentProgress::instance());
       EXPECT_EQ(found.bad_copies, entry.copy != 0 ? 1u : 0u);
       EXPECT_EQ(found.bad_pages > 0, entry.copy == 0);
-      EXPECT_NE(found.problems.front().find(
+      EXPECT_NE(found.problems.front().what.find(
                     fmt::format("level {} at {}, {}, {}", id.lod, id.block.i, id.block.j, id.block.k)),
                 std::string::npos);
       repaired += entry.copy != 0 ? 1 : 0;

@@ -52,7 +52,7 @@ void expect_back(const MemoryVolume<Sample>& volume, SampleCoding coding) {
   ASSERT_EQ(test::restored<Sample>(file), test::bits_of(volume.samples));
   const VerifiedStore verified = verify_store(file, 0, SilentProgress::instance());
   ASSERT_EQ(verified.pages, figures.pages);
-  ASSERT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front();
+  ASSERT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front().what;
 }
 
 template <class Sample>

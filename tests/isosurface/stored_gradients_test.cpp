@@ -122,7 +122,7 @@ void expect_stored(const Stored<Sample>& volume) {
   }
   EXPECT_EQ(wrong, 0u);
   const VerifiedStore verified = verify_store(file, 0, SilentProgress::instance());
-  EXPECT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front();
+  EXPECT_EQ(verified.bad_pages + verified.bad_copies, 0u) << verified.problems.front().what;
 }
 
 template <class Sample>
@@ -219,7 +219,7 @@ TEST(StoredGradients, ThoseThatAreNoneAreFound) {
   VerifiedStore found = verified();
   EXPECT_GT(found.bad_pages, 0u);
   EXPECT_LT(found.bad_pages, found.pages);
-  EXPECT_NE(found.problems.front().find("has gradients that are damaged"), std::string::npos);
+  EXPECT_NE(found.problems.front().what.find("has gradients that are damaged"), std::string::npos);
   StoreFile file(path);
   StoredGradients gradients(file, 0, 0);
   EXPECT_FALSE(gradients.direction({1, 1, 1}));
@@ -228,7 +228,7 @@ TEST(StoredGradients, ThoseThatAreNoneAreFound) {
           [](StoreHeader& header, std::vector<std::byte>&) { header.gradients = false; });
   found = verified();
   EXPECT_EQ(found.bad_pages, found.pages);
-  EXPECT_NE(found.problems.front().find("has gradients, which the store does not have"), std::string::npos);
+  EXPECT_NE(found.problems.front().what.find("has gradients, which the store does not have"), std::string::npos);
   rewrite(volume.path(), path,
           [](StoreHeader& header, std::vector<std::byte>&) { header.gradient_tables.clear(); });
   EXPECT_THROW(verified(), Error);

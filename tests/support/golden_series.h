@@ -75,7 +75,7 @@ struct GoldenSteps {
   void build(const GoldenSeries& series, const std::filesystem::path& path) const {
     build_series(path, path.string(), source(0, series.ends[0]), series.options);
     for (std::size_t n = 1; n < series.ends.size(); ++n)
-      append_series(path, source(series.ends[n - 1], series.ends[n]), series.options);
+      append_series(StoreLock(path), source(series.ends[n - 1], series.ends[n]), series.options);
   }
 };
 

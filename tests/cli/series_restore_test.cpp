@@ -1,0 +1,161 @@
+// What restore, verify and play make of series: files that are there, scales of samples, damaged steps.
+
+#include <algorithm>
+
+#include "tests/cli/series_stores.h"
+
+namespace adamas::test {
+namespace {
+
+class SeriesRestore : public SeriesStores {
+ protected:
+  /// A store of 20 steps of 33^3 float32 samples as a.adm.
+  void make_series(const std::vector<std::string>& more = {}) const {
+    run_well({"generate", "mixing", "--dimensions", "33", "--steps", "20", "--type", "float32", "-o", "m.pvd",
+              "-q"});
+    std::vector<std::string> all{"store", "m.pvd", "--array", "density", "-o", "a.adm", "-q"};
+    all.insert(all.end(), more.begin(), more.end());
+    run_well(all);
+  }
+  /// d.adm: a.adm with a byte of finest pages changed, so that some steps cannot be restored. Returns these,
+  /// which are found one by one.
+  [[nodiscard]] std::vector<int> damage(double place = 0.5) const {
+    std::string bytes = read("a.adm");
+    const auto at = static_cast<std::size_t>(static_cast<double>(bytes.size()) * place);
+    bytes[at] = static_cast<char>(bytes[at] ^ 1);
+    write("d.adm", bytes);
+    std::vector<int> lost;
+    for (int step = 0; step < 20; ++step) {
+      const std::string number = std::to_string(step);
+      const RunResult result = run({"restore", "d.adm", "--step", number, "-o", "one.raw", "-q"});
+      if (result.status == 0) continue;
+      EXPECT_NE(result.err.find("damaged at step " + number), std::string::npos) << result.err;
+      lost.push_back(step);
+    }
+    return lost;
+  }
+};
+
+TEST_F(SeriesRestore, FilesOfStepsThatAreThereStay) {
+  run_well(store({"s_%d.raw"}, "a.adm"));
+  write("r_0001.vti", "mine");
+  expect_failure({"restore", "a.adm", "-o", "r.pvd"}, {"r.pvd", "found r_0001.vti", "--overwrite"});
+  EXPECT_EQ(read("r_0001.vti"), "mine");
+  run_well({"restore", "a.adm", "--steps", "2,4", "-o", "r.pvd"});
+  expect_failure({"restore", "a.adm", "-o", "r.pvd"}, {"found r_0001.vti"});
+  run_well({"restore", "a.adm", "-o", "r.pvd", "--overwrite"});
+  EXPECT_NE(read("r_0001.vti").find(samples(1)), std::string::npos);
+  expect_wrong_usage({"restore", "a.adm", "-o", "r.vti", "--overwrite"},
+                     {"--overwrite", "F.pvd or F.zarr", "r.vti"});
+}
+
+/// One note for the whole run, and the type that was written.
+TEST_F(SeriesRestore, TheTypeThatWasWrittenIsTold) {
+  run_well(
+      {"generate", "mixing", "--dimensions", "12", "--steps", "3", "--type", "uint8", "-o", "m.pvd", "-q"});
+  run_well({"store", "m.pvd", "--array", "density", "-o", "m.adm", "-q"});
+  const std::string scaled =
+      "are written as float32: samples with their scale are written to .nii and .nii.gz only";
+  const RunResult series = run({"restore", "m.adm", "-o", "r.pvd", "--json", "j.json"});
+  EXPECT_EQ(series.status, 0);
+  ASSERT_EQ(series.err_lines().size(), 1u) << series.err;
+  EXPECT_EQ(series.err.rfind("adamas: note: r.pvd: values, ", 0), 0u) << series.err;
+  EXPECT_NE(series.err.find(scaled), std::string::npos) << series.err;
+  EXPECT_EQ(series.out.rfind("12 x 12 x 12 samples, float32, 3 steps, ", 0), 0u) << series.out;
+  EXPECT_EQ(read_json("j.json")["type"], "float32");
+  EXPECT_EQ(read_json("j.json")["steps"], 3);
+  const RunResult one = run({"restore", "m.adm", "--step", "1", "-o", "r.nii", "--json", "j.json"});
+  EXPECT_EQ(one.err, "");
+  EXPECT_EQ(one.out.rfind("12 x 12 x 12 samples, uint8, ", 0), 0u) << one.out;
+  EXPECT_EQ(read_json("j.json")["type"], "uint8");
+  const RunResult zarr = run({"restore", "m.adm", "-o", "r.zarr", "--json", "j.json"});
+  EXPECT_NE(zarr.out.find("samples, float32, 3 steps, "), std::string::npos) << zarr.out;
+  EXPECT_EQ(read_json("j.json")["type"], "float32");
+}
+
+TEST_F(SeriesRestore, DamagedStepsAreNamed) {
+  make_series();
+  const std::vector<int> lost = damage();
+  ASSERT_FALSE(lost.empty());
+  ASSERT_LT(lost.size(), 9u);
+  // The steps that are lost follow each other, up to the next one that is coded by itself.
+  const std::string named = lost.size() == 1
+                                ? "step " + std::to_string(lost[0])
+                                : "steps " + std::to_string(lost.front()) +
+                                      (lost.size() == 2 ? " and " : " to ") + std::to_string(lost.back());
+  for (const std::string output : {"r.pvd", "r.zarr"})
+    expect_failure({"restore", "d.adm", "-o", output},
+                   {"d.adm: the page of level 0 at ", "damaged at step " + std::to_string(lost.front()),
+                    named + " cannot be restored, the others from 0 to 19 can"});
+  const RunResult verified = run({"verify", "d.adm", "--json", "j.json"});
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_EQ(read_json("j.json")["damaged_steps"], lost);
+  EXPECT_EQ(read_json("j.json")["bad_pages"], lost.size());
+  EXPECT_NE(verified.out.find(" is damaged at step " + std::to_string(lost.front()) + "\n"),
+            std::string::npos)
+      << verified.out;
+  EXPECT_NE(verified.err.find("of " + named + ","), std::string::npos) << verified.err;
+  if (lost.size() > 3) {
+    EXPECT_NE(verified.out.find(" is predicted from a damaged one at steps " + std::to_string(lost[1]) +
+                                " to " + std::to_string(lost.back()) + "\n"),
+              std::string::npos)
+        << verified.out;
+  }
+}
+
+/// No line comes twice, and each step with damage is named.
+TEST_F(SeriesRestore, VerifyTellsEachPageOnce) {
+  make_series();
+  const std::vector<int> lost = damage(0.02);
+  const RunResult verified = run({"verify", "d.adm", "--json", "j.json"});
+  std::vector<std::string> lines;
+  for (std::size_t at = 0, end = 0; (end = verified.out.find('\n', at)) != std::string::npos; at = end + 1)
+    lines.push_back(verified.out.substr(at, end - at));
+  ASSERT_GT(lines.size(), 1u);
+  // The last line counts what has none of its own.
+  EXPECT_EQ(lines.back().rfind("and ", 0), 0u) << lines.back();
+  lines.pop_back();
+  for (const std::string& line : lines) {
+    EXPECT_NE(line.find(" at step"), std::string::npos) << line;
+    EXPECT_EQ(std::count(lines.begin(), lines.end(), line), 1) << line;
+  }
+  EXPECT_EQ(read_json("j.json")["damaged_steps"], lost);
+}
+
+TEST_F(SeriesRestore, PlayGoesOnWithTheOtherSteps) {
+  make_series();
+  const std::vector<int> lost = damage();
+  ASSERT_FALSE(lost.empty());
+  const auto play = [](const std::string& store, const std::string& json,
+                       std::vector<std::string> more = {}) {
+    std::vector<std::string> all{"play", store, "--isovalue", "12", "--json", json};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  run_well(play("a.adm", "whole.json"));
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--motion"}, {"--ahead", "0", "--memory", "1"}}) {
+    const RunResult result = run(play("d.adm", "j.json", more));
+    EXPECT_EQ(result.status, 3) << result.err;
+    ASSERT_EQ(result.err_lines().size(), 1u) << result.err;
+    EXPECT_EQ(result.err.rfind("adamas: note: d.adm: ", 0), 0u) << result.err;
+    EXPECT_NE(result.err.find("damaged"), std::string::npos) << result.err;
+    EXPECT_NE(result.out.find("frames"), std::string::npos) << result.out;
+    const auto found = read_json("j.json"), whole = read_json("whole.json");
+    // A surface may not need the page that is damaged.
+    const std::vector<int> left_out = found["damaged_steps"];
+    ASSERT_FALSE(left_out.empty());
+    EXPECT_TRUE(std::includes(lost.begin(), lost.end(), left_out.begin(), left_out.end()));
+    EXPECT_EQ(found["frames"].size() + left_out.size(), 20u);
+    for (const auto& frame : found["frames"]) {
+      const std::size_t step = frame["step"];
+      EXPECT_EQ(frame["triangles"], whole["frames"][step]["triangles"]) << step;
+    }
+  }
+  const std::string first = std::to_string(lost.front());
+  expect_failure(play("d.adm", "none.json", {"--steps", first + "," + first}),
+                 {"d.adm", "step " + first, "damaged"});
+}
+
+}  // namespace
+}  // namespace adamas::test
