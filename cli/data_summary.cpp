@@ -184,7 +184,7 @@ Figures print_volume(VolumeReader reader, const std::string& path, const std::st
   return figures;
 }
 
-std::string steps_text(const std::vector<double>& times) {
+std::string times_text(const std::vector<double>& times) {
   if (times.size() < 2) return fmt::format("1 step, time {:.6g}", times.empty() ? 0 : times.front());
   std::string text =
       fmt::format("{} steps, times from {:.6g} to {:.6g}", times.size(), times.front(), times.back());
@@ -239,7 +239,7 @@ Figures print_store(const std::string& path, Session& session) {
     console.print("  values are {:.9g} times the samples plus {:.9g}\n", grid.slope, grid.intercept);
   print_places(grid, console);
   const std::vector<double> times = file->times();
-  if (file->steps() > 1) console.print("  {}; in {}\n", steps_text(times), counted(file->blocks(), "block"));
+  if (file->steps() > 1) console.print("  {}; in {}\n", times_text(times), counted(file->blocks(), "block"));
   if (file->unfinished_bytes() > 0)
     console.note("{}: {} bytes at its end are of steps that were never finished", path,
                  file->unfinished_bytes());

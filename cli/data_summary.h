@@ -33,7 +33,7 @@ void print_arrays(const FileSummary& s, Console& console, Figures& figures);
 
 /// How many steps there are and when: "6 steps, times from 0 to 1, 0.2 apart"; times that are not evenly
 /// spaced, to a millionth of the mean distance, are named, the first and the last ones of many.
-std::string steps_text(const std::vector<double>& times);
+std::string times_text(const std::vector<double>& times);
 
 /// What is in a volume, which is read plane by plane. `array`: its name, or empty for that of the file.
 Figures print_volume(VolumeReader reader, const std::string& path, const std::string& array,

@@ -278,7 +278,7 @@ Figures print_series(const Options& all, const std::vector<InputStep>& steps, Se
     times.push_back(step.time);
   }
   const std::string& path = all.input.path;
-  session.console.print("{}: series of {}\n\nthe first of them, ", path, steps_text(times));
+  session.console.print("{}: series of {}\n\nthe first of them, ", path, times_text(times));
   Options first{all.input, steps.front().input};
   first.input.path = steps.front().input.path;
   Figures figures{{"file", path}, {"kind", "series"}, {"steps", times.size()}, {"times", times}};

@@ -263,11 +263,12 @@ def interpolation_rows(build, name, file, isovalue, steps, threads):
     for voxels in map(float, INTERPOLATION_VOXELS):
         line = {(each["row"], each["by"]): each for each in found if each["voxels"] == voxels}
         by_shader, by_processor = line["interpolation", "shader"], line["interpolation", "processor"]
-        rates = [line["played", by]["steps_per_second"] for by in ("shader", "processor")]
+        played = [line["played", by] for by in ("shader", "processor")]
         yield [f"step of {name} by the shader, {voxels:g} voxels", f"{1e3 * by_shader['worked_out']:.0f} ms",
                f"by the processor {1e3 * by_processor['worked_out']:.0f} ms", f"{by_shader['worked_out'] / by_processor['worked_out']:.2f}", "",
                f"{by_shader['triangles']:,} triangles; a picture {1e3 * by_shader['picture']:.0f} and {1e3 * by_processor['picture']:.0f} ms; played "
-               f"{rates[0]:.1f} and {rates[1]:.1f} steps/s (aim 30 at 1 M triangles on a graphics device); by the clock, {threads} threads; {by_shader['drawn_by']}"]
+               f"{played[0]['pictures_per_second']:.0f} and {played[1]['pictures_per_second']:.0f} pictures/s (aim 30 at 1 M triangles on a graphics device), "
+               f"{played[0]['steps_per_second']:.1f} and {played[1]['steps_per_second']:.1f} steps/s; by the clock, {threads} threads; {by_shader['drawn_by']}"]
 
 
 def rows_of(bench):
