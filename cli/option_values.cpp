@@ -101,6 +101,22 @@ std::array<double, 2> parse_range(const std::string& text) {
   return {ends[0], ends[1]};
 }
 
+std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
+                                         const std::string& series) {
+  std::array<std::uint32_t, 2> steps{};
+  const std::vector<std::string> parts = split(text);
+  bool are_steps = parts.size() == steps.size();
+  for (std::size_t n = 0; are_steps && n < steps.size(); ++n) {
+    const auto value = to_number(parts[n]);
+    are_steps = value && *value >= 0 && *value < static_cast<double>(count) && *value == std::floor(*value);
+    if (are_steps) steps[n] = static_cast<std::uint32_t>(*value);
+  }
+  if (!are_steps || steps[0] > steps[1])
+    wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{}'",
+                count, series, text);
+  return steps;
+}
+
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text) {
   const auto v = parse_numbers(option, text, 6);
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,6 +34,10 @@ std::array<double, 2> parse_range(const std::string& text);
 /// "x0,x1,y0,y1,z0,z1" with x0 < x1 and so on.
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text);
 Box3 to_box(const std::array<double, 6>& bounds);
+/// "A,B" of --steps: two of so many steps of a series, from 0 on, with A up to B. `series`: what messages
+/// call it.
+std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
+                                         const std::string& series);
 /// "X,Y,Z": counts, or one for all three.
 std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std::string& text);
 /// "NAME=VALUE" at its first '=', or its last.

@@ -50,13 +50,7 @@ std::pair<std::size_t, std::size_t> wanted_steps(const SliceRequest& request, st
                   request.step);
     return {step, step};
   }
-  const std::size_t comma = request.steps.find(',');
-  if (comma == std::string::npos) wrong_usage("--steps: expected A,B, found '{}'", request.steps);
-  const std::size_t first = parse_count("--steps", request.steps.substr(0, comma), 0);
-  const std::size_t last = parse_count("--steps", request.steps.substr(comma + 1), 0);
-  if (first > last || last >= count)
-    wrong_usage("--steps: expected steps from 0 to {} in ascending order, found '{}'", count - 1,
-                request.steps);
+  const auto [first, last] = parse_steps(request.steps, count, request.inputs[0]);
   return {first, last};
 }
 

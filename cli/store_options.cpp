@@ -48,13 +48,8 @@ std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Sessio
 
 StepRange wanted_steps(const std::string& steps, const StoreInput& input, const StoreFile& file) {
   if (steps.empty()) return {0, file.steps() - 1};
-  const auto numbers = parse_numbers("--steps", steps, 2);
-  const bool are_steps = std::ranges::all_of(
-      numbers, [&](double n) { return n >= 0 && n < file.steps() && n == std::floor(n); });
-  if (!are_steps || numbers[0] > numbers[1])
-    wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{}'",
-                file.steps(), input.path, steps);
-  return {static_cast<std::uint32_t>(numbers[0]), static_cast<std::uint32_t>(numbers[1])};
+  const auto [first, last] = parse_steps(steps, file.steps(), input.path);
+  return {first, last};
 }
 
 std::string steps_text(const std::vector<std::uint32_t>& steps) {

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "isosurface/view/flight.h"
 
@@ -43,11 +44,9 @@ std::string sign_of_flight(const std::filesystem::path& folder) {
 std::vector<FlightFrame> flight_frames(const ViewOptions& options, const PictureSize& size,
                                        const ViewSession& view) {
   const std::vector<Viewpoint> path = path_of(options, size, view);
-  if (const auto steps = steps_of(options)) {
-    const auto [first, last] = *steps;
+  if (!options.steps.empty()) {
     if (view.times().size() < 2) wrong_usage("--steps: expected a stored series, found none");
-    if (last >= view.times().size())
-      wrong_usage("--steps: expected steps below {}, found '{}'", view.times().size(), options.steps);
+    const auto [first, last] = parse_steps(options.steps, view.times().size(), "the series");
     return frames_of_steps(path, first, last);
   }
   std::vector<FlightFrame> frames;

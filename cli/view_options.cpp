@@ -246,16 +246,6 @@ PictureSize picture_size(const ViewOptions& options, const PictureSize& otherwis
   return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
 }
 
-std::optional<std::array<std::uint32_t, 2>> steps_of(const ViewOptions& options) {
-  if (options.steps.empty()) return std::nullopt;
-  const std::vector<double> numbers = parse_numbers("--steps", options.steps, 2);
-  const bool are_steps =
-      std::ranges::all_of(numbers, [](double n) { return n >= 0 && n < kMostSteps && n == std::floor(n); });
-  if (!are_steps || numbers[0] > numbers[1])
-    wrong_usage("--steps: expected two steps A,B with A up to B, found '{}'", options.steps);
-  return std::array{static_cast<std::uint32_t>(numbers[0]), static_cast<std::uint32_t>(numbers[1])};
-}
-
 double film_rate(const ViewOptions& options) {
   constexpr double kRate = 10;
   return options.frame_rate.empty() ? kRate : parse_positive("--frame-rate", options.frame_rate);
@@ -278,7 +268,6 @@ void check_view_options(const ViewOptions& options, const Session& session) {
   if (!options.step.empty() && parse_count("--step", options.step, 0) >= kMostSteps)
     wrong_usage("--step: expected less than {}, found {}", kMostSteps, options.step);
   static_cast<void>(frame_milliseconds(options));
-  static_cast<void>(steps_of(options));
   static_cast<void>(film_rate(options));
   if (!options.steps.empty() && !options.step.empty())
     wrong_usage("--steps: expected no --step beside it, found '{}'", options.step);

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +28,6 @@ void add_view_options(const Command& command, ViewOptions& options);
 PictureSize picture_size(const ViewOptions& options, const PictureSize& otherwise);
 /// Looks at all that can be wrong with options, before long work.
 void check_view_options(const ViewOptions& options, const Session& session);
-/// The first and the last step of --steps; none where that was not given.
-std::optional<std::array<std::uint32_t, 2>> steps_of(const ViewOptions& options);
 /// Frames of a film in a second.
 double film_rate(const ViewOptions& options);
 /// Whether surfaces wait for the pages that they need.

@@ -137,8 +137,8 @@ TEST_F(StoredSeriesSlices, WrongUsage) {
   expect({"a.adm", "--time", "3", "-o", "x.png"},
          {"--time: expected a file with several times", "--step says"});
   expect({"a.adm", "--step", "5", "-o", "x.png"}, {"--step", "5 steps"});
-  expect({"a.adm", "--steps", "1,5", "-o", "x_%d.png"}, {"--steps", "from 0 to 4", "1,5"});
-  expect({"a.adm", "--steps", "2", "-o", "x_%d.png"}, {"--steps: expected A,B", "2"});
+  expect({"a.adm", "--steps", "1,5", "-o", "x_%d.png"}, {"--steps", "two of the 5 steps of a.adm", "1,5"});
+  expect({"a.adm", "--steps", "2", "-o", "x_%d.png"}, {"--steps", "A,B with A up to B", "2"});
   expect({"a.adm", "--steps", "1,2", "-o", "x.png"},
          {"-o: expected a list of steps (.pvd) or a pattern", "x.png"});
   expect({"a.adm", "--steps", "1,2", "--step", "1", "-o", "x_%d.png"}, {"--step and --steps"});

@@ -200,8 +200,8 @@ TEST_F(ViewCommand, ShowsAFrameOfEachStepWhileTheCameraMoves) {
     EXPECT_EQ(other.status, 2);
     EXPECT_NE(other.err.find(message), std::string::npos) << other.err;
   };
-  refused({"--steps", "3,5", "--json", "g.json"}, "--steps: expected steps below 5, found '3,5'");
-  refused({"--steps", "3,1", "--json", "g.json"}, "--steps: expected two steps A,B with A up to B");
+  refused({"--steps", "3,5", "--json", "g.json"}, "--steps: expected two of the 5 steps of the series");
+  refused({"--steps", "3,1", "--json", "g.json"}, "from 0 on, A,B with A up to B, found '3,1'");
   refused({"--steps", "1,3", "--step", "2", "--json", "g.json"}, "expected no --step beside it");
   refused({"--frame-rate", "5", "--json", "g.json"}, "--frame-rate: expected a --film");
   refused({"--film", "film.png"}, "--film");
