@@ -159,18 +159,19 @@ void measure_motion(const Options& options, StoreFile& file, Played& played, Ses
                                 counted(all.damaged, "frame"));
 }
 
-std::string motion_text(const Moved& moved, bool have_surface) {
+std::vector<std::vector<std::string>> motion_rows(const Moved& moved, bool have_surface) {
   const std::size_t measured = moved.transitions - moved.begins_or_ends - moved.damaged;
-  if (!have_surface && moved.begins_or_ends == 0) return "-, no frame has a surface";
-  std::string text = "-";
+  if (!have_surface && moved.begins_or_ends == 0) return {{"moved", "-, no frame has a surface"}};
+  std::vector<std::vector<std::string>> rows{{"moved", "-"}};
   if (measured > 0)
-    text = fmt::format("{:.4g} at most, {:.4g} found, from a frame to the next", moved.greatest.certified,
-                       moved.greatest.found);
+    rows[0][1] = fmt::format("{:.4g} at most, {:.4g} found, from a frame to the next",
+                             moved.greatest.certified, moved.greatest.found);
   if (moved.begins_or_ends > 0)
-    text += fmt::format("; {} of {} {} without a surface", moved.begins_or_ends,
-                        counted(moved.transitions, "transition"),
-                        moved.begins_or_ends == 1 ? "begins or ends" : "begin or end");
-  return text;
+    rows.push_back(
+        {"not measured", fmt::format("{} of {} {} without a surface", moved.begins_or_ends,
+                                     counted(moved.transitions, "transition"),
+                                     moved.begins_or_ends == 1 ? "begins or ends" : "begin or end")});
+  return rows;
 }
 
 Played play(const Options& options, StoreFile& file, Session& session) {
@@ -228,7 +229,9 @@ void report(const Played& played, const StoreFile& file, Session& session) {
                                       sorted[sorted.size() / 2], sorted.back())},
       {"page faults", std::to_string(reads)},
       {"read", fmt::format("{}, {:.0f}% of the file", bytes_text(static_cast<double>(bytes)), 100 * part)}};
-  if (played.moved) rows.push_back({"moved", motion_text(*played.moved, played.most_triangles > 0)});
+  if (played.moved) {
+    for (const auto& row : motion_rows(*played.moved, played.most_triangles > 0)) rows.push_back(row);
+  }
   session.console.table(rows);
   const Figures all{{"frames", played.frames},
                     {"triangles_mean", static_cast<double>(played.triangles) / count},
