@@ -318,7 +318,8 @@ void add_play(const Command& app, Session& session) {
       .group("Paging");
   command
       .add_option("--ahead", options->ahead,
-                  "How many of the steps that follow a second thread decodes meanwhile; 0: none")
+                  "How many of the steps that follow are decoded meanwhile by other threads: one for every "
+                  "four of --threads, at least one and at most four; 0: none")
       .type_name("N")
       .show_default()
       .group("Paging");
