@@ -117,10 +117,12 @@ class BenchTableTest(unittest.TestCase):
         def played(reads, size):
             frames = [{"step": n, "page_faults": reads, "bytes_read": size, "seconds": 0.5, "triangles": 7} for n in range(2)]
             return {"frames": frames, "page_faults": 2 * reads, "bytes_read": 2 * size, "part_read": 0.25, "triangles_mean": 3e5, "processor_seconds": 4}
-        coded, plain = ({"bytes_file": n, "bytes_data": n // 2, "bytes_errors": n // 4} for n in (4000, 16000))
-        zstd = {"alone": 9000, "in_turn": 8000, "interleaved": 7000, "least": 5000}
-        self.assertEqual([r[3] for r in file_rows("a", coded, plain, zstd)], ["0.250", "0.800", "0.400"])
-        self.assertEqual(whole(zstd | {"input": 10000}, 20000)["least"], 10000)
+        coded, plain = ({"bytes_file": n, "bytes_data": n // 2, "bytes_errors": n // 4, "bytes_input": 8000, "type": "uint16"} for n in (4000, 16000))
+        part = {"input": 8000, "alone": 9000, "in_turn": 8000, "interleaved": 7000, "least": 5000}
+        # A page has five bytes of errors and ranges for two of samples.
+        zstd = {"samples": part, "errors and ranges": part | {"input": 20000, "least": 3000}}
+        self.assertEqual([r[3] for r in file_rows("a", coded, plain, zstd)], ["0.250", "0.500", "0.400", "0.333"])
+        self.assertEqual(whole(part, 16000)["least"], 10000)
         series = Series("a", 1, [], aim=0.3)
         row = reading_row(series, 10, 2, played(3, 1000), played(4, 4000))
         self.assertEqual(row[1:5], ["6 reads, 2 kB (25.0%)", "uncompressed 8 reads, 8 kB (25.0%)", "0.250", "<= 30% of the file"])

@@ -12,13 +12,14 @@ class GrowingStores : public SeriesStores {
  protected:
   GrowingStores() { run_well(store({file(0), file(1)}, "a.adm")); }
 
-  /// `store --append` of so many steps to a.adm.
-  static std::vector<std::string> adding(std::size_t steps, const std::vector<std::string>& more = {}) {
+  /// `store --append` of so many steps to a store.
+  static std::vector<std::string> adding(std::size_t steps, const std::vector<std::string>& more = {},
+                                         const std::string& to = "a.adm") {
     std::vector<std::string> inputs;
     for (std::size_t n = 0; n < steps; ++n) inputs.push_back(file(static_cast<int>((n + 2) % 5)));
     std::vector<std::string> options{"--append"};
     options.insert(options.end(), more.begin(), more.end());
-    return store(inputs, "a.adm", options);
+    return store(inputs, to, options);
   }
   /// Options to act as soon as a block of steps is finished in a.adm.
   [[nodiscard]] RunOptions when_a_block_is_finished(const std::function<void(pid_t)>& act) const {
@@ -70,7 +71,8 @@ TEST_F(GrowingStores, AStoreThatWasMadeMeanwhileStays) {
     run_well(store({file(3)}, "new.adm", {"--append"}));
     kill(program, SIGCONT);
   };
-  const RunResult late = run(store({file(4)}, "new.adm", {"--append", "--verbose"}), options);
+  // There is much left to do when it has begun.
+  const RunResult late = run(adding(200, {"--block-steps", "4", "--verbose"}, "new.adm"), options);
   EXPECT_EQ(late.status, 1);
   EXPECT_NE(late.err.find("error: new.adm: expected no store there"), std::string::npos) << late.err;
   EXPECT_EQ(info("new.adm")["steps"], 1);

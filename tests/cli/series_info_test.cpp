@@ -56,9 +56,9 @@ TEST_F(SeriesInfo, PagesOfAStepAndOfAll) {
   run_well({"store", "m.pvd", "--array", "density", "-o", "m.adm", "-q"});
   run_well({"verify", "m.adm", "--json", "v.json", "-q"});
   const auto of_store = figures("m.adm");
-  const auto pages = of_store["pages"].get<int>();
-  EXPECT_EQ(read_json("v.json")["pages"], 3 * pages);
-  expect_text(std::to_string(pages) + " pages a step, " + std::to_string(3 * pages) + " in all");
+  EXPECT_EQ(of_store["pages"], 1);
+  EXPECT_EQ(read_json("v.json")["pages"], 3);
+  expect_text("1 page a step, 3 in all");
   expect_text("3 steps, times from 0 to 0.001, 0.0005 apart; in 1 block\n");
 }
 
