@@ -228,7 +228,8 @@ TEST(StoredGradients, ThoseThatAreNoneAreFound) {
           [](StoreHeader& header, std::vector<std::byte>&) { header.gradients = false; });
   found = verified();
   EXPECT_EQ(found.bad_pages, found.pages);
-  EXPECT_NE(found.problems.front().what.find("has gradients, which the store does not have"), std::string::npos);
+  EXPECT_NE(found.problems.front().what.find("has gradients, which the store does not have"),
+            std::string::npos);
   rewrite(volume.path(), path,
           [](StoreHeader& header, std::vector<std::byte>&) { header.gradient_tables.clear(); });
   EXPECT_THROW(verified(), Error);
