@@ -32,8 +32,8 @@ std::size_t ViewSession::longest_series() const {
 }
 
 const std::vector<double>& ViewSession::times() const {
-  static const std::vector<double> none;
-  return documents_.empty() ? none : documents_[longest_series()]->facts().times;
+  static const std::vector<double> kNone;
+  return documents_.empty() ? kNone : documents_[longest_series()]->facts().times;
 }
 
 std::uint32_t ViewSession::step() const {
