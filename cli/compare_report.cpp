@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "cli/figures.h"
 #include "cli/resample_figures.h"
 #include "core/picture/plot.h"
 #include "interfaces/reference/sizing_search.h"
@@ -226,7 +227,7 @@ void print_comparison_row(const ComparedMesh& row, const ResamplingSource& sourc
     add(fmt::format("{:.3f} s of it to certify the distance", row.certifying_seconds));
   if (!row.matched && row.failure.empty()) add("the distance was not matched within 5%");
   if (!row.switches.empty()) add(row.switches);
-  if (row.trials > 0) add(fmt::format("{} trial{}", row.trials, row.trials == 1 ? "" : "s"));
+  if (row.trials > 0) add(counted(row.trials, "trial"));
   if (!said.empty()) console.print("      {}\n", said);
   console.flush();
 }

@@ -78,16 +78,6 @@ CodingText coding_text(SampleCoding coding, bool is_plain) {
   return {"split-edge", "samples are predicted from the ends of the edge whose middle they are"};
 }
 
-/// Whether times follow each other at one distance, to a millionth of it.
-bool evenly_spaced(const std::vector<double>& times) {
-  const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-  for (std::size_t n = 0; n < times.size(); ++n) {
-    const double even = times.front() + static_cast<double>(n) * spacing;
-    if (!(std::abs(times[n] - even) <= 1e-6 * spacing)) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 void print_places(const VolumeGrid& grid, Console& console) {
@@ -184,14 +174,21 @@ Figures print_volume(VolumeReader reader, const std::string& path, const std::st
   return figures;
 }
 
+std::optional<double> even_spacing(const std::vector<double>& times, double tolerance) {
+  const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    const double even = times.front() + static_cast<double>(n) * spacing;
+    if (!(std::abs(times[n] - even) <= tolerance * spacing)) return {};
+  }
+  return spacing;
+}
+
 std::string times_text(const std::vector<double>& times) {
   if (times.size() < 2) return fmt::format("1 step, time {:.6g}", times.empty() ? 0 : times.front());
   std::string text =
       fmt::format("{} steps, times from {:.6g} to {:.6g}", times.size(), times.front(), times.back());
-  if (evenly_spaced(times)) {
-    const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-    return text + fmt::format(", {:.6g} apart", spacing);
-  }
+  constexpr double kSame = 1e-6;
+  if (const auto spacing = even_spacing(times, kSame)) return text + fmt::format(", {:.6g} apart", *spacing);
   constexpr std::size_t kFirst = 4, kLast = 2;
   text += ", not evenly spaced: ";
   for (std::size_t n = 0; n < times.size(); ++n) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ void add_places(const VolumeGrid& grid, Figures& figures);
 void print_grid(const FileSummary& s, Console& console, Figures& figures);
 /// A line for each array.
 void print_arrays(const FileSummary& s, Console& console, Figures& figures);
+
+/// The time from one of several steps to the next where all follow each other at that distance, to such a
+/// part of it; nothing otherwise.
+std::optional<double> even_spacing(const std::vector<double>& times, double tolerance);
 
 /// How many steps there are and when: "6 steps, times from 0 to 1, 0.2 apart"; times that are not evenly
 /// spaced, to a millionth of the mean distance, are named, the first and the last ones of many.

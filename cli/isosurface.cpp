@@ -78,7 +78,7 @@ void append(Contour contour, std::vector<Vec3> normals, double isovalue, Triangl
 /// The store and, of a series, time and step.
 std::string picture_title(const StoreFile& file, std::uint32_t step) {
   const std::string name = std::filesystem::path(file.name()).filename().string();
-  return file.steps() > 1 ? fmt::format("{}, time {:.6g}, step {}", name, file.times()[step], step) : name;
+  return file.steps() > 1 ? name + ", " + step_title(file.times()[step], step) : name;
 }
 
 template <class Sample>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cli/figures.h"
 #include "cli/store_options.h"
 #include "core/base/error.h"
 #include "core/picture/interface_picture.h"
@@ -25,10 +26,6 @@ std::string reason_for_none(const SurfaceRequest& request, const VolumeGrid& gri
   const std::string where = request.region ? "nothing of it is in the region" : "";
   if (request.error == 0) return where;
   return (where.empty() ? "" : where + ", or ") + "it is smaller than the error";
-}
-
-std::string damaged_pages(std::size_t count) {
-  return fmt::format("{} damaged page{}", count, count == 1 ? "" : "s");
 }
 
 /// The colour of a single surface, light so that shading shows its form.
@@ -62,7 +59,7 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const CompleteSurface
   }
   if (!surface.lost.empty()) {
     console.note_damage("{}: the surface at isovalue {:.6g} is coarser there",
-                        damaged_pages(surface.lost.size()), grid_.value(request.isovalue));
+                        counted(surface.lost.size(), "damaged page"), grid_.value(request.isovalue));
   }
   add_normals(request, surface, complete.normals.lost);
 }
@@ -76,7 +73,7 @@ void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const Extract
   }
   if (count == 0) return;
   session_.console.note_damage("{}: normals of the surface at isovalue {:.6g} are less exact there",
-                               damaged_pages(count), grid_.value(request.isovalue));
+                               counted(count, "damaged page"), grid_.value(request.isovalue));
 }
 
 void IsosurfaceFigures::add_distance(const SurfaceRequest& request, const SurfaceCertificate& distance) {

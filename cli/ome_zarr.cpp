@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "cli/data_summary.h"
 #include "cli/restored_steps.h"
 #include "cli/usage_error.h"
 #include "core/base/text.h"
@@ -30,17 +31,12 @@ std::string zarr_name(const std::filesystem::path& path) {
   return visible_text(name);
 }
 
-/// The time from one step to the next where all are evenly spaced but for round-off; nothing otherwise.
-std::optional<double> even_spacing(const std::vector<double>& times) {
+/// The time from one step to the next, 1 of a single one, where all are evenly spaced but for round-off.
+std::optional<double> time_scale(const std::vector<double>& times) {
   if (times.size() < 2) return 1;
-  constexpr double kRoundOff = 1e-9;
-  const double all = times.back() - times.front(), each = all / static_cast<double>(times.size() - 1);
-  for (std::size_t n = 0; n < times.size(); ++n) {
-    const double even = times.front() + static_cast<double>(n) * each;
-    if (!(std::abs(times[n] - even) <= kRoundOff * all)) return {};
-  }
-  if (!(each > 0)) return {};
-  return each;
+  constexpr double kRoundOff = 1e-9;  // of the whole time
+  const auto spacing = even_spacing(times, kRoundOff * static_cast<double>(times.size() - 1));
+  return spacing && *spacing > 0 ? spacing : std::nullopt;
 }
 
 /// Where the array's index of time is 0, and what each step adds.
@@ -102,7 +98,7 @@ void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content
   if (content.is_series) {
     const std::vector<double> all = file.times();
     times.assign(all.begin() + content.steps.first, all.begin() + content.steps.last + 1);
-    const std::optional<double> spacing = even_spacing(times);
+    const std::optional<double> spacing = time_scale(times);
     time = spacing ? TimeScale{*spacing, times.front()} : TimeScale{};
     if (!spacing)
       session.console.note("{}: the times of steps are uneven: its scale counts steps, .zattrs has the times",

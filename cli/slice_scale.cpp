@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/store_options.h"
+
 namespace adamas {
 
 void SliceScale::add(const SlicePicture& picture) {
@@ -33,7 +35,7 @@ void SliceScale::apply(std::size_t step, double time, SlicePicture& picture) con
 
 void add_step_title(double time, std::size_t step, SlicePicture& picture) {
   std::string& title = picture.panels.front().title;
-  title = fmt::format("time {:.6g}, step {}{}{}", time, step, title.empty() ? "" : ": ", title);
+  title = step_title(time, step) + (title.empty() ? "" : ": ") + title;
 }
 
 }  // namespace adamas

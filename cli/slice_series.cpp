@@ -177,7 +177,7 @@ void slice_series(const SliceRequest& request, const SliceSteps& all, Session& s
       {"plane", to_string(parse_any_plane(request))}, {"range", nullptr}, {"steps", std::move(rows)}};
   const auto shown = value_range(request) ? value_range(request) : scale.range();
   if (shown) figures["range"] = {shown->low, shown->high};
-  session.console.print("  {} step{}{}\n", steps.size(), steps.size() == 1 ? "" : "s",
+  session.console.print("  {}{}\n", counted(steps.size(), "step"),
                         shown ? fmt::format(", values from {:.6g} to {:.6g}", shown->low, shown->high) : "");
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.outputs.commit();

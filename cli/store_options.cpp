@@ -9,6 +9,7 @@
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/io/input_file.h"
 
 namespace adamas {
@@ -32,16 +33,15 @@ void add_step_option(const Command& command, StoreInput& input) {
       .type_name("N");
 }
 
-std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session,
-                          const char* option) {
+std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session) {
   if (input.step.empty()) {
     if (file.steps() > 1)
-      session.console.note("{}: the first of {} steps; {} says which", input.path, file.steps(), option);
+      session.console.note("{}: the first of {} steps; --step says which", input.path, file.steps());
     return 0;
   }
-  const std::size_t step = parse_count(option, input.step, 0);
+  const std::size_t step = parse_count("--step", input.step, 0);
   if (step >= file.steps())
-    wrong_usage("{}: expected less than {}, since {} has {}, found {}", option, file.steps(), input.path,
+    wrong_usage("--step: expected less than {}, since {} has {}, found {}", file.steps(), input.path,
                 counted(file.steps(), "step"), input.step);
   return static_cast<std::uint32_t>(step);
 }
@@ -62,10 +62,11 @@ std::string steps_text(const std::vector<std::uint32_t>& steps) {
     runs.push_back(end - begin == 1 ? std::to_string(steps[begin])
                                     : fmt::format("{} to {}", steps[begin], steps[end - 1]));
   }
-  std::string text = steps.size() == 1 ? "step " : "steps ";
-  for (std::size_t n = 0; n < runs.size(); ++n)
-    text += (n == 0 ? "" : n + 1 == runs.size() ? " and " : ", ") + runs[n];
-  return text;
+  return (steps.size() == 1 ? "step " : "steps ") + listed(runs);
+}
+
+std::string step_title(double time, std::size_t step) {
+  return fmt::format("time {:.6g}, step {}", time, step);
 }
 
 std::size_t store_memory(const StoreInput& input) { return parse_size("--memory", input.memory); }

@@ -20,10 +20,9 @@ struct StoreInput {
 void add_store_input(const Command& command, StoreInput& input);
 /// --step, of commands that look at one step of a series.
 void add_step_option(const Command& command, StoreInput& input);
-/// The step that was asked for by an option; the first one where none was, with a note that it is that.
+/// The step that was asked for by --step; the first one where none was, with a note that it is that.
 /// Throws UsageError where the store has no such.
-std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session,
-                          const char* option = "--step");
+std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session);
 
 /// The steps of --steps A,B, both included; all where that is empty. Throws UsageError where the store has no
 /// such.
@@ -31,6 +30,9 @@ StepRange wanted_steps(const std::string& steps, const StoreInput& input, const 
 
 /// Ascending numbers of steps: "step 3", "steps 3 to 9, 12 and 14".
 std::string steps_text(const std::vector<std::uint32_t>& steps);
+
+/// What pictures of a step of a series have in their titles: "time 0.25, step 3".
+std::string step_title(double time, std::size_t step);
 
 /// Bytes that decoded pages may take.
 std::size_t store_memory(const StoreInput& input);

@@ -228,7 +228,7 @@ void declare_volume_output(const std::string& output, OutputSet& outputs) {
 
 void note_lost(const std::string& output, const VolumeGrid& grid, Session& session) {
   if (const std::string lost = lost_places(output, grid); !lost.empty()) session.console.note("{}", lost);
-  if (grid.is_scaled() && !keeps_scale(output)) {
+  if (writes_values(output, grid)) {
     session.console.note(
         "{}: values, {:.9g} times the samples plus {:.9g}, are written as float32: samples with their scale "
         "are written to .nii and .nii.gz only",
@@ -237,7 +237,7 @@ void note_lost(const std::string& output, const VolumeGrid& grid, Session& sessi
 }
 
 SampleType written_type(const std::string& output, const VolumeGrid& grid) {
-  return grid.is_scaled() && !keeps_scale(output) ? SampleType::kFloat32 : grid.type;
+  return writes_values(output, grid) ? SampleType::kFloat32 : grid.type;
 }
 
 std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,

@@ -57,6 +57,13 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
+std::string listed(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t n = 0; n < parts.size(); ++n)
+    text += (n == 0 ? "" : n + 1 == parts.size() ? " and " : ", ") + parts[n];
+  return text;
+}
+
 std::string visible_text(std::string_view text) {
   const auto is_plain = [](char c) { return c >= ' ' && c <= '~'; };
   if (std::all_of(text.begin(), text.end(), is_plain)) return std::string(text);

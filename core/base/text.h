@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace adamas {
 
@@ -14,6 +15,9 @@ inline std::string_view trimmed(std::string_view text, std::string_view blanks =
 
 /// The text with every `from` replaced by `to`, as for messages about files that still have temporary names.
 std::string replaced(std::string text, const std::string& from, const std::string& to);
+
+/// "a", "a and b", "a, b and c".
+std::string listed(const std::vector<std::string>& parts);
 
 /// Length in bytes of the character of UTF-8 at the start of the text (RFC 3629: no overlong forms,
 /// surrogates or code points beyond the last); 0 where there is none.

@@ -64,9 +64,13 @@ std::string lost_places(const std::filesystem::path& path, const VolumeGrid& gri
 
 bool keeps_scale(const std::filesystem::path& path) { return is_nifti(file_extension(path)); }
 
+bool writes_values(const std::filesystem::path& path, const VolumeGrid& grid) {
+  return grid.is_scaled() && !keeps_scale(path);
+}
+
 VolumeWriter::VolumeWriter(const std::filesystem::path& path, const VolumeGrid& of_planes,
                            const VolumeWriterOptions& options)
-    : grid_(of_planes), writes_values_(of_planes.is_scaled() && !keeps_scale(path)) {
+    : grid_(of_planes), writes_values_(writes_values(path, of_planes)) {
   const std::string name = path.string(), extension = file_extension(path);
   grid_.check(name);
   VolumeGrid grid = grid_;

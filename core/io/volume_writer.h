@@ -31,6 +31,8 @@ std::string lost_places(const std::filesystem::path& path, const VolumeGrid& gri
 
 /// Whether such a file can say that samples have a scale (VolumeGrid::slope).
 bool keeps_scale(const std::filesystem::path& path);
+/// Whether values are written in place of samples, as float32, since the file cannot.
+bool writes_values(const std::filesystem::path& path, const VolumeGrid& grid);
 
 /// Writes a volume plane by plane, uncompressed: .vti (appended raw), .nrrd, .nhdr, .mha, .mhd, .nii, or
 /// .raw, which is samples alone; or compressed: .nii.gz. Equal samples give equal bytes, least byte first.

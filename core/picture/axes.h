@@ -19,6 +19,8 @@ inline constexpr double kTickFont = 0.88;
 inline constexpr double kTitleFont = 1.3;
 inline constexpr double kTitleHeight = 2.3;
 inline constexpr double kLabelHeight = 1.7;
+/// Of small pictures, in pixels: smaller letters would not be read.
+inline constexpr double kLeastFont = 11;
 }  // namespace figure_style
 
 /// Where values of one axis lie on the canvas: value `low` at `from`, `high` at `to`.

@@ -16,8 +16,6 @@ using namespace figure_style;
 namespace {
 
 constexpr double kLightestEdgeShare = 0.5;
-/// Of small pictures: smaller letters would not be read.
-constexpr double kLeastFont = 11;
 
 Box3 framed_box(const InterfacePicture& picture) {
   Box3 box = picture.domain;

@@ -17,8 +17,6 @@ namespace {
 constexpr int kSamplesPerPixel = 2;  // along each axis
 constexpr double kStrokeReference = 1600;
 constexpr double kBarWidth = 1.2;
-/// Of small pictures: smaller letters would not be read.
-constexpr double kLeastFont = 11;
 /// Where panels would be narrower, in units of the font size, something beside them is left out.
 constexpr double kLeastPanel = 7;
 

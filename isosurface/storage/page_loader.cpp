@@ -72,7 +72,6 @@ void PageLoader<Word>::want(std::vector<MissingPage> pages) {
       return is_among;
     };
     for (Arrived& arrived : arrived_) arrived.is_wanted = is_wanted(arrived.what);
-
     for (const auto& reader : readers_) {
       if (reader->loading) reader->is_loading_wanted = is_wanted(*reader->loading);
       reader->wanted.clear();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/base/text.h"
 #include "viewer/scene/camera_control.h"
 #include "viewer/scene/view_session.h"
 
@@ -136,13 +137,11 @@ void ViewSession::advance_steps(double seconds) {
 
 std::string named_steps(const std::set<std::uint32_t>& steps) {
   constexpr std::size_t kMost = 6;
-  std::string text = steps.size() == 1 ? "step" : "steps";
-  std::size_t named = 0;
-  for (auto it = steps.begin(); it != steps.end() && named < kMost; ++it, ++named) {
-    const bool is_last = named > 0 && named + 1 == steps.size();
-    text += fmt::format("{} {}", named == 0 ? "" : is_last ? " and" : ",", *it);
-  }
-  return named < steps.size() ? text + fmt::format(" and {} more", steps.size() - named) : text;
+  std::vector<std::string> names;
+  for (auto step = steps.begin(); step != steps.end() && names.size() < kMost; ++step)
+    names.push_back(std::to_string(*step));
+  if (names.size() < steps.size()) names.push_back(fmt::format("{} more", steps.size() - names.size()));
+  return (steps.size() == 1 ? "step " : "steps ") + listed(names);
 }
 
 }  // namespace adamas
