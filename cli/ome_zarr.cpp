@@ -132,9 +132,8 @@ std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, st
   if (content.is_series) count = all.last - all.first + 1;
   ZarrArray array(folder_.file(std::to_string(level)), grid, count);
   std::vector<float> values;
-  for (StepRange rest = all; rest.first <= all.last;) {
-    const StepRange some =
-        restored_together(rest, array.slab_bytes() + restored_slab_bytes(part), content.memory);
+  const std::uint64_t bytes_each = array.slab_bytes() + restored_slab_bytes(part);
+  for (const StepRange& some : restored_together(all, bytes_each, content.memory)) {
     std::vector<ZarrArray::Step> steps;
     for (std::uint32_t step = some.first; step <= some.last; ++step)
       steps.emplace_back(array, step - all.first);
@@ -146,7 +145,6 @@ std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, st
       steps[step - some.first].write_plane(plane);
     };
     counts += restore_some(file, some, all, part, content.memory, sink, session);
-    rest.first = some.last + 1;
   }
   return array.bytes();
 }

@@ -73,11 +73,9 @@ class PvdSeries {
   /// Returns the bytes that were written.
   std::size_t write(PageCounts& counts) {
     const RestoredPart& part = wanted_.levels.front();
-    for (StepRange rest = all_; rest.first <= all_.last;) {
-      const StepRange some = restored_together(rest, restored_slab_bytes(part), wanted_.memory);
+    for (const StepRange& some : restored_together(all_, restored_slab_bytes(part), wanted_.memory)) {
       sinks_.clear();
       write(some, counts);
-      rest.first = some.last + 1;
     }
     const std::string list = list_.string();
     session_.outputs.write(list, [this](const auto& path) { write_series(path, entries_); });

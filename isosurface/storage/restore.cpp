@@ -143,11 +143,9 @@ template <class Fn>
 void for_each_group(StoreFile& file, const StepRange& steps, const RestoredPart& part, std::size_t memory,
                     Fn&& fn) {
   with_sample_type(part.grid.type, [&](auto sample) {
-    for (StepRange rest = steps; rest.first <= steps.last;) {
-      const StepRange some = restored_together(rest, restored_slab_bytes(part), memory);
+    for (const StepRange& some : restored_together(steps, restored_slab_bytes(part), memory)) {
       Restorer<decltype(sample)> restorer(file, some, part, memory);
       fn(restorer);
-      rest.first = some.last + 1;
     }
   });
 }
@@ -219,11 +217,16 @@ PageCounts restore(StoreFile& file, std::uint32_t step, const RestoredPart& part
       [&sink](std::uint32_t, std::span<const std::byte> plane) { sink(plane); }, progress);
 }
 
-StepRange restored_together(const StepRange& steps, std::uint64_t bytes_each, std::size_t memory) {
+std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t bytes_each,
+                                         std::size_t memory) {
   const std::uint64_t room = std::max<std::uint64_t>(1, memory / std::max<std::uint64_t>(1, bytes_each));
-  const std::uint64_t end =
-      std::min<std::uint64_t>(steps.first / kWholeSteps * kWholeSteps + kWholeSteps, steps.first + room);
-  return {steps.first, std::min(steps.last, static_cast<std::uint32_t>(end - 1))};
+  std::vector<StepRange> groups;
+  for (std::uint64_t first = steps.first, end = 0; first <= steps.last; first = end) {
+    end = std::min(
+        {first / kWholeSteps * kWholeSteps + kWholeSteps, first + room, std::uint64_t{steps.last} + 1});
+    groups.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - 1)});
+  }
+  return groups;
 }
 
 std::uint64_t restored_slab_bytes(const RestoredPart& part) {

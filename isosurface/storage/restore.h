@@ -52,12 +52,14 @@ struct StepRange {
   std::uint32_t first = 0, last = 0;
 };
 
-/// The first of some steps that are best restored together: as many as share no page that they are coded
-/// with with later ones, but not more than take `memory` at so many bytes each.
-StepRange restored_together(const StepRange& steps, std::uint64_t bytes_each, std::size_t memory);
+/// Some steps in groups that are best restored together: as many as share no page that they are coded with
+/// with later ones, but not more than take `memory` at so many bytes each.
+std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t bytes_each,
+                                         std::size_t memory);
 
-/// The same as restore() of several steps, those of restored_together() side by side, row of pages by row of
-/// pages: what a page is coded with in time has just been decoded. `sink` takes a step and its next plane.
+/// The same as restore() of several steps, each group of restored_together() side by side, row of pages by
+/// row of pages: what a page is coded with in time has just been decoded. `sink` takes a step and its next
+/// plane.
 PageCounts restore_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
                          std::size_t memory,
                          const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,

@@ -33,12 +33,7 @@ void transform(StoreFile& file, Coefficients& found) {
   const auto take = [&](std::uint32_t step, std::span<const std::byte> plane) {
     for (const std::byte sample : plane) steps[step].push_back(std::to_integer<Word>(sample));
   };
-  const std::uint64_t bytes_each = restored_slab_bytes(part);
-  for (std::uint32_t first = 0; first < file.steps();) {
-    const StepRange some = restored_together({first, file.steps() - 1}, bytes_each, kMemory);
-    restore_steps(file, some, part, kMemory, take, SilentProgress::instance());
-    first = some.last + 1;
-  }
+  restore_steps(file, {0, file.steps() - 1}, part, kMemory, take, SilentProgress::instance());
   for (std::size_t t = 0; t < steps.size(); ++t) {
     for (std::size_t n = 0; n < steps[t].size(); ++n) {
       const int now = steps[t][n], one = t > 0 ? steps[t - 1][n] : 0, two = t > 1 ? steps[t - 2][n] : one;
