@@ -20,16 +20,7 @@ class ViewSeries : public StoreTest {
  protected:
   void SetUp() override {
     make_ball();
-    std::string samples = read("ball.raw");
-    std::vector<std::string> all{"store"};
-    for (int step = 0; step < kSteps; ++step) {
-      for (std::size_t n = 0; n < samples.size(); ++n)
-        samples[n] = n % 40 < static_cast<std::size_t>(40 - 2 * step) ? samples[n] : '\0';
-      write(fmt::format("s{}.raw", step), samples);
-      all.push_back(fmt::format("s{}.raw", step));
-    }
-    all.insert(all.end(), {"--dimensions", "40", "--type", "uint8", "-o", "b.adm"});
-    run_well(all);
+    make_series(kSteps, 2);
     const RunResult tried = view({"--json", "tried.json"});
     if (tried.err.find("expected EGL") != std::string::npos ||
         tried.err.find("expected OpenGL 4.5") != std::string::npos)

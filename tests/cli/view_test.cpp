@@ -136,17 +136,7 @@ TEST_F(ViewCommand, ShowsTheStepThatIsAskedFor) {
 }
 
 TEST_F(ViewCommand, ShowsAFrameOfEachStepWhileTheCameraMoves) {
-  std::string samples = read("ball.raw");
-  std::vector<std::string> all{"store"};
-  for (int step = 0; step < 5; ++step) {
-    // Cut off farther in from step to step.
-    for (std::size_t n = 0; n < samples.size(); ++n)
-      samples[n] = n % 40 < static_cast<std::size_t>(40 - 4 * step) ? samples[n] : '\0';
-    write(fmt::format("s{}.raw", step), samples);
-    all.push_back(fmt::format("s{}.raw", step));
-  }
-  all.insert(all.end(), {"--dimensions", "40", "--type", "uint8", "-o", "b.adm"});
-  run_well(all);
+  make_series(5, 4);
   write("path.txt",
         "100 20 30  19.5 19.5 19.5  0 0 1\n"
         "25 -65 18  19.5 19.5 19.5  0 0 1\n");
