@@ -107,6 +107,7 @@ Interfaces reconstruct(const Options& options, const SimplificationRequest& requ
   options.picture.check_materials(data.materials, data.source);
   Reconstruction result(data, reconstruction_options(options.input, data), console);
   figures["materials"] = print_volumes(data, result, console);
+  console.print("  blur: {} cells, median {:.3f}, greatest {:.3f}, share {:.3f}, noise {:.4f}\n", result.blur().cells, result.blur().median, result.blur().greatest, result.blur().share, result.noise());
   figures["mixed_cells"] = print_agreement(result.agreement(), console);
   note_losses(data, result, figures, console);
   figures["interfaces"] = print_interfaces(result.mesh(), console);

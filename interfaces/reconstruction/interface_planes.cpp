@@ -23,53 +23,12 @@ constexpr double kSettled = 1e-6;
 /// A piece belongs to another surface where its normal differs by more than the angle of this cosine.
 constexpr double kAlike = 0.7;
 
-/// The signed distance of a cell's centre from the plane that cuts off the part f of the cell behind it, on
-/// which side the unit vector points.
-double plane_distance(const Vec3& towards, const Vec3& size, double f) {
+/// The lengths of a cell's sides along a normal, which ascend.
+std::array<double, 3> plane_sides(const Vec3& towards, const Vec3& size) {
   std::array<double, 3> m{std::abs(towards.x) * size.x, std::abs(towards.y) * size.y,
                           std::abs(towards.z) * size.z};
   std::sort(m.begin(), m.end());
-  // Between values on either side, by the secant of which one end is halved when it stays (Illinois).
-  double low = -0.5 * (m[0] + m[1] + m[2]), high = -low, below = -f, above = 1 - f, middle = 0;
-  int kept = 0;
-  for (int step = 0; step < 60 && high - low > 1e-15 * size.x; ++step) {
-    middle = low + (high - low) * below / (below - above);
-    const double value = box_volume_below(m, middle) - f;
-    if (std::abs(value) < 1e-15) break;
-    if (value < 0) {
-      low = middle, below = value;
-      if (kept == -1) above *= 0.5;
-      kept = -1;
-    } else {
-      high = middle, above = value;
-      if (kept == 1) below *= 0.5;
-      kept = 1;
-    }
-  }
-  return middle;
-}
-
-/// The gradient of a material's fractions at a site by least squares with Youngs' weights, one-sided at the
-/// border.
-Vec3 gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions) {
-  const Vec3 centre = sites.position(site);
-  const auto value = static_cast<double>(fractions[site]);
-  std::array<double, 6> a{};  // xx, yy, zz, xy, xz, yz
-  Vec3 b;
-  sites.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
-    const Vec3 d = sites.position(other) - centre;
-    const double w = (di == 0 ? 2.0 : 1.0) * (dj == 0 ? 2.0 : 1.0) * (dk == 0 ? 2.0 : 1.0);
-    a[0] += w * d.x * d.x, a[1] += w * d.y * d.y, a[2] += w * d.z * d.z;
-    a[3] += w * d.x * d.y, a[4] += w * d.x * d.z, a[5] += w * d.y * d.z;
-    b += w * (static_cast<double>(fractions[other]) - value) * d;
-  });
-  // Axes along which there is one site only say nothing.
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (a[i] == 0) a[i] = 1;
-  }
-  const Vec3 x{a[0], a[3], a[4]}, y{a[3], a[1], a[5]}, z{a[4], a[5], a[2]};
-  const double det = dot(x, cross(y, z));
-  return (1 / det) * (b.x * cross(y, z) + b.y * cross(z, x) + b.z * cross(x, y));
+  return m;
 }
 
 /// The piece of a plane in its cell.
@@ -126,7 +85,7 @@ class PlaneFit {
     next_ = planes_;
     for_each_entry([&](std::size_t site, const Entry& entry) {
       const Vec3 size = sites_.cell(site).size();
-      const Vec3 g = gradient(sites_, site, data_.fractions[values_.material(entry.material)]);
+      const Vec3 g = fraction_gradient(sites_, site, data_.fractions[values_.material(entry.material)]);
       if (norm(g) * std::min({size.x, size.y, size.z}) >= kLeastGradient) place(site, entry, normalized(g));
     });
     std::vector<double> turned(planes_.size(), 0);
@@ -181,9 +140,12 @@ class PlaneFit {
     const auto& mixed = values_.mixed();
     parallel_for(mixed.size(), 128, [&](std::size_t n) {
       const Entry* twin = nullptr;
-      if (const Entry* first = lesser_of_two(mixed[n], &twin)) return visit(std::size_t{mixed[n]}, *first);
+      if (const Entry* first = lesser_of_two(mixed[n], &twin)) {
+        if (first->width == 0) visit(std::size_t{mixed[n]}, *first);
+        return;
+      }
       for (const Entry& entry : values_.at(mixed[n])) {
-        if (!entry.settled()) visit(std::size_t{mixed[n]}, entry);
+        if (!entry.settled() && entry.width == 0) visit(std::size_t{mixed[n]}, entry);
       }
     });
   }
@@ -248,6 +210,53 @@ class PlaneFit {
 };
 
 }  // namespace
+
+double plane_distance(const Vec3& towards, const Vec3& size, double f) {
+  const std::array<double, 3> m = plane_sides(towards, size);
+  // Between values on either side, by the secant of which one end is halved when it stays (Illinois).
+  double low = -0.5 * (m[0] + m[1] + m[2]), high = -low, below = -f, above = 1 - f, middle = 0;
+  int kept = 0;
+  for (int step = 0; step < 60 && high - low > 1e-15 * size.x; ++step) {
+    middle = low + (high - low) * below / (below - above);
+    const double value = box_volume_below(m, middle) - f;
+    if (std::abs(value) < 1e-15) break;
+    if (value < 0) {
+      low = middle, below = value;
+      if (kept == -1) above *= 0.5;
+      kept = -1;
+    } else {
+      high = middle, above = value;
+      if (kept == 1) below *= 0.5;
+      kept = 1;
+    }
+  }
+  return middle;
+}
+
+double part_behind_plane(const Vec3& towards, const Vec3& size, double distance) {
+  return box_volume_below(plane_sides(towards, size), distance);
+}
+
+Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions) {
+  const Vec3 centre = sites.position(site);
+  const auto value = static_cast<double>(fractions[site]);
+  std::array<double, 6> a{};  // xx, yy, zz, xy, xz, yz
+  Vec3 b;
+  sites.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+    const Vec3 d = sites.position(other) - centre;
+    const double w = (di == 0 ? 2.0 : 1.0) * (dj == 0 ? 2.0 : 1.0) * (dk == 0 ? 2.0 : 1.0);
+    a[0] += w * d.x * d.x, a[1] += w * d.y * d.y, a[2] += w * d.z * d.z;
+    a[3] += w * d.x * d.y, a[4] += w * d.x * d.z, a[5] += w * d.y * d.z;
+    b += w * (static_cast<double>(fractions[other]) - value) * d;
+  });
+  // Axes along which there is one site only say nothing.
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (a[i] == 0) a[i] = 1;
+  }
+  const Vec3 x{a[0], a[3], a[4]}, y{a[3], a[1], a[5]}, z{a[4], a[5], a[2]};
+  const double det = dot(x, cross(y, z));
+  return (1 / det) * (b.x * cross(y, z) + b.y * cross(z, x) + b.z * cross(x, y));
+}
 
 std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values) {
   return PlaneFit(data, values).run();

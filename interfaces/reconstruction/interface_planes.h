@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/data/multi_material_data.h"
 #include "core/geometry/vec3.h"
+#include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas {
 
@@ -17,7 +20,17 @@ struct InterfacePlane {
   [[nodiscard]] bool known() const { return squared_norm(towards) > 0; }
 };
 
-/// The planes of all entries of mixed sites. Normals are gradients of the fractions (Youngs) at first, then
+/// The signed distance of a cell's centre from the plane that cuts off the part f of the cell behind it, on
+/// which side the unit vector points. `size`: of the cell.
+double plane_distance(const Vec3& towards, const Vec3& size, double f);
+/// The other way round.
+double part_behind_plane(const Vec3& towards, const Vec3& size, double distance);
+
+/// The gradient of a material's fractions at a site by least squares with Youngs' weights, one-sided at the
+/// border.
+Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions);
+
+/// The planes of all entries of mixed sites that are not blurred. Normals are gradients of the fractions (Youngs) at first, then
 /// those of the planes through the middles of the pieces in the cells round them, again and again (Swartz;
 /// Mosso and Clancy, 1994), so that planes come out as they are.
 std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values);

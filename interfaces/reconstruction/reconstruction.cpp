@@ -57,12 +57,14 @@ struct Reconstruction::Layer {
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
                                Progress& progress)
-    : Reconstruction(data, SiteValues(data, options.smooth_labels), SiteCells(data.grid), progress) {}
+    : Reconstruction(data, SiteValues(data, options.smooth_labels, options.blur), SiteCells(data.grid), progress) {}
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
                                Progress& progress)
     : lattice_((correct_volumes(data, values, cells, progress), MaterialLattice(data, values))),
-      volume_input_(data.volumes()) {
+      volume_input_(data.volumes()),
+      blur_(values.blur()),
+      noise_(values.noise()) {
   mesh_.source = data.source;
   mesh_.materials = data.materials;
   extract(data, progress);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -21,6 +22,9 @@ struct ReconstructionOptions {
   /// each axis, and gives each material the volume of its voxels (smooth_label_values()). Refused for
   /// fractions.
   bool smooth_labels = false;
+  /// The standard deviation, in cells, of what has blurred the fractions, 0 for sharp ones; without it, that
+  /// is read off the fractions, place by place (find_widths()).
+  std::optional<double> blur = std::nullopt;
 };
 
 /// Material interfaces reconstructed from volume fractions: where the greatest of linearly interpolated
@@ -50,6 +54,9 @@ class Reconstruction {
   }
   /// How well volumes agree cell by cell.
   [[nodiscard]] const VolumeAgreement& agreement() const { return agreement_; }
+  /// How blurred the fractions are, and how far they are to be trusted (a standard deviation).
+  [[nodiscard]] const BlurSummary& blur() const { return blur_; }
+  [[nodiscard]] double noise() const { return noise_; }
   /// What the fractions hold and the interfaces do not show.
   [[nodiscard]] const std::vector<LostBody>& lost_bodies() const { return lost_bodies_; }
 
@@ -91,6 +98,8 @@ class Reconstruction {
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<BodyId, MaterialId> body_materials_;
   IdVector<MaterialId, double> volume_input_, volume_reconstructed_;
+  BlurSummary blur_;
+  double noise_ = 0;
   std::uint32_t slots_ = 4;                               ///< numbers of a tetrahedron for inner parts
   std::vector<Part> parent_;                              ///< union-find over lattice points
   std::unordered_map<Part, Part> inner_parents_;          ///< and over inner parts

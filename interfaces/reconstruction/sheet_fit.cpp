@@ -5,25 +5,30 @@
 #include <cmath>
 
 #include "interfaces/reconstruction/cut_volumes.h"
+#include "interfaces/reconstruction/normal_distribution.h"
 
 namespace adamas {
 
 namespace {
 
-/// How far cells count, round the window's middle, and beyond a layer's: so that another one two cells away
-/// does not disturb.
-constexpr double kRadius = 2.5, kFarthest = 2.0;
+/// How far cells count beyond a layer's middle: so that another one two cells away does not disturb.
+constexpr double kFarthest = 2.0;
 /// A layer's spread along its normal in relation to that across, and beyond that of an even layer.
-constexpr double kFlat = 0.5, kBlurred = 0.2;
+constexpr double kFlat = 0.5, kFlatBlurred = 0.75, kBlurred = 0.2;
 /// Layers thicker than the greatest need no care, and thinner ones are traces.
 constexpr double kThickest = 1.5, kThinnest = 0.03;
-/// The middle of a layer is no farther away from a cell that it cuts.
+/// The middle of a layer is no farther away from a cell that it cuts; of a blurred layer the half of it comes
+/// to that.
 constexpr double kMostOffset = 1.2;
-/// What a fit may leave, as a part of the fractions' and of a cell.
-constexpr double kMostRelative = 0.5, kMostLeft = 0.15;
+/// The widths of a blurred layer's faces.
+constexpr double kSharpest = 0.34, kWidest = 2.5;
+/// The radius of the window of a blurred layer is the first and so many widths; its greatest curvature in it.
+constexpr double kNearRadius = 2, kRadiusGrows = 1.8, kMostCurved = 0.4;
+/// What a fit may leave, as a part of the fractions' and of a cell; as a part of those of a blurred layer.
+constexpr double kMostRelative = 0.5, kMostLeft = 0.15, kMostRelativeBlurred = 0.2;
 /// The weight of cells on either side of a layer at least.
 constexpr double kLeastSeen = 0.1;
-constexpr int kRounds = 6;
+constexpr int kRounds = 6, kRoundsBlurred = 12;
 
 struct Sides {
   std::array<double, 3> m;
@@ -32,10 +37,14 @@ struct Sides {
   }
 };
 
-double weight(const Vec3& d) {
-  const double u = 1 - squared_norm(d) / (kRadius * kRadius);
+/// The weight of a cell of a window.
+double weight(const SheetWindow& window, const Vec3& d) {
+  const double u = 1 - squared_norm(d) / (window.radius * window.radius);
   return u > 0 ? u * u : 0;
 }
+
+/// Layers thicker than this need no care.
+double thickest(const Slab& slab) { return kThickest + slab.width; }
 
 /// Two unit vectors that are at right angles to a third, and to each other.
 std::array<Vec3, 2> across(const Vec3& n) {
@@ -44,11 +53,69 @@ std::array<Vec3, 2> across(const Vec3& n) {
   return {u, cross(n, u)};
 }
 
+/// A layer that is curved round a point: its middle is so much higher, along the normal, at tangential
+/// coordinates a and b by (xx a^2 + 2 xy a b + yy b^2) / 2.
+struct CurvedSlab {
+  Slab slab;
+  Vec3 u, v;  ///< unit tangents, at right angles
+  double xx = 0, xy = 0, yy = 0;
+
+  explicit CurvedSlab(const Slab& flat) : slab(flat) {
+    const auto [first, second] = across(slab.normal);
+    u = first, v = second;
+  }
+  /// A point from where the layer's part of its cell is that of the flat layer.
+  [[nodiscard]] Vec3 flattened(const Vec3& p) const {
+    const double a = dot(u, p), b = dot(v, p);
+    return p - 0.5 * (xx * a * a + 2 * xy * a * b + yy * b * b) * slab.normal;
+  }
+  [[nodiscard]] double part_of_cell(const Vec3& p) const { return slab.part_of_cell(flattened(p)); }
+  /// Turns the normal by tangents, which stay at right angles to it.
+  void turn(double by_u, double by_v) {
+    slab.normal = normalized(slab.normal + by_u * u + by_v * v);
+    u = normalized(u - dot(u, slab.normal) * slab.normal);
+    v = cross(slab.normal, u);
+  }
+};
+
+/// A layer's unknowns: turns towards either tangent, a move along the normal, the thickness, the width, and
+/// the curvatures.
+constexpr int kUnknowns = 8;
+using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+
+/// How the part of a cell in a layer grows with the unknowns, of sharp layers with the first four.
+Unknowns growth(const CurvedSlab& layer, const Vec3& place) {
+  const Slab& slab = layer.slab;
+  Unknowns g = Unknowns::Zero();
+  if (slab.width > 0) {
+    const double y = slab.height(layer.flattened(place)), front = (0.5 * slab.thickness - y) / slab.width,
+                 back = (-0.5 * slab.thickness - y) / slab.width,
+                 at_front = normal_density(front) / slab.width, at_back = normal_density(back) / slab.width,
+                 by_height = at_back - at_front, a = dot(layer.u, place), b = dot(layer.v, place);
+    g << by_height * a, by_height * b, -by_height, 0.5 * (at_front + at_back),
+        back * at_back - front * at_front, -0.5 * by_height * a * a, -by_height * a * b,
+        -0.5 * by_height * b * b;
+    return g;
+  }
+  constexpr double kStep = 1e-4;
+  std::array<Slab, 4> moved{slab, slab, slab, slab};
+  moved[0].normal = normalized(slab.normal + kStep * layer.u);
+  moved[1].normal = normalized(slab.normal + kStep * layer.v);
+  moved[2].offset += kStep;
+  moved[3].thickness += kStep;
+  const double part = slab.part_of_cell(place);
+  for (int i = 0; i < 4; ++i) g[i] = (moved[static_cast<std::size_t>(i)].part_of_cell(place) - part) / kStep;
+  return g;
+}
+
 }  // namespace
 
 double Slab::part_of_cell(const Vec3& centre) const {
   const Sides sides(normal);
   const double y = height(centre);
+  if (width > 0)
+    return normal_probability((0.5 * thickness - y) / width) -
+           normal_probability((-0.5 * thickness - y) / width);
   return box_volume_below(sides.m, 0.5 * thickness - y) - box_volume_below(sides.m, -0.5 * thickness - y);
 }
 
@@ -56,10 +123,10 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
   Vec3 middle;
   double sum = 0;
   const auto gather = [&](auto&& visit) {
-    for (std::size_t c = 0; c < SheetWindow::kCells; ++c) {
+    for (std::size_t c = 0; c < window.cells; ++c) {
       if (window.fraction[c] <= 0) continue;
-      const Vec3 p = SheetWindow::place(c) - middle;
-      const double w = weight(p) * static_cast<double>(window.fraction[c]);
+      const Vec3 p = window.place(c) - middle;
+      const double w = weight(window, p) * static_cast<double>(window.fraction[c]);
       if (w > 0) visit(p, w);
     }
   };
@@ -78,83 +145,86 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
   });
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> found(spread);
   const Eigen::Vector3d& by = found.eigenvalues();
-  if (by[0] > kFlat * by[1]) return {};
+  if (by[0] > (window.blurred() ? kFlatBlurred : kFlat) * by[1]) return {};
   const Eigen::Vector3d n = found.eigenvectors().col(0);
   Slab slab{{n[0], n[1], n[2]}, 0, 0};
   slab.offset = dot(slab.normal, middle);
   // The thickness is what the volume near the middle says.
   double held = 0, area = 0;
   const Sides sides(slab.normal);
-  for (std::size_t c = 0; c < SheetWindow::kCells; ++c) {
-    const Vec3 p = SheetWindow::place(c);
-    const double w = weight(p), y = slab.height(p);
-    if (w == 0 || window.known[c] == 0 || std::abs(y) > kFarthest) continue;
+  for (std::size_t c = 0; c < window.cells; ++c) {
+    const Vec3 p = window.place(c);
+    const double w = weight(window, p), y = slab.height(p);
+    if (w == 0 || window.known[c] == 0 || (!window.blurred() && std::abs(y) > kFarthest)) continue;
     held += w * static_cast<double>(window.fraction[c]);
     area += w * (box_volume_below(sides.m, 0.05 - y) - box_volume_below(sides.m, -0.05 - y)) / 0.1;
   }
   if (!(area > 0)) return {};
   slab.thickness = held / area;
-  if (slab.thickness > 1.3 * kThickest || slab.thickness < 0.5 * kThinnest) return {};
+  if (window.blurred())
+    slab.width = std::clamp(std::sqrt(std::max(0.0, by[0] - slab.thickness * slab.thickness / 12)), kSharpest,
+                            kWidest);
+  if (slab.thickness > 1.3 * thickest(slab) || slab.thickness < 0.5 * kThinnest) return {};
   const double even = (slab.thickness * slab.thickness + 1) / 12;
-  if (by[0] > even + kBlurred) return {};
+  if (!window.blurred() && by[0] > even + kBlurred) return {};
   return slab;
 }
 
-std::optional<Slab> fit_sheet(const SheetWindow& window, const Slab& guess) {
-  Slab slab = guess;
+std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& off) {
+  CurvedSlab layer(guess);
+  Slab& slab = layer.slab;
+  const bool blurred = window.blurred();
+  if (blurred) window.radius = std::min(kNearRadius + kRadiusGrows * slab.width, window.reach + 0.5);
   struct Sample {
     Vec3 place;
     double weight, fraction;
   };
-  std::array<Sample, SheetWindow::kCells> samples{};
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < SheetWindow::kCells; ++c) {
-    const Vec3 p = SheetWindow::place(c);
-    const double w = weight(p);
-    if (w > 0 && window.known[c] != 0 && std::abs(slab.height(p)) <= kFarthest)
-      samples[count++] = {p, w, static_cast<double>(window.fraction[c])};
+  std::vector<Sample> samples;
+  for (std::size_t c = 0; c < window.cells; ++c) {
+    const Vec3 p = window.place(c);
+    const double w = weight(window, p);
+    if (w > 0 && window.known[c] != 0 && (blurred || std::abs(slab.height(p)) <= kFarthest))
+      samples.push_back({p, w, static_cast<double>(window.fraction[c])});
   }
-  if (count < 12) return {};
-  // A turn about either direction across, a move, and a growth.
-  for (int round = 0; round < kRounds; ++round) {
-    constexpr double kStep = 1e-4;
-    const auto [u, v] = across(slab.normal);
-    std::array<Slab, 4> moved{slab, slab, slab, slab};
-    moved[0].normal = normalized(slab.normal + kStep * u);
-    moved[1].normal = normalized(slab.normal + kStep * v);
-    moved[2].offset += kStep;
-    moved[3].thickness += kStep;
-    Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d b = Eigen::Vector4d::Zero();
-    for (std::size_t s = 0; s < count; ++s) {
-      const Sample& sample = samples[s];
-      const double part = slab.part_of_cell(sample.place);
-      Eigen::Vector4d g;
-      for (int i = 0; i < 4; ++i)
-        g[i] = (moved[static_cast<std::size_t>(i)].part_of_cell(sample.place) - part) / kStep;
+  if (samples.size() < 12) return {};
+  const int rounds = blurred ? kRoundsBlurred : kRounds;
+  for (int round = 0; round < rounds; ++round) {
+    using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+    Matrix a = Matrix::Zero();
+    Unknowns b = Unknowns::Zero();
+    for (const Sample& sample : samples) {
+      const Unknowns g = growth(layer, sample.place);
       a += sample.weight * g * g.transpose();
-      b += sample.weight * (sample.fraction - part) * g;
+      b += sample.weight * (sample.fraction - layer.part_of_cell(sample.place)) * g;
     }
     a.diagonal().array() += 1e-3;
-    const Eigen::Vector4d x = a.ldlt().solve(b);
+    const Unknowns x = a.ldlt().solve(b);
     const auto limited = [](double by, double most) { return std::clamp(by, -most, most); };
-    slab.normal = normalized(slab.normal + limited(x[0], 0.3) * u + limited(x[1], 0.3) * v);
+    layer.turn(limited(x[0], 0.3), limited(x[1], 0.3));
     slab.offset += limited(x[2], 0.4);
     slab.thickness = std::max(slab.thickness + limited(x[3], 0.3), 0.5 * kThinnest);
+    if (blurred) {
+      slab.width = std::clamp(slab.width + limited(x[4], 0.3), kSharpest, kWidest);
+      layer.xx = limited(layer.xx + limited(x[5], 0.1), kMostCurved);
+      layer.xy = limited(layer.xy + limited(x[6], 0.1), kMostCurved);
+      layer.yy = limited(layer.yy + limited(x[7], 0.1), kMostCurved);
+    }
     if (x.lpNorm<Eigen::Infinity>() < 1e-4) break;
   }
-  if (slab.thickness > kThickest || slab.thickness < kThinnest || std::abs(slab.offset) > kMostOffset)
-    return {};
   double left = 0, all = 0, weights = 0, before = 0, behind = 0;
-  for (std::size_t s = 0; s < count; ++s) {
-    const Sample& sample = samples[s];
-    const double part = slab.part_of_cell(sample.place), y = slab.height(sample.place);
+  for (const Sample& sample : samples) {
+    const double part = layer.part_of_cell(sample.place), y = slab.height(sample.place);
     left += sample.weight * (sample.fraction - part) * (sample.fraction - part);
     all += sample.weight * sample.fraction * sample.fraction;
     weights += sample.weight;
     if (part < 0.02) (y > 0 ? before : behind) += sample.weight;
   }
-  if (left > kMostRelative * kMostRelative * all || left > kMostLeft * kMostLeft * weights) return {};
+  off = std::sqrt(left / all);
+  const double farthest = kMostOffset + (blurred ? 0.5 * slab.thickness : 0);
+  if (slab.thickness > thickest(slab) || slab.thickness < kThinnest || std::abs(slab.offset) > farthest)
+    return {};
+  if (off > (blurred ? kMostRelativeBlurred : kMostRelative) || left > kMostLeft * kMostLeft * weights)
+    return {};
   if (std::min(before, behind) < kLeastSeen) return {};
   return slab;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "core/geometry/vec3.h"
 
@@ -14,8 +14,9 @@ struct Slab {
   Vec3 normal;        ///< unit
   double offset = 0;  ///< of the layer's middle along the normal
   double thickness = 0;
+  double width = 0;  ///< standard deviation of the steps of fractions at its faces; 0 where these are sharp
 
-  /// The part of the cell round a point that lies in the layer.
+  /// The part of the cell round a point that lies in the layer or, of a blurred one, its fraction there.
   [[nodiscard]] double part_of_cell(const Vec3& centre) const;
   /// The distance of a point from the layer's middle, positive on the normal's side.
   [[nodiscard]] double height(const Vec3& p) const { return dot(normal, p) - offset; }
@@ -23,16 +24,26 @@ struct Slab {
 
 /// The fractions of a thin material in the cells round one.
 struct SheetWindow {
-  static constexpr int kReach = 2, kSide = 2 * kReach + 1;
-  static constexpr std::size_t kCells = kSide * kSide * kSide;
+  static constexpr int kReach = 2, kBlurredReach = 4;  ///< in cells, of sharp layers and of blurred ones
 
-  std::array<float, kCells> fraction{};
-  std::array<char, kCells> known{};  ///< whether there is such a cell, with nothing else in it that disturbs
+  explicit SheetWindow(bool blurred)
+      : reach(blurred ? kBlurredReach : kReach),
+        side(2 * reach + 1),
+        cells(static_cast<std::size_t>(side * side * side)),
+        fraction(cells, 0),
+        known(cells, 0) {}
 
-  static Vec3 place(std::size_t cell) {
+  int reach, side;
+  double radius = reach + 0.5;  ///< cells have less weight the farther they are away, and none from here on
+  std::size_t cells;
+  std::vector<float> fraction;
+  std::vector<char> known;  ///< whether there is such a cell, with nothing else in it that disturbs
+
+  [[nodiscard]] bool blurred() const { return reach == kBlurredReach; }
+  [[nodiscard]] Vec3 place(std::size_t cell) const {
     const auto c = static_cast<int>(cell);
-    return {static_cast<double>(c % kSide - kReach), static_cast<double>(c / kSide % kSide - kReach),
-            static_cast<double>(c / (kSide * kSide) - kReach)};
+    return {static_cast<double>(c % side - reach), static_cast<double>(c / side % side - reach),
+            static_cast<double>(c / (side * side) - reach)};
   }
 };
 
@@ -40,8 +51,10 @@ struct SheetWindow {
 /// where it is no layer.
 std::optional<Slab> guess_sheet(const SheetWindow& window);
 
-/// The layer that holds the window's fractions best, by least squares from a guess on; nothing where none
-/// does well, or where it is so thick or so far away that the window does not show both its sides.
-std::optional<Slab> fit_sheet(const SheetWindow& window, const Slab& guess);
+/// The layer that holds the window's fractions best, by least squares from a guess on, which says whether it
+/// is blurred; nothing where none does well, or where it is so thick or so far away that the window does not
+/// show both its sides. Blurred layers may be curved in the window. `off`: set to the root of the sum of
+/// squares that is left, as a part of that of the fractions, also where the layer is thick or far away.
+std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& off);
 
 }  // namespace adamas

@@ -18,7 +18,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr double kLeastCosine = 0.5, kMostStep = 0.6;
 /// The cells with layers fitted to what is round them that a sheet has at least, also as a part of its own.
 constexpr std::size_t kFewest = 12;
-constexpr double kLeastFitted = 0.4;
+constexpr double kLeastFitted = 0.4, kLeastFittedBlurred = 0.04;
 /// What the cells between two hold of a sheet that runs through, in relation to its thickness.
 constexpr double kLeastBetween = 0.4;
 
@@ -83,6 +83,7 @@ class RegionSearch {
 
  private:
   [[nodiscard]] const SheetPlace& place(std::uint32_t p) const { return sheets_.places[p]; }
+  [[nodiscard]] bool are_blurred(std::uint32_t p) const { return place(p).slab.width > 0; }
 
   /// Calls visit(p, q, offset of q from p) for places that are beside each other.
   template <class Visit>
@@ -105,7 +106,7 @@ class RegionSearch {
     std::vector<char> mixed(count, 0);
     std::vector<std::size_t> fitted(count, 0), held(count, 0);
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
-      if (place(p).material == place(q).material) sets.join(p, q);
+      if (place(p).material == place(q).material && are_blurred(p) == are_blurred(q)) sets.join(p, q);
     });
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
       if (place(p).material != place(q).material) mixed[sets.find(p)] = mixed[sets.find(q)] = 1;
@@ -118,8 +119,9 @@ class RegionSearch {
     std::fill(place_of_.begin(), place_of_.end(), kNone);
     for (std::uint32_t p = 0; p < count; ++p) {
       const std::uint32_t sheet = sets.find(p);
+      const double least = place(p).slab.width > 0 ? kLeastFittedBlurred : kLeastFitted;
       const bool is_clear = fitted[sheet] >= kFewest && static_cast<double>(fitted[sheet]) >=
-                                                            kLeastFitted * static_cast<double>(held[sheet]);
+                                                            least * static_cast<double>(held[sheet]);
       if (mixed[sheet] != 0 || !is_clear) continue;
       place_of_[place(p).site] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(place(p));
@@ -139,7 +141,7 @@ class RegionSearch {
 
   /// Whether a place is in a cell that holds nothing of the sheet.
   [[nodiscard]] bool is_beside(std::uint32_t p) const {
-    return data_.fractions[values_.material(place(p).material)][place(p).site] <= 0;
+    return place(p).is_beside({}, data_.fractions[values_.material(place(p).material)][place(p).site]);
   }
   /// The side on which a place in such a cell is.
   [[nodiscard]] std::uint32_t home(std::uint32_t p) const {

@@ -104,9 +104,8 @@ bool SheetValues::is_on_side(const SheetPlace& place, std::uint32_t region, std:
   const SiteArray<float>& sheet = data_.fractions[values_.material(place.material)];
   double sum = 0;
   const auto add = [&](std::size_t site, int di, int dj, int dk) {
-    const double height =
-        place.slab.height({static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
-    if (side * height > 0.5 * place.slab.thickness && sheet[site] <= 0)
+    const Vec3 away{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)};
+    if (side * place.slab.height(away) > 0.5 * place.slab.thickness && place.is_beside(away, sheet[site]))
       sum += static_cast<double>(fractions[site]);
   };
   add(place.site, 0, 0, 0);
@@ -129,7 +128,7 @@ std::vector<SiteValues::Entry> SheetValues::entries(const SheetPlace& place) con
   bool beside = true;
   for (Entry entry : plain) {
     if (entry.material != place.material) continue;
-    beside = entry.fraction <= 0;
+    beside = place.is_beside({}, entry.fraction);
     entry.value = entry.settled() ? signed_value(own, entry.fraction > 0, least) : own;
     entries.push_back(entry);
   }

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/sheet_values.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
@@ -19,8 +20,20 @@ constexpr double kLeastKept = 0.05, kLeastHeld = 0.1;
 
 }  // namespace
 
-void SiteValues::split_at_sheets(const MultiMaterialData& data) {
-  const ThinSheets sheets = find_thin_sheets(data, *this);
+/// Steps of fractions at sheets are as wide as the layers fitted there say.
+void SiteValues::set_widths_of_sheets(const MultiMaterialData& data, const ThinSheets& sheets) {
+  const GridSites sites(data.grid);
+  for (const SheetPlace& place : sheets.places) {
+    const Vec3 size = sites.cell(place.site).size(), &n = place.slab.normal;
+    const double length = 1 / norm(Vec3{n.x / size.x, n.y / size.y, n.z / size.z});
+    for (Entry& entry : at(place.site)) {
+      if (!entry.settled())
+        entry.width = place.slab.width > 0 ? coded_width(place.slab.width * length) : std::uint16_t{0};
+    }
+  }
+}
+
+void SiteValues::split_at_sheets(const MultiMaterialData& data, const ThinSheets& sheets) {
   if (sheets.places.empty()) return;
   const SheetValues values(data, *this, sheets);
   if (values.too_many()) return;

@@ -6,9 +6,13 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/geometry/vec3.h"
+#include "interfaces/reconstruction/fraction_noise.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
+#include "interfaces/reconstruction/interface_widths.h"
 #include "interfaces/reconstruction/label_smoothing.h"
+#include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/thin_sheets.h"
 
 namespace adamas {
 
@@ -16,20 +20,33 @@ namespace {
 
 /// The least values of smoothed labels, in voxels: too small for the eye, and far above round-off.
 constexpr double kLeastOfLabels = 0.02;
+/// The greatest width of a step that an entry can have, in distances of sites.
+constexpr double kWidestCoded = 64;
+/// Values of blurred steps are known no farther from the interface than this, in widths.
+constexpr double kFarthest = 4;
+/// Less noise than this is none.
+constexpr double kLeastNoise = 6e-3;
 
 }  // namespace
 
-SiteValues::SiteValues(const MultiMaterialData& data, bool smooth) {
+SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, std::optional<double> blur) {
   double widest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const auto& x = data.grid.nodes[static_cast<std::size_t>(axis)];
     for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
   }
   far_ = -32 * widest;
+  width_unit_ = kWidestCoded * data.grid.least_spacing() / 65535;
   find_entries(data);
   if (!smooth) {
+    find_widths(data, blur, *this);
+    const ThinSheets sheets = find_thin_sheets(data, *this);
+    set_widths_of_sheets(data, sheets);
+    blur_ = summarise_widths(data, *this);
     set_distances(data);
-    split_at_sheets(data);
+    noise_ = fraction_noise(data, *this, sheets);
+    if (noise_ > kLeastNoise) smooth_within_noise(data, sheets, noise_, *this);
+    split_at_sheets(data, sheets);
     return;
   }
   if (data.labels.empty()) fail("{}: expected labels to smooth, found volume fractions", data.source);
@@ -45,6 +62,12 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
     const Vec3 size = sites.cell(mixed_[n]).size();
     for (std::size_t e = first_[mixed_[n]]; e < first_[mixed_[n] + 1]; ++e) {
       if (entries_[e].settled()) continue;
+      if (entries_[e].width > 0) {
+        const double steps = normal_quantile(static_cast<double>(entries_[e].fraction));
+        entries_[e].value = std::clamp(width(entries_[e]) * std::clamp(steps, -kFarthest, kFarthest),
+                                       -greatest(), greatest());
+        continue;
+      }
       entries_[e].value = planes[e].known() ? planes[e].distance
                                             : (static_cast<double>(entries_[e].fraction) - 0.5) *
                                                   std::min({size.x, size.y, size.z});
@@ -62,9 +85,11 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
       sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
         const Vec3 d = centre - sites.position(other);
         for (std::size_t o = first_[other]; o < first_[other + 1]; ++o) {
-          if (entries_[o].material != entry.material || !planes[o].known()) continue;
+          if (entries_[o].material != entry.material) continue;
+          const bool blurred = entries_[o].width > 0;
+          if (!blurred && !planes[o].known()) continue;
           const double w = 1 / squared_norm(d);
-          sum += w * (planes[o].distance + dot(planes[o].towards, d));
+          sum += w * (blurred ? entries_[o].value : planes[o].distance + dot(planes[o].towards, d));
           weights += w;
         }
       });

@@ -3,12 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/data/multi_material_data.h"
 
 namespace adamas {
+
+/// How wide the steps of fractions are (docs/method.md, Blurred fractions): the standard deviation of the
+/// normal distribution that a step looks like, in distances of sites.
+struct BlurSummary {
+  double median = 0, greatest = 0;  ///< of blurred cells
+  double share = 0;                 ///< of mixed cells that are blurred
+  std::size_t cells = 0;            ///< mixed cells that are blurred
+};
 
 class GridSites;
 class SheetValues;
@@ -22,15 +31,16 @@ class SiteValues {
   struct Entry {
     double value;
     float fraction;
-    std::uint16_t material;  ///< its number in the order of names, or that of a region of it
+    std::uint16_t material;   ///< its number in the order of names, or that of a region of it
+    std::uint16_t width = 0;  ///< of the step of its fractions, coded (width()); 0: it is sharp
 
     /// Whether the material fills the cell or is absent from it.
     [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
   };
 
-  /// Values from the planes that cut off each mixed cell's fractions; of labels, with `smooth`, those of
-  /// smooth_label_values().
-  explicit SiteValues(const MultiMaterialData& data, bool smooth = false);
+  /// Values from the planes that cut off each mixed cell's fractions, and from the widths of blurred ones; of
+  /// labels, with `smooth`, those of smooth_label_values(). `blur` is as in find_widths().
+  explicit SiteValues(const MultiMaterialData& data, bool smooth = false, std::optional<double> blur = {});
 
   [[nodiscard]] std::span<const Entry> at(std::size_t site) const {
     return {entries_.data() + first_[site], entries_.data() + first_[site + 1]};
@@ -53,6 +63,16 @@ class SiteValues {
   [[nodiscard]] std::size_t number_count() const { return by_name_.size(); }
   /// The number of the one material of a site that has no values.
   [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_[site]; }
+  /// The standard deviation of the normal distribution that the step of an entry's fractions looks like, in
+  /// the unit of length; 0 where it is sharp. And how an entry has it.
+  [[nodiscard]] double width(const Entry& entry) const { return entry.width * width_unit_; }
+  [[nodiscard]] std::uint16_t coded_width(double width) const {
+    return static_cast<std::uint16_t>(std::clamp(width / width_unit_, 1.0, 65535.0));
+  }
+  /// Whether a step of a site's fractions is blurred.
+  [[nodiscard]] bool is_blurred(std::size_t site) const {
+    return std::ranges::any_of(at(site), [](const Entry& entry) { return entry.width > 0; });
+  }
   /// The value of a material that has none near a site: less than any that counts.
   [[nodiscard]] double far() const { return far_; }
   /// No value is greater than this.
@@ -71,6 +91,9 @@ class SiteValues {
   [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
   /// Lifts the values of sheets above what is on their sides where they have come below.
   void hold_layers();
+  [[nodiscard]] const BlurSummary& blur() const { return blur_; }
+  /// The standard deviation of errors in fractions.
+  [[nodiscard]] double noise() const { return noise_; }
   /// Sites where two materials or more have a fraction, in order.
   [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
 
@@ -80,7 +103,8 @@ class SiteValues {
   void find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
                          std::vector<std::uint16_t>& found) const;
   void find_entries(const MultiMaterialData& data);
-  void split_at_sheets(const MultiMaterialData& data);
+  void set_widths_of_sheets(const MultiMaterialData& data, const ThinSheets& sheets);
+  void split_at_sheets(const MultiMaterialData& data, const ThinSheets& sheets);
   void find_layers(const MultiMaterialData& data, const ThinSheets& sheets, const SheetValues& values);
   [[nodiscard]] double above(const Layer& layer) const;
 
@@ -91,7 +115,8 @@ class SiteValues {
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> mixed_;
   std::vector<Layer> layers_;
-  double far_ = 0, least_ = 0;
+  BlurSummary blur_;
+  double far_ = 0, least_ = 0, width_unit_ = 1, noise_ = 0;
 };
 
 /// The value at a lattice point on the border, beyond the sites, `step` times as far from the nearest as that

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/base/parallel.h"
@@ -16,7 +17,8 @@ using Entry = SiteValues::Entry;
 
 /// Cells of which a sheet and what is on its sides take less than this part are left out of its fit.
 constexpr double kLeastOfThree = 0.97;
-/// Rings of sites round those with a fit of their own, to which sheets are continued.
+/// Rings of sites round those with a fit of their own, to which sheets are continued; blurred ones farther, by
+/// their width.
 constexpr int kRings = 2;
 /// Layers are continuations of each other where their normals agree at least so well, by the cosine, and
 /// their heights differ by no more cells.
@@ -27,6 +29,13 @@ constexpr double kAside = 0.4;
 /// It ends there where the cell should hold so much of it and has none. Where the cell has less than the
 /// second part of what it should hold, the layer is as much thinner.
 constexpr double kMissing = 0.1, kHalf = 0.5;
+/// A sharp layer that leaves no more than this part of the fractions is what they are of.
+constexpr double kExact = 0.1, kFailed = std::numeric_limits<double>::infinity();
+/// Blurred layers of no more than this width, in cells, are sharp ones.
+constexpr double kSharpWidth = 0.4;
+/// Blurred sheets are looked for where no fraction near is above the first, and that of the cell is not below
+/// this part of the greatest.
+constexpr double kHighest = 0.8, kOfHighest = 0.3;
 
 class SheetSearch {
  public:
@@ -40,7 +49,10 @@ class SheetSearch {
   std::vector<SheetPlace> run() {
     find_own();
     if (places_.empty()) return {};
-    for (int ring = 0; ring < kRings; ++ring) add_ring();
+    double widest = 0;
+    for (const SheetPlace& place : places_) widest = std::max(widest, place.slab.width);
+    const int rings = kRings + static_cast<int>(std::ceil(widest));
+    for (int ring = 0; ring < rings; ++ring) add_ring(ring >= kRings);
     std::sort(places_.begin(), places_.end(),
               [](const SheetPlace& a, const SheetPlace& b) { return a.site < b.site; });
     return std::move(places_);
@@ -58,7 +70,7 @@ class SheetSearch {
     parallel_for(mixed.size(), 64, [&](std::size_t n) {
       for (const Entry& entry : values_.at(mixed[n])) {
         if (entry.fraction <= 0) continue;
-        const auto place = fit(mixed[n], entry.material);
+        const auto place = fit(mixed[n], entry);
         if (place && (!found[n] || place->slab.thickness < found[n]->slab.thickness)) found[n] = place;
       }
     });
@@ -69,13 +81,13 @@ class SheetSearch {
 
   /// The sites of a window round one; those beyond the domain are left out.
   template <class Visit>
-  bool for_each_in_window(std::size_t site, const Visit& visit) const {
+  bool for_each_in_window(std::size_t site, int reach, const Visit& visit) const {
     const auto s = static_cast<std::int64_t>(site);
     const std::int64_t x = s % n_[0], y = s / n_[0] % n_[1], z = s / (n_[0] * n_[1]);
     std::size_t cell = 0;
-    for (int dk = -SheetWindow::kReach; dk <= SheetWindow::kReach; ++dk) {
-      for (int dj = -SheetWindow::kReach; dj <= SheetWindow::kReach; ++dj) {
-        for (int di = -SheetWindow::kReach; di <= SheetWindow::kReach; ++di, ++cell) {
+    for (int dk = -reach; dk <= reach; ++dk) {
+      for (int dj = -reach; dj <= reach; ++dj) {
+        for (int di = -reach; di <= reach; ++di, ++cell) {
           const std::int64_t i = x + di, j = y + dj, k = z + dk;
           if (i < 0 || j < 0 || k < 0 || i >= n_[0] || j >= n_[1] || k >= n_[2]) continue;
           if (!visit(cell, static_cast<std::size_t>(i + n_[0] * (j + n_[1] * k)))) return false;
@@ -85,28 +97,53 @@ class SheetSearch {
     return true;
   }
 
-  [[nodiscard]] std::optional<SheetPlace> fit(std::size_t site, std::uint16_t material) const {
-    SheetWindow window;
+  /// The layer of an entry's material at its site. Fractions that seem blurred may be those of a sharp layer:
+  /// what holds them better.
+  [[nodiscard]] std::optional<SheetPlace> fit(std::size_t site, const Entry& entry) const {
+    double off = kFailed, off_blurred = kFailed;
+    const auto sharp = fit(site, entry.material, false, off);
+    if (entry.width == 0 || (sharp && off < kExact)) return sharp;
+    if (!may_be_blurred_sheet(site, entry)) return {};
+    const auto blurred = fit(site, entry.material, true, off_blurred);
+    const bool is_sharp = off < off_blurred || (blurred && blurred->slab.width <= kSharpWidth);
+    return sharp && is_sharp ? sharp : blurred;
+  }
+
+  /// Whether a blurred material takes no more than a part of cells near a site, of which this one has enough.
+  [[nodiscard]] bool may_be_blurred_sheet(std::size_t site, const Entry& entry) const {
+    double most = 0;
+    for_each_in_window(site, SheetWindow::kReach, [&](std::size_t, std::size_t other) {
+      most = std::max(most, fraction(entry.material, other));
+      return most <= kHighest;
+    });
+    return most <= kHighest && static_cast<double>(entry.fraction) >= kOfHighest * most;
+  }
+
+  [[nodiscard]] std::optional<SheetPlace> fit(std::size_t site, std::uint16_t material, bool blurred,
+                                              double& off) const {
+    SheetWindow window(blurred);
     // Where it fills a cell and all round it there is no thin sheet.
-    const bool thin = for_each_in_window(site, [&](std::size_t cell, std::size_t other) {
-      if (values_.at(other).empty() && values_.sole_material(other) == material) return false;
+    const bool thin = for_each_in_window(site, SheetWindow::kReach, [&](std::size_t, std::size_t other) {
+      return !values_.at(other).empty() || values_.sole_material(other) != material;
+    });
+    if (!thin) return {};
+    for_each_in_window(site, window.reach, [&](std::size_t cell, std::size_t other) {
       window.known[cell] = 1;
       window.fraction[cell] = static_cast<float>(fraction(material, other));
       return true;
     });
-    if (!thin) return {};
     const auto guess = guess_sheet(window);
     if (!guess) return {};
     SheetPlace place{static_cast<std::uint32_t>(site), material, {material, material}, {}, {}, false};
     place.sides = sides_of(place, *guess);
     if (place.sides[0] == material) return {};
-    for_each_in_window(site, [&](std::size_t cell, std::size_t other) {
+    for_each_in_window(site, window.reach, [&](std::size_t cell, std::size_t other) {
       double sum = fraction(material, other) + fraction(place.sides[0], other);
       if (place.sides[0] != place.sides[1]) sum += fraction(place.sides[1], other);
       if (sum < kLeastOfThree) window.known[cell] = 0;
       return true;
     });
-    const auto slab = fit_sheet(window, *guess);
+    const auto slab = fit_sheet(window, *guess, off);
     if (!slab) return {};
     place.slab = *slab;
     place.is_fitted = true;
@@ -125,9 +162,10 @@ class SheetSearch {
     for (const std::uint16_t material : near) {
       if (material == place.material) continue;
       std::array<double, 2> sums{0, 0};
-      for_each_in_window(place.site, [&](std::size_t cell, std::size_t other) {
-        const double y = slab.height(SheetWindow::place(cell));
-        if (std::abs(y) > 0.5 * slab.thickness && std::abs(y) < 2.2)
+      const SheetWindow window(slab.width > 0);
+      for_each_in_window(place.site, window.reach, [&](std::size_t cell, std::size_t other) {
+        const double y = slab.height(window.place(cell));
+        if (std::abs(y) > 0.5 * slab.thickness && std::abs(y) < window.reach + 0.2)
           sums[y > 0 ? 0 : 1] += fraction(material, other);
         return true;
       });
@@ -140,12 +178,13 @@ class SheetSearch {
   }
 
   /// Continues sheets to sites beside the known places.
-  void add_ring() {
+  void add_ring(bool blurred_alone) {
     std::vector<std::uint32_t> place_of(data_.grid.site_count(), kNone);
     for (std::size_t p = 0; p < places_.size(); ++p)
       place_of[places_[p].site] = static_cast<std::uint32_t>(p);
     std::vector<std::uint32_t> beside;
     for (const SheetPlace& place : places_) {
+      if (blurred_alone && place.slab.width == 0) continue;
       sites_.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
         if (place_of[other] == kNone && !values_.at(other).empty())
           beside.push_back(static_cast<std::uint32_t>(other));
@@ -180,26 +219,33 @@ class SheetSearch {
     });
     if (!nearest) return {};
     Vec3 normal, middle;
-    double offset = 0, thickness = 0, weights = 0;
+    double offset = 0, thickness = 0, width = 0, weights = 0;
     for_each_place([&](const SheetPlace& place, double squared, const Vec3& d) {
       const double cosine = dot(place.slab.normal, nearest->slab.normal), sign = cosine < 0 ? -1 : 1;
       if (place.material != nearest->material || std::abs(cosine) < kLeastCosine ||
+          (place.slab.width > 0) != (nearest->slab.width > 0) ||
           std::abs(sign * place.slab.offset - nearest->slab.offset) > kMostStep)
         return;
       const double w = 1 / squared;
       normal += w * sign * place.slab.normal;
       offset += w * sign * place.slab.offset;
       thickness += w * place.slab.thickness;
+      width += w * place.slab.width;
       weights += w;
       middle += w * d;
     });
     SheetPlace place = *nearest;
     place.site = static_cast<std::uint32_t>(site);
     place.is_fitted = false;
-    place.slab = {normalized(normal), offset / weights, thickness / weights};
+    place.slab = {normalized(normal), offset / weights, thickness / weights, width / weights};
     middle *= 1 / weights;
     const double aside = norm(middle - dot(middle, place.slab.normal) * place.slab.normal);
     const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
+    if (place.slab.width > 0) {
+      if (own < kHalf * part) return {};
+      place.sides = sides_of(place, place.slab);
+      return place;
+    }
     if (own > 0) {
       if (aside > kAside && own < kHalf * part) place.slab.thickness *= own / part;
       place.sides = sides_of(place, place.slab);

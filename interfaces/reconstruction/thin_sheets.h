@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct SheetPlace {
   std::array<std::uint32_t, 2> regions{};  ///< of the sides
   Slab slab;                               ///< round the site, in cells
   bool is_fitted = false;                  ///< to the fractions round the site itself
+
+  /// Whether a cell, so many cells away from the site, has no part of the layer, if `fraction` is what it
+  /// holds of the material: of a blurred layer by where the cell lies.
+  [[nodiscard]] bool is_beside(const Vec3& away, float fraction) const {
+    return slab.width > 0 ? std::abs(slab.height(away)) > 0.5 * (slab.thickness + 1) : fraction <= 0;
+  }
 };
 
 /// Where thin sheets are. Their two sides are in different regions, which are the same wherever the same side

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/blurred_fit.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/linear_system.h"
@@ -48,11 +49,15 @@ class Correction {
         cells_(cells),
         step_(data.grid.least_spacing()) {
     const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
-    for (const std::uint32_t site : values.mixed())
+    for (const std::uint32_t site : values.mixed()) {
+      if (values.is_blurred(site)) continue;
+      sharp_.push_back(site);
       colours_[site % nx % 2 + 2 * (site / nx % ny % 2) + 4 * (site / (nx * ny) % 2)].push_back(site);
+    }
   }
 
   void run(Progress& progress) {
+    if (sharp_.size() < values_.mixed().size()) fit_blurred(data_, values_, cells_, 0, progress);
     changed_.assign(data_.grid.site_count(), 0);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       progress.step("correcting volumes", -1);
@@ -144,16 +149,25 @@ class Correction {
     if (slope * step_ > 0.02) set(std::clamp(missing / slope, -2 * step_, 2 * step_));
   }
 
+  /// Whether a site or one beside it is blurred.
+  [[nodiscard]] bool is_near_blurred(std::size_t site) const {
+    if (sharp_.size() == values_.mixed().size()) return false;
+    bool near = values_.is_blurred(site);
+    grid_sites_.for_each_neighbour(
+        site, [&](std::size_t other, int, int, int) { near = near || values_.is_blurred(other); });
+    return near;
+  }
+
   /// Finds the cells to correct; returns whether enough have joined them to correct again.
   bool find_cells() {
-    if (values_.mixed().empty()) return false;
+    if (sharp_.empty()) return false;
     std::vector<char> chosen(data_.grid.site_count(), 0);
-    for (const std::uint32_t site : values_.mixed()) chosen[site] = 1;
+    for (const std::uint32_t site : sharp_) chosen[site] = 1;
     for (const std::uint32_t site : cells_to_correct_) chosen[site] = 1;
     parallel_chunks(chosen.size(), 64 * kChunk, [&](std::size_t begin, std::size_t end) {
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t site = begin; site < end; ++site) {
-        if (chosen[site] != 0 || entries(site).empty()) continue;
+        if (chosen[site] != 0 || entries(site).empty() || is_near_blurred(site)) continue;
         cell.go_to(site);
         cell.measure();
         chosen[site] = cell.greatest_difference() > kIntruded ? 1 : 0;
@@ -340,7 +354,8 @@ class Correction {
   const SiteCells& cells_;
   double step_;
   std::vector<int> changed_;                           // by site: when last a sweep did
-  std::array<std::vector<std::uint32_t>, 8> colours_;  // mixed sites that do not touch each other
+  std::vector<std::uint32_t> sharp_;                   // mixed sites that are not blurred
+  std::array<std::vector<std::uint32_t>, 8> colours_;  // of these, such that do not touch each other
   std::vector<std::uint32_t> cells_to_correct_;
   std::vector<std::uint32_t> row_of_;      // of such a cell's volumes
   std::vector<std::uint32_t> unknowns_;    // entries that are moved

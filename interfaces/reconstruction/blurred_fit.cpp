@@ -1,0 +1,171 @@
+#include "interfaces/reconstruction/blurred_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/cell_volumes.h"
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/interface_planes.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+constexpr int kRounds = 5;
+/// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
+constexpr double kRelax = 0.7, kMostMove = 0.5;
+
+double least_side(const Box3& cell) {
+  const Vec3 size = cell.size();
+  return std::min({size.x, size.y, size.z});
+}
+
+}  // namespace
+
+BlurredFractions::BlurredFractions(const MultiMaterialData& data, const SiteValues& values,
+                                   const SiteCells& cells)
+    : data_(data), values_(values), cells_(cells) {
+  std::vector<std::vector<std::uint32_t>> sites(data.materials.size());
+  for (const std::uint32_t site : values.mixed()) {
+    for (const Entry& entry : values.at(site)) {
+      if (entry.width == 0) continue;
+      auto& own = sites[values.whole(entry.material)];
+      if (own.empty() || own.back() != site) own.push_back(site);
+    }
+  }
+  for (std::uint16_t number = 0; number < sites.size(); ++number) {
+    if (!sites[number].empty()) add_part(number, sites[number]);
+  }
+  owned_.resize(values.entries().size());
+  predicted_.resize(owned_.size());
+}
+
+void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uint32_t>& sites) {
+  const GridSites grid_sites(data_.grid);
+  const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
+  double widest = 0;
+  for (const std::uint32_t site : sites) {
+    for (const Entry& entry : values_.at(site)) {
+      if (values_.whole(entry.material) == number) widest = std::max(widest, values_.width(entry));
+    }
+  }
+  const auto margin = static_cast<std::size_t>(std::ceil(3 * widest / data_.grid.least_spacing())) + 1;
+  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, {}};
+  part.step = part.box.greatest_step();
+  struct Found {
+    std::size_t steps;
+    Part::Target target;
+  };
+  std::vector<Found> found(sites.size());
+  parallel_for(sites.size(), 1024, [&](std::size_t n) {
+    const std::size_t site = sites[n], entry = find(site, number);
+    // Regions of a material have the width of the material.
+    double width = 0;
+    for (const Entry& other : values_.at(site)) {
+      if (values_.whole(other.material) == number) width = std::max(width, values_.width(other));
+    }
+    const Vec3 size = grid_sites.cell(site).size(),
+               normal = normalized(fraction_gradient(grid_sites, site, {fractions.begin(), fractions.size()}));
+    double own = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      own += normal[axis] * normal[axis] * size[axis] * size[axis] / 12;
+    const double steps = std::max(0.0, width * width - own) / part.step;
+    found[n] = {static_cast<std::size_t>(steps),
+                {static_cast<std::uint32_t>(entry), static_cast<std::uint32_t>(part.box.place(site)),
+                 static_cast<float>(steps - std::floor(steps))}};
+  });
+  for (const Found& each : found) {
+    if (part.targets.size() <= each.steps) part.targets.resize(each.steps + 1);
+    part.targets[each.steps].push_back(each.target);
+  }
+  parts_.push_back(std::move(part));
+}
+
+/// The first entry at a site of a material or of its regions.
+std::size_t BlurredFractions::find(std::size_t site, std::uint16_t number) const {
+  const std::span<const Entry> own = values_.at(site);
+  const auto found = std::ranges::find_if(
+      own, [&](const Entry& entry) { return values_.whole(entry.material) == number; });
+  return static_cast<std::size_t>(&*found - values_.entries().data());
+}
+
+void BlurredFractions::predict() {
+  measure();
+  predicted_ = owned_;
+  for (const Part& part : parts_) spread(part);
+}
+
+/// The volumes that materials own in the cells of sites.
+void BlurredFractions::measure() {
+  parallel_chunks(data_.grid.site_count(), 4096, [&](std::size_t begin, std::size_t end) {
+    CellVolumes cell(data_.grid, values_, cells_);
+    for (std::size_t site = begin; site < end; ++site) {
+      const std::span<const Entry> own = values_.at(site);
+      if (own.empty()) continue;
+      cell.go_to(site);
+      const std::vector<double>& volumes = cell.measure();
+      const Entry* all = values_.entries().data();
+      for (const Entry& entry : own) owned_[static_cast<std::size_t>(&entry - all)] = 0;
+      for (std::size_t m = 0; m < volumes.size(); ++m)
+        owned_[find(site, cell.materials()[m].number)] = static_cast<float>(volumes[m]);
+    }
+  });
+}
+
+void BlurredFractions::spread(const Part& part) {
+  std::vector<float> now(part.box.size()), before, scratch;
+  part.box.for_each([&](std::size_t place, std::size_t site) {
+    const std::span<const Entry> own = values_.at(site);
+    float volume = own.empty() && values_.sole_material(site) == part.number ? 1.0f : 0.0f;
+    for (const Entry& entry : own) {
+      if (values_.whole(entry.material) != part.number) continue;
+      volume = owned_[static_cast<std::size_t>(&entry - values_.entries().data())];
+      break;
+    }
+    now[place] = volume;
+  });
+  for (const auto& targets : part.targets) {
+    before = now;
+    part.box.diffuse(now, part.step, scratch);
+    parallel_for(targets.size(), 4096, [&](std::size_t n) {
+      const auto& [entry, place, rest] = targets[n];
+      predicted_[entry] = before[place] + rest * (now[place] - before[place]);
+    });
+  }
+}
+
+void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, double noise,
+                 Progress& progress) {
+  BlurredFractions predicted(data, values, cells);
+  const GridSites sites(data.grid);
+  const double most = values.greatest();
+  for (int round = 0; round < kRounds; ++round) {
+    progress.step("fitting blurred fractions", static_cast<double>(round) / kRounds);
+    predicted.predict();
+    parallel_for(values.mixed().size(), 1024, [&](std::size_t n) {
+      const std::size_t site = values.mixed()[n];
+      const std::span<Entry> own = values.at(site);
+      const double h = least_side(sites.cell(site));
+      for (Entry& entry : own) {
+        if (entry.width == 0) continue;
+        // A material's first entry has what is predicted.
+        const auto first = std::ranges::find_if(own, [&](const Entry& other) {
+          return values.whole(other.material) == values.whole(entry.material);
+        });
+        const double missing =
+            static_cast<double>(entry.fraction) -
+            static_cast<double>(predicted.at(static_cast<std::size_t>(&*first - values.entries().data())));
+        const double beyond = std::copysign(std::max(0.0, std::abs(missing) - noise), missing);
+        const double by = kRelax * values.width(entry) * std::sqrt(2 * std::numbers::pi) * beyond;
+        entry.value = std::clamp(entry.value + std::clamp(by, -kMostMove * h, kMostMove * h), -most, most);
+      }
+    });
+    values.hold_layers();
+  }
+}
+
+}  // namespace adamas

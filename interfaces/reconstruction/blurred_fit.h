@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "adamas/progress.h"
+#include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/site_box.h"
+#include "interfaces/reconstruction/site_cell.h"
+#include "interfaces/reconstruction/site_values.h"
+
+namespace adamas {
+
+/// What fractions sharp interfaces would have if they were blurred as the data's are: the exact volumes of
+/// materials in cells, spread by a normal distribution of each entry's own width beyond that of the cell.
+class BlurredFractions {
+ public:
+  BlurredFractions(const MultiMaterialData& data, const SiteValues& values, const SiteCells& cells);
+
+  /// Works them out for the present values.
+  void predict();
+  /// What a blurred entry's fraction should be; of entries that are not blurred the volume itself.
+  [[nodiscard]] float at(std::size_t entry) const { return predicted_[entry]; }
+
+ private:
+  /// The entries of a material that are blurred, in a box round them.
+  struct Part {
+    std::uint16_t number;
+    SiteBox box;
+    double step;  ///< variance of a step of diffusion
+    /// Entries with their place in the box, by the steps that they need; and the rest of a step, as a part.
+    struct Target {
+      std::uint32_t entry, place;
+      float rest;
+    };
+    std::vector<std::vector<Target>> targets;
+  };
+  void add_part(std::uint16_t number, const std::vector<std::uint32_t>& sites);
+  void measure();
+  void spread(const Part& part);
+  [[nodiscard]] std::size_t find(std::size_t site, std::uint16_t number) const;
+
+  const MultiMaterialData& data_;
+  const SiteValues& values_;
+  const SiteCells& cells_;
+  std::vector<Part> parts_;
+  std::vector<float> owned_;      // by entry: a material's first at a site has the volume of all its regions
+  std::vector<float> predicted_;  // by entry
+};
+
+/// Moves values until predicted fractions are those of the data, but for the noise: blurred entries by what
+/// they miss, times the length that it is worth, a few times.
+void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, double noise,
+                 Progress& progress);
+
+}  // namespace adamas

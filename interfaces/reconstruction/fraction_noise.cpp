@@ -1,0 +1,197 @@
+#include "interfaces/reconstruction/fraction_noise.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/interface_planes.h"
+#include "interfaces/reconstruction/normal_distribution.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+/// Neighbours count that are no farther away than this, in sites along each axis and in the square.
+constexpr int kReach = 2, kSquaredReach = 5;
+/// A surface is told from so many neighbours at least.
+constexpr int kLeastNeighbours = 14;
+/// Noise is found from fractions between the first and what it leaves of 1, of so many cells at most.
+constexpr double kTelling = 0.02;
+constexpr std::size_t kMostCells = 20000;
+/// Where less than this part of them can be told nothing is known.
+constexpr double kLeastPart = 0.1;
+/// The median of the size of normally distributed numbers, times this, is their standard deviation.
+constexpr double kOfMedian = 1.4826;
+/// Squares that are greater than those of the noise by this factor are no noise.
+constexpr double kBeyond = 2;
+
+/// What a smooth surface through neighbours says of an entry.
+struct LeftOut {
+  double value = 0;     ///< its distance, without its own
+  double fraction = 0;  ///< that belongs to this distance
+  double own = 0;       ///< the part of its own distance in a surface through it and its neighbours
+  bool known = false;
+};
+
+class SmoothSurface {
+ public:
+  SmoothSurface(const MultiMaterialData& data, const SiteValues& values)
+      : values_(values), sites_(data.grid) {
+    for (int axis = 0; axis < 3; ++axis)
+      n_[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(data.grid.sites(axis));
+  }
+
+  [[nodiscard]] LeftOut leave_out(std::size_t site, const Entry& entry) const {
+    constexpr int kTerms = 10;
+    using Terms = Eigen::Matrix<double, kTerms, 1>;
+    Eigen::Matrix<double, kTerms, kTerms> sums = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+    Terms right = Terms::Zero();
+    const Vec3 centre = sites_.position(site), size = sites_.cell(site).size();
+    const double width = entry.width > 0 ? values_.width(entry) : std::min({size.x, size.y, size.z});
+    int count = 0;
+    const auto s = static_cast<std::int64_t>(site);
+    const std::array<std::int64_t, 3> p{s % n_[0], s / n_[0] % n_[1], s / (n_[0] * n_[1])};
+    for (std::int64_t dk = -kReach; dk <= kReach; ++dk) {
+      for (std::int64_t dj = -kReach; dj <= kReach; ++dj) {
+        for (std::int64_t di = -kReach; di <= kReach; ++di) {
+          const std::int64_t squared = di * di + dj * dj + dk * dk;
+          const std::array<std::int64_t, 3> q{p[0] + di, p[1] + dj, p[2] + dk};
+          if (squared == 0 || squared > kSquaredReach || q[0] < 0 || q[1] < 0 || q[2] < 0 || q[0] >= n_[0] ||
+              q[1] >= n_[1] || q[2] >= n_[2])
+            continue;
+          const auto other = static_cast<std::size_t>(q[0] + n_[0] * (q[1] + n_[1] * q[2]));
+          const Entry* there = find(other, entry.material);
+          if (there == nullptr || there->settled() || (there->width > 0) != (entry.width > 0)) continue;
+          const Vec3 way = sites_.position(other) - centre;
+          const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z,
+                       steps = there->value / width;
+          const double w = std::exp(-0.5 * static_cast<double>(squared) - steps * steps);
+          Terms terms;
+          terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
+          sums += w * terms * terms.transpose();
+          right += w * there->value * terms;
+          ++count;
+        }
+      }
+    }
+    if (count < kLeastNeighbours) return {};
+    sums.diagonal().array() += 1e-9 * sums(0, 0);
+    const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> solver(sums);
+    const Terms found = solver.solve(right), unit = solver.solve(Terms::Unit(0));
+    const double own_steps = entry.value / width, w = std::exp(-own_steps * own_steps);
+    LeftOut result;
+    result.value = found[0];
+    result.own = w * unit[0] / (1 + w * unit[0]);
+    result.known = true;
+    if (entry.width > 0) {
+      result.fraction = normal_probability(found[0] / width);
+    } else {
+      const Vec3 towards = normalized(Vec3{found[1] / size.x, found[2] / size.y, found[3] / size.z});
+      result.fraction = part_behind_plane(towards, size, found[0]);
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] const Entry* find(std::size_t site, std::uint16_t material) const {
+    for (const Entry& entry : values_.at(site)) {
+      if (entry.material == material) return &entry;
+    }
+    return nullptr;
+  }
+
+  const SiteValues& values_;
+  GridSites sites_;
+  std::array<std::int64_t, 3> n_{};
+};
+
+/// The mixed sites at which no sheet is.
+std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const ThinSheets& sheets) {
+  std::vector<std::uint32_t> sites;
+  auto place = sheets.places.begin();
+  for (const std::uint32_t site : values.mixed()) {
+    while (place != sheets.places.end() && place->site < site) ++place;
+    if (place == sheets.places.end() || place->site != site) sites.push_back(site);
+  }
+  return sites;
+}
+
+}  // namespace
+
+double fraction_noise(const MultiMaterialData& data, const SiteValues& values, const ThinSheets& sheets) {
+  const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
+  const SmoothSurface surface(data, values);
+  const std::size_t stride = mixed.size() / kMostCells + 1;
+  std::vector<double> off((mixed.size() + stride - 1) / stride, -1);
+  parallel_for(off.size(), 64, [&](std::size_t n) {
+    const std::size_t site = mixed[n * stride];
+    for (const Entry& entry : values.at(site)) {
+      const auto f = static_cast<double>(entry.fraction);
+      if (f < kTelling || f > 1 - kTelling) continue;
+      if (const LeftOut found = surface.leave_out(site, entry); found.known)
+        off[n] = std::max(off[n], std::abs(found.fraction - f));
+    }
+  });
+  const double sampled = kLeastPart * static_cast<double>(values.mixed().size() / stride);
+  std::erase(off, -1.0);
+  if (off.size() < kLeastNeighbours || static_cast<double>(off.size()) < sampled) return 0;
+  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+  std::nth_element(off.begin(), middle, off.end());
+  return kOfMedian * *middle;
+}
+
+void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets, double noise,
+                         SiteValues& values) {
+  const SmoothSurface surface(data, values);
+  const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
+  std::vector<LeftOut> found(values.entries().size());
+  std::vector<float> squares(found.size(), -1);
+  const auto index = [&](const Entry& entry) {
+    return static_cast<std::size_t>(&entry - values.entries().data());
+  };
+  parallel_for(mixed.size(), 64, [&](std::size_t n) {
+    for (const Entry& entry : std::as_const(values).at(mixed[n])) {
+      if (entry.settled()) continue;
+      const LeftOut told = found[index(entry)] = surface.leave_out(mixed[n], entry);
+      const double off = told.fraction - static_cast<double>(entry.fraction);
+      if (told.known) squares[index(entry)] = static_cast<float>(off * off);
+    }
+  });
+  const GridSites sites(data.grid);
+  parallel_for(mixed.size(), 256, [&](std::size_t n) {
+    const std::size_t site = mixed[n];
+    float sum = 0;
+    for (Entry& entry : values.at(site)) {
+      const LeftOut& told = found[index(entry)];
+      if (told.known) {
+        // The mean of squares round the site tells noise from what the fractions really do.
+        double mean = static_cast<double>(squares[index(entry)]);
+        int count = 1;
+        sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+          for (const Entry& there : std::as_const(values).at(other)) {
+            const auto square = static_cast<double>(squares[index(there)]);
+            if (there.material == entry.material && square >= 0) mean += square, ++count;
+          }
+        });
+        mean /= count;
+        const double kept = std::max(0.0, 1 - kBeyond * noise * noise / std::max(mean, 1e-12)),
+                     part = kept + (1 - kept) * told.own;
+        entry.value = told.value + part * (entry.value - told.value);
+        const double fraction = told.fraction + part * (static_cast<double>(entry.fraction) - told.fraction);
+        entry.fraction = static_cast<float>(std::clamp(fraction, 1e-6, 1 - 1e-6));
+      }
+      sum += entry.fraction;
+    }
+    for (Entry& entry : values.at(site)) {
+      if (!entry.settled()) entry.fraction = std::clamp(entry.fraction / sum, 1e-6f, 1 - 1e-6f);
+    }
+  });
+}
+
+}  // namespace adamas

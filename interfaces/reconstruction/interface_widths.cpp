@@ -1,0 +1,168 @@
+#include "interfaces/reconstruction/interface_widths.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/interface_planes.h"
+#include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/site_box.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+/// Steps of this width, in cells, or less are those of sharp interfaces.
+constexpr double kSharp = 0.34;
+/// No width is greater, in cells.
+constexpr double kWidest = 4;
+/// Fractions between the first and what it leaves of 1 tell whether a step is sharp: where what neighbours
+/// should hold is off for a sharp plane by more than for a blurred one, by this part of the sum of both.
+constexpr double kTelling = 0.05, kSure = 0.1;
+/// Widths are means over a neighbourhood with this variance, in distances of sites, by steps of kBlend.
+constexpr int kBlends = 8;
+constexpr double kBlend = 0.25;
+
+class WidthSearch {
+ public:
+  WidthSearch(const MultiMaterialData& data, SiteValues& values)
+      : data_(data), values_(values), sites_(data.grid) {}
+
+  void run() {
+    std::vector<std::vector<std::uint32_t>> entries(data_.materials.size());
+    for (const std::uint32_t site : values_.mixed()) {
+      for (const Entry& entry : values_.at(site)) {
+        if (!entry.settled()) entries[entry.material].push_back(site);
+      }
+    }
+    for (std::uint16_t number = 0; number < entries.size(); ++number) {
+      if (!entries[number].empty()) find(number, entries[number]);
+    }
+  }
+
+ private:
+  void find(std::uint16_t number, const std::vector<std::uint32_t>& sites) {
+    const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
+    const SiteBox box = SiteBox::round(data_.grid, sites, 1);
+    std::vector<float> f(box.size()), gradients, widened, steps(box.size()), scratch;
+    box.for_each([&](std::size_t place, std::size_t site) { f[place] = fractions[site]; });
+    box.squared_gradient(f, gradients, widened);
+    parallel_for(sites.size(), 4096, [&](std::size_t n) {
+      const double d = normal_density(normal_quantile(static_cast<double>(fractions[sites[n]])));
+      steps[box.place(sites[n])] = static_cast<float>(d * d);
+    });
+    // How much worse a sharp plane tells the neighbours than a blurred one does, and both.
+    std::vector<float> worse(box.size()), both(box.size());
+    parallel_for(sites.size(), 256, [&](std::size_t n) {
+      const std::size_t place = box.place(sites[n]);
+      const std::array<double, 2> misses = compare(sites[n], fractions, steps[place], gradients[place],
+                                                   widened[place]);
+      worse[place] = static_cast<float>(misses[0] - misses[1]);
+      both[place] = static_cast<float>(misses[0] + misses[1]);
+    });
+    for (std::size_t p = 0; p < box.size(); ++p) widened[p] *= gradients[p];
+    for (auto* array : {&gradients, &widened, &steps, &worse, &both}) {
+      for (int n = 0; n < kBlends; ++n) box.blend(*array, kBlend, scratch);
+    }
+    for (const std::uint32_t site : sites) {
+      const std::size_t place = box.place(site);
+      const double h = least_side(site);
+      const double width =
+          gradients[place] > 0
+              ? step_width(steps[place] / gradients[place], widened[place] / gradients[place])
+              : kWidest * h;
+      const bool blurred = width > kSharp * h && worse[place] >= kSure * both[place];
+      Entry& entry = *find_entry(site, number);
+      entry.width = blurred ? values_.coded_width(std::min(width, kWidest * h)) : 0;
+    }
+  }
+
+  /// The standard deviation of a step whose squared density is so many times its squared gradient by central
+  /// differences; a third of `widened` is what these add to its square.
+  static double step_width(double ratio, double widened) {
+    const double w = widened / 3;
+    return std::sqrt(std::max(0.0, -0.5 * w + std::sqrt(0.25 * w * w + ratio * ratio)));
+  }
+
+  [[nodiscard]] double least_side(std::size_t site) const {
+    const Vec3 size = sites_.cell(site).size();
+    return std::min({size.x, size.y, size.z});
+  }
+
+  Entry* find_entry(std::size_t site, std::uint16_t number) {
+    const std::span<Entry> own = values_.at(site);
+    return &*std::find_if(own.begin(), own.end(), [&](const Entry& e) { return e.material == number; });
+  }
+
+  /// The sums of squares by which fractions round a site differ from those of the sharp plane that cuts its
+  /// fraction off its cell, and of a blurred one.
+  [[nodiscard]] std::array<double, 2> compare(std::size_t site, const SiteArray<float>& fractions,
+                                              float density, float squared, float widened) const {
+    const auto f = static_cast<double>(fractions[site]);
+    if (f < kTelling || f > 1 - kTelling || squared <= 0) return {0, 0};
+    const Vec3 towards = normalized(fraction_gradient(sites_, site, {fractions.begin(), fractions.size()}));
+    if (!(squared_norm(towards) > 0)) return {0, 0};
+    const Vec3 centre = sites_.position(site);
+    const double width = step_width(static_cast<double>(density / squared), static_cast<double>(widened)),
+                 sharp = plane_distance(towards, sites_.cell(site).size(), f),
+                 blurred = normal_quantile(f);
+    std::array<double, 2> misses{0, 0};
+    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      const double by = dot(towards, sites_.position(other) - centre),
+                   there = static_cast<double>(fractions[other]);
+      const double a = there - part_behind_plane(towards, sites_.cell(other).size(), sharp + by),
+                   b = there - normal_probability(blurred + by / std::max(width, 1e-9));
+      misses[0] += a * a, misses[1] += b * b;
+    });
+    return misses;
+  }
+
+  const MultiMaterialData& data_;
+  SiteValues& values_;
+  GridSites sites_;
+};
+
+}  // namespace
+
+BlurSummary summarise_widths(const MultiMaterialData& data, const SiteValues& values) {
+  BlurSummary summary;
+  const GridSites sites(data.grid);
+  std::vector<double> widths;
+  for (const std::uint32_t site : values.mixed()) {
+    double greatest = 0;
+    for (const Entry& entry : values.at(site)) greatest = std::max(greatest, values.width(entry));
+    if (greatest == 0) continue;
+    ++summary.cells;
+    const Vec3 size = sites.cell(site).size();
+    widths.push_back(greatest / std::min({size.x, size.y, size.z}));
+  }
+  if (widths.empty()) return summary;
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::nth_element(widths.begin(), middle, widths.end());
+  summary.median = *middle;
+  summary.greatest = *std::max_element(widths.begin(), widths.end());
+  summary.share = static_cast<double>(summary.cells) / static_cast<double>(values.mixed().size());
+  return summary;
+}
+
+void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values) {
+  if (!data.labels.empty() || (blur && *blur == 0)) return;
+  if (blur) {
+    const GridSites sites(data.grid);
+    for (const std::uint32_t site : values.mixed()) {
+      const Vec3 size = sites.cell(site).size();
+      const double h = std::min({size.x, size.y, size.z}), width = h * std::sqrt(*blur * *blur + 1.0 / 12);
+      for (Entry& entry : values.at(site)) {
+        if (!entry.settled()) entry.width = values.coded_width(width);
+      }
+    }
+  } else {
+    WidthSearch(data, values).run();
+  }
+}
+
+}  // namespace adamas

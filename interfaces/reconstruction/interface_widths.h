@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/site_values.h"
+
+namespace adamas {
+
+/// Finds the widths of the entries of a material's fractions and sets those that are blurred. `blur`: the
+/// standard deviation in cells by which all are blurred, 0 for none; without it, widths are read off the
+/// fractions.
+void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values);
+
+BlurSummary summarise_widths(const MultiMaterialData& data, const SiteValues& values);
+
+}  // namespace adamas

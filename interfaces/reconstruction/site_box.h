@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "adamas/grid_data.h"
+#include "core/base/parallel.h"
+
+namespace adamas {
+
+/// A box of a grid's sites, on which arrays are smoothed: an array has a number for each site of the box, x
+/// fastest.
+class SiteBox {
+ public:
+  using Index = std::array<std::size_t, 3>;
+
+  /// The sites from `low` to below `high` along each axis. The grid must outlive the box.
+  SiteBox(const RectilinearGrid& grid, const Index& low, const Index& high);
+
+  /// A box round sites, with a margin of so many more on each side where there are any.
+  static SiteBox round(const RectilinearGrid& grid, const std::vector<std::uint32_t>& sites,
+                       std::size_t margin);
+
+  [[nodiscard]] std::size_t size() const { return n_[0] * n_[1] * n_[2]; }
+  [[nodiscard]] std::size_t sites(int axis) const { return n_[static_cast<std::size_t>(axis)]; }
+  /// The place in arrays of a site that lies in the box.
+  [[nodiscard]] std::size_t place(std::size_t site) const {
+    const std::size_t nx = grid_.sites(0), ny = grid_.sites(1);
+    return site % nx - low_[0] + n_[0] * (site / nx % ny - low_[1] + n_[1] * (site / (nx * ny) - low_[2]));
+  }
+  /// Calls visit(place, site) for all sites, those of different planes z = const at the same time.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    parallel_for(n_[2], 1, [&](std::size_t k) {
+      for (std::size_t j = 0; j < n_[1]; ++j) {
+        const std::size_t place = n_[0] * (j + n_[1] * k),
+                          site = grid_.site_index(low_[0], low_[1] + j, low_[2] + k);
+        for (std::size_t i = 0; i < n_[0]; ++i) visit(place + i, site + i);
+      }
+    });
+  }
+
+  /// The squared gradient of an array by central differences, one-sided on the domain's border, in the unit
+  /// of length, and the same with each axis' part times the part of the axis in the normal and the squared
+  /// distance of neighbouring sites: a third of their ratio is how much central differences widen a step.
+  void squared_gradient(const std::vector<float>& values, std::vector<float>& squared,
+                        std::vector<float>& widened) const;
+
+  /// Spreads an array by diffusion: each value to neighbours along each axis, with this variance in the
+  /// square of the unit of length. Nothing leaves the box. `scratch` is room to work in.
+  void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
+  /// Diffusion by a variance in sites along each axis, whatever their distances.
+  void blend(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
+  /// The greatest variance that one step of diffusion is good for.
+  [[nodiscard]] double greatest_step() const;
+
+ private:
+  /// How much of the neighbours before and behind a site becomes its own.
+  struct Share {
+    float before, behind;
+  };
+  [[nodiscard]] std::vector<Share> shares(int axis, double variance, bool in_sites) const;
+  void spread(std::vector<float>& values, double variance, bool in_sites, std::vector<float>& scratch) const;
+
+  const RectilinearGrid& grid_;
+  Index low_, n_;
+  std::array<std::vector<double>, 3> gaps_;  // from each site to the next
+};
+
+}  // namespace adamas
