@@ -15,7 +15,7 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-constexpr int kRounds = 5;
+static const int kRounds = getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 5;
 /// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
 constexpr double kRelax = 0.7, kMostMove = 0.5;
 
@@ -138,7 +138,7 @@ void BlurredFractions::spread(const Part& part) {
   }
 }
 
-void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, double noise,
+void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
                  Progress& progress) {
   BlurredFractions predicted(data, values, cells);
   const GridSites sites(data.grid);
@@ -159,8 +159,7 @@ void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCe
         const double missing =
             static_cast<double>(entry.fraction) -
             static_cast<double>(predicted.at(static_cast<std::size_t>(&*first - values.entries().data())));
-        const double beyond = std::copysign(std::max(0.0, std::abs(missing) - noise), missing);
-        const double by = kRelax * values.width(entry) * std::sqrt(2 * std::numbers::pi) * beyond;
+        const double by = kRelax * values.width(entry) * std::sqrt(2 * std::numbers::pi) * missing;
         entry.value = std::clamp(entry.value + std::clamp(by, -kMostMove * h, kMostMove * h), -most, most);
       }
     });

@@ -48,9 +48,9 @@ class BlurredFractions {
   std::vector<float> predicted_;  // by entry
 };
 
-/// Moves values until predicted fractions are those of the data, but for the noise: blurred entries by what
-/// they miss, times the length that it is worth, a few times.
-void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, double noise,
+/// Moves values until predicted fractions are those of the data: blurred entries by what they miss, times the
+/// length that it is worth, a few times.
+void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
                  Progress& progress);
 
 }  // namespace adamas

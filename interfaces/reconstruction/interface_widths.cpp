@@ -22,10 +22,12 @@ constexpr double kSharp = 0.34;
 constexpr double kWidest = 4;
 /// Fractions between the first and what it leaves of 1 tell whether a step is sharp: where what neighbours
 /// should hold is off for a sharp plane by more than for a blurred one, by this part of the sum of both.
-constexpr double kTelling = 0.05, kSure = 0.1;
+constexpr double kTelling = 0.01, kSure = 0.2, kNothing = 0.02;
 /// Widths are means over a neighbourhood with this variance, in distances of sites, by steps of kBlend.
-constexpr int kBlends = 8;
+constexpr int kBlends = 4;
 constexpr double kBlend = 0.25;
+/// Where less than this part of mixed cells seems blurred none is.
+constexpr double kFew = 0.02;
 
 class WidthSearch {
  public:
@@ -61,8 +63,10 @@ class WidthSearch {
       const std::size_t place = box.place(sites[n]);
       const std::array<double, 2> misses = compare(sites[n], fractions, steps[place], gradients[place],
                                                    widened[place]);
-      worse[place] = static_cast<float>(misses[0] - misses[1]);
-      both[place] = static_cast<float>(misses[0] + misses[1]);
+      const double sum = misses[0] + misses[1];
+      if (sum == 0) return;
+      worse[place] = static_cast<float>((misses[0] - misses[1]) / (sum + kNothing));
+      both[place] = 1;
     });
     for (std::size_t p = 0; p < box.size(); ++p) widened[p] *= gradients[p];
     for (auto* array : {&gradients, &widened, &steps, &worse, &both}) {
@@ -128,25 +132,49 @@ class WidthSearch {
 
 }  // namespace
 
-BlurSummary summarise_widths(const MultiMaterialData& data, const SiteValues& values) {
-  BlurSummary summary;
+void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings) {
   const GridSites sites(data.grid);
   std::vector<double> widths;
   for (const std::uint32_t site : values.mixed()) {
     double greatest = 0;
     for (const Entry& entry : values.at(site)) greatest = std::max(greatest, values.width(entry));
     if (greatest == 0) continue;
-    ++summary.cells;
     const Vec3 size = sites.cell(site).size();
     widths.push_back(greatest / std::min({size.x, size.y, size.z}));
   }
-  if (widths.empty()) return summary;
+  if (widths.empty()) return;
   const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
   std::nth_element(widths.begin(), middle, widths.end());
-  summary.median = *middle;
-  summary.greatest = *std::max_element(widths.begin(), widths.end());
-  summary.share = static_cast<double>(summary.cells) / static_cast<double>(values.mixed().size());
-  return summary;
+  findings.blur_median = *middle;
+  findings.blur_greatest = *std::max_element(widths.begin(), widths.end());
+  findings.blur_share = static_cast<double>(widths.size()) / static_cast<double>(values.mixed().size());
+}
+
+
+
+void drop_few_blurred(const MultiMaterialData& data, SiteValues& values) {
+  const GridSites sites(data.grid);
+  std::vector<char> blurred(data.grid.site_count(), 0);
+  for (const std::uint32_t site : values.mixed()) blurred[site] = values.is_blurred(site) ? 2 : 1;
+  std::vector<std::uint32_t> dropped;
+  std::size_t left = 0;
+  for (const std::uint32_t site : values.mixed()) {
+    if (blurred[site] < 2) continue;
+    int mixed = 0, many = 0;
+    sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      mixed += blurred[other] > 0 ? 1 : 0;
+      many += blurred[other] > 1 ? 1 : 0;
+    });
+    if (2 * many < mixed) {
+      dropped.push_back(site);
+    } else {
+      ++left;
+    }
+  }
+  const bool few = static_cast<double>(left) < kFew * static_cast<double>(values.mixed().size());
+  for (const std::uint32_t site : few ? values.mixed() : dropped) {
+    for (Entry& entry : values.at(site)) entry.width = 0;
+  }
 }
 
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values) {

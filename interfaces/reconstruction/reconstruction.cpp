@@ -16,6 +16,8 @@ namespace {
 /// Where flakes are given to neighbours, totals are closed again so often at most, until they are right to
 /// this part of the domain.
 constexpr int kMostClosings = 3;
+/// The greatest values of FractionOptions.
+constexpr double kMostBlur = 4, kMostError = 0.5;
 constexpr double kTotalTolerance = 5e-10;
 
 /// The greatest difference of volumes beyond the mean of all differences.
@@ -25,6 +27,57 @@ double greatest_difference(const IdVector<MaterialId, double>& a, const IdVector
   for (MaterialId m(0); m.value < a.size(); ++m.value)
     greatest = std::max(greatest, std::abs(a[m] - b[m] - mean));
   return greatest;
+}
+
+double area_of(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& triangles) {
+  double area = 0;
+  for (const InterfaceTriangle& t : triangles) {
+    const Vec3& a = points[t.points[0]];
+    area += 0.5 * norm(cross(points[t.points[1]] - a, points[t.points[2]] - a));
+  }
+  return area;
+}
+
+/// The area of the interfaces of a lattice.
+double interface_area(const MaterialLattice& lattice, double weld) {
+  ContactMeshBuilder builder(weld);
+  const std::uint32_t layers = lattice.points(2) - 1;
+  std::vector<ContactBuffer> contacts(layers);
+  parallel_for(layers, 1, [&](std::size_t k) {
+    OwnershipProblem problem;
+    MaterialLattice::Index cell{0, 0, static_cast<std::uint32_t>(k)};
+    for (cell[1] = 0; cell[1] + 1 < lattice.points(1); ++cell[1]) {
+      for (cell[0] = 0; cell[0] + 1 < lattice.points(0); ++cell[0]) {
+        for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path) {
+          const auto corners = lattice.tetrahedron(cell, path);
+          std::array<std::uint32_t, 4> points{};
+          std::array<std::uint64_t, 4> ids{};
+          std::array<Vec3, 4> positions;
+          for (std::size_t c = 0; c < 4; ++c) {
+            ids[c] = points[c] = lattice.point_index(corners[c]);
+            positions[c] = lattice.position(corners[c]);
+          }
+          if (lattice.have_one_owner(points)) continue;
+          lattice.ownership(points, problem);
+          if (problem.candidates.size() > 1) contacts[k].add(ids, positions, problem);
+        }
+      }
+    }
+  });
+  for (ContactBuffer& layer : contacts) builder.append(layer);
+  const InterfaceMesh mesh = builder.finish();
+  return area_of(mesh.points, mesh.triangles);
+}
+
+/// Throws Error at options out of range.
+const FractionOptions& checked(const FractionOptions& options, const std::string& source) {
+  const auto check = [&](const char* what, const std::optional<double>& value, double most) {
+    if (value && !(*value >= 0 && *value <= most))
+      fail("{}: expected a {} from 0 to {}, found {}", source, what, most, *value);
+  };
+  check("blur of fractions", options.blur, kMostBlur);
+  check("standard deviation of errors of fractions", options.error, kMostError);
+  return options;
 }
 
 /// Leaves out points that no triangle has: those on contacts of a material with itself.
@@ -57,14 +110,15 @@ struct Reconstruction::Layer {
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
                                Progress& progress)
-    : Reconstruction(data, SiteValues(data, options.smooth_labels, options.blur), SiteCells(data.grid), progress) {}
+    : Reconstruction(data, SiteValues(data, options.smooth_labels, checked(options.fractions, data.source)),
+                     SiteCells(data.grid), progress) {}
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
                                Progress& progress)
     : lattice_((correct_volumes(data, values, cells, progress), MaterialLattice(data, values))),
       volume_input_(data.volumes()),
-      blur_(values.blur()),
-      noise_(values.noise()) {
+      volume_wanted_(values.volumes()),
+      findings_(values.findings()) {
   mesh_.source = data.source;
   mesh_.materials = data.materials;
   extract(data, progress);
@@ -73,6 +127,14 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   if (values.least() == 0) moves = give_flakes_to_neighbours(data, values, cells, progress);
   agreement_ = volume_agreement(data, values, cells, moves);
   lost_bodies_ = find_lost_bodies(data, values, cells);
+  if (!data.labels.empty()) return;
+  findings_.cells_off = agreement_.cells_off;
+  findings_.greatest_difference = agreement_.greatest;
+  findings_.tolerance = agreement_.tolerance;
+  findings_.area = findings_.area_of_fractions = area_of(mesh_.points, mesh_.triangles);
+  if (findings_.blur_share > 0 || findings_.fraction_error > 0)
+    findings_.area_of_fractions = interface_area(MaterialLattice(data, SiteValues::fractions(data)),
+                                                 kWeldTolerance * data.grid.domain().diagonal());
 }
 
 /// Closes totals again until they are right together with what neighbours get, and returns what they get.
@@ -85,7 +147,7 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
   for (int closings = 0;; ++closings) {
     flakes = find_flakes(data, values, mesh_, bodies_, body_materials_);
     moves.clear();
-    IdVector<MaterialId, double> wanted = volume_input_, given = volume_reconstructed_;
+    IdVector<MaterialId, double> wanted = volume_wanted_, given = volume_reconstructed_;
     for (const Flake& flake : flakes) {
       const MaterialId from = body_materials_[flake.body], to = body_materials_[flake.neighbour];
       moves.push_back({flake.site, from, to, flake.volume / sites.cell(flake.site).volume()});
@@ -93,13 +155,13 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
       wanted[to] -= flake.volume, given[to] += flake.volume;
     }
     if ((closings == 0 && flakes.empty()) ||
-        greatest_difference(given, volume_input_) <= kTotalTolerance * data.grid.domain().volume()) {
+        greatest_difference(given, volume_wanted_) <= kTotalTolerance * data.grid.domain().volume()) {
       volume_reconstructed_ = given;
       break;
     }
     // Flakes that come and go with the offsets are left as they are.
     const bool give_up = closings == kMostClosings;
-    if (give_up) flakes.clear(), moves.clear(), wanted = volume_input_;
+    if (give_up) flakes.clear(), moves.clear(), wanted = volume_wanted_;
     close_totals(data, wanted, values, cells, progress);
     lattice_ = MaterialLattice(data, values);
     extract(data, progress);

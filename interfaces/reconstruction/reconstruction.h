@@ -2,7 +2,6 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -22,9 +21,8 @@ struct ReconstructionOptions {
   /// each axis, and gives each material the volume of its voxels (smooth_label_values()). Refused for
   /// fractions.
   bool smooth_labels = false;
-  /// The standard deviation, in cells, of what has blurred the fractions, 0 for sharp ones; without it, that
-  /// is read off the fractions, place by place (find_widths()).
-  std::optional<double> blur = std::nullopt;
+  /// What is known of fractions.
+  FractionOptions fractions{};
 };
 
 /// Material interfaces reconstructed from volume fractions: where the greatest of linearly interpolated
@@ -54,9 +52,10 @@ class Reconstruction {
   }
   /// How well volumes agree cell by cell.
   [[nodiscard]] const VolumeAgreement& agreement() const { return agreement_; }
-  /// How blurred the fractions are, and how far they are to be trusted (a standard deviation).
-  [[nodiscard]] const BlurSummary& blur() const { return blur_; }
-  [[nodiscard]] double noise() const { return noise_; }
+  /// What was found of the fractions; nothing of labels.
+  [[nodiscard]] const FractionFindings& findings() const { return findings_; }
+  /// The volumes that the interfaces are to enclose: those of the input, without what is dispersed.
+  [[nodiscard]] const IdVector<MaterialId, double>& volume_wanted() const { return volume_wanted_; }
   /// What the fractions hold and the interfaces do not show.
   [[nodiscard]] const std::vector<LostBody>& lost_bodies() const { return lost_bodies_; }
 
@@ -97,9 +96,8 @@ class Reconstruction {
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<BodyId, MaterialId> body_materials_;
-  IdVector<MaterialId, double> volume_input_, volume_reconstructed_;
-  BlurSummary blur_;
-  double noise_ = 0;
+  IdVector<MaterialId, double> volume_input_, volume_wanted_, volume_reconstructed_;
+  FractionFindings findings_;
   std::uint32_t slots_ = 4;                               ///< numbers of a tetrahedron for inner parts
   std::vector<Part> parent_;                              ///< union-find over lattice points
   std::unordered_map<Part, Part> inner_parents_;          ///< and over inner parts

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interfaces/reconstruction/normal_distribution.h"
+
 namespace adamas {
 
 namespace {
@@ -13,7 +15,9 @@ constexpr double kLeastValue = 0.25;
 /// The value of what a side does not hold is less by so many times as much.
 constexpr double kFarBelow = 6;
 /// How much of a material the cells on a side hold together where it is there, in cells.
-constexpr double kLeastPresent = 1e-3;
+constexpr double kLeastPresent = 1e-3, kLeastPresentBlurred = 0.25;
+/// What shows across a blurred sheet may be so many times what its width says.
+constexpr double kAcross = 1.3;
 
 /// The length of a cell of some size along a direction that is given in cells.
 double length_along(const Vec3& n, const Vec3& size) {
@@ -102,15 +106,21 @@ bool SheetValues::is_on_side(const SheetPlace& place, std::uint32_t region, std:
   const double side = region == place.regions[0] ? 1 : -1;
   const SiteArray<float>& fractions = data_.fractions[values_.material(material)];
   const SiteArray<float>& sheet = data_.fractions[values_.material(place.material)];
+  const bool blurred = place.slab.width > 0, is_across = material == place.sides[side > 0 ? 1 : 0];
   double sum = 0;
   const auto add = [&](std::size_t site, int di, int dj, int dk) {
     const Vec3 away{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)};
-    if (side * place.slab.height(away) > 0.5 * place.slab.thickness && place.is_beside(away, sheet[site]))
-      sum += static_cast<double>(fractions[site]);
+    const double beyond = side * place.slab.height(away) - 0.5 * place.slab.thickness;
+    if (beyond <= 0 || !place.is_beside(away, sheet[site])) return;
+    auto held = static_cast<double>(fractions[site]);
+    // What lies across a blurred sheet shows on this side too.
+    if (blurred && is_across)
+      held -= kAcross * normal_probability(-(beyond + place.slab.thickness) / place.slab.width);
+    sum += std::max(0.0, held);
   };
   add(place.site, 0, 0, 0);
   sites_.for_each_neighbour(place.site, add);
-  return sum > kLeastPresent;
+  return sum > (blurred ? kLeastPresentBlurred : kLeastPresent);
 }
 
 std::vector<SiteValues::Entry> SheetValues::entries(const SheetPlace& place) const {

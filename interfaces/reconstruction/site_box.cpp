@@ -40,6 +40,32 @@ SiteBox SiteBox::round(const RectilinearGrid& grid, const std::vector<std::uint3
   return {grid, low, high};
 }
 
+bool SiteBox::contains(std::size_t site) const {
+  const std::size_t nx = grid_.sites(0), ny = grid_.sites(1);
+  const Index p{site % nx, site / nx % ny, site / (nx * ny)};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (p[a] < low_[a] || p[a] >= low_[a] + n_[a]) return false;
+  }
+  return true;
+}
+
+void SiteBox::dilate(std::vector<std::uint8_t>& marks, int reach) const {
+  std::vector<std::uint8_t> next(size());
+  const std::array<std::size_t, 3> stride{1, n_[0], n_[0] * n_[1]};
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::fill(next.begin(), next.end(), std::uint8_t{0});
+    for_each([&](std::size_t place, std::size_t) {
+      const auto at = static_cast<std::int64_t>(place / stride[a] % n_[a]),
+                 last = static_cast<std::int64_t>(n_[a]) - 1;
+      const std::int64_t from = std::max<std::int64_t>(-reach, -at), to = std::min<std::int64_t>(reach, last - at);
+      for (std::int64_t d = from; d <= to && next[place] == 0; ++d)
+        next[place] = marks[static_cast<std::size_t>(static_cast<std::int64_t>(place) +
+                                                     d * static_cast<std::int64_t>(stride[a]))];
+    });
+    marks.swap(next);
+  }
+}
+
 double SiteBox::greatest_step() const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& gaps : gaps_) {

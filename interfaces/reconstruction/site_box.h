@@ -30,6 +30,7 @@ class SiteBox {
     const std::size_t nx = grid_.sites(0), ny = grid_.sites(1);
     return site % nx - low_[0] + n_[0] * (site / nx % ny - low_[1] + n_[1] * (site / (nx * ny) - low_[2]));
   }
+  [[nodiscard]] bool contains(std::size_t site) const;
   /// Calls visit(place, site) for all sites, those of different planes z = const at the same time.
   template <class Visit>
   void for_each(const Visit& visit) const {
@@ -53,6 +54,8 @@ class SiteBox {
   void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
   /// Diffusion by a variance in sites along each axis, whatever their distances.
   void blend(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
+  /// Marks all within so many sites of a marked one along each axis.
+  void dilate(std::vector<std::uint8_t>& marks, int reach) const;
   /// The greatest variance that one step of diffusion is good for.
   [[nodiscard]] double greatest_step() const;
 

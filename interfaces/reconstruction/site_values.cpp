@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/geometry/vec3.h"
+#include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/fraction_noise.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
@@ -29,29 +30,62 @@ constexpr double kLeastNoise = 6e-3;
 
 }  // namespace
 
-SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, std::optional<double> blur) {
-  double widest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto& x = data.grid.nodes[static_cast<std::size_t>(axis)];
-    for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
-  }
-  far_ = -32 * widest;
-  width_unit_ = kWidestCoded * data.grid.least_spacing() / 65535;
+SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const FractionOptions& options) {
+  set_lengths(data.grid);
   find_entries(data);
+  findings_.mixed_cells = mixed_.size();
   if (!smooth) {
-    find_widths(data, blur, *this);
+    find_widths(data, options.blur, *this);
     const ThinSheets sheets = find_thin_sheets(data, *this);
     set_widths_of_sheets(data, sheets);
-    blur_ = summarise_widths(data, *this);
+    if (!options.blur) drop_few_blurred(data, *this);
+    findings_.dispersed = take_dispersed(data, sheets, options.keep_dispersed, *this);
+    find_volumes(data);
+    summarise_widths(data, *this, findings_);
     set_distances(data);
-    noise_ = fraction_noise(data, *this, sheets);
-    if (noise_ > kLeastNoise) smooth_within_noise(data, sheets, noise_, *this);
+    double& error = findings_.fraction_error;
+    error = options.error ? *options.error : fraction_noise(data, *this, sheets);
+    if (error > kLeastNoise) smooth_within_noise(data, sheets, error, *this);
     split_at_sheets(data, sheets);
     return;
   }
+  volumes_ = data.volumes();
   if (data.labels.empty()) fail("{}: expected labels to smooth, found volume fractions", data.source);
   least_ = kLeastOfLabels * data.grid.least_spacing();
   smooth_label_values(data, *this);
+}
+
+SiteValues SiteValues::fractions(const MultiMaterialData& data) {
+  SiteValues values;
+  values.set_lengths(data.grid);
+  values.find_entries(data);
+  for (Entry& entry : values.entries_)
+    entry.value = (static_cast<double>(entry.fraction) - 0.5) * data.grid.least_spacing();
+  return values;
+}
+
+void SiteValues::set_lengths(const RectilinearGrid& grid) {
+  double widest = 0;
+  for (const auto& x : grid.nodes) {
+    for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
+  }
+  far_ = -32 * widest;
+  width_unit_ = kWidestCoded * grid.least_spacing() / 65535;
+}
+
+/// The volumes of entries' fractions, and of sites that one material fills.
+void SiteValues::find_volumes(const MultiMaterialData& data) {
+  volumes_ = data.volumes();
+  if (std::ranges::all_of(findings_.dispersed, [](double volume) { return volume == 0; })) return;
+  // What is dispersed of a material goes to the others in its cells.
+  const GridSites sites(data.grid);
+  for (const std::uint32_t site : mixed_) {
+    const double volume = sites.cell(site).volume();
+    for (const Entry& entry : at(site)) {
+      const MaterialId m = material(entry.material);
+      volumes_[m] += volume * (static_cast<double>(entry.fraction) - static_cast<double>(data.fraction(m, site)));
+    }
+  }
 }
 
 /// Distances from the planes that cut off each mixed cell's fractions.

@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include "adamas/fractions.h"
 #include "core/data/multi_material_data.h"
 
 namespace adamas {
-
-/// How wide the steps of fractions are (docs/method.md, Blurred fractions): the standard deviation of the
-/// normal distribution that a step looks like, in distances of sites.
-struct BlurSummary {
-  double median = 0, greatest = 0;  ///< of blurred cells
-  double share = 0;                 ///< of mixed cells that are blurred
-  std::size_t cells = 0;            ///< mixed cells that are blurred
-};
 
 class GridSites;
 class SheetValues;
@@ -39,8 +31,11 @@ class SiteValues {
   };
 
   /// Values from the planes that cut off each mixed cell's fractions, and from the widths of blurred ones; of
-  /// labels, with `smooth`, those of smooth_label_values(). `blur` is as in find_widths().
-  explicit SiteValues(const MultiMaterialData& data, bool smooth = false, std::optional<double> blur = {});
+  /// labels, with `smooth`, those of smooth_label_values().
+  explicit SiteValues(const MultiMaterialData& data, bool smooth = false, const FractionOptions& options = {});
+
+  /// Values that are the fractions themselves, times a length.
+  static SiteValues fractions(const MultiMaterialData& data);
 
   [[nodiscard]] std::span<const Entry> at(std::size_t site) const {
     return {entries_.data() + first_[site], entries_.data() + first_[site + 1]};
@@ -91,14 +86,18 @@ class SiteValues {
   [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
   /// Lifts the values of sheets above what is on their sides where they have come below.
   void hold_layers();
-  [[nodiscard]] const BlurSummary& blur() const { return blur_; }
-  /// The standard deviation of errors in fractions.
-  [[nodiscard]] double noise() const { return noise_; }
+  /// What was found of the fractions, but for cells that are off and areas.
+  [[nodiscard]] const FractionFindings& findings() const { return findings_; }
+  /// The volumes that interfaces are to enclose: those of the fractions, without what is dispersed.
+  [[nodiscard]] const IdVector<MaterialId, double>& volumes() const { return volumes_; }
   /// Sites where two materials or more have a fraction, in order.
   [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
 
  private:
+  SiteValues() = default;
+  void set_lengths(const RectilinearGrid& grid);
   void set_distances(const MultiMaterialData& data);
+  void find_volumes(const MultiMaterialData& data);
   void find_sole_materials(const MultiMaterialData& data);
   void find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
                          std::vector<std::uint16_t>& found) const;
@@ -115,8 +114,9 @@ class SiteValues {
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> mixed_;
   std::vector<Layer> layers_;
-  BlurSummary blur_;
-  double far_ = 0, least_ = 0, width_unit_ = 1, noise_ = 0;
+  FractionFindings findings_;
+  IdVector<MaterialId, double> volumes_;
+  double far_ = 0, least_ = 0, width_unit_ = 1;
 };
 
 /// The value at a lattice point on the border, beyond the sites, `step` times as far from the nearest as that

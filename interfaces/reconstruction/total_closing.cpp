@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -28,22 +30,46 @@ constexpr double kLittle = 2e-4;
 /// power of the part of the mixed cells that are off.
 constexpr double kLeastShare = 1e-4;
 constexpr int kSharePower = 4;
+/// A body's volume is closed where no more than this part of it is missing.
+constexpr double kMostOfBody = 0.1;
 /// Values move by at most this part of the grid's spacing in a round.
 constexpr double kMostShift = 0.1;
 
-/// One offset per material, of which a site gets a share: Newton's method for the volumes in the whole
-/// domain. These are the gradient of a convex function of the offsets.
+/// The first of the entries at a site of a material and its regions.
+std::size_t first_entry(const SiteValues& values, std::size_t site, std::uint16_t material) {
+  const std::span<const Entry> own = values.at(site);
+  const auto found =
+      std::ranges::find_if(own, [&](const Entry& e) { return values.whole(e.material) == material; });
+  return static_cast<std::size_t>(&*found - values.entries().data());
+}
+
+/// The groups that entries are in: a material, or a body of it. Entries of one material at a site are in one
+/// group.
+struct Groups {
+  std::vector<std::uint32_t> of_entry;
+  std::size_t count = 0;
+};
+
+/// One offset per group, of which a site gets a share: Newton's method for the volumes that groups own in the
+/// cells of sites with values. Those of materials are the gradient of a convex function of the offsets.
 class TotalClosing {
  public:
-  TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
+  TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, Groups groups)
       : data_(data),
         values_(values),
         cells_(cells),
+        groups_(std::move(groups)),
         step_(data.grid.least_spacing()),
         is_off_(data.grid.site_count(), 0) {}
 
-  void run(const IdVector<MaterialId, double>& wanted, Progress& progress) {
-    const auto count = static_cast<Eigen::Index>(data_.materials.size());
+  /// The volumes of groups.
+  std::vector<double> measure() { return measure_totals(nullptr); }
+
+  /// `wanted`: by group, NaN for one that may have any volume. What all together miss, which cannot be had,
+  /// the group `balance` does without or, where there is no such group, all alike.
+  void run(const std::vector<double>& wanted, std::size_t balance, Progress& progress) {
+    balance_ = static_cast<Eigen::Index>(balance);
+    const auto count = static_cast<Eigen::Index>(groups_.count);
     if (count < 2) return;
     Eigen::SparseMatrix<double> growth(count, count);
     const auto measure_missing = [&](bool newton) {
@@ -75,7 +101,7 @@ class TotalClosing {
       offsets.array() -= offsets.mean();
       for (std::size_t e = 0; e < shares_.size(); ++e) {
         Entry& entry = values_.entries()[e];
-        const double offset = shares_[e] * offsets[static_cast<Eigen::Index>(values_.whole(entry.material))];
+        const double offset = shares_[e] * offsets[static_cast<Eigen::Index>(groups_.of_entry[e])];
         shift(entry, std::clamp(offset, -kMostShift * step_, kMostShift * step_));
       }
       newton = round == 0 || most > kFast * before;
@@ -88,15 +114,17 @@ class TotalClosing {
   /// A site's own cell counts as much as so many of its neighbours'.
   static constexpr int kOwnCount = 3;
 
-  /// What the materials miss, but for one number that all do: adding it to all offsets changes nothing, and
-  /// what fractions are beyond 1 cannot be had.
+  /// What the groups miss: the sum of it is 0, for the volumes of all are that of the cells.
   [[nodiscard]] Eigen::VectorXd missing_of(const std::vector<double>& totals,
-                                           const IdVector<MaterialId, double>& wanted) const {
+                                           const std::vector<double>& wanted) const {
     Eigen::VectorXd missing(static_cast<Eigen::Index>(totals.size()));
-    for (std::size_t m = 0; m < totals.size(); ++m)
-      missing[static_cast<Eigen::Index>(m)] =
-          wanted[values_.material(static_cast<std::uint16_t>(m))] - totals[m];
-    missing.array() -= missing.mean();
+    for (std::size_t g = 0; g < totals.size(); ++g)
+      missing[static_cast<Eigen::Index>(g)] = std::isnan(wanted[g]) ? 0 : wanted[g] - totals[g];
+    if (balance_ < missing.size()) {
+      missing[balance_] -= missing.sum();
+    } else {
+      missing.array() -= missing.mean();
+    }
     return missing;
   }
 
@@ -139,37 +167,38 @@ class TotalClosing {
     return by * identity;
   }
 
-  /// The materials' volumes in the domain, and, where that is wanted, how they grow with offsets: few of many
-  /// materials meet.
+  /// The group of a material's entries at a site.
+  [[nodiscard]] std::uint32_t group(std::size_t site, std::uint16_t material) const {
+    return groups_.of_entry[first_entry(values_, site, material)];
+  }
+
+  /// The groups' volumes in the cells of sites with values, and, where that is wanted, how they grow with
+  /// offsets: few of many groups meet.
   std::vector<double> measure_totals(Eigen::SparseMatrix<double>* growth) {
     struct Sum {
-      std::vector<double> volumes;
-      std::vector<std::array<std::uint16_t, 2>> pairs;
+      std::vector<std::pair<std::uint32_t, double>> volumes;
+      std::vector<std::array<std::uint32_t, 2>> pairs;
       std::vector<double> growth;
     };
     const RectilinearGrid& grid = data_.grid;
     std::vector<Sum> layers(grid.sites(2));
     parallel_for(layers.size(), 1, [&](std::size_t k) {
       Sum& sum = layers[k];
-      sum.volumes.assign(data_.materials.size(), 0);
+      std::vector<double> volumes(groups_.count, 0);
       CellVolumes cell(grid, values_, cells_);
       for (std::size_t j = 0; j < grid.sites(1); ++j) {
         for (std::size_t i = 0; i < grid.sites(0); ++i) {
           const std::size_t site = grid.site_index(i, j, k);
           const double volume = grid.site_volume(i, j, k);
-          const std::span<const Entry> own = static_cast<const SiteValues&>(values_).at(site);
-          if (own.empty()) {
-            sum.volumes[values_.sole_material(site)] += volume;
-            continue;
-          }
+          if (static_cast<const SiteValues&>(values_).at(site).empty()) continue;
           cell.go_to(site);
           const std::vector<double>& parts = cell.measure(growth != nullptr);
           is_off_[site] = cell.greatest_difference() > kCellOff ? 1 : 0;
           for (std::size_t m = 0; m < parts.size(); ++m)
-            sum.volumes[cell.materials()[m].number] += parts[m] * volume;
+            volumes[group(site, cell.materials()[m].number)] += parts[m] * volume;
           for (const CellVolumes::Pair& pair : cell.pairs()) {
-            sum.pairs.push_back({cell.materials()[cell.material_of(pair.first)].number,
-                                 cell.materials()[cell.material_of(pair.second)].number});
+            sum.pairs.push_back({group(site, cell.materials()[cell.material_of(pair.first)].number),
+                                 group(site, cell.materials()[cell.material_of(pair.second)].number)});
             double by = 0;
             for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
               if (pair.growth[n] == 0) continue;
@@ -180,13 +209,16 @@ class TotalClosing {
           }
         }
       }
+      for (std::uint32_t g = 0; g < volumes.size(); ++g) {
+        if (volumes[g] != 0) sum.volumes.emplace_back(g, volumes[g]);
+      }
     });
-    std::vector<double> totals(data_.materials.size(), 0);
+    std::vector<double> totals(groups_.count, 0);
     std::vector<Eigen::Triplet<double>> sums;
     for (const Sum& sum : layers) {
-      for (std::size_t m = 0; m < totals.size(); ++m) totals[m] += sum.volumes[m];
+      for (const auto& [g, volume] : sum.volumes) totals[g] += volume;
       for (std::size_t p = 0; p < sum.pairs.size(); ++p) {
-        const int a = sum.pairs[p][0], b = sum.pairs[p][1];
+        const auto a = static_cast<int>(sum.pairs[p][0]), b = static_cast<int>(sum.pairs[p][1]);
         for (const int m : {a, b}) {
           for (const int n : {a, b}) sums.emplace_back(m, n, m == n ? sum.growth[p] : -sum.growth[p]);
         }
@@ -199,16 +231,158 @@ class TotalClosing {
   const MultiMaterialData& data_;
   SiteValues& values_;
   const SiteCells& cells_;
+  Groups groups_;
+  Eigen::Index balance_ = 0;
   double step_;
   std::vector<char> is_off_;    // by site
   std::vector<double> shares_;  // by entry: how much of an offset it gets
+};
+
+/// Bodies of materials about sites with values: the connected sites where a material has the greatest value,
+/// and those round them that hold some of it, each with the nearest.
+class BodyGroups {
+ public:
+  BodyGroups(const MultiMaterialData& data, const SiteValues& values)
+      : values_(values), sites_(data.grid), of_entry_(values.entries().size(), kNone) {
+    for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+      if (const std::size_t entry = owner(site); entry != kNoEntry && of_entry_[entry] == kNone)
+        collect(site, values_.whole(values_.entries()[entry].material));
+    }
+    spread(data.grid.site_count());
+    // What no body is near to is in a group of its own, whose volume stays.
+    for (std::uint32_t& group : of_entry_) {
+      if (group == kNone) group = count_;
+    }
+  }
+
+  [[nodiscard]] Groups groups() const { return {of_entry_, std::size_t{count_} + 1}; }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr std::size_t kNoEntry = std::numeric_limits<std::size_t>::max();
+
+  [[nodiscard]] std::size_t owner(std::size_t site) const {
+    const std::span<const Entry> own = values_.at(site);
+    if (own.empty()) return kNoEntry;
+    const auto most = std::ranges::max_element(own, {}, &Entry::value);
+    return first_entry(values_, site, values_.whole(most->material));
+  }
+
+  void set(std::size_t site, std::uint16_t material, std::uint32_t group) {
+    for (const Entry& entry : values_.at(site)) {
+      if (values_.whole(entry.material) == material)
+        of_entry_[static_cast<std::size_t>(&entry - values_.entries().data())] = group;
+    }
+  }
+
+  /// The body of a site: through sites without values too, which have no entries to mark.
+  void collect(std::size_t site, std::uint16_t material) {
+    set(site, material, count_);
+    reached_.assign(1, site);
+    for (std::size_t next = 0; next < reached_.size(); ++next) {
+      sites_.for_each_neighbour(reached_[next], [&](std::size_t other, int, int, int) {
+        if (values_.at(other).empty()) {
+          if (values_.sole_material(other) == material && inner_.insert(other).second) reached_.push_back(other);
+          return;
+        }
+        const std::size_t entry = owner(other);
+        if (of_entry_[entry] != kNone || values_.whole(values_.entries()[entry].material) != material) return;
+        set(other, material, count_);
+        reached_.push_back(other);
+      });
+    }
+    ++count_;
+  }
+
+  /// Gives entries that no body has to those of neighbours, ring by ring.
+  void spread(std::size_t site_count) {
+    std::vector<std::size_t> front;
+    for (std::size_t site = 0; site < site_count; ++site) {
+      if (!values_.at(site).empty()) front.push_back(site);
+    }
+    for (bool changed = true; changed;) {
+      std::vector<std::pair<std::size_t, std::uint32_t>> found;
+      std::vector<std::size_t> left;
+      for (const std::size_t site : front) {
+        bool open = false;
+        for (const Entry& entry : values_.at(site)) {
+          const auto e = static_cast<std::size_t>(&entry - values_.entries().data());
+          if (of_entry_[e] != kNone) continue;
+          std::uint32_t group = kNone;
+          sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+            for (const Entry& there : values_.at(other)) {
+              if (values_.whole(there.material) == values_.whole(entry.material))
+                group = std::min(group, of_entry_[static_cast<std::size_t>(&there - values_.entries().data())]);
+            }
+          });
+          if (group != kNone) found.emplace_back(e, group);
+          open = open || group == kNone;
+        }
+        if (open) left.push_back(site);
+      }
+      for (const auto& [e, group] : found) of_entry_[e] = group;
+      changed = !found.empty();
+      front = std::move(left);
+    }
+  }
+
+  const SiteValues& values_;
+  GridSites sites_;
+  std::vector<std::uint32_t> of_entry_;
+  std::uint32_t count_ = 0;
+  std::vector<std::size_t> reached_;
+  std::unordered_set<std::size_t> inner_;
 };
 
 }  // namespace
 
 void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, double>& wanted,
                   SiteValues& values, const SiteCells& cells, Progress& progress) {
-  TotalClosing(data, values, cells).run(wanted, progress);
+  Groups groups{std::vector<std::uint32_t>(values.entries().size()), data.materials.size()};
+  for (std::size_t e = 0; e < groups.of_entry.size(); ++e)
+    groups.of_entry[e] = values.whole(values.entries()[e].material);
+  std::vector<double> left(data.materials.size());
+  for (std::uint16_t m = 0; m < left.size(); ++m) left[m] = wanted[values.material(m)];
+  const GridSites sites(data.grid);
+  for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+    if (std::as_const(values).at(site).empty()) left[values.sole_material(site)] -= sites.cell(site).volume();
+  }
+  TotalClosing(data, values, cells, std::move(groups)).run(left, left.size(), progress);
+}
+
+void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
+                  Progress& progress) {
+  Groups groups = BodyGroups(data, values).groups();
+  const GridSites sites(data.grid);
+  std::vector<double> wanted(groups.count, 0);
+  for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+    const std::span<const Entry> own = std::as_const(values).at(site);
+    if (own.empty()) continue;
+    // As the data have it, without what is dispersed.
+    const auto held = [&](const Entry& entry) {
+      const auto e = static_cast<std::size_t>(&entry - values.entries().data());
+      const bool first = e == first_entry(values, site, values.whole(entry.material));
+      return first && entry.fraction > 0
+                 ? static_cast<double>(data.fraction(values.material(entry.material), site))
+                 : 0.0;
+    };
+    double sum = 0;
+    for (const Entry& entry : own) sum += held(entry);
+    const double volume = sum > 0 ? sites.cell(site).volume() / sum : 0;
+    for (const Entry& entry : own)
+      wanted[groups.of_entry[static_cast<std::size_t>(&entry - values.entries().data())]] += volume * held(entry);
+  }
+  wanted.back() = std::numeric_limits<double>::quiet_NaN();
+  const auto largest = std::max_element(wanted.begin(), wanted.end() - 1);
+  const auto balance = static_cast<std::size_t>(largest - wanted.begin());
+  TotalClosing closing(data, values, cells, std::move(groups));
+  // Pieces that the interfaces show where fractions hold another volume stay as they are.
+  const std::vector<double> totals = closing.measure();
+  for (std::size_t g = 0; g + 1 < wanted.size(); ++g) {
+    if (std::abs(wanted[g] - totals[g]) > kMostOfBody * wanted[g])
+      wanted[g] = std::numeric_limits<double>::quiet_NaN();
+  }
+  closing.run(wanted, balance, progress);
 }
 
 }  // namespace adamas

@@ -1,0 +1,119 @@
+#include "interfaces/reconstruction/dispersed.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/site_box.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+/// A material is dispersed where no cell within reach holds so much of it, and so many of a cell's neighbours
+/// hold some.
+constexpr float kLittle = 0.25f;
+constexpr int kLeastNeighbours = 13;
+/// The reach in cells, and how it grows with the greatest width of the material's steps.
+constexpr int kReach = 4, kFarthestReach = 10;
+
+class DispersedSearch {
+ public:
+  DispersedSearch(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values)
+      : data_(data), sheets_(sheets), values_(values), sites_(data.grid) {}
+
+  std::vector<double> run(bool keep) {
+    std::vector<double> taken(data_.materials.size(), 0);
+    if (!data_.labels.empty()) return taken;
+    std::vector<std::vector<std::uint32_t>> little(data_.materials.size());
+    for (const std::uint32_t site : values_.mixed()) {
+      for (const Entry& entry : values_.at(site)) {
+        if (!entry.settled() && entry.fraction < kLittle) little[entry.material].push_back(site);
+      }
+    }
+    std::vector<std::uint32_t> changed;
+    for (std::uint16_t number = 0; number < little.size(); ++number) {
+      if (little[number].empty()) continue;
+      for (const std::uint32_t site : dispersed(number, little[number])) {
+        changed.push_back(site);
+        Entry& entry = *find(site, number);
+        if (keep) {
+          for (Entry& each : values_.at(site)) each.width = 0;
+          continue;
+        }
+        taken[values_.material(number).value] +=
+            sites_.cell(site).volume() * static_cast<double>(entry.fraction);
+        entry.fraction = 0;
+        entry.width = 0;
+      }
+    }
+    if (!keep) give_to_others(changed);
+    return taken;
+  }
+
+ private:
+  Entry* find(std::size_t site, std::uint16_t number) {
+    const std::span<Entry> own = values_.at(site);
+    const auto found = std::ranges::find_if(own, [&](const Entry& e) { return e.material == number; });
+    return found == own.end() ? nullptr : &*found;
+  }
+
+  /// Those of the sites that hold little of a material where it is dispersed.
+  std::vector<std::uint32_t> dispersed(std::uint16_t number, const std::vector<std::uint32_t>& little) {
+    const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
+    double widest = 0;
+    for (const std::uint32_t site : little) widest = std::max(widest, values_.width(*find(site, number)));
+    const int reach = std::min(
+        kReach + static_cast<int>(std::ceil(widest / data_.grid.least_spacing())), kFarthestReach);
+    const SiteBox box = SiteBox::round(data_.grid, little, static_cast<std::size_t>(reach));
+    std::vector<std::uint8_t> much(box.size());
+    box.for_each([&](std::size_t place, std::size_t site) { much[place] = fractions[site] >= kLittle; });
+    for (const SheetPlace& place : sheets_.places) {
+      if (place.material == number && box.contains(place.site)) much[box.place(place.site)] = 1;
+    }
+    box.dilate(much, reach);
+    std::vector<std::uint32_t> found;
+    for (const std::uint32_t site : little) {
+      if (much[box.place(site)] != 0) continue;
+      int holding = 0;
+      sites_.for_each_neighbour(
+          site, [&](std::size_t other, int, int, int) { holding += fractions[other] > kFractionTrace ? 1 : 0; });
+      if (holding >= kLeastNeighbours) found.push_back(site);
+    }
+    return found;
+  }
+
+  /// Scales what is left at sites to 1.
+  void give_to_others(std::vector<std::uint32_t>& changed) {
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    for (const std::uint32_t site : changed) {
+      const std::span<Entry> own = values_.at(site);
+      float sum = 0;
+      for (const Entry& entry : own) sum += entry.fraction;
+      int left = 0;
+      for (const Entry& entry : own) left += entry.fraction > 0 ? 1 : 0;
+      for (Entry& entry : own) {
+        if (entry.fraction <= 0) continue;
+        entry.fraction = left == 1 ? 1 : std::min(entry.fraction / sum, 1 - kFractionTrace);
+        if (left == 1) entry.width = 0;
+      }
+    }
+  }
+
+  const MultiMaterialData& data_;
+  const ThinSheets& sheets_;
+  SiteValues& values_;
+  GridSites sites_;
+};
+
+}  // namespace
+
+std::vector<double> take_dispersed(const MultiMaterialData& data, const ThinSheets& sheets, bool keep,
+                                   SiteValues& values) {
+  return DispersedSearch(data, sheets, values).run(keep);
+}
+
+}  // namespace adamas
