@@ -112,8 +112,11 @@ TEST(FractionBlur, KeepsVolumesAwayFromTheBorders) {
 
 TEST(FractionBlur, OfAPlaneIsANormalDistribution) {
   constexpr std::size_t kCells = 32;
-  for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{1, 2, 2}, Vec3{-3, 1, 2}, Vec3{1, 1, 0}}) {
-    const Vec3 normal = direction / norm(direction);
+  // A plane along the cells has all of them in the same phase, and the steps of their size show most.
+  using Case = std::pair<Vec3, double>;
+  for (const auto& [direction, tolerance] :
+       {Case{{1, 0, 0}, 0.008}, Case{{1, 2, 2}, 0.001}, Case{{-3, 1, 2}, 0.001}, Case{{1, 1, 0}, 0.001}}) {
+    const Vec3 normal = 1 / norm(direction) * direction;
     const double offset = dot(normal, {0.51, 0.49, 0.5});
     for (const double blur : {1.0, 1.5, 2.0}) {
       const MultiMaterialData data = sample(plane_scene(normal, offset), {kCells, kCells, kCells}, {blur, 0});
@@ -124,7 +127,8 @@ TEST(FractionBlur, OfAPlaneIsANormalDistribution) {
           for (std::size_t i = reach; i < kCells - reach; ++i) {
             const double d = (dot(normal, data.grid.site(i, j, k)) - offset) * kCells;
             const double f = static_cast<double>(data.fraction(MaterialId(1), data.grid.site_index(i, j, k)));
-            EXPECT_NEAR(f, normal_distribution(d / std::sqrt(blur * blur + 1.0 / 12)), 0.0015);
+            EXPECT_NEAR(f, normal_distribution(d / std::sqrt(blur * blur + 1.0 / 12)),
+                        tolerance / (blur * blur));
             mixed += f > 0.01 && f < 0.99 ? 1 : 0;
           }
         }
@@ -207,13 +211,15 @@ TEST(FractionNoise, IsInMixedCellsOnly) {
   for (std::size_t site = 0; site < sharp.grid.site_count(); ++site) {
     const float before = sharp.fraction(MaterialId(0), site), after = noisy.fraction(MaterialId(0), site);
     if (before > 2e-4f && before < 1 - 2e-4f) changed += after != before ? 1 : 0;
-    if (before == 0 || before == 1) EXPECT_EQ(after, before);
+    if (before == 0 || before == 1) {
+      EXPECT_EQ(after, before);
+    }
     EXPECT_NEAR(static_cast<double>(after), static_cast<double>(before), 0.1);
   }
   EXPECT_GT(changed, 500u);
 }
 
-// So much noise that cells lose all that they have: these stay as they were.
+// There is so much noise that some cells lose all that they have: these stay as they were.
 TEST(FractionNoise, LeavesSomethingInEachCell) {
   std::size_t kept = 0;
   for (std::size_t cell = 0; cell < 1000; ++cell) {
@@ -223,8 +229,8 @@ TEST(FractionNoise, LeavesSomethingInEachCell) {
     EXPECT_GE(std::min(fractions[0], fractions[1]), 0);
     kept += fractions[0] == 0.5 ? 1 : 0;
   }
-  // Both below -0.5 with a probability of 0.0952.
-  EXPECT_NEAR(static_cast<double>(kept), 95, 40);
+  // Both fall below 0 with a probability of 0.0952, and both rise above 1 as often.
+  EXPECT_NEAR(static_cast<double>(kept), 190, 50);
 }
 
 TEST(FractionNoise, FollowsFromTheSeedAndTheCell) {
