@@ -1,4 +1,5 @@
 #include <array>
+#include <bit>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
 #include "core/io/volume_writer.h"
+#include "datasets/fraction_blur.h"
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
 #include "datasets/scene_sampling.h"
@@ -26,7 +28,7 @@ namespace adamas {
 namespace {
 
 struct Options {
-  std::string name, dimensions, seed, box, interfaces, resolution, volume, steps, output;
+  std::string name, dimensions, seed, box, interfaces, resolution, volume, blur, noise, steps, output;
 };
 
 /// The scene that goes on in time, from 0 to 1.
@@ -47,6 +49,17 @@ double interface_resolution(const Options& options, const Box3& box) {
   const auto cells = parse_dimensions("--dimensions", options.dimensions);
   return std::min({size.x / static_cast<double>(cells[0]), size.y / static_cast<double>(cells[1]),
                    size.z / static_cast<double>(cells[2])});
+}
+
+/// What happens to the fractions at that time.
+SamplingOptions sampling_options(const Options& options, double time) {
+  SamplingOptions sampling;
+  if (!options.blur.empty()) sampling.blur.blur = parse_up_to("--blur", options.blur, kGreatestBlur);
+  if (!options.noise.empty()) sampling.blur.noise = parse_part("--noise", options.noise);
+  // Each step has noise of its own. At time 1, where all other scenes are, the seed remains.
+  sampling.noise_seed =
+      parse_seed(options.seed) ^ std::bit_cast<std::uint64_t>(time) ^ std::bit_cast<std::uint64_t>(1.0);
+  return sampling;
 }
 
 Scene scene_at(const Options& options, double time) {
@@ -90,7 +103,7 @@ class SceneSeries {
     const auto make = [&](double time, Progress& progress) {
       Scene scene = scene_at(options_, time);
       SeriesOutput::Writer writer =
-          options_.volume.empty() ? cells_of(scene, progress) : samples_of(scene, progress);
+          options_.volume.empty() ? cells_of(scene, time, progress) : samples_of(scene, progress);
       steps.push_back({{"time", time}, {"materials", materials_}});
       return writer;
     };
@@ -102,8 +115,12 @@ class SceneSeries {
       figures["steps"] = steps.size();
       figures["series"] = std::move(steps);
     }
-    if (!options_.volume.empty())
+    if (!options_.volume.empty()) {
       figures["type"] = options_.volume, figures["slope"] = slope_, figures["intercept"] = intercept_;
+    } else {
+      const FractionBlur blur = sampling_options(options_, 1).blur;
+      figures["blur"] = blur.blur, figures["noise"] = blur.noise;
+    }
     const std::string_view what = options_.volume.empty() ? "cells" : "samples";
     const std::string many = output_.is_series() ? fmt::format(", {} steps", output_.times().size()) : "";
     session_.console.print("Scene {} on {} x {} x {} {}{}, {}\n", options_.name, cells_[0], cells_[1],
@@ -112,9 +129,10 @@ class SceneSeries {
   }
 
  private:
-  SeriesOutput::Writer cells_of(const Scene& scene, Progress& progress) {
+  SeriesOutput::Writer cells_of(const Scene& scene, double time, Progress& progress) {
     SceneIntegral integral;
-    MultiMaterialData data = sample_scene(scene, cells_, {}, progress, &integral);
+    MultiMaterialData data =
+        sample_scene(scene, cells_, sampling_options(options_, time), progress, &integral);
     materials_ = volume_figures(scene, &integral, rows_);
     return [data = std::move(data)](const auto& path) { write_multi_material_data(path, data); };
   }
@@ -154,6 +172,14 @@ void check(const Options& options) {
     wrong_usage("-o: expected --dimensions X,Y,Z as well");
   if (options.output.empty() && !options.steps.empty()) wrong_usage("--steps: expected -o F.pvd as well");
   if (options.output.empty() && !options.volume.empty()) wrong_usage("--volume: expected -o as well");
+  for (const auto& [option, value] :
+       {std::pair("--blur", &options.blur), std::pair("--noise", &options.noise)}) {
+    if (value->empty()) continue;
+    if (options.output.empty()) wrong_usage("{}: expected -o as well", option);
+    if (!options.volume.empty())
+      wrong_usage("{}: expected volume fractions, found --volume {}", option, options.volume);
+  }
+  sampling_options(options, 1);
 }
 
 SeriesOutput declare_output(const Options& options, OutputSet& outputs) {
@@ -223,6 +249,17 @@ void add_generate_scene(const Command& generate, Session& session) {
       .add_option("--volume", options->volume,
                   "Write samples of how far points are inside the bodies, as a volume, in place of fractions")
       .one_of(sample_type_names());
+  command
+      .add_option("--blur", options->blur,
+                  fmt::format("Convolve the fractions with a Gaussian of so many cells, up to {} (default 0)",
+                              kGreatestBlur))
+      .type_name("S");
+  command
+      .add_option(
+          "--noise", options->noise,
+          "Then add normal noise of this standard deviation to fractions of mixed cells: a part of 1, "
+          "0.02 or 2% (default 0)")
+      .type_name("P|P%");
   command
       .add_option("--steps", options->steps,
                   fmt::format("How many data sets a series of {} has, from its start to its end (default {})",

@@ -37,6 +37,22 @@ double parse_positive(const std::string& option, const std::string& text) {
   return *value;
 }
 
+double parse_up_to(const std::string& option, const std::string& text, double greatest) {
+  const auto value = to_number(text);
+  if (!value || !(*value >= 0 && *value <= greatest))
+    wrong_usage("{}: expected a number from 0 to {}, found '{}'", option, greatest, text);
+  return *value;
+}
+
+double parse_part(const std::string& option, const std::string& text) {
+  const bool percent = !text.empty() && text.back() == '%';
+  const auto value = to_number(percent ? text.substr(0, text.size() - 1) : text);
+  const double whole = percent ? 100 : 1;
+  if (!value || !(*value >= 0 && *value <= whole))
+    wrong_usage("{}: expected a part from 0 to 1, or from 0% to 100%, found '{}'", option, text);
+  return *value / whole;
+}
+
 std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least) {
   std::size_t value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);

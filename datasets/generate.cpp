@@ -8,8 +8,15 @@ namespace adamas {
 
 GeneratedScene generate_scene(std::string_view name, const std::array<std::size_t, 3>& cells,
                               std::uint64_t seed, Progress& progress) {
+  return generate_scene(name, cells, FractionBlur{}, seed, progress);
+}
+
+GeneratedScene generate_scene(std::string_view name, const std::array<std::size_t, 3>& cells,
+                              const FractionBlur& blur, std::uint64_t seed, Progress& progress) {
   const Scene scene = make_scene(name, seed);
-  auto data = std::make_unique<MultiMaterialData>(sample_scene(scene, cells, {}, progress));
+  SamplingOptions options;
+  options.blur = blur, options.noise_seed = seed;
+  auto data = std::make_unique<MultiMaterialData>(sample_scene(scene, cells, options, progress));
   GeneratedScene result{OwnedGridData(std::move(data)), {}};
   for (MaterialId m(0); m.value < scene.materials().size(); ++m.value)
     result.volumes.push_back(scene.volume(m));

@@ -22,6 +22,11 @@ class RandomNumbers {
   /// In [0, count).
   std::uint64_t below(std::uint64_t count) { return bits() % count; }
   bool chance(double probability) { return uniform() < probability; }
+  /// Normally distributed, with mean 0 and standard deviation 1 (Box and Muller).
+  double normal() {
+    const double distance = std::sqrt(-2 * std::log(1 - uniform()));
+    return distance * std::cos(uniform(0, 2 * std::numbers::pi));
+  }
   /// Uniform in a box.
   Vec3 point(const Box3& box) {
     const double x = uniform(box.min.x, box.max.x), y = uniform(box.min.y, box.max.y);

@@ -3,12 +3,15 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "datasets/fraction_blur.h"
 
 namespace adamas {
 
 namespace {
 
 constexpr int kGreatestDepth = 8;
+constexpr std::size_t kCellsPerChunk = 4096;
 constexpr double kGibibyte = 1024.0 * 1024 * 1024;
 
 void check_options(const Scene& scene, const std::array<std::size_t, 3>& dims,
@@ -20,6 +23,7 @@ void check_options(const Scene& scene, const std::array<std::size_t, 3>& dims,
   if (options.depth < 1 || options.depth > kGreatestDepth) {
     fail("scene {}: expected a depth from 1 to {}, found {}", scene.name(), kGreatestDepth, options.depth);
   }
+  check(options.blur);
   double cells = 1;
   for (const std::size_t n : dims) cells *= static_cast<double>(n);
   const double materials = static_cast<double>(scene.materials().size());
@@ -35,7 +39,7 @@ void check_options(const Scene& scene, const std::array<std::size_t, 3>& dims,
   }
 }
 
-/// The data under construction: one cell's part at a time.
+/// The data under construction: one cell's part at a time, from different threads.
 class Sampler {
  public:
   Sampler(const Scene& scene, MultiMaterialData& data, bool fields) : scene_(scene), data_(data) {
@@ -54,6 +58,33 @@ class Sampler {
       mixed.values.resize(count);
       data.fields.push_back(std::move(mixed));
     }
+  }
+
+  /// The fractions as they are, of cells that `blur` will set.
+  void set_sharp(std::size_t site, const std::vector<double>& fractions) {
+    for (std::size_t m = 0; m < fractions.size(); ++m)
+      data_.fractions[MaterialId(m)][site] = static_cast<float>(fractions[m]);
+  }
+
+  void blur(const SamplingOptions& options, Progress& progress) {
+    const RectilinearGrid& grid = data_.grid;
+    const std::size_t materials = data_.fractions.size();
+    for (MaterialId m(0); m.value < materials; ++m.value) {
+      progress.step("blurring the fractions",
+                    static_cast<double>(m.value) / static_cast<double>(materials + 1));
+      blur_cells(data_.fractions[m].own(), {grid.sites(0), grid.sites(1), grid.sites(2)}, options.blur.blur);
+    }
+    progress.check();
+    parallel_chunks(grid.site_count(), kCellsPerChunk, [&](std::size_t begin, std::size_t end) {
+      std::vector<double> fractions(materials);
+      for (std::size_t site = begin; site < end; ++site) {
+        for (MaterialId m(0); m.value < materials; ++m.value)
+          fractions[m.value] = static_cast<double>(data_.fraction(m, site));
+        if (options.blur.noise > 0) add_noise(fractions, options.blur.noise, options.noise_seed, site);
+        set(site, fractions);
+      }
+    });
+    progress.step("blurring the fractions", 1);
   }
 
   void set(std::size_t site, const std::vector<double>& fractions) {
@@ -102,10 +133,14 @@ MultiMaterialData sample_scene(const Scene& scene, const std::array<std::size_t,
   data.grid = uniform_grid(scene.box(), dims);
   data.materials = scene.materials();
   Sampler sampler(scene, data, options.fields);
+  const bool sharp = options.blur.blur == 0 && options.blur.noise == 0;
   SceneIntegral sums = integrate_scene(
       scene, data.grid, options.depth,
-      [&sampler](std::size_t site, const std::vector<double>& fractions) { sampler.set(site, fractions); },
+      [&sampler, sharp](std::size_t site, const std::vector<double>& fractions) {
+        sharp ? sampler.set(site, fractions) : sampler.set_sharp(site, fractions);
+      },
       progress);
+  if (!sharp) sampler.blur(options, progress);
   if (integral != nullptr) *integral = std::move(sums);
   return data;
 }
