@@ -93,7 +93,7 @@ void add_experiment_options(const Command& command, ExperimentOptions& options) 
   add_surface_picture_options(command, options.pictures, false);
   add_resampling_options(command, options.resampling);
   add_material_options(command, options.input);
-  add_smoothing_option(command, options.input);
+  add_reconstruction_options(command, options.input);
 }
 
 ExperimentRequest::ExperimentRequest(const ExperimentOptions& options)

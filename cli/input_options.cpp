@@ -58,7 +58,7 @@ std::string InputOptions::material_option() const {
   if (!fraction_scale.empty()) return "--fraction-scale";
   if (!rest.empty()) return "--rest";
   if (!labels.empty()) return "--labels";
-  if (smooth_labels) return "--smooth-labels";
+  if (const std::string option = reconstruction_option(*this); !option.empty()) return option;
   if (!fields.empty()) return "--field";
   if (!extensive.empty()) return "--extensive";
   return region.empty() ? "" : "--region";
@@ -123,17 +123,56 @@ void add_material_options(const Command& command, InputOptions& options, const c
       .group("Input");
 }
 
-void add_smoothing_option(const Command& command, InputOptions& options) {
+void add_reconstruction_options(const Command& command, InputOptions& options) {
   command
       .add_flag("--smooth-labels", options.smooth_labels,
                 "Smooth the staircase of labels, within half a voxel along each axis; volumes stay")
       .group("Input");
+  command
+      .add_option("--blur", options.blur,
+                  "How blurred volume fractions are: the standard deviation in cells, or none; auto, which is "
+                  "the default, reads it off them, place by place")
+      .type_name("auto|none|S")
+      .group("Input");
+  command
+      .add_option("--fraction-error", options.fraction_error,
+                  "The standard deviation of errors of volume fractions, within which interfaces are smooth, "
+                  "as 2%; auto, which is the default, reads it off them")
+      .type_name("auto|P%")
+      .group("Input");
+  command
+      .add_flag("--keep-dispersed", options.keep_dispersed,
+                "Draw islands round volume fractions that no interface explains, in place of counting them as "
+                "dispersed volume")
+      .group("Input");
+}
+
+std::string reconstruction_option(const InputOptions& options) {
+  if (options.smooth_labels) return "--smooth-labels";
+  if (!options.blur.empty()) return "--blur";
+  if (!options.fraction_error.empty()) return "--fraction-error";
+  return options.keep_dispersed ? "--keep-dispersed" : "";
+}
+
+void refuse_reconstruction_options(const InputOptions& options) {
+  if (const std::string option = reconstruction_option(options); !option.empty())
+    wrong_usage("{}: expected {} as INPUT, found given interfaces", option,
+                options.smooth_labels ? "labels" : "volume fractions");
 }
 
 ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data) {
   if (options.smooth_labels && data.labels.empty())
     wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
-  return {.smooth_labels = options.smooth_labels};
+  FractionOptions fractions;
+  fractions.keep_dispersed = options.keep_dispersed;
+  if (!options.blur.empty() && options.blur != "auto")
+    fractions.blur = options.blur == "none" ? 0 : parse_up_to("--blur", options.blur, FractionOptions::kMostBlur);
+  if (!options.fraction_error.empty() && options.fraction_error != "auto")
+    fractions.error = parse_part("--fraction-error", options.fraction_error);
+  const std::string option = reconstruction_option(options);
+  if (!option.empty() && !options.smooth_labels && !data.labels.empty())
+    wrong_usage("{}: expected volume fractions, found labels in {}", option, data.source);
+  return {.smooth_labels = options.smooth_labels, .fractions = fractions};
 }
 
 void add_interface_options(const Command& command, InputOptions& options, bool resampled) {
@@ -252,8 +291,7 @@ Input load_input(const InputOptions& given, Console& console, const InputCheck& 
   const InputOptions options = with_main_file(given);
   Input input;
   if (has_given_interfaces(options)) {
-    if (options.smooth_labels)
-      wrong_usage("--smooth-labels: expected labels as INPUT, found given interfaces");
+    refuse_reconstruction_options(options);
     input.source = load_given_interfaces(options, input.data, console, check);
     return input;
   }

@@ -26,8 +26,8 @@ struct SavedHierarchy;
 struct InputOptions {
   std::string path;
   std::vector<std::string> fractions, fields, extensive, interfaces;
-  std::string fraction_scale, rest, labels, region, box, region_names, weld;
-  bool tolerant = false, cells = false, points = false, smooth_labels = false;
+  std::string fraction_scale, rest, labels, region, box, region_names, weld, blur, fraction_error;
+  bool tolerant = false, cells = false, points = false, smooth_labels = false, keep_dispersed = false;
   bool plain = false;  ///< data without materials will do (MaterialDataOptions::plain); no option
 
   /// The first option given that only gridded data with materials can mean, for messages; empty where there
@@ -52,9 +52,14 @@ InputKind input_kind(const std::string& path);
 void add_material_options(const Command& command, InputOptions& options,
                           const char* field = "One more field, and where its values are; repeatable",
                           const char* field_type = "NAME=FILE-or-ARRAY");
-/// The option that smooths labels, for commands that reconstruct interfaces.
-void add_smoothing_option(const Command& command, InputOptions& options);
-/// What the options ask of the reconstruction. Throws UsageError where the data have no labels to smooth.
+/// The options of how interfaces are reconstructed from fractions and labels.
+void add_reconstruction_options(const Command& command, InputOptions& options);
+/// The first of these that is given; empty where there is none.
+std::string reconstruction_option(const InputOptions& options);
+/// Throws UsageError where one is, for given interfaces.
+void refuse_reconstruction_options(const InputOptions& options);
+/// What these ask of the reconstruction. Throws UsageError where the data have no labels to smooth, or no
+/// fractions to be blurred.
 ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data);
 /// Options for given interface meshes; `resampled`: those too that say what to make of them.
 void add_interface_options(const Command& command, InputOptions& options, bool resampled = true);

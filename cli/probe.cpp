@@ -189,7 +189,7 @@ void add_probe(const Command& app, Session& session) {
                   "The samples: .csv (default: stdout, which then has no integrals)")
       .type_name("FILE");
   add_material_options(command, options->input);
-  add_smoothing_option(command, options->input);
+  add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }
 

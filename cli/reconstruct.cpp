@@ -3,6 +3,7 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/fraction_report.h"
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
@@ -38,14 +39,9 @@ Figures print_volumes(const MultiMaterialData& data, const Reconstruction& resul
   return figures;
 }
 
-/// Prints how well the volumes in the cells agree with the volume fractions there.
+/// How well the volumes in the cells agree with the volume fractions there; prints what others get of cells
+/// that one material fills.
 Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
-  if (agreement.mixed_cells > 0) {
-    console.print(
-        "  of {} mixed cells {} hold a material by more than 0.1% of the cell too much or too little, at "
-        "most {:.2g}%\n",
-        agreement.mixed_cells, agreement.cells_off, 100 * agreement.greatest);
-  }
   if (agreement.full_cells_off > 0) {
     console.print("  others get more than 0.1% of {} of the cells that one material fills, at most {:.2g}%\n",
                   agreement.full_cells_off, 100 * agreement.greatest_in_full_cell);
@@ -65,7 +61,7 @@ void note_losses(const MultiMaterialData& data, const Reconstruction& result, Fi
   Figures materials = Figures::array(), bodies = Figures::array();
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
     const double volume = result.volume_input()[m];
-    if (volume <= 0 || result.volume_reconstructed()[m] > 0) continue;
+    if (volume <= 0 || result.volume_reconstructed()[m] > 0 || result.volume_wanted()[m] <= 0) continue;
     materials.push_back({{"name", data.materials[m]}, {"volume", volume}});
     console.note("{}: the interfaces show nothing of '{}', whose volume is {}", data.source,
                  data.materials[m], volume_text(volume));
@@ -107,7 +103,10 @@ Interfaces reconstruct(const Options& options, const SimplificationRequest& requ
   options.picture.check_materials(data.materials, data.source);
   Reconstruction result(data, reconstruction_options(options.input, data), console);
   figures["materials"] = print_volumes(data, result, console);
-  console.print("  blur: {} cells, median {:.3f}, greatest {:.3f}, share {:.3f}, noise {:.4f}\n", result.blur().cells, result.blur().median, result.blur().greatest, result.blur().share, result.noise());
+  if (data.labels.empty()) {
+    print_findings(result.findings(), data.materials, data.source, console);
+    figures["fractions"] = finding_figures(result.findings(), data.materials);
+  }
   figures["mixed_cells"] = print_agreement(result.agreement(), console);
   note_losses(data, result, figures, console);
   figures["interfaces"] = print_interfaces(result.mesh(), console);
@@ -180,7 +179,7 @@ void add_reconstruct(const Command& app, Session& session) {
   add_simplification_options(command, options->simplification, "the interfaces");
   add_surface_picture_options(command, options->picture);
   add_material_options(command, options->input);
-  add_smoothing_option(command, options->input);
+  add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }
 

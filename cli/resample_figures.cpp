@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+
+#include "cli/fraction_report.h"
 #include "interfaces/resampling/shortfall.h"
 
 namespace adamas {
@@ -135,6 +137,9 @@ Figures resample_json(const ResampleFigures& measured, const Resampler& resample
   figures["interface_triangles"] =
       resampler.certificate() ? Figures(resampler.certificate()->triangles) : Figures(nullptr);
   figures["flagged_vertices"] = measured.flagged_vertices;
+  const auto& findings = resampler.source().findings;
+  figures["fractions"] =
+      findings ? finding_figures(*findings, resampler.source().materials) : Figures(nullptr);
   return figures;
 }
 

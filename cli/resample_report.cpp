@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/figures.h"
+#include "cli/fraction_report.h"
 #include "interfaces/resampling/shortfall.h"
 
 namespace adamas {
@@ -187,6 +188,8 @@ void print_materials(const ResampleFigures& m, const ResamplingSource& source, C
 }  // namespace
 
 void print_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console) {
+  if (const auto& findings = resampler.source().findings)
+    print_findings(*findings, resampler.source().materials, resampler.source().name, console);
   print_mesh(measured, resampler, console);
   if (resampler.certificate()) note_shortfalls(*resampler.certificate(), resampler, console);
   note_bodies(measured, resampler.source(), console);

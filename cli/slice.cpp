@@ -162,7 +162,7 @@ void add_slice(const Command& app, Session& session) {
                        "The field to show, or NAME:x for a component of a vector; without, the materials. "
                        "NAME=FILE adds it first",
                        "NAME[=FILE-or-ARRAY]");
-  add_smoothing_option(command, options->input);
+  add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
   add_volume_options(command, options->volume, "--first-sample");
 }

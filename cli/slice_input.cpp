@@ -52,8 +52,7 @@ void check_box(const ResampledMesh& mesh, const std::string& mesh_name, const Mu
 void load_original(const InputOptions& options, Console& console, SliceInput& input) {
   const bool gridded = !options.path.empty() && input_kind(options.path) == InputKind::kGrid;
   const bool given = has_given_interfaces(options);
-  if (given && options.smooth_labels)
-    wrong_usage("--smooth-labels: expected labels as INPUT, found given interfaces");
+  if (given) refuse_reconstruction_options(options);
   if (given) input.interfaces = read_given_interfaces(options);
   if (!given && !options.region_names.empty()) {
     wrong_usage("--region-names: expected a labelled network (.arec, .txt)");

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "adamas/fractions.h"
 #include "adamas/grid_data.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
@@ -12,6 +14,7 @@ namespace adamas {
 struct ReconstructOptions {
   /// Of labels: interfaces without the staircase of voxels, within half a voxel of it along each axis.
   bool smooth_labels = false;
+  FractionOptions fractions{};
   /// Fewer triangles, within this distance of the interfaces both ways, in units of length; 0: all of them.
   double simplify = 0;
 };
@@ -26,6 +29,7 @@ struct ReconstructedInterfaces {
   };
   std::vector<Material> materials;
   std::size_t bodies = 0;  ///< connected parts of materials
+  std::optional<FractionFindings> fractions;  ///< of volume fractions
 };
 
 /// Material interfaces from volume fractions or labels: each mixed cell holds what its fractions say, without

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adamas/geometry.h"
+#include "adamas/fractions.h"
 #include "adamas/grid_data.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
@@ -45,6 +46,7 @@ struct ResampleOptions {
   bool conserve = false;
   /// Of labels: interfaces without the staircase of voxels, within half a voxel of it along each axis.
   bool smooth_labels = false;
+  FractionOptions fractions{};
 };
 
 /// A two-sided distance between the interfaces of the input and of a mesh; infinite where the mesh shows
@@ -83,6 +85,7 @@ struct ResampleReport {
     double interface_max_error = 0, interface_mean_error = 0;  ///< in cells with an interface
   };
   std::vector<Field> fields;
+  std::optional<FractionFindings> fractions;  ///< of volume fractions that interfaces were reconstructed from
 };
 
 /// An adaptive tetrahedral mesh with sharp material interfaces inside its cells, and each material's own

@@ -15,11 +15,13 @@ ReconstructedInterfaces reconstruct(const GridData& given, const ReconstructOpti
   const MultiMaterialData data = to_multi_material_data(given);
   if (!(options.simplify >= 0) || !std::isfinite(options.simplify))
     fail("{}: expected an error of simplification of at least 0, found {}", data.source, options.simplify);
-  Reconstruction found(data, {.smooth_labels = options.smooth_labels}, progress);
+  Reconstruction found(
+      data, {.smooth_labels = options.smooth_labels, .fractions = options.fractions}, progress);
   ReconstructedInterfaces result;
   result.bodies = found.body_materials().size();
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
     result.materials.push_back({data.materials[m], found.volume_input()[m], found.volume_reconstructed()[m]});
+  if (data.labels.empty()) result.fractions = found.findings();
   InterfaceMesh mesh = found.take_mesh();
   if (options.simplify > 0) {
     const ResamplingSource source =

@@ -111,6 +111,7 @@ ResampleReport report_of(const Resampler& resampler, const Progress& progress) {
     report.materials.push_back({source.materials[m], {}, figures.volumes[m]});
     if (!source.volumes.empty()) report.materials.back().volume_input = source.volumes[m];
   }
+  report.fractions = source.findings;
   report_distances(resampler, report);
   report_fields(figures, resampler, report);
   return report;
@@ -132,7 +133,8 @@ AdaptiveMesh resample(const ResamplingSource& source, const ResampleOptions& opt
 
 AdaptiveMesh resample(const GridData& data, const ResampleOptions& options, Progress& progress) {
   const MultiMaterialData taken = to_multi_material_data(data);
-  return resample(make_grid_source(taken, {.smooth_labels = options.smooth_labels}, progress), options,
+  return resample(make_grid_source(
+                      taken, {.smooth_labels = options.smooth_labels, .fractions = options.fractions}, progress), options,
                   progress);
 }
 

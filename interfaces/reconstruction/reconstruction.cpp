@@ -16,8 +16,6 @@ namespace {
 /// Where flakes are given to neighbours, totals are closed again so often at most, until they are right to
 /// this part of the domain.
 constexpr int kMostClosings = 3;
-/// The greatest values of FractionOptions.
-constexpr double kMostBlur = 4, kMostError = 0.5;
 constexpr double kTotalTolerance = 5e-10;
 
 /// The greatest difference of volumes beyond the mean of all differences.
@@ -75,8 +73,8 @@ const FractionOptions& checked(const FractionOptions& options, const std::string
     if (value && !(*value >= 0 && *value <= most))
       fail("{}: expected a {} from 0 to {}, found {}", source, what, most, *value);
   };
-  check("blur of fractions", options.blur, kMostBlur);
-  check("standard deviation of errors of fractions", options.error, kMostError);
+  check("blur of fractions", options.blur, FractionOptions::kMostBlur);
+  check("standard deviation of errors of fractions", options.error, FractionOptions::kMostError);
   return options;
 }
 

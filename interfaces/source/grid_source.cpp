@@ -17,7 +17,7 @@ std::vector<MaterialId> materials_of(const std::vector<BodyId>& bodies, const In
   return materials;
 }
 
-/// Volumes of the network's bodies, so that those of each material add up to what the input states.
+/// Volumes of the network's bodies, so that those of each material add up to what the interfaces are to enclose.
 IdVector<BodyId, double> body_volumes(const InterfaceNetwork& network, const Box3& box,
                                       const IdVector<MaterialId, double>& stated) {
   NetworkMeasures measures = measure_network(network, box, stated.size());
@@ -38,6 +38,7 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, const Reconstru
   source.box = data.grid.domain();
   source.materials = data.materials;
   source.volumes = reconstruction->volume_input();
+  if (data.labels.empty()) source.findings = reconstruction->findings();
   source.voxel = data.grid.least_spacing();
   {
     const InterfaceMesh mesh = reconstruction->take_mesh();
@@ -45,7 +46,7 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, const Reconstru
         mesh, source.box, Bodies{reconstruction->take_bodies(), reconstruction->body_materials()});
   }
   if (!source.network->triangles().empty())
-    source.body_volumes = body_volumes(*source.network, source.box, source.volumes);
+    source.body_volumes = body_volumes(*source.network, source.box, reconstruction->volume_wanted());
   source.body_at = [reconstruction](const Vec3& p, bool* flagged) {
     if (flagged != nullptr) *flagged = false;
     return reconstruction->body_at(p);

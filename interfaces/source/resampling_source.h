@@ -2,8 +2,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "adamas/fractions.h"
 #include "core/geometry/vec3.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/source/field_source.h"
@@ -24,6 +26,8 @@ struct ResamplingSource {
       volumes;  ///< of the materials, as the input states them; empty where it does not
   /// Of the bodies of the network; those of a material add up to its volume. Empty where not known.
   IdVector<BodyId, double> body_volumes;
+  /// What was found of the fractions that the interfaces are from; none where these are given.
+  std::optional<FractionFindings> findings;
   double voxel = 0;  ///< the least spacing of the grid that the input is given on; 0 where there is none
 };
 
