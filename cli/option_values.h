@@ -18,6 +18,8 @@ namespace adamas {
 
 /// A finite number above 0.
 double parse_positive(const std::string& option, const std::string& text);
+/// "1%": a part of something, above 0% and below 100%, as 0.01.
+double parse_part(const std::string& option, const std::string& text);
 /// A whole number of at least that.
 std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least = 1);
 /// "256M": bytes, in units of 1024 with K, M, G or T; at least 1.
