@@ -121,7 +121,7 @@ std::vector<TetrahedronId> Resampler::split_in_order(const std::vector<Tetrahedr
 
 /// Measures interfaces as the leaves show them now, once volumes agree.
 ExtractedInterfaces Resampler::measure_shown() {
-  if (options_.conserve) conserve_volumes();
+  if (conserves_) conserve_volumes();
   ExtractedInterfaces extracted =
       extract_interfaces(source_.network->table(), cells(), source_.box, progress_);
   report("measuring interfaces");
@@ -141,6 +141,10 @@ RefinementEnd Resampler::refine_what_fails() {
       if (!since_best.splits.empty()) {
         take_back(since_best);
         budget_spent_ = false;
+        shown = measure_shown();
+      }
+      if (options_.conserve && !conserves_) {
+        conserves_ = true;
         shown = measure_shown();
       }
       bodies_->measure(shown);
@@ -183,8 +187,9 @@ RefinementEnd Resampler::refine_what_fails() {
 void Resampler::finish_interfaces() {
   if (source_.network->triangles().empty()) return;
   if (!options_.certify) {
-    if (options_.conserve) conserve_volumes();
-    if (refine_for_volumes() && options_.conserve) conserve_volumes();
+    do {
+      if (conserves_) conserve_volumes();
+    } while (refine_for_volumes() && options_.conserve);
     return;
   }
   if (!comparison_) comparison_ = std::make_unique<InterfaceComparison>(source_, options_.interface_error);

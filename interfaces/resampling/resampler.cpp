@@ -36,6 +36,7 @@ Resampler::Resampler(const ResamplingSource& source, ResamplingOptions options, 
     options_.conserve = false;
     options_.volume_error.reset();
   }
+  conserves_ = options_.conserve && !options_.volume_error;
   shifts_.assign(source.network->table().interface_count(), 0.0);
   most_shifts_.assign(shifts_.size(), options_.interface_error);
   options_.field_errors.resize(source.fields ? source.fields->fields().size() : 0);

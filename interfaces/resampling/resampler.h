@@ -241,6 +241,7 @@ class Resampler {
   [[nodiscard]] std::vector<TetrahedronId> leaves_of_wanting_bodies() const;
   bool allow_smaller_shifts(const ExtractedInterfaces& shown);
   void find_volume_goals();
+  [[nodiscard]] double allowed(BodyId body) const;
   [[nodiscard]] bool is_off(BodyId body, double volume) const;
   [[nodiscard]] std::size_t bodies_off() const;
   void watch_split(const std::vector<TetrahedronId>& parents, const std::vector<TetrahedronId>& created);
@@ -248,6 +249,7 @@ class Resampler {
   void choose_cells(WantingBody& wanting, double volume,
                     std::vector<std::pair<double, TetrahedronId>>& chosen);
   bool split_for_volumes(std::vector<WantingBody>& wanting, VolumeWatch& watch);
+  bool split_for_all_volumes();
   bool refine_for_volumes();
   [[nodiscard]] RefinementEnd refine_what_fails();
   [[nodiscard]] ExtractedInterfaces measure_shown();
@@ -287,6 +289,8 @@ class Resampler {
   IdVector<BodyId, char> wanting_;             ///< bodies that could not be given their volumes
   IdVector<BodyId, VolumeGoal> volume_goals_;  ///< known once they are needed
   IdVector<BodyId, RefinementEnd> volume_ends_;
+  bool conserves_ = false;        ///< interfaces are moved for the sake of volumes, from now on
+  double volume_slack_ = 0;       ///< part of a body's volume that moving interfaces may still make up
   VolumeWatch* watch_ = nullptr;  ///< follows what is split, unless null
   std::unique_ptr<InterfaceComparison> comparison_;
   std::optional<InterfaceCertificate> certificate_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "interfaces/errors/volume_share.h"
@@ -29,6 +30,10 @@ constexpr double kMostGrowth = 16;
 /// Cells show a body's shape where they are smaller than this part of its thickness: the diameter of a ball
 /// of its volume and area, were it one.
 constexpr double kShownThickness = 0.125;
+/// Where interfaces are moved for the sake of volumes cells are split first until bodies have theirs but for
+/// this part: what is lost or almost so cannot be had by moving, and would move all else too far. Where
+/// moving does not do the rest, splitting leaves less to it, each time so many times less.
+constexpr double kFirstSlack = 0.5, kLessSlack = 0.25;
 
 }  // namespace
 
@@ -55,6 +60,7 @@ void Resampler::find_volume_goals() {
     for (const BodyId b : table.sides(i)) areas[b] += measures.areas[i];
   }
   volume_goals_.resize(table.body_count());
+  if (options_.conserve) volume_slack_ = kFirstSlack;
   for (BodyId b(0); b.value < volume_goals_.size(); ++b.value) {
     const double wanted = source_.body_volumes[b], enclosed = measures.body_volumes[b];
     // A body without a volume has no part of it either.
@@ -67,8 +73,14 @@ void Resampler::find_volume_goals() {
   }
 }
 
+/// By how much a body's volume may differ from its goal for now.
+double Resampler::allowed(BodyId body) const {
+  const VolumeGoal& goal = volume_goals_[body];
+  return std::max(goal.tolerance, volume_slack_ * goal.volume);
+}
+
 bool Resampler::is_off(BodyId body, double volume) const {
-  return std::abs(volume - volume_goals_[body].volume) > volume_goals_[body].tolerance;
+  return std::abs(volume - volume_goals_[body].volume) > allowed(body);
 }
 
 /// The number of bodies whose volumes are not as wanted; 0 where nothing is.
@@ -127,6 +139,7 @@ void Resampler::choose_cells(WantingBody& wanting, double volume,
                              std::vector<std::pair<double, TetrahedronId>>& chosen) {
   std::erase_if(wanting.cells, [&](const auto& cell) { return !hierarchy_.is_leaf(cell.leaf); });
   const VolumeGoal& goal = volume_goals_[wanting.body];
+  const double tolerance = allowed(wanting.body);
   const double difference = std::abs(volume - goal.volume);
   const auto count = static_cast<double>(wanting.cells.size());
   if (difference < kBetterPart * wanting.best) {
@@ -140,11 +153,11 @@ void Resampler::choose_cells(WantingBody& wanting, double volume,
   const double explained = std::accumulate(
       wanting.cells.begin(), wanting.cells.end(), 0.0,
       [sign](double sum, const auto& cell) { return sum + std::max(0.0, sign * cell.gained); });
-  const bool is_explained = explained >= difference - goal.tolerance;
+  const bool is_explained = explained >= difference - tolerance;
   std::vector<std::pair<double, TetrahedronId>> cells;
   for (const WantingBody::Cell& cell : wanting.cells) {
     const double gained = is_explained ? sign * cell.gained : std::max(sign * cell.gained, cell.bound);
-    if (!(gained * count > kLeastPart * goal.tolerance)) continue;
+    if (!(gained * count > kLeastPart * tolerance)) continue;
     const bool small = options_.distance == DistanceMode::kNearestVertex &&
                        frame(cell.leaf).diameter() <= options_.interface_error;
     if (!hierarchy_.can_split(cell.leaf)) end = RefinementEnd::kDepth;
@@ -158,7 +171,7 @@ void Resampler::choose_cells(WantingBody& wanting, double volume,
   double sum = 0;
   for (const auto& [gained, leaf] : cells) {
     if (gained < kLargePart * cells.front().first || sum > difference) break;
-    chosen.emplace_back(gained / goal.tolerance, leaf);
+    chosen.emplace_back(gained / tolerance, leaf);
     sum += gained;
   }
 }
@@ -185,24 +198,37 @@ bool Resampler::split_for_volumes(std::vector<WantingBody>& wanting, VolumeWatch
 }
 
 /// Splits cells at the boundaries of bodies whose volumes are off, until they are as wanted or no splitting
-/// helps; returns whether anything was split.
+/// helps; returns whether anything was split, or interfaces shall be moved from now on.
 bool Resampler::refine_for_volumes() {
   if (!options_.volume_error) return false;
+  if (split_for_all_volumes()) return true;
+  return !std::exchange(conserves_, options_.conserve) && conserves_;
+}
+
+bool Resampler::split_for_all_volumes() {
   find_volume_goals();
   volume_ends_.assign(volume_goals_.size(), RefinementEnd::kReached);
-  for (bool any = false;; any = true) {
+  for (bool any = false;;) {
     // Splitting for some bodies may take others away from theirs.
     VolumeWatch watch{body_volumes(source_.network->table(), cells()), {}};
     std::vector<WantingBody> wanting;
     for (BodyId b(0); b.value < watch.volumes.size(); ++b.value) {
       if (is_off(b, watch.volumes[b])) wanting.push_back({.body = b, .cells = {}});
     }
-    if (wanting.empty() || budget_spent_) return any;
+    if (budget_spent_) return any;
+    if (wanting.empty()) {
+      if (any || conserves_ != options_.conserve || volume_slack_ == 0) return any;
+      // Moving interfaces has not made up for it.
+      volume_slack_ *= kLessSlack;
+      if (volume_slack_ < *options_.volume_error) volume_slack_ = 0;
+      continue;
+    }
     add_cells(leaves(), wanting);
     watch_ = &watch;
     const bool split = split_for_volumes(wanting, watch);
     watch_ = nullptr;
     if (!split) return any;
+    any = true;
   }
 }
 

@@ -79,16 +79,16 @@ TEST(VolumeErrors, EveryBodyIsWithin) {
 
 /// Balls smaller than the interface error, which leaves them all kinds of volumes without an error of these.
 TEST(VolumeErrors, SmallBallsHaveTheirVolumes) {
-  const MultiMaterialData data = balls(3);
+  const MultiMaterialData data = balls(2);
   const ResamplingSource source = make_grid_source(data);
-  ASSERT_EQ(source.body_volumes.size(), 28u);
+  ASSERT_EQ(source.body_volumes.size(), 9u);
   ResamplingOptions options;
   options.interface_error = 0.06 * source.box.diagonal();
   Resampler without(source, options);
   without.refine();
   EXPECT_GT(greatest_error(without), 0.1);
   std::size_t before = without.hierarchy().leaf_count();
-  for (const double error : {0.1, 0.01}) {
+  for (const double error : {0.1, 0.02}) {
     options.volume_error = error;
     Resampler resampler(source, options);
     resampler.refine();
@@ -102,7 +102,7 @@ TEST(VolumeErrors, SmallBallsHaveTheirVolumes) {
   }
 }
 
-/// With conservation, which moves interfaces, volumes are exact, and hardly a cell is split for them.
+/// With conservation, which moves interfaces, volumes are exact, and far fewer cells are split for them.
 TEST(VolumeErrors, TogetherWithConservation) {
   const MultiMaterialData data = balls(2);
   const ResamplingSource source = make_grid_source(data);
@@ -115,7 +115,7 @@ TEST(VolumeErrors, TogetherWithConservation) {
   Resampler both(source, options);
   both.refine();
   EXPECT_LE(greatest_error(both), 1e-6);
-  EXPECT_LE(both.hierarchy().leaf_count(), split.hierarchy().leaf_count());
+  EXPECT_LT(2 * both.hierarchy().leaf_count(), split.hierarchy().leaf_count());
   EXPECT_LE(both.certificate()->materials.upper, options.interface_error * (1 + 1e-12));
 }
 
