@@ -197,6 +197,11 @@ void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
     figures.push_back(
         {"greatest error of " + shown.name, number(run.figures.fields[record.shown].all.max), shown.unit});
   }
+  const auto worst = worst_volume(run.figures);
+  if (run.options.volume_error && worst) {
+    const double error = run.figures.bodies[worst->value].volume_error();
+    figures.push_back({"greatest volume error of a body", number(100 * error) + "%", ""});
+  }
   figures.push_back({"time", fmt::format("{:.2f}", run.seconds), "s"});
   report.key_figures(figures);
 }

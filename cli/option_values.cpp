@@ -53,6 +53,13 @@ double parse_part(const std::string& option, const std::string& text) {
   return *value / whole;
 }
 
+double parse_percentage(const std::string& option, const std::string& text) {
+  const auto value = text.ends_with('%') ? to_number(text.substr(0, text.size() - 1)) : std::nullopt;
+  if (!value || !(*value > 0 && *value < 100))
+    wrong_usage("{}: expected a part above 0% and below 100% as 1%, found '{}'", option, text);
+  return *value / 100;
+}
+
 std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least) {
   std::size_t value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);

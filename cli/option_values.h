@@ -22,6 +22,8 @@ double parse_positive(const std::string& option, const std::string& text);
 double parse_up_to(const std::string& option, const std::string& text, double greatest);
 /// A part of a whole, as "0.02" or "2%": from 0 to 1.
 double parse_part(const std::string& option, const std::string& text);
+/// "1%": a part of something, above 0% and below 100%, as 0.01.
+double parse_percentage(const std::string& option, const std::string& text);
 /// A whole number of at least that.
 std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least = 1);
 /// "256M": bytes, in units of 1024 with K, M, G or T; at least 1.

@@ -81,6 +81,25 @@ void add_bodies(Figures& figures, const ResampleFigures& measured, const Resampl
                                 [whole](const BodyFigures& b) { return b.missing() <= kConserved * whole; }));
 }
 
+/// The greatest error of a body's volume, whether all are as wanted, and a row for each that is not.
+void add_volume_errors(Figures& figures, const ResampleFigures& measured, const Resampler& resampler) {
+  const auto& target = resampler.options().volume_error;
+  const auto worst = worst_volume(measured);
+  Figures rows = Figures::array();
+  for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
+    const auto shortfall = volume_shortfall(resampler, measured, b);
+    if (!shortfall) continue;
+    rows.push_back(body_row(measured.bodies[b.value], resampler));
+    rows.back()["reason"] = shortfall->reason;
+  }
+  figures["volume_error_target"] = known(target.has_value(), target.value_or(0));
+  figures["volume_error"] = worst ? Figures(measured.bodies[worst->value].volume_error()) : Figures(nullptr);
+  figures["volume_error_reached"] = target ? Figures(rows.empty()) : Figures(nullptr);
+  figures["volume_error_shortfall"] =
+      shortfall_figures(worst ? volume_shortfall(resampler, measured, *worst) : std::nullopt);
+  figures["missed_volumes"] = std::move(rows);
+}
+
 void add_certificate(Figures& figures, const Resampler& resampler) {
   const auto& certificate = resampler.certificate();
   const bool made = certificate.has_value();
@@ -134,6 +153,7 @@ Figures resample_json(const ResampleFigures& measured, const Resampler& resample
   figures["fields"] = field_figures(measured, resampler);
   figures["materials"] = volume_figures(resampler.source(), measured.volumes);
   add_bodies(figures, measured, resampler);
+  add_volume_errors(figures, measured, resampler);
   figures["interface_triangles"] =
       resampler.certificate() ? Figures(resampler.certificate()->triangles) : Figures(nullptr);
   figures["flagged_vertices"] = measured.flagged_vertices;

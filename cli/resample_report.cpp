@@ -88,6 +88,11 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
       add_distance("interface error per material", certificate->materials);
     if (certificate->junctions) add_distance("junction error", *certificate->junctions);
   }
+  if (const auto& wanted = resampler.options().volume_error)
+    rows.push_back({"volume error of bodies wanted", fmt::format("{:.4g}%", 100 * *wanted)});
+  if (const auto worst = worst_volume(m))
+    rows.push_back({"greatest volume error of a body",
+                    fmt::format("{:.4g}%", 100 * m.bodies[worst->value].volume_error())});
   rows.push_back({"lost interfaces", std::to_string(m.lost_interfaces)});
   const auto count = [&](bool BodyFigures::*what) {
     return std::to_string(
@@ -149,6 +154,23 @@ void note_field_shortfalls(const ResampleFigures& m, const Resampler& resampler,
   }
 }
 
+/// Notes the bodies whose volumes are not as wanted, and why.
+void note_volume_shortfalls(const ResampleFigures& m, const Resampler& resampler, Console& console) {
+  constexpr std::size_t kMost = 10;
+  std::size_t noted = 0;
+  for (BodyId b(0); b.value < m.bodies.size(); ++b.value) {
+    const auto shortfall = volume_shortfall(resampler, m, b);
+    if (!shortfall || ++noted > kMost) continue;
+    const BodyFigures& body = m.bodies[b.value];
+    console.note(
+        "the volume error wanted was not reached: a body of '{}' at {} has {} instead of {} ({:.4g}%): {}",
+        resampler.source().materials[body.material], place_text(shortfall->place), volume_text(body.volume),
+        volume_text(*body.volume_input), 100 * body.volume_error(), shortfall->reason);
+  }
+  if (noted > kMost)
+    console.note("... and {} more bodies with greater volume errors than wanted", noted - kMost);
+}
+
 /// Notes where volumes are not conserved, though the options ask for it.
 void note_conservation(const ResampleFigures& m, const Resampler& resampler, Console& console) {
   if (!resampler.options().conserve) return;
@@ -196,6 +218,7 @@ void print_resampled(const ResampleFigures& measured, const Resampler& resampler
   print_fields(measured, resampler, console);
   note_field_shortfalls(measured, resampler, console);
   print_materials(measured, resampler.source(), console);
+  note_volume_shortfalls(measured, resampler, console);
   note_conservation(measured, resampler, console);
 }
 
@@ -203,6 +226,7 @@ void note_resampled(const ResampleFigures& measured, const Resampler& resampler,
   if (resampler.certificate()) note_shortfalls(*resampler.certificate(), resampler, console);
   note_bodies(measured, resampler.source(), console);
   note_field_shortfalls(measured, resampler, console);
+  note_volume_shortfalls(measured, resampler, console);
   note_conservation(measured, resampler, console);
 }
 

@@ -33,6 +33,11 @@ void add_other_resampling_options(const Command& command, ResamplingText& text) 
                   "Greatest error of a field, in its unit or in % of its range; repeatable")
       .type_name("NAME=E|E%")
       .one_value_each();
+  command
+      .add_option("--volume-error", text.volume_error,
+                  "Refine until every body has its volume in the input but for so much of it, besides the "
+                  "interface error")
+      .type_name("P%");
   command.add_option("--max-tetrahedra", text.max_tetrahedra, "Stop at this size, whatever the errors")
       .type_name("N");
   command
@@ -75,6 +80,7 @@ std::size_t field_number(const std::vector<FieldInfo>& fields, const std::string
 ResamplingRequest::ResamplingRequest(const ResamplingText& text)
     : interface_error(parse_error_target("--interface-error", text.interface_error, true)),
       field_errors(parse_field_errors(text.field_errors)) {
+  if (!text.volume_error.empty()) volume_error = parse_percentage("--volume-error", text.volume_error);
   if (!text.max_tetrahedra.empty()) max_tetrahedra = parse_count("--max-tetrahedra", text.max_tetrahedra);
   if (text.ghost == "linear") ghost = GhostMode::kLinear;
   if (text.ghost == "least-squares") ghost = GhostMode::kLeastSquares;
@@ -113,14 +119,16 @@ void ResamplingRequest::check(const InputFacts& input) const {
 ResamplingOptions ResamplingRequest::options(const ResamplingSource& source) const {
   const InputFacts input = facts_of(source);
   check(input);
-  if (conserve && source.body_volumes.empty() && !source.network->triangles().empty())
-    fail("{}: --conserve: expected interfaces that enclose volumes, found open ones", input.name);
+  if ((conserve || volume_error) && source.body_volumes.empty() && !source.network->triangles().empty())
+    fail("{}: {}: expected interfaces that enclose volumes, found open ones", input.name,
+         conserve ? "--conserve" : "--volume-error");
   ResamplingOptions result;
   result.interface_error = interface_error_of("--interface-error", interface_error, input);
   result.max_tetrahedra = max_tetrahedra;
   result.ghost = ghost;
   result.distance = distance;
   result.conserve = conserve;
+  result.volume_error = volume_error;
   result.field_errors = field_errors_of(field_errors, input);
   return result;
 }

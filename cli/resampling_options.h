@@ -12,7 +12,7 @@ namespace adamas {
 
 /// The options that say how well to resample, as text.
 struct ResamplingText {
-  std::string interface_error = "1%", max_tetrahedra, ghost = "constant", distance = "exact";
+  std::string interface_error = "1%", volume_error, max_tetrahedra, ghost = "constant", distance = "exact";
   std::vector<std::string> field_errors;
   bool conserve = false;
 };
@@ -40,6 +40,7 @@ struct ResamplingRequest {
 
   ErrorTarget interface_error;
   FieldErrorTargets field_errors;
+  std::optional<double> volume_error;  ///< 0.01 for 1%
   std::optional<std::size_t> max_tetrahedra;
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;

@@ -44,6 +44,9 @@ struct ResampleOptions {
   DistanceMode distance = DistanceMode::kExact;
   /// Move the interfaces, within the interface error, until every body has its volume in the input.
   bool conserve = false;
+  /// Greatest difference of every body's volume from that in the input, in relation to this: above 0 and less
+  /// than 1. Cells are split for it, besides the interface error. None: not wanted.
+  std::optional<double> volume_error{};
   /// Of labels: interfaces without the staircase of voxels, within half a voxel of it along each axis.
   bool smooth_labels = false;
   FractionOptions fractions{};
@@ -77,6 +80,16 @@ struct ResampleReport {
     double volume_mesh = 0;  ///< in the cube of the unit of length
   };
   std::vector<Material> materials;
+  std::optional<double> volume_error_target;
+  std::optional<double> volume_error;  ///< the greatest of a body, in relation to its volume in the input
+  /// A body whose volume is not as wanted.
+  struct MissedVolume {
+    std::string material;
+    Vec3 place;  ///< a point of its boundary in the input
+    double volume_input = 0, volume_mesh = 0;
+    std::string reason;
+  };
+  std::vector<MissedVolume> missed_volumes;
   /// Errors at the places where the input states values, in the field's unit; NaN where there are none.
   struct Field {
     std::string name;

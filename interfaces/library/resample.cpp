@@ -52,11 +52,16 @@ ResamplingOptions to_resampling_options(const ResampleOptions& options, const Re
   }
   if (options.conserve && source.body_volumes.empty() && !source.network->triangles().empty())
     fail("{}: expected interfaces that enclose volumes, to conserve these, found open ones", source.name);
+  if (options.volume_error && !(*options.volume_error > 0 && *options.volume_error < 1))
+    fail("{}: expected a volume error above 0 and less than 1, found {}", source.name, *options.volume_error);
+  if (options.volume_error && source.body_volumes.empty() && !source.network->triangles().empty())
+    fail("{}: expected interfaces that enclose volumes, for an error of these, found open ones", source.name);
   result.field_errors = field_errors(options, source);
   result.max_tetrahedra = options.max_tetrahedra;
   result.ghost = options.ghost;
   result.distance = options.distance;
   result.conserve = options.conserve;
+  result.volume_error = options.volume_error;
   return result;
 }
 
@@ -95,6 +100,20 @@ void report_fields(const ResampleFigures& figures, const Resampler& resampler, R
   }
 }
 
+void report_volumes(const ResampleFigures& figures, const Resampler& resampler, ResampleReport& report) {
+  report.volume_error_target = resampler.options().volume_error;
+  if (const auto worst = worst_volume(figures))
+    report.volume_error = figures.bodies[worst->value].volume_error();
+  for (BodyId b(0); b.value < figures.bodies.size(); ++b.value) {
+    const auto shortfall = volume_shortfall(resampler, figures, b);
+    if (!shortfall) continue;
+    const BodyFigures& body = figures.bodies[b.value];
+    report.missed_volumes.push_back({resampler.source().materials[body.material], body.place,
+                                     *body.volume_input, body.volume, shortfall->reason});
+    if (report.shortfall.empty()) report.shortfall = shortfall->reason;
+  }
+}
+
 ResampleReport report_of(const Resampler& resampler, const Progress& progress) {
   const ResampleFigures figures = measure(resampler, progress);
   const ResamplingSource& source = resampler.source();
@@ -113,6 +132,7 @@ ResampleReport report_of(const Resampler& resampler, const Progress& progress) {
   }
   report.fractions = source.findings;
   report_distances(resampler, report);
+  report_volumes(figures, resampler, report);
   report_fields(figures, resampler, report);
   return report;
 }

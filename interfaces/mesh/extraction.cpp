@@ -40,14 +40,15 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
   return result;
 }
 
-IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells) {
+std::vector<std::pair<BodyId, double>> owned_volumes(const InterfaceTable& table, const CellSet& cells) {
+  using Sums = std::vector<std::pair<BodyId, double>>;
   const std::size_t chunks = (cells.count + kChunk - 1) / kChunk;
-  std::vector<std::vector<std::pair<std::uint32_t, double>>> partial(chunks);
+  std::vector<Sums> partial(chunks);
   parallel_chunks(cells.count, kChunk, [&](std::size_t first, std::size_t last) {
     CellOwnership ownership;
     std::vector<OwnedTetrahedron> parts;
     auto& sums = partial[first / kChunk];
-    const auto add = [&](std::uint32_t body, double volume) {
+    const auto add = [&](BodyId body, double volume) {
       if (!sums.empty() && sums.back().first == body) {
         sums.back().second += volume;
       } else {
@@ -60,13 +61,18 @@ IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet
       const double volume = signed_volume(x[0], x[1], x[2], x[3]);
       cells.ownership(table, vertices, ownership);
       partition_cell(ownership, parts);
-      for (const OwnedTetrahedron& part : parts) add(part.owner, volume * volume_fraction(part.corners));
+      for (const OwnedTetrahedron& part : parts)
+        add(BodyId(part.owner), volume * volume_fraction(part.corners));
     }
   });
+  Sums all;
+  for (const Sums& sums : partial) all.insert(all.end(), sums.begin(), sums.end());
+  return all;
+}
+
+IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells) {
   IdVector<BodyId, double> volumes(table.body_count(), 0.0);
-  for (const auto& sums : partial) {
-    for (const auto& [body, volume] : sums) volumes[BodyId(body)] += volume;
-  }
+  for (const auto& [body, volume] : owned_volumes(table, cells)) volumes[body] += volume;
   // Of bodies that own next to nothing round-off decides.
   for (double& volume : volumes) volume = std::max(volume, 0.0);
   return volumes;

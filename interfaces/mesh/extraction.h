@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "adamas/progress.h"
@@ -42,6 +43,10 @@ struct ExtractedInterfaces {
 /// the caller.
 ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, const Box3& domain,
                                        Progress& progress = SilentProgress::instance());
+
+/// What bodies own in the cells, in the cube of the unit of length: in the order of the cells, a body as
+/// often as it comes.
+std::vector<std::pair<BodyId, double>> owned_volumes(const InterfaceTable& table, const CellSet& cells);
 
 /// Volume of each body, in the cube of the unit of length.
 IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells);

@@ -123,8 +123,8 @@ void Resampler::move_back(const Distances& originals, const std::vector<VertexId
 }
 
 /// Mends torn bodies by moving interfaces, where that leaves no more than one fault of `part`, at least two,
-/// loses and joins no more bodies, and keeps distances as they were wanted; else nothing changes. Returns
-/// whether it did.
+/// loses and joins no more bodies, and keeps distances and volumes as they were wanted; else nothing changes.
+/// Returns whether it did.
 bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
   const BodyFaults before = bodies_->faults(options_.interface_error);
   // Interfaces that conservation moves too, or that distances to vertices displace, could be moved so far
@@ -132,6 +132,7 @@ bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
   const bool moved_otherwise = options_.conserve || options_.distance != DistanceMode::kExact;
   if (before.torn == 0 || moved_otherwise || mending_is_hopeless_) return false;
   const bool within = comparison_->within();
+  const std::size_t off = bodies_off();
   find_thin_places();
   const Distances originals = raise_torn_bodies();
   if (originals.empty()) return false;
@@ -151,7 +152,7 @@ bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
       now = measure();
     }
     if (part * now.torn <= before.torn && now.lost_or_joined <= before.lost_or_joined &&
-        (comparison_->within() || !within))
+        (comparison_->within() || !within) && bodies_off() <= off)
       return true;
   }
   for (const auto& [where, original] : originals)

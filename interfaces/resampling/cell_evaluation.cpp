@@ -176,6 +176,7 @@ std::vector<TetrahedronId> Resampler::process(const std::vector<Split>& splits) 
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   evaluate_vertices(vertices);
   parallel_for(parents.size(), 16, [&](std::size_t i) { distribute(parents[i]); });
+  if (watch_ != nullptr) watch_split(parents, created);
   if (fields_active_) measure_fields(created, DisplacedErrors::kWithinTargets);
   if (recorded_ != nullptr) recorded_->splits.insert(recorded_->splits.end(), splits.begin(), splits.end());
   return created;

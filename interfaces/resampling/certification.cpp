@@ -90,15 +90,23 @@ std::vector<TetrahedronId> Resampler::leaves_far_from_shown() const {
   return result;
 }
 
-/// Splits leaves whatever their estimates say, as far as the number of tetrahedra allows; returns those that
-/// this made.
+/// Splits leaves where something was found wrong, whatever their estimates say, as far as the number of
+/// tetrahedra allows; returns those that this made.
 std::vector<TetrahedronId> Resampler::split_all(std::vector<TetrahedronId> failing) {
   sort_unique(failing);
+  return split_in_order(failing, true);
+}
+
+/// Splits leaves, the first ones first, as far as the number of tetrahedra allows; returns those that this
+/// made. What distances say of interfaces that the cells do not show is `doubted` from then on.
+std::vector<TetrahedronId> Resampler::split_in_order(const std::vector<TetrahedronId>& cells, bool doubted) {
   std::vector<Split> splits;
-  for (const TetrahedronId t : failing) {
+  for (const TetrahedronId t : cells) {
     if (!hierarchy_.is_leaf(t) || !hierarchy_.can_split(t)) continue;
-    if (recorded_ != nullptr) recorded_->trusted.emplace_back(t, hierarchy_.payload(t).trusted);
-    hierarchy_.payload(t).trusted = 0.25 * frame(t).diameter();
+    if (doubted) {
+      if (recorded_ != nullptr) recorded_->trusted.emplace_back(t, hierarchy_.payload(t).trusted);
+      hierarchy_.payload(t).trusted = 0.25 * frame(t).diameter();
+    }
     const std::size_t before = splits.size();
     hierarchy_.split(t, splits);
     if (options_.max_tetrahedra && hierarchy_.leaf_count() > *options_.max_tetrahedra) {
@@ -113,7 +121,7 @@ std::vector<TetrahedronId> Resampler::split_all(std::vector<TetrahedronId> faili
 
 /// Measures interfaces as the leaves show them now, once volumes agree.
 ExtractedInterfaces Resampler::measure_shown() {
-  if (options_.conserve) conserve_volumes();
+  if (conserves_) conserve_volumes();
   ExtractedInterfaces extracted =
       extract_interfaces(source_.network->table(), cells(), source_.box, progress_);
   report("measuring interfaces");
@@ -135,6 +143,10 @@ RefinementEnd Resampler::refine_what_fails() {
         budget_spent_ = false;
         shown = measure_shown();
       }
+      if (options_.conserve && !conserves_) {
+        conserves_ = true;
+        shown = measure_shown();
+      }
       bodies_->measure(shown);
       mend_bodies(shown, kMendedPartAtEnd);
       certificate_ = comparison_->finish(shown.mesh, progress_);
@@ -144,6 +156,7 @@ RefinementEnd Resampler::refine_what_fails() {
         comparison_->within() ? leaves_of_wanting_bodies() : failing_leaves(shown.mesh);
     const bool settled = failing.empty();
     if (settled && !comparison_->within() && round < kMostRounds && allow_smaller_shifts(shown)) continue;
+    if (settled && round < kMostRounds && refine_for_volumes()) continue;
     if (settled) {
       bodies_->measure(shown);
       // Once before splitting: twice half the error would leave cells that are never within the target.
@@ -174,7 +187,9 @@ RefinementEnd Resampler::refine_what_fails() {
 void Resampler::finish_interfaces() {
   if (source_.network->triangles().empty()) return;
   if (!options_.certify) {
-    if (options_.conserve) conserve_volumes();
+    do {
+      if (conserves_) conserve_volumes();
+    } while (refine_for_volumes() && options_.conserve);
     return;
   }
   if (!comparison_) comparison_ = std::make_unique<InterfaceComparison>(source_, options_.interface_error);

@@ -189,8 +189,10 @@ void Resampler::conserve_volumes() {
 }
 
 /// Leaves whose finer parts may bring the bodies closer to their volumes: with the greatest estimates among
-/// those at bodies that could not be given theirs.
+/// those at bodies that could not be given theirs. None where an error of volumes is wanted, which is a
+/// better guide.
 std::vector<TetrahedronId> Resampler::leaves_of_wanting_bodies() const {
+  if (options_.volume_error) return {};
   if (std::count(wanting_.begin(), wanting_.end(), 1) == 0) return {};
   const InterfaceNetwork& network = *source_.network;
   std::vector<TetrahedronId> result = leaves();

@@ -67,6 +67,16 @@ ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   return figures;
 }
 
+std::optional<BodyId> worst_volume(const ResampleFigures& measured) {
+  std::optional<BodyId> worst;
+  for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
+    const BodyFigures& body = measured.bodies[b.value];
+    if (!body.volume_input) continue;
+    if (!worst || body.volume_error() > measured.bodies[worst->value].volume_error()) worst = b;
+  }
+  return worst;
+}
+
 std::vector<MaterialId> lost_materials(const ResampleFigures& measured, const ResamplingSource& source) {
   std::vector<MaterialId> lost;
   for (MaterialId m(0); m.value < measured.volumes.size(); ++m.value) {

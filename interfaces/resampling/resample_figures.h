@@ -23,6 +23,8 @@ struct BodyFigures {
 
   /// By how much the volume in the mesh differs from that in the input, which must be known.
   [[nodiscard]] double missing() const { return std::abs(*volume_input - volume); }
+  /// The same in relation to that in the input; 0 where this is not above 0.
+  [[nodiscard]] double volume_error() const { return *volume_input > 0 ? missing() / *volume_input : 0; }
 };
 
 /// Volumes count as conserved that differ by no more than this, in relation to the domain's.
@@ -41,6 +43,9 @@ struct ResampleFigures {
 };
 
 ResampleFigures measure(const Resampler& resampler, const Progress& progress);
+
+/// The body with the greatest error of its volume; none where volumes are not known.
+std::optional<BodyId> worst_volume(const ResampleFigures& measured);
 
 /// Materials that the input has and the mesh does not show.
 std::vector<MaterialId> lost_materials(const ResampleFigures& measured, const ResamplingSource& source);

@@ -30,7 +30,13 @@ Resampler::Resampler(const ResamplingSource& source, ResamplingOptions options, 
     fail("{}: expected room for at least {} tetrahedra, found a limit of {}", source.name,
          hierarchy_.leaf_count(), *options_.max_tetrahedra);
   }
-  if (source.body_volumes.empty()) options_.conserve = false;
+  if (options_.volume_error && !(*options_.volume_error > 0))
+    fail("{}: expected a positive error of volumes, found {}", source.name, *options_.volume_error);
+  if (source.body_volumes.empty()) {
+    options_.conserve = false;
+    options_.volume_error.reset();
+  }
+  conserves_ = options_.conserve && !options_.volume_error;
   shifts_.assign(source.network->table().interface_count(), 0.0);
   most_shifts_.assign(shifts_.size(), options_.interface_error);
   options_.field_errors.resize(source.fields ? source.fields->fields().size() : 0);
@@ -63,8 +69,11 @@ std::vector<TetrahedronId> Resampler::leaves() const {
   return result;
 }
 
-CellSet Resampler::cells() const {
-  auto list = std::make_shared<std::vector<TetrahedronId>>(leaves());
+CellSet Resampler::cells() const { return cells_of(leaves()); }
+
+/// These tetrahedra of the tree.
+CellSet Resampler::cells_of(std::vector<TetrahedronId> tetrahedra) const {
+  const auto list = std::make_shared<const std::vector<TetrahedronId>>(std::move(tetrahedra));
   CellSet set;
   set.count = list->size();
   set.corners = [this, list](std::size_t i) {

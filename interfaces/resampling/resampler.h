@@ -31,6 +31,9 @@ struct ResamplingOptions {
   /// Move the interfaces, within the interface error and by one offset per body, until each
   /// body has the volume that it has in the input. Needs a source that knows these.
   bool conserve = false;
+  /// Wanted of each body: the greatest difference of its volume from that in the input, in relation to this.
+  /// Needs a source that knows these.
+  std::optional<double> volume_error;
   bool certify = true;  ///< measure the interfaces' distance in the end, and refine where it is too great
 };
 
@@ -53,6 +56,15 @@ enum class RefinementEnd {
   kSmallestCells,  ///< what is too far does not go away in cells far smaller than the target
   kDepth,          ///< the hierarchy is as deep as it can be
   kRounds,         ///< the greatest number of rounds of measuring
+};
+
+/// The volume that cells are split for a body to have.
+struct VolumeGoal {
+  /// That of the input; or what the body's interfaces enclose, where that is too far off for smaller cells to
+  /// help.
+  double volume = 0;
+  double tolerance = std::numeric_limits<double>::infinity();
+  double cells = 0;  ///< so many at its boundary show its shape
 };
 
 /// What became of the diamonds of a hierarchy that was adapted to other data.
@@ -97,6 +109,15 @@ class Resampler {
   [[nodiscard]] const BodyReport* body_report() const { return bodies_ ? &bodies_->report() : nullptr; }
   /// Why the interface error is not less; kReached where none was measured.
   [[nodiscard]] RefinementEnd interface_end() const { return interface_end_; }
+  /// What splitting for the sake of volumes aimed at; null where no error of volumes is wanted, or none was
+  /// looked at.
+  [[nodiscard]] const VolumeGoal* volume_goal(BodyId body) const {
+    return volume_goals_.empty() ? nullptr : &volume_goals_[body];
+  }
+  /// Why it ended of a body whose volume is off.
+  [[nodiscard]] RefinementEnd volume_end(BodyId body) const {
+    return volume_ends_.empty() ? RefinementEnd::kReached : volume_ends_[body];
+  }
   /// Whether the greatest number of tetrahedra has stopped refinement.
   [[nodiscard]] bool budget_spent() const { return budget_spent_; }
   /// A tetrahedron of the tree, leaf or not, in space, and who owns what of it.
@@ -158,6 +179,14 @@ class Resampler {
   /// Signed distances of vertices from interfaces.
   using Distances = std::map<std::pair<VertexId, InterfaceId>, double>;
 
+  /// Follows the volumes of bodies while cells are split.
+  struct VolumeWatch {
+    IdVector<BodyId, double> volumes;
+    std::vector<TetrahedronId> created;  ///< leaves at the time
+  };
+  /// A body whose volume is off, with the leaves at its boundary.
+  struct WantingBody;
+
   /// What divides a tetrahedron's children: the plane through the middle of the split edge and the other two
   /// vertices.
   struct SplitPlane {
@@ -203,6 +232,7 @@ class Resampler {
   void take_back(const Record& record);
   void refine_fields();
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;
+  [[nodiscard]] CellSet cells_of(std::vector<TetrahedronId> tetrahedra) const;
   void finish_interfaces();
   [[nodiscard]] IdVector<BodyId, double> missing_volumes() const;
   [[nodiscard]] std::vector<std::pair<std::array<BodyId, 2>, double>> exchanges() const;
@@ -210,6 +240,17 @@ class Resampler {
   void conserve_volumes();
   [[nodiscard]] std::vector<TetrahedronId> leaves_of_wanting_bodies() const;
   bool allow_smaller_shifts(const ExtractedInterfaces& shown);
+  void find_volume_goals();
+  [[nodiscard]] double allowed(BodyId body) const;
+  [[nodiscard]] bool is_off(BodyId body, double volume) const;
+  [[nodiscard]] std::size_t bodies_off() const;
+  void watch_split(const std::vector<TetrahedronId>& parents, const std::vector<TetrahedronId>& created);
+  void add_cells(const std::vector<TetrahedronId>& cells, std::vector<WantingBody>& wanting) const;
+  void choose_cells(WantingBody& wanting, double volume,
+                    std::vector<std::pair<double, TetrahedronId>>& chosen);
+  bool split_for_volumes(std::vector<WantingBody>& wanting, VolumeWatch& watch);
+  bool split_for_all_volumes();
+  bool refine_for_volumes();
   [[nodiscard]] RefinementEnd refine_what_fails();
   [[nodiscard]] ExtractedInterfaces measure_shown();
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& leaves) const;
@@ -227,6 +268,8 @@ class Resampler {
   bool refine_for_lost_bodies(const InterfaceMesh& shown);
   [[nodiscard]] std::optional<RefinementEnd> refine_for_bodies(const InterfaceMesh& shown, ShownBodies& best);
   [[nodiscard]] std::vector<TetrahedronId> split_all(std::vector<TetrahedronId> failing);
+  [[nodiscard]] std::vector<TetrahedronId> split_in_order(const std::vector<TetrahedronId>& cells,
+                                                          bool doubted);
   [[nodiscard]] double estimate_target() const;
   void report(std::string_view stage);
 
@@ -244,6 +287,11 @@ class Resampler {
   IdVector<InterfaceId, double> shifts_;       ///< added to signed distances, so that volumes agree
   IdVector<InterfaceId, double> most_shifts_;  ///< bounds of these
   IdVector<BodyId, char> wanting_;             ///< bodies that could not be given their volumes
+  IdVector<BodyId, VolumeGoal> volume_goals_;  ///< known once they are needed
+  IdVector<BodyId, RefinementEnd> volume_ends_;
+  bool conserves_ = false;        ///< interfaces are moved for the sake of volumes, from now on
+  double volume_slack_ = 0;       ///< part of a body's volume that moving interfaces may still make up
+  VolumeWatch* watch_ = nullptr;  ///< follows what is split, unless null
   std::unique_ptr<InterfaceComparison> comparison_;
   std::optional<InterfaceCertificate> certificate_;
   std::unique_ptr<BodyComparison> bodies_;

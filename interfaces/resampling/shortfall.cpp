@@ -71,4 +71,24 @@ std::optional<Shortfall> field_shortfall(const Resampler& resampler, std::size_t
   return because("cells near by were refined after it had been reached there");
 }
 
+std::optional<Shortfall> volume_shortfall(const Resampler& resampler, const ResampleFigures& measured,
+                                          BodyId body) {
+  const auto& target = resampler.options().volume_error;
+  const BodyFigures& figures = measured.bodies[body.value];
+  if (!target || figures.volume_error() <= *target) return {};
+  const auto because = [&](std::string reason) { return Shortfall{std::move(reason), figures.place}; };
+  const VolumeGoal* goal = resampler.volume_goal(body);
+  if (goal != nullptr && std::abs(goal->volume - *figures.volume_input) > *target * *figures.volume_input)
+    return because(fmt::format("the input's interfaces enclose {:.6g}", goal->volume));
+  if (resampler.budget_spent()) return because(budget_reason(resampler));
+  switch (resampler.volume_end(body)) {
+    case RefinementEnd::kDepth:
+      return because(kDeep);
+    case RefinementEnd::kSmallestCells:
+      return because("smaller cells do not bring it nearer");
+    default:
+      return because("cells or interfaces were changed for other errors after it had been reached");
+  }
+}
+
 }  // namespace adamas

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {
@@ -21,5 +22,10 @@ std::optional<Shortfall> interface_shortfall(const Resampler& resampler, const I
 /// wanted.
 std::optional<Shortfall> field_shortfall(const Resampler& resampler, std::size_t field,
                                          const FieldError& errors);
+
+/// The shortfall of a body's volume, with a point of the body's boundary for a place; none where the error
+/// wanted was reached, or none was wanted.
+std::optional<Shortfall> volume_shortfall(const Resampler& resampler, const ResampleFigures& measured,
+                                          BodyId body);
 
 }  // namespace adamas

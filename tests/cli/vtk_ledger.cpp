@@ -60,7 +60,7 @@ std::map<std::string, LedgerEntry> cut_mesh_ledger(const std::filesystem::path& 
     double mean = 0;
     for (vtkIdType i = 0; i < 4; ++i) {
       mesh->GetPoint(points->GetId(i), p[static_cast<std::size_t>(i)].data());
-      mean += 0.25 * field->GetTuple1(points->GetId(i));
+      if (field != nullptr) mean += 0.25 * field->GetTuple1(points->GetId(i));
     }
     const double volume =
         std::abs(vtkTetra::ComputeVolume(p[0].data(), p[1].data(), p[2].data(), p[3].data()));

@@ -11,7 +11,8 @@ struct LedgerEntry {
   double volume = 0, mass = 0;
 };
 
-// By material, from what a file holds, read and added up with VTK alone.
+// By material, from what a file holds, read and added up with VTK alone; without a field of that name the
+// integrals are 0.
 
 /// A grid of adamas: sums over its cells.
 std::map<std::string, LedgerEntry> grid_ledger(const std::filesystem::path& vtr, const std::string& density);

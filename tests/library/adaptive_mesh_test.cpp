@@ -162,6 +162,13 @@ TEST_F(AdaptiveMeshOfAScene, GivenInterfacesAreResampledToo) {
   EXPECT_LE(found.report().interface_error->certified, 0.06);
   for (const auto& material : found.report().materials)
     EXPECT_NEAR(material.volume_mesh, *material.volume_input, 0.01);
+  EXPECT_GT(*found.report().volume_error, 0.001);
+  coarse.volume_error = 0.001;
+  const AdaptiveMesh finer = resample(given, domain, coarse);
+  EXPECT_LE(*finer.report().volume_error, 0.001);
+  EXPECT_EQ(finer.report().volume_error_target, 0.001);
+  EXPECT_TRUE(finer.report().missed_volumes.empty());
+  EXPECT_GT(finer.tetrahedra().size(), found.tetrahedra().size());
   const auto has = [](const std::string& message, const char* text) {
     EXPECT_NE(message.find(text), std::string::npos) << message;
   };
@@ -189,6 +196,9 @@ TEST_F(AdaptiveMeshOfAScene, WrongOptionsAreToldInALine) {
   has(error_with([](auto& o) { o.interface_error = 2; }), "domain's diagonal");
   has(error_with([](auto& o) { o.field_errors = {{"rough", 1}}; }), "found 'rough'");
   has(error_with([](auto& o) { o.max_tetrahedra = 1; }), "tetrahedra");
+  has(error_with([](auto& o) { o.volume_error = 0; }), "expected a volume error above 0");
+  has(error_with([](auto& o) { o.volume_error = 1; }), "less than 1, found 1");
+  has(error_with([](auto& o) { o.volume_error = std::nan(""); }), "found nan");
   has(error_with([](auto& o) { o.smooth_labels = true; }), "expected labels to smooth");
   has(test::error_of([] { slice(mesh(), {{0, 0, 9}, {0, 0, 1}}); }), "plane");
   has(test::error_of([] { slice(mesh(), {{0, 0, 0.5}, {0, 0, 1}}, {.field = "rough"}); }), "rough");
