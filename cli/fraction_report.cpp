@@ -18,9 +18,10 @@ void print_findings(const FractionFindings& findings, const IdVector<MaterialId,
     if (findings.fraction_error > 0)
       console.print("  fractions have errors of {:.2g}% (standard deviation, estimated)\n",
                     100 * findings.fraction_error);
-    console.print("  {} of them differ by more than {:.2g}% from what the interfaces would give{}, at most {:.2g}%\n",
-                  findings.cells_off, 100 * findings.tolerance,
-                  findings.blur_share > 0 ? ", blurred alike" : "", 100 * findings.greatest_difference);
+    console.print(
+        "  {} of them differ by more than {:.2g}% from what the interfaces would give{}, at most {:.2g}%\n",
+        findings.cells_off, 100 * findings.tolerance, findings.blur_share > 0 ? ", blurred alike" : "",
+        100 * findings.greatest_difference);
   }
   if (findings.area_of_fractions > 0 && findings.area != findings.area_of_fractions)
     console.print("  area of interfaces {}, {} of where the greatest fraction changes\n",
@@ -34,7 +35,8 @@ void print_findings(const FractionFindings& findings, const IdVector<MaterialId,
   }
 }
 
-Figures finding_figures(const FractionFindings& findings, const IdVector<MaterialId, std::string>& materials) {
+Figures finding_figures(const FractionFindings& findings,
+                        const IdVector<MaterialId, std::string>& materials) {
   Figures dispersed = Figures::array();
   for (std::size_t m = 0; m < findings.dispersed.size(); ++m) {
     if (findings.dispersed[m] > 0)

@@ -129,9 +129,10 @@ void add_reconstruction_options(const Command& command, InputOptions& options) {
                 "Smooth the staircase of labels, within half a voxel along each axis; volumes stay")
       .group("Input");
   command
-      .add_option("--blur", options.blur,
-                  "How blurred volume fractions are: the standard deviation in cells, or none; auto, which is "
-                  "the default, reads it off them, place by place")
+      .add_option(
+          "--blur", options.blur,
+          "How blurred volume fractions are: the standard deviation in cells, or none; auto, which is "
+          "the default, reads it off them, place by place")
       .type_name("auto|none|S")
       .group("Input");
   command
@@ -141,9 +142,10 @@ void add_reconstruction_options(const Command& command, InputOptions& options) {
       .type_name("auto|P%")
       .group("Input");
   command
-      .add_flag("--keep-dispersed", options.keep_dispersed,
-                "Draw islands round volume fractions that no interface explains, in place of counting them as "
-                "dispersed volume")
+      .add_flag(
+          "--keep-dispersed", options.keep_dispersed,
+          "Draw islands round volume fractions that no interface explains, in place of counting them as "
+          "dispersed volume")
       .group("Input");
 }
 
@@ -166,7 +168,8 @@ ReconstructionOptions reconstruction_options(const InputOptions& options, const 
   FractionOptions fractions;
   fractions.keep_dispersed = options.keep_dispersed;
   if (!options.blur.empty() && options.blur != "auto")
-    fractions.blur = options.blur == "none" ? 0 : parse_up_to("--blur", options.blur, FractionOptions::kMostBlur);
+    fractions.blur =
+        options.blur == "none" ? 0 : parse_up_to("--blur", options.blur, FractionOptions::kMostBlur);
   if (!options.fraction_error.empty() && options.fraction_error != "auto")
     fractions.error = parse_part("--fraction-error", options.fraction_error);
   const std::string option = reconstruction_option(options);

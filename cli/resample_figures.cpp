@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-
 #include "cli/fraction_report.h"
 #include "interfaces/resampling/shortfall.h"
 

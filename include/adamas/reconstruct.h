@@ -28,7 +28,7 @@ struct ReconstructedInterfaces {
     double volume_reconstructed = 0;  ///< as the interfaces enclose it, before they are simplified
   };
   std::vector<Material> materials;
-  std::size_t bodies = 0;  ///< connected parts of materials
+  std::size_t bodies = 0;                     ///< connected parts of materials
   std::optional<FractionFindings> fractions;  ///< of volume fractions
 };
 

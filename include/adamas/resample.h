@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "adamas/geometry.h"
 #include "adamas/fractions.h"
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"

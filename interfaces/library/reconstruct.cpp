@@ -15,8 +15,8 @@ ReconstructedInterfaces reconstruct(const GridData& given, const ReconstructOpti
   const MultiMaterialData data = to_multi_material_data(given);
   if (!(options.simplify >= 0) || !std::isfinite(options.simplify))
     fail("{}: expected an error of simplification of at least 0, found {}", data.source, options.simplify);
-  Reconstruction found(
-      data, {.smooth_labels = options.smooth_labels, .fractions = options.fractions}, progress);
+  Reconstruction found(data, {.smooth_labels = options.smooth_labels, .fractions = options.fractions},
+                       progress);
   ReconstructedInterfaces result;
   result.bodies = found.body_materials().size();
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value)

@@ -153,9 +153,10 @@ AdaptiveMesh resample(const ResamplingSource& source, const ResampleOptions& opt
 
 AdaptiveMesh resample(const GridData& data, const ResampleOptions& options, Progress& progress) {
   const MultiMaterialData taken = to_multi_material_data(data);
-  return resample(make_grid_source(
-                      taken, {.smooth_labels = options.smooth_labels, .fractions = options.fractions}, progress), options,
-                  progress);
+  return resample(
+      make_grid_source(taken, {.smooth_labels = options.smooth_labels, .fractions = options.fractions},
+                       progress),
+      options, progress);
 }
 
 AdaptiveMesh resample(const InterfaceTriangles& interfaces, const Box3& domain,

@@ -69,10 +69,10 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
       if (values_.whole(other.material) == number) width = std::max(width, values_.width(other));
     }
     const Vec3 size = grid_sites.cell(site).size(),
-               normal = normalized(fraction_gradient(grid_sites, site, {fractions.begin(), fractions.size()}));
+               normal =
+                   normalized(fraction_gradient(grid_sites, site, {fractions.begin(), fractions.size()}));
     double own = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      own += normal[axis] * normal[axis] * size[axis] * size[axis] / 12;
+    for (int axis = 0; axis < 3; ++axis) own += normal[axis] * normal[axis] * size[axis] * size[axis] / 12;
     const double steps = std::max(0.0, width * width - own) / part.step;
     found[n] = {static_cast<std::size_t>(steps),
                 {static_cast<std::uint32_t>(entry), static_cast<std::uint32_t>(part.box.place(site)),
@@ -88,8 +88,8 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
 /// The first entry at a site of a material or of its regions.
 std::size_t BlurredFractions::find(std::size_t site, std::uint16_t number) const {
   const std::span<const Entry> own = values_.at(site);
-  const auto found = std::ranges::find_if(
-      own, [&](const Entry& entry) { return values_.whole(entry.material) == number; });
+  const auto found =
+      std::ranges::find_if(own, [&](const Entry& entry) { return values_.whole(entry.material) == number; });
   return static_cast<std::size_t>(&*found - values_.entries().data());
 }
 

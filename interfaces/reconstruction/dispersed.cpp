@@ -65,8 +65,8 @@ class DispersedSearch {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     double widest = 0;
     for (const std::uint32_t site : little) widest = std::max(widest, values_.width(*find(site, number)));
-    const int reach = std::min(
-        kReach + static_cast<int>(std::ceil(widest / data_.grid.least_spacing())), kFarthestReach);
+    const int reach =
+        std::min(kReach + static_cast<int>(std::ceil(widest / data_.grid.least_spacing())), kFarthestReach);
     const SiteBox box = SiteBox::round(data_.grid, little, static_cast<std::size_t>(reach));
     std::vector<std::uint8_t> much(box.size());
     box.for_each([&](std::size_t place, std::size_t site) { much[place] = fractions[site] >= kLittle; });
@@ -78,8 +78,9 @@ class DispersedSearch {
     for (const std::uint32_t site : little) {
       if (much[box.place(site)] != 0) continue;
       int holding = 0;
-      sites_.for_each_neighbour(
-          site, [&](std::size_t other, int, int, int) { holding += fractions[other] > kFractionTrace ? 1 : 0; });
+      sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+        holding += fractions[other] > kFractionTrace ? 1 : 0;
+      });
       if (holding >= kLeastNeighbours) found.push_back(site);
     }
     return found;

@@ -10,7 +10,8 @@ namespace adamas {
 
 /// Finds fractions that no interface explains: of a material that takes little of each cell within some
 /// distance, and some of most of them. Entries lose them to the other materials of their cells or, with
-/// `keep`, are sharp, so that each cell gets a piece. Returns the volume of each material that has been taken.
+/// `keep`, are sharp, so that each cell gets a piece. Returns the volume of each material that has been
+/// taken.
 std::vector<double> take_dispersed(const MultiMaterialData& data, const ThinSheets& sheets, bool keep,
                                    SiteValues& values);
 

@@ -30,9 +30,9 @@ double part_behind_plane(const Vec3& towards, const Vec3& size, double distance)
 /// border.
 Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions);
 
-/// The planes of all entries of mixed sites that are not blurred. Normals are gradients of the fractions (Youngs) at first, then
-/// those of the planes through the middles of the pieces in the cells round them, again and again (Swartz;
-/// Mosso and Clancy, 1994), so that planes come out as they are.
+/// The planes of all entries of mixed sites that are not blurred. Normals are gradients of the fractions
+/// (Youngs) at first, then those of the planes through the middles of the pieces in the cells round them,
+/// again and again (Swartz; Mosso and Clancy, 1994), so that planes come out as they are.
 std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values);
 
 }  // namespace adamas

@@ -61,8 +61,8 @@ class WidthSearch {
     std::vector<float> worse(box.size()), both(box.size());
     parallel_for(sites.size(), 256, [&](std::size_t n) {
       const std::size_t place = box.place(sites[n]);
-      const std::array<double, 2> misses = compare(sites[n], fractions, steps[place], gradients[place],
-                                                   widened[place]);
+      const std::array<double, 2> misses =
+          compare(sites[n], fractions, steps[place], gradients[place], widened[place]);
       const double sum = misses[0] + misses[1];
       if (sum == 0) return;
       worse[place] = static_cast<float>((misses[0] - misses[1]) / (sum + kNothing));
@@ -75,10 +75,9 @@ class WidthSearch {
     for (const std::uint32_t site : sites) {
       const std::size_t place = box.place(site);
       const double h = least_side(site);
-      const double width =
-          gradients[place] > 0
-              ? step_width(steps[place] / gradients[place], widened[place] / gradients[place])
-              : kWidest * h;
+      const double width = gradients[place] > 0 ? step_width(steps[place] / gradients[place],
+                                                             widened[place] / gradients[place])
+                                                : kWidest * h;
       const bool blurred = width > kSharp * h && worse[place] >= kSure * both[place];
       Entry& entry = *find_entry(site, number);
       entry.width = blurred ? values_.coded_width(std::min(width, kWidest * h)) : 0;
@@ -112,8 +111,7 @@ class WidthSearch {
     if (!(squared_norm(towards) > 0)) return {0, 0};
     const Vec3 centre = sites_.position(site);
     const double width = step_width(static_cast<double>(density / squared), static_cast<double>(widened)),
-                 sharp = plane_distance(towards, sites_.cell(site).size(), f),
-                 blurred = normal_quantile(f);
+                 sharp = plane_distance(towards, sites_.cell(site).size(), f), blurred = normal_quantile(f);
     std::array<double, 2> misses{0, 0};
     sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
       const double by = dot(towards, sites_.position(other) - centre),
@@ -149,8 +147,6 @@ void summarise_widths(const MultiMaterialData& data, const SiteValues& values, F
   findings.blur_greatest = *std::max_element(widths.begin(), widths.end());
   findings.blur_share = static_cast<double>(widths.size()) / static_cast<double>(values.mixed().size());
 }
-
-
 
 void drop_few_blurred(const MultiMaterialData& data, SiteValues& values) {
   const GridSites sites(data.grid);

@@ -7,9 +7,8 @@ double normal_quantile(double p) {
   // Mathematical Functions, 26.2.23), and two steps of Halley's method.
   if (p > 0.5) return -normal_quantile(1 - p);
   const double t = std::sqrt(-2 * std::log(p));
-  double x = (2.515517 + t * (0.802853 + t * 0.010328)) /
-                 (1 + t * (1.432788 + t * (0.189269 + t * 0.001308))) -
-             t;
+  double x =
+      (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308))) - t;
   for (int step = 0; step < 2; ++step) {
     const double by = (normal_probability(x) - p) / normal_density(x);
     x -= by / (1 + 0.5 * x * by);

@@ -120,8 +120,8 @@ class RegionSearch {
     for (std::uint32_t p = 0; p < count; ++p) {
       const std::uint32_t sheet = sets.find(p);
       const double least = place(p).slab.width > 0 ? kLeastFittedBlurred : kLeastFitted;
-      const bool is_clear = fitted[sheet] >= kFewest && static_cast<double>(fitted[sheet]) >=
-                                                            least * static_cast<double>(held[sheet]);
+      const bool is_clear = fitted[sheet] >= kFewest &&
+                            static_cast<double>(fitted[sheet]) >= least * static_cast<double>(held[sheet]);
       if (mixed[sheet] != 0 || !is_clear) continue;
       place_of_[place(p).site] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(place(p));

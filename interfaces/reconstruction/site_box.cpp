@@ -57,7 +57,8 @@ void SiteBox::dilate(std::vector<std::uint8_t>& marks, int reach) const {
     for_each([&](std::size_t place, std::size_t) {
       const auto at = static_cast<std::int64_t>(place / stride[a] % n_[a]),
                  last = static_cast<std::int64_t>(n_[a]) - 1;
-      const std::int64_t from = std::max<std::int64_t>(-reach, -at), to = std::min<std::int64_t>(reach, last - at);
+      const std::int64_t from = std::max<std::int64_t>(-reach, -at),
+                         to = std::min<std::int64_t>(reach, last - at);
       for (std::int64_t d = from; d <= to && next[place] == 0; ++d)
         next[place] = marks[static_cast<std::size_t>(static_cast<std::int64_t>(place) +
                                                      d * static_cast<std::int64_t>(stride[a]))];

@@ -83,7 +83,8 @@ void SiteValues::find_volumes(const MultiMaterialData& data) {
     const double volume = sites.cell(site).volume();
     for (const Entry& entry : at(site)) {
       const MaterialId m = material(entry.material);
-      volumes_[m] += volume * (static_cast<double>(entry.fraction) - static_cast<double>(data.fraction(m, site)));
+      volumes_[m] +=
+          volume * (static_cast<double>(entry.fraction) - static_cast<double>(data.fraction(m, site)));
     }
   }
 }

@@ -32,7 +32,8 @@ class SiteValues {
 
   /// Values from the planes that cut off each mixed cell's fractions, and from the widths of blurred ones; of
   /// labels, with `smooth`, those of smooth_label_values().
-  explicit SiteValues(const MultiMaterialData& data, bool smooth = false, const FractionOptions& options = {});
+  explicit SiteValues(const MultiMaterialData& data, bool smooth = false,
+                      const FractionOptions& options = {});
 
   /// Values that are the fractions themselves, times a length.
   static SiteValues fractions(const MultiMaterialData& data);

@@ -17,8 +17,8 @@ using Entry = SiteValues::Entry;
 
 /// Cells of which a sheet and what is on its sides take less than this part are left out of its fit.
 constexpr double kLeastOfThree = 0.97;
-/// Rings of sites round those with a fit of their own, to which sheets are continued; blurred ones farther, by
-/// their width.
+/// Rings of sites round those with a fit of their own, to which sheets are continued; blurred ones farther,
+/// by their width.
 constexpr int kRings = 2;
 /// Layers are continuations of each other where their normals agree at least so well, by the cosine, and
 /// their heights differ by no more cells.

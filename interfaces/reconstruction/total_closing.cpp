@@ -282,7 +282,8 @@ class BodyGroups {
     for (std::size_t next = 0; next < reached_.size(); ++next) {
       sites_.for_each_neighbour(reached_[next], [&](std::size_t other, int, int, int) {
         if (values_.at(other).empty()) {
-          if (values_.sole_material(other) == material && inner_.insert(other).second) reached_.push_back(other);
+          if (values_.sole_material(other) == material && inner_.insert(other).second)
+            reached_.push_back(other);
           return;
         }
         const std::size_t entry = owner(other);
@@ -312,7 +313,8 @@ class BodyGroups {
           sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
             for (const Entry& there : values_.at(other)) {
               if (values_.whole(there.material) == values_.whole(entry.material))
-                group = std::min(group, of_entry_[static_cast<std::size_t>(&there - values_.entries().data())]);
+                group =
+                    std::min(group, of_entry_[static_cast<std::size_t>(&there - values_.entries().data())]);
             }
           });
           if (group != kNone) found.emplace_back(e, group);
@@ -370,7 +372,8 @@ void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteC
     for (const Entry& entry : own) sum += held(entry);
     const double volume = sum > 0 ? sites.cell(site).volume() / sum : 0;
     for (const Entry& entry : own)
-      wanted[groups.of_entry[static_cast<std::size_t>(&entry - values.entries().data())]] += volume * held(entry);
+      wanted[groups.of_entry[static_cast<std::size_t>(&entry - values.entries().data())]] +=
+          volume * held(entry);
   }
   wanted.back() = std::numeric_limits<double>::quiet_NaN();
   const auto largest = std::max_element(wanted.begin(), wanted.end() - 1);

@@ -389,7 +389,8 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
         const std::uint16_t whole = values.whole(own[e].material);
         const auto is_same = [&](const Entry& entry) { return values.whole(entry.material) == whole; };
         if (std::any_of(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(e), is_same)) continue;
-        double found = static_cast<double>(blurred.at(static_cast<std::size_t>(&own[e] - values.entries().data())));
+        double found =
+            static_cast<double>(blurred.at(static_cast<std::size_t>(&own[e] - values.entries().data())));
         float wanted = 0;
         for (const Entry& entry : own) {
           if (is_same(entry)) wanted = std::max(wanted, entry.fraction);
@@ -399,7 +400,8 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
           if (values.material(whole) == move->from) found -= move->volume;
           if (values.material(whole) == move->to) found += move->volume;
         }
-        differences[site] = std::max(differences[site], static_cast<float>(std::abs(found - static_cast<double>(wanted))));
+        differences[site] =
+            std::max(differences[site], static_cast<float>(std::abs(found - static_cast<double>(wanted))));
       }
     }
   });

@@ -15,8 +15,8 @@ namespace adamas {
 /// How well the volumes of materials in the cells of sites agree with the fractions there.
 struct VolumeAgreement {
   std::size_t mixed_cells = 0;
-  /// Mixed cells where a material's volume, or, of a blurred one, the fraction that it should have, differs by
-  /// more than the tolerance.
+  /// Mixed cells where a material's volume, or, of a blurred one, the fraction that it should have, differs
+  /// by more than the tolerance.
   std::size_t cells_off = 0;
   double tolerance = 0;  ///< a thousandth of the cell, or three standard deviations of errors of fractions
   double greatest = 0, mean = 0;  ///< difference in a mixed cell, as a part of the cell's volume
@@ -44,7 +44,8 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
 
 /// Adds an offset to the values of each body, a connected part of what a material owns, so that it has the
 /// volume of the fractions in and about it. For blurred fractions, whose cells say less than their sum.
-void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, Progress& progress);
+void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
+                  Progress& progress);
 
 /// Adds an offset to the values of each material, so that the materials have the volumes `wanted` in the
 /// whole domain. Of offsets that would spoil cells a site's share is the greater, the more of the mixed cells

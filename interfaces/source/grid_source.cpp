@@ -17,7 +17,8 @@ std::vector<MaterialId> materials_of(const std::vector<BodyId>& bodies, const In
   return materials;
 }
 
-/// Volumes of the network's bodies, so that those of each material add up to what the interfaces are to enclose.
+/// Volumes of the network's bodies, so that those of each material add up to what the interfaces are to
+/// enclose.
 IdVector<BodyId, double> body_volumes(const InterfaceNetwork& network, const Box3& box,
                                       const IdVector<MaterialId, double>& stated) {
   NetworkMeasures measures = measure_network(network, box, stated.size());
