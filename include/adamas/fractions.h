@@ -6,8 +6,8 @@
 
 namespace adamas {
 
-/// What is known of volume fractions before interfaces are reconstructed from them (docs/method.md, Blurred
-/// fractions).
+/// What is known of volume fractions before interfaces are reconstructed from them
+/// (docs/blurred_fractions.md).
 struct FractionOptions {
   static constexpr double kMostBlur = 4, kMostError = 0.5;
   /// The standard deviation, in cells, of what has blurred the fractions: from 0 for sharp ones to 4. Without
