@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
@@ -15,7 +16,8 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-static const int kRounds = getenv("ROUNDS") ? atoi(getenv("ROUNDS")) : 5;
+/// Rounds, and those where fractions have errors, of which more would fit what is not there.
+constexpr int kRounds = 5, kRoundsWithErrors = 2;
 /// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
 constexpr double kRelax = 0.7, kMostMove = 0.5;
 
@@ -138,33 +140,100 @@ void BlurredFractions::spread(const Part& part) {
   }
 }
 
-void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
-                 Progress& progress) {
-  BlurredFractions predicted(data, values, cells);
-  const GridSites sites(data.grid);
-  const double most = values.greatest();
-  for (int round = 0; round < kRounds; ++round) {
-    progress.step("fitting blurred fractions", static_cast<double>(round) / kRounds);
-    predicted.predict();
-    parallel_for(values.mixed().size(), 1024, [&](std::size_t n) {
-      const std::size_t site = values.mixed()[n];
-      const std::span<Entry> own = values.at(site);
-      const double h = least_side(sites.cell(site));
-      for (Entry& entry : own) {
+namespace {
+
+/// Moves the values of blurred entries by what their fractions miss, in rounds.
+class Fit {
+ public:
+  Fit(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
+      : values_(values), sites_(data.grid), predicted_(data, values, cells) {}
+
+  void run(Progress& progress) {
+    const bool with_errors = values_.findings().fraction_error > SiteValues::kLeastError;
+    const int rounds = with_errors ? kRoundsWithErrors : kRounds;
+    for (int round = 0; round < rounds; ++round) {
+      progress.step("fitting blurred fractions", static_cast<double>(round) / rounds);
+      predicted_.predict();
+      find_missing();
+      move(with_errors);
+      values_.hold_layers();
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(const Entry& entry) const {
+    return static_cast<std::size_t>(&entry - values_.entries().data());
+  }
+
+  /// What the fractions of blurred entries are beyond those predicted.
+  void find_missing() {
+    missing_.assign(values_.entries().size(), 0);
+    for (const std::uint32_t site : values_.mixed()) {
+      const std::span<const Entry> own = std::as_const(values_).at(site);
+      for (const Entry& entry : own) {
         if (entry.width == 0) continue;
         // A material's first entry has what is predicted.
         const auto first = std::ranges::find_if(own, [&](const Entry& other) {
-          return values.whole(other.material) == values.whole(entry.material);
+          return values_.whole(other.material) == values_.whole(entry.material);
         });
-        const double missing =
-            static_cast<double>(entry.fraction) -
-            static_cast<double>(predicted.at(static_cast<std::size_t>(&*first - values.entries().data())));
-        const double by = kRelax * values.width(entry) * std::sqrt(2 * std::numbers::pi) * missing;
-        entry.value = std::clamp(entry.value + std::clamp(by, -kMostMove * h, kMostMove * h), -most, most);
+        missing_[index(entry)] = entry.fraction - predicted_.at(index(*first));
+      }
+    }
+  }
+
+  /// How much a fraction tells about where the interface is.
+  [[nodiscard]] double told(const Entry& entry) const {
+    const double steps = entry.value / values_.width(entry);
+    return std::exp(-steps * steps);
+  }
+
+  /// Moves values, where fractions have errors by the mean of what is missing round each.
+  void move(bool smooth) {
+    const double most = values_.greatest();
+    moves_.assign(missing_.size(), 0);
+    parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {
+      const std::size_t site = values_.mixed()[n];
+      for (const Entry& entry : std::as_const(values_).at(site)) {
+        if (entry.width > 0)
+          moves_[index(entry)] = smooth ? mean_missing(site, entry) : missing_[index(entry)];
       }
     });
-    values.hold_layers();
+    parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {
+      const std::size_t site = values_.mixed()[n];
+      const double farthest = kMostMove * least_side(sites_.cell(site));
+      for (Entry& entry : values_.at(site)) {
+        if (entry.width == 0) continue;
+        const double by = kRelax * values_.width(entry) * std::sqrt(2 * std::numbers::pi) *
+                          static_cast<double>(moves_[index(entry)]);
+        entry.value = std::clamp(entry.value + std::clamp(by, -farthest, farthest), -most, most);
+      }
+    });
   }
+
+  [[nodiscard]] float mean_missing(std::size_t site, const Entry& entry) const {
+    double weights = told(entry), sum = weights * static_cast<double>(missing_[index(entry)]);
+    sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+      for (const Entry& there : std::as_const(values_).at(other)) {
+        if (there.material != entry.material || there.width == 0) continue;
+        const double w = told(there) / (1 << (di * di + dj * dj + dk * dk));
+        sum += w * static_cast<double>(missing_[index(there)]);
+        weights += w;
+      }
+    });
+    return static_cast<float>(sum / weights);
+  }
+
+  SiteValues& values_;
+  GridSites sites_;
+  BlurredFractions predicted_;
+  std::vector<float> missing_, moves_;  // by entry
+};
+
+}  // namespace
+
+void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
+                 Progress& progress) {
+  Fit(data, values, cells).run(progress);
 }
 
 }  // namespace adamas

@@ -26,6 +26,10 @@ constexpr double kTelling = 0.01, kSure = 0.2, kNothing = 0.02;
 /// Widths are means over a neighbourhood with this variance, in distances of sites, by steps of kBlend.
 constexpr int kBlends = 4;
 constexpr double kBlend = 0.25;
+/// What central differences add to the product of variances from which a width is found: a third of the
+/// squared distance of sites in the sum over a whole step, less in a neighbourhood about as wide; found on
+/// spheres.
+constexpr double kWidens = 0.07;
 /// Where less than this part of mixed cells seems blurred none is.
 constexpr double kFew = 0.02;
 
@@ -85,9 +89,9 @@ class WidthSearch {
   }
 
   /// The standard deviation of a step whose squared density is so many times its squared gradient by central
-  /// differences; a third of `widened` is what these add to its square.
+  /// differences. `widened` is as in SiteBox::squared_gradient().
   static double step_width(double ratio, double widened) {
-    const double w = widened / 3;
+    const double w = kWidens * widened;
     return std::sqrt(std::max(0.0, -0.5 * w + std::sqrt(0.25 * w * w + ratio * ratio)));
   }
 
@@ -128,6 +132,19 @@ class WidthSearch {
   GridSites sites_;
 };
 
+/// The mean width of a material's entries at the blurred neighbours of a site, coded; 0 where there are none.
+std::uint16_t mean_width(const SiteValues& values, const GridSites& sites, std::size_t site,
+                         std::uint16_t material, const std::vector<char>& blurred) {
+  std::uint32_t sum = 0, count = 0;
+  sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+    if (blurred[other] < 2) return;
+    for (const Entry& entry : values.at(other)) {
+      if (entry.material == material && entry.width > 0) sum += entry.width, ++count;
+    }
+  });
+  return count == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(sum / count);
+}
+
 }  // namespace
 
 void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings) {
@@ -148,27 +165,33 @@ void summarise_widths(const MultiMaterialData& data, const SiteValues& values, F
   findings.blur_share = static_cast<double>(widths.size()) / static_cast<double>(values.mixed().size());
 }
 
-void drop_few_blurred(const MultiMaterialData& data, SiteValues& values) {
+void settle_widths(const MultiMaterialData& data, SiteValues& values) {
   const GridSites sites(data.grid);
   std::vector<char> blurred(data.grid.site_count(), 0);
   for (const std::uint32_t site : values.mixed()) blurred[site] = values.is_blurred(site) ? 2 : 1;
-  std::vector<std::uint32_t> dropped;
+  std::vector<std::uint32_t> sharp, joined;
   std::size_t left = 0;
   for (const std::uint32_t site : values.mixed()) {
-    if (blurred[site] < 2) continue;
     int mixed = 0, many = 0;
     sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
       mixed += blurred[other] > 0 ? 1 : 0;
       many += blurred[other] > 1 ? 1 : 0;
     });
-    if (2 * many < mixed) {
-      dropped.push_back(site);
-    } else {
-      ++left;
+    const bool is_blurred = blurred[site] > 1;
+    if (is_blurred && 2 * many < mixed) sharp.push_back(site);
+    if (!is_blurred && 4 * many > 3 * mixed) joined.push_back(site);
+    left += is_blurred && 2 * many >= mixed ? 1 : 0;
+  }
+  if (static_cast<double>(left) < kFew * static_cast<double>(values.mixed().size())) {
+    sharp = values.mixed();
+    joined.clear();
+  }
+  for (const std::uint32_t site : joined) {
+    for (Entry& entry : values.at(site)) {
+      if (!entry.settled()) entry.width = mean_width(values, sites, site, entry.material, blurred);
     }
   }
-  const bool few = static_cast<double>(left) < kFew * static_cast<double>(values.mixed().size());
-  for (const std::uint32_t site : few ? values.mixed() : dropped) {
+  for (const std::uint32_t site : sharp) {
     for (Entry& entry : values.at(site)) entry.width = 0;
   }
 }

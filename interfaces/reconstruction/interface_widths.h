@@ -13,9 +13,9 @@ namespace adamas {
 /// fractions.
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values);
 
-/// Takes the widths of cells that seem blurred where they are few among the mixed cells round them, or in
-/// all.
-void drop_few_blurred(const MultiMaterialData& data, SiteValues& values);
+/// Makes cells that seem blurred sharp where they are few among the mixed cells round them, or in all, and
+/// those that seem sharp blurred where they are few among blurred ones.
+void settle_widths(const MultiMaterialData& data, SiteValues& values);
 /// Tells of the widths of mixed cells.
 void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings);
 

@@ -97,7 +97,7 @@ void SiteBox::squared_gradient(const std::vector<float>& values, std::vector<flo
           wide += g * g * g * g * half * half;
         }
         squared[at] = sum;
-        widened[at] = sum > 0 ? wide / sum : 0;
+        widened[at] = sum > 0 ? wide / sum / sum : 0;
       }
     }
   });

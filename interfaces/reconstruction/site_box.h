@@ -44,8 +44,8 @@ class SiteBox {
   }
 
   /// The squared gradient of an array by central differences, one-sided on the domain's border, in the unit
-  /// of length, and the same with each axis' part times the part of the axis in the normal and the squared
-  /// distance of neighbouring sites: a third of their ratio is how much central differences widen a step.
+  /// of length; and the sum over axes of n^4 h^2, with the normal n and half the distance h of the sites that
+  /// a difference is between: a third of it is what central differences add to the variance of a step.
   void squared_gradient(const std::vector<float>& values, std::vector<float>& squared,
                         std::vector<float>& widened) const;
 

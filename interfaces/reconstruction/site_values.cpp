@@ -25,8 +25,8 @@ constexpr double kLeastOfLabels = 0.02;
 constexpr double kWidestCoded = 64;
 /// Values of blurred steps are known no farther from the interface than this, in widths.
 constexpr double kFarthest = 4;
-/// Less noise than this is none.
-constexpr double kLeastNoise = 6e-3;
+/// The standard deviation of a number that is anywhere in a cell, in its length.
+constexpr double kOwnWidth = 0.2887;
 
 }  // namespace
 
@@ -38,15 +38,16 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
     find_widths(data, options.blur, *this);
     const ThinSheets sheets = find_thin_sheets(data, *this);
     set_widths_of_sheets(data, sheets);
-    if (!options.blur) drop_few_blurred(data, *this);
+    if (!options.blur) settle_widths(data, *this);
     findings_.dispersed = take_dispersed(data, sheets, options.keep_dispersed, *this);
     find_volumes(data);
     summarise_widths(data, *this, findings_);
     set_distances(data);
     double& error = findings_.fraction_error;
     error = options.error ? *options.error : fraction_noise(data, *this, sheets);
-    if (error > kLeastNoise) smooth_within_noise(data, sheets, error, *this);
+    if (error > kLeastError) smooth_within_noise(data, sheets, error, *this);
     split_at_sheets(data, sheets);
+    if (error > kLeastError) fit_sharp_loosely(data.grid);
     return;
   }
   volumes_ = data.volumes();
@@ -71,6 +72,19 @@ void SiteValues::set_lengths(const RectilinearGrid& grid) {
   }
   far_ = -32 * widest;
   width_unit_ = kWidestCoded * grid.least_spacing() / 65535;
+}
+
+/// Where fractions have errors, sharp cells are not to hold them to the end: they are fitted as blurred ones
+/// are, with the width that the cell itself has.
+void SiteValues::fit_sharp_loosely(const RectilinearGrid& grid) {
+  const GridSites sites(grid);
+  for (const std::uint32_t site : mixed_) {
+    const Vec3 size = sites.cell(site).size();
+    for (Entry& entry : at(site)) {
+      if (!entry.settled() && entry.width == 0)
+        entry.width = coded_width(kOwnWidth * std::min({size.x, size.y, size.z}));
+    }
+  }
 }
 
 /// The volumes of entries' fractions, and of sites that one material fills.

@@ -30,6 +30,9 @@ class SiteValues {
     [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
   };
 
+  /// Errors of fractions with a lesser standard deviation are none.
+  static constexpr double kLeastError = 6e-3;
+
   /// Values from the planes that cut off each mixed cell's fractions, and from the widths of blurred ones; of
   /// labels, with `smooth`, those of smooth_label_values().
   explicit SiteValues(const MultiMaterialData& data, bool smooth = false,
@@ -103,6 +106,7 @@ class SiteValues {
   void find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
                          std::vector<std::uint16_t>& found) const;
   void find_entries(const MultiMaterialData& data);
+  void fit_sharp_loosely(const RectilinearGrid& grid);
   void set_widths_of_sheets(const MultiMaterialData& data, const ThinSheets& sheets);
   void split_at_sheets(const MultiMaterialData& data, const ThinSheets& sheets);
   void find_layers(const MultiMaterialData& data, const ThinSheets& sheets, const SheetValues& values);
