@@ -21,6 +21,9 @@ constexpr int kRounds = 5, kRoundsWithErrors = 2;
 /// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
 constexpr double kRelax = 0.7, kMostMove = 0.5;
 
+/// Fractions whose weights are less than this in all tell nothing.
+constexpr double kNothing = 1e-12;
+
 double least_side(const Box3& cell) {
   const Vec3 size = cell.size();
   return std::min({size.x, size.y, size.z});
@@ -220,7 +223,7 @@ class Fit {
         weights += w;
       }
     });
-    return static_cast<float>(sum / weights);
+    return weights > kNothing ? static_cast<float>(sum / weights) : 0;
   }
 
   SiteValues& values_;

@@ -1,6 +1,7 @@
 #include "interfaces/reconstruction/dispersed.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "interfaces/reconstruction/grid_sites.h"
@@ -12,10 +13,13 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// A material is dispersed where no cell within reach holds so much of it, and so many of a cell's neighbours
-/// hold some.
+/// A material is dispersed where no cell within reach holds so much of it, and this part of the cells that
+/// are so near along each axis hold about as much: more than layers would cut.
 constexpr float kLittle = 0.25f;
-constexpr int kLeastNeighbours = 13;
+constexpr std::size_t kNear = 2;
+constexpr double kMost = 0.55;
+/// They hold no more and no less than so many times as much.
+constexpr float kAlike = 3;
 /// The reach in cells, and how it grows with the greatest width of the material's steps.
 constexpr int kReach = 4, kFarthestReach = 10;
 
@@ -77,13 +81,30 @@ class DispersedSearch {
     std::vector<std::uint32_t> found;
     for (const std::uint32_t site : little) {
       if (much[box.place(site)] != 0) continue;
-      int holding = 0;
-      sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-        holding += fractions[other] > kFractionTrace ? 1 : 0;
-      });
-      if (holding >= kLeastNeighbours) found.push_back(site);
+      if (is_everywhere(site, fractions)) found.push_back(site);
     }
     return found;
+  }
+
+  static bool is_alike(float a, float b) { return a * kAlike >= b && a <= b * kAlike; }
+
+  /// Whether most of the cells near a site hold about as much as it does.
+  [[nodiscard]] bool is_everywhere(std::size_t site, const SiteArray<float>& fractions) const {
+    const std::array<std::size_t, 3> n{data_.grid.sites(0), data_.grid.sites(1), data_.grid.sites(2)},
+        p{site % n[0], site / n[0] % n[1], site / (n[0] * n[1])};
+    std::array<std::size_t, 3> low{}, high{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = p[a] - std::min(p[a], kNear);
+      high[a] = std::min(p[a] + kNear + 1, n[a]);
+    }
+    std::size_t holding = 0, cells = 0;
+    for (std::size_t k = low[2]; k < high[2]; ++k) {
+      for (std::size_t j = low[1]; j < high[1]; ++j) {
+        for (std::size_t i = low[0]; i < high[0]; ++i, ++cells)
+          holding += is_alike(fractions[data_.grid.site_index(i, j, k)], fractions[site]) ? 1 : 0;
+      }
+    }
+    return static_cast<double>(holding) >= kMost * static_cast<double>(cells);
   }
 
   /// Scales what is left at sites to 1.

@@ -21,6 +21,8 @@ using Entry = SiteValues::Entry;
 constexpr int kReach = 2, kSquaredReach = 5;
 /// A surface is told from so many neighbours at least.
 constexpr int kLeastNeighbours = 14;
+/// The weights of neighbours together are at least this, else they are too far from the interface to tell.
+constexpr double kLeastWeight = 0.05;
 /// Noise is found from fractions between the first and what it leaves of 1, of so many cells at most.
 constexpr double kTelling = 0.02;
 constexpr std::size_t kMostCells = 20000;
@@ -30,12 +32,17 @@ constexpr double kLeastPart = 0.1;
 constexpr double kOfMedian = 1.4826;
 /// Squares that are greater than those of the noise by this factor are no noise.
 constexpr double kBeyond = 2;
+/// Sharp interfaces tell of errors where they are not more curved than this, in cells, and by what they are
+/// off beyond this part of the square of that.
+constexpr double kMostCurved = 0.4, kOfCurved = 0.5;
 
 /// What a smooth surface through neighbours says of an entry.
 struct LeftOut {
-  double value = 0;     ///< its distance, without its own
-  double fraction = 0;  ///< that belongs to this distance
-  double own = 0;       ///< the part of its own distance in a surface through it and its neighbours
+  double value = 0;      ///< its distance, without its own
+  double fraction = 0;   ///< that belongs to this distance
+  double own = 0;        ///< the part of its own distance in a surface through it and its neighbours
+  double curved = 0;     ///< the greatest second derivative of distances, in cells
+  bool is_alone = true;  ///< neighbours hold no third material
   bool known = false;
 };
 
@@ -55,6 +62,7 @@ class SmoothSurface {
     const Vec3 centre = sites_.position(site), size = sites_.cell(site).size();
     const double width = entry.width > 0 ? values_.width(entry) : std::min({size.x, size.y, size.z});
     int count = 0;
+    LeftOut result;
     const auto s = static_cast<std::int64_t>(site);
     const std::array<std::int64_t, 3> p{s % n_[0], s / n_[0] % n_[1], s / (n_[0] * n_[1])};
     for (std::int64_t dk = -kReach; dk <= kReach; ++dk) {
@@ -76,16 +84,18 @@ class SmoothSurface {
           terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
           sums += w * terms * terms.transpose();
           right += w * there->value * terms;
+          result.is_alone = result.is_alone && has_no_third(site, other);
           ++count;
         }
       }
     }
-    if (count < kLeastNeighbours) return {};
+    if (count < kLeastNeighbours || sums(0, 0) < kLeastWeight) return {};
     sums.diagonal().array() += 1e-9 * sums(0, 0);
     const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> solver(sums);
     const Terms found = solver.solve(right), unit = solver.solve(Terms::Unit(0));
     const double own_steps = entry.value / width, w = std::exp(-own_steps * own_steps);
-    LeftOut result;
+    if (!std::isfinite(found[0]) || !std::isfinite(unit[0])) return {};
+    result.curved = found.segment<3>(4).cwiseAbs().maxCoeff() * 2 / std::min({size.x, size.y, size.z});
     result.value = found[0];
     result.own = w * unit[0] / (1 + w * unit[0]);
     result.known = true;
@@ -104,6 +114,14 @@ class SmoothSurface {
       if (entry.material == material) return &entry;
     }
     return nullptr;
+  }
+
+  /// Whether all that a site holds is at another one too.
+  [[nodiscard]] bool has_no_third(std::size_t site, std::size_t other) const {
+    return std::ranges::all_of(values_.at(other), [&](const Entry& there) {
+      const Entry* here = there.fraction > 0 ? find(site, there.material) : nullptr;
+      return there.fraction <= 0 || (here != nullptr && here->fraction > 0);
+    });
   }
 
   const SiteValues& values_;
@@ -141,12 +159,16 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
     for (const Entry& entry : values.at(site)) {
       const auto f = static_cast<double>(entry.fraction);
       if (f < kTelling || f > 1 - kTelling) continue;
-      if (const LeftOut found = surface.leave_out(site, entry); found.known)
-        off[n] = std::max(off[n], std::abs(found.fraction - f));
+      const LeftOut found = surface.leave_out(site, entry);
+      if (!found.known || (entry.width == 0 && (!found.is_alone || found.curved > kMostCurved))) continue;
+      // Planes in cells tell distances from a curved interface less well.
+      const double own = entry.width == 0 ? kOfCurved * found.curved * found.curved : 0;
+      off[n] = std::max(off[n], std::abs(found.fraction - f) - own);
     }
   });
   const double sampled = kLeastPart * static_cast<double>(values.mixed().size() / stride);
   std::erase(off, -1.0);
+  for (double& o : off) o = std::max(o, 0.0);
   if (off.size() < kLeastNeighbours || static_cast<double>(off.size()) < sampled) return 0;
   const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
   std::nth_element(off.begin(), middle, off.end());

@@ -30,6 +30,9 @@ constexpr double kBlend = 0.25;
 /// squared distance of sites in the sum over a whole step, less in a neighbourhood about as wide; found on
 /// spheres.
 constexpr double kWidens = 0.07;
+/// Of a site's neighbours so many, of all, are cut by blurred steps only; and how far from such a site others
+/// are blurred.
+constexpr int kDeep = 22, kAllNeighbours = 26, kNearDeep = 6;
 /// Where less than this part of mixed cells seems blurred none is.
 constexpr double kFew = 0.02;
 
@@ -72,6 +75,7 @@ class WidthSearch {
       worse[place] = static_cast<float>((misses[0] - misses[1]) / (sum + kNothing));
       both[place] = 1;
     });
+    const std::vector<std::uint8_t> deep = find_deep(sites, fractions, box);
     for (std::size_t p = 0; p < box.size(); ++p) widened[p] *= gradients[p];
     for (auto* array : {&gradients, &widened, &steps, &worse, &both}) {
       for (int n = 0; n < kBlends; ++n) box.blend(*array, kBlend, scratch);
@@ -82,10 +86,31 @@ class WidthSearch {
       const double width = gradients[place] > 0 ? step_width(steps[place] / gradients[place],
                                                              widened[place] / gradients[place])
                                                 : kWidest * h;
-      const bool blurred = width > kSharp * h && worse[place] >= kSure * both[place];
+      const auto own = static_cast<double>(fractions[site]);
+      // Far in the tail of a step nothing near tells.
+      const bool tells =
+          both[place] > 0 ? worse[place] >= kSure * both[place] : own < kTelling || own > 1 - kTelling;
+      const bool blurred = tells && deep[place] != 0 && width > kSharp * h;
       Entry& entry = *find_entry(site, number);
       entry.width = blurred ? values_.coded_width(std::min(width, kWidest * h)) : 0;
     }
+  }
+
+  /// Marks what is near cells that a blurred step alone can make: nearly all of whose neighbours are mixed.
+  [[nodiscard]] std::vector<std::uint8_t> find_deep(const std::vector<std::uint32_t>& sites,
+                                                    const SiteArray<float>& fractions,
+                                                    const SiteBox& box) const {
+    std::vector<std::uint8_t> deep(box.size(), 0);
+    parallel_for(sites.size(), 1024, [&](std::size_t n) {
+      int mixed = 0, neighbours = 0;
+      sites_.for_each_neighbour(sites[n], [&](std::size_t other, int, int, int) {
+        ++neighbours;
+        mixed += fractions[other] > 0 && fractions[other] < 1 ? 1 : 0;
+      });
+      deep[box.place(sites[n])] = kAllNeighbours * mixed >= kDeep * neighbours ? 1 : 0;
+    });
+    box.dilate(deep, kNearDeep);
+    return deep;
   }
 
   /// The standard deviation of a step whose squared density is so many times its squared gradient by central
@@ -179,7 +204,7 @@ void settle_widths(const MultiMaterialData& data, SiteValues& values) {
     });
     const bool is_blurred = blurred[site] > 1;
     if (is_blurred && 2 * many < mixed) sharp.push_back(site);
-    if (!is_blurred && 4 * many > 3 * mixed) joined.push_back(site);
+    if (!is_blurred && 2 * many > mixed) joined.push_back(site);
     left += is_blurred && 2 * many >= mixed ? 1 : 0;
   }
   if (static_cast<double>(left) < kFew * static_cast<double>(values.mixed().size())) {

@@ -13,8 +13,8 @@ namespace adamas {
 /// fractions.
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values);
 
-/// Makes cells that seem blurred sharp where they are few among the mixed cells round them, or in all, and
-/// those that seem sharp blurred where they are few among blurred ones.
+/// Makes cells that seem blurred sharp, and the other way round, where most of the mixed cells round them
+/// are, and all sharp where few seem blurred.
 void settle_widths(const MultiMaterialData& data, SiteValues& values);
 /// Tells of the widths of mixed cells.
 void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings);

@@ -14,7 +14,7 @@ namespace {
 /// How far cells count beyond a layer's middle: so that another one two cells away does not disturb.
 constexpr double kFarthest = 2.0;
 /// A layer's spread along its normal in relation to that across, and beyond that of an even layer.
-constexpr double kFlat = 0.5, kFlatBlurred = 0.75, kBlurred = 0.2;
+constexpr double kFlat = 0.5, kFlatBlurred = 0.85, kBlurred = 0.2;
 /// Layers thicker than the greatest need no care, and thinner ones are traces.
 constexpr double kThickest = 1.5, kThinnest = 0.03;
 /// The middle of a layer is no farther away from a cell that it cuts; of a blurred layer the half of it comes
@@ -211,13 +211,15 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     }
     if (x.lpNorm<Eigen::Infinity>() < 1e-4) break;
   }
+  // Both sides show where little of the layer is, of a blurred one in relation to its middle.
+  const double seen = blurred ? 0.4 * slab.part_of_cell(slab.offset * slab.normal) : 0.02;
   double left = 0, all = 0, weights = 0, before = 0, behind = 0;
   for (const Sample& sample : samples) {
     const double part = layer.part_of_cell(sample.place), y = slab.height(sample.place);
     left += sample.weight * (sample.fraction - part) * (sample.fraction - part);
     all += sample.weight * sample.fraction * sample.fraction;
     weights += sample.weight;
-    if (part < 0.02) (y > 0 ? before : behind) += sample.weight;
+    if (part < seen) (y > 0 ? before : behind) += sample.weight;
   }
   off = std::sqrt(left / all);
   const double farthest = kMostOffset + (blurred ? 0.5 * slab.thickness : 0);

@@ -36,9 +36,12 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
   findings_.mixed_cells = mixed_.size();
   if (!smooth) {
     find_widths(data, options.blur, *this);
-    const ThinSheets sheets = find_thin_sheets(data, *this);
-    set_widths_of_sheets(data, sheets);
-    if (!options.blur) settle_widths(data, *this);
+    ThinSheets sheets = find_thin_sheets(data, *this);
+    if (has_blurred()) {
+      set_widths_of_sheets(data, sheets);
+      if (!options.blur) settle_widths(data, *this);
+      if (!has_blurred()) sheets = find_thin_sheets(data, *this);
+    }
     findings_.dispersed = take_dispersed(data, sheets, options.keep_dispersed, *this);
     find_volumes(data);
     summarise_widths(data, *this, findings_);
@@ -72,6 +75,10 @@ void SiteValues::set_lengths(const RectilinearGrid& grid) {
   }
   far_ = -32 * widest;
   width_unit_ = kWidestCoded * grid.least_spacing() / 65535;
+}
+
+bool SiteValues::has_blurred() const {
+  return std::ranges::any_of(entries_, [](const Entry& entry) { return entry.width > 0; });
 }
 
 /// Where fractions have errors, sharp cells are not to hold them to the end: they are fitted as blurred ones

@@ -106,6 +106,7 @@ class SiteValues {
   void find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
                          std::vector<std::uint16_t>& found) const;
   void find_entries(const MultiMaterialData& data);
+  [[nodiscard]] bool has_blurred() const;
   void fit_sharp_loosely(const RectilinearGrid& grid);
   void set_widths_of_sheets(const MultiMaterialData& data, const ThinSheets& sheets);
   void split_at_sheets(const MultiMaterialData& data, const ThinSheets& sheets);

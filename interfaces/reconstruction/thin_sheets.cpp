@@ -31,11 +31,13 @@ constexpr double kAside = 0.4;
 constexpr double kMissing = 0.1, kHalf = 0.5;
 /// A sharp layer that leaves no more than this part of the fractions is what they are of.
 constexpr double kExact = 0.1, kFailed = std::numeric_limits<double>::infinity();
+/// Of a cell's neighbours so many are cut by a blurred layer only.
+constexpr int kDeep = 22;
 /// Blurred layers of no more than this width, in cells, are sharp ones.
 constexpr double kSharpWidth = 0.4;
-/// Blurred sheets are looked for where no fraction near is above the first, and that of the cell is not below
-/// this part of the greatest.
-constexpr double kHighest = 0.8, kOfHighest = 0.3;
+/// Blurred sheets are looked for where the greatest fraction near is between the first two, and that of the
+/// cell is not below this part of it.
+constexpr double kLowest = 0.06, kHighest = 0.8, kOfHighest = 0.3;
 
 class SheetSearch {
  public:
@@ -101,12 +103,25 @@ class SheetSearch {
   /// what holds them better.
   [[nodiscard]] std::optional<SheetPlace> fit(std::size_t site, const Entry& entry) const {
     double off = kFailed, off_blurred = kFailed;
-    const auto sharp = fit(site, entry.material, false, off);
-    if (entry.width == 0 || (sharp && off < kExact)) return sharp;
+    std::optional<SheetPlace> sharp;
+    if (entry.width == 0 || !is_deep(site, entry.material)) {
+      sharp = fit(site, entry.material, false, off);
+      if (entry.width == 0 || (sharp && off < kExact)) return sharp;
+    }
     if (!may_be_blurred_sheet(site, entry)) return {};
     const auto blurred = fit(site, entry.material, true, off_blurred);
     const bool is_sharp = off < off_blurred || (blurred && blurred->slab.width <= kSharpWidth);
     return sharp && is_sharp ? sharp : blurred;
+  }
+
+  /// Whether a material has a part of nearly all cells round a site, as sharp layers have not.
+  [[nodiscard]] bool is_deep(std::size_t site, std::uint16_t material) const {
+    int mixed = 0;
+    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      const double f = fraction(material, other);
+      mixed += f > 0 && f < 1 ? 1 : 0;
+    });
+    return mixed >= kDeep;
   }
 
   /// Whether a blurred material takes no more than a part of cells near a site, of which this one has enough.
@@ -116,7 +131,7 @@ class SheetSearch {
       most = std::max(most, fraction(entry.material, other));
       return most <= kHighest;
     });
-    return most <= kHighest && static_cast<double>(entry.fraction) >= kOfHighest * most;
+    return most >= kLowest && most <= kHighest && static_cast<double>(entry.fraction) >= kOfHighest * most;
   }
 
   [[nodiscard]] std::optional<SheetPlace> fit(std::size_t site, std::uint16_t material, bool blurred,

@@ -10,6 +10,7 @@
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
+#include "interfaces/reconstruction/given_fractions.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
@@ -19,7 +20,7 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-constexpr int kMostRounds = 12;
+constexpr int kMostRounds = 30;
 /// Derivatives stay as they are where a round leaves less than this part of what was missing.
 constexpr double kFast = 0.01;
 /// Totals are right that differ by no more than this part of the domain.
@@ -85,6 +86,20 @@ class TotalClosing {
       find_shares();
       missing = measure_missing(true);
     }
+    close(wanted, missing, growth, progress);
+    if (missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
+    // What little is left goes to all alike.
+    shares_.assign(values_.entries().size(), 1);
+    missing = measure_missing(true);
+    close(wanted, missing, growth, progress);
+  }
+
+ private:
+  /// Newton's method with the shares that there are, from what is missing and its growth on.
+  void close(const std::vector<double>& wanted, Eigen::VectorXd& missing, Eigen::SparseMatrix<double>& growth,
+             Progress& progress) {
+    const Eigen::Index count = missing.size();
+    const double domain = data_.grid.domain().volume();
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     double before = std::numeric_limits<double>::infinity();  // missing at most
     bool newton = true;
@@ -106,11 +121,10 @@ class TotalClosing {
       }
       newton = round == 0 || most > kFast * before;
       before = most;
-      missing = measure_missing(newton);
+      missing = missing_of(measure_totals(newton ? &growth : nullptr), wanted);
     }
   }
 
- private:
   /// A site's own cell counts as much as so many of its neighbours'.
   static constexpr int kOwnCount = 3;
 
@@ -357,23 +371,14 @@ void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteC
   Groups groups = BodyGroups(data, values).groups();
   const GridSites sites(data.grid);
   std::vector<double> wanted(groups.count, 0);
+  std::vector<double> given;
   for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
     const std::span<const Entry> own = std::as_const(values).at(site);
     if (own.empty()) continue;
-    // As the data have it, without what is dispersed.
-    const auto held = [&](const Entry& entry) {
-      const auto e = static_cast<std::size_t>(&entry - values.entries().data());
-      const bool first = e == first_entry(values, site, values.whole(entry.material));
-      return first && entry.fraction > 0
-                 ? static_cast<double>(data.fraction(values.material(entry.material), site))
-                 : 0.0;
-    };
-    double sum = 0;
-    for (const Entry& entry : own) sum += held(entry);
-    const double volume = sum > 0 ? sites.cell(site).volume() / sum : 0;
-    for (const Entry& entry : own)
-      wanted[groups.of_entry[static_cast<std::size_t>(&entry - values.entries().data())]] +=
-          volume * held(entry);
+    find_given_fractions(data, values, site, given);
+    const double volume = sites.cell(site).volume();
+    const auto first = static_cast<std::size_t>(own.data() - values.entries().data());
+    for (std::size_t e = 0; e < own.size(); ++e) wanted[groups.of_entry[first + e]] += volume * given[e];
   }
   wanted.back() = std::numeric_limits<double>::quiet_NaN();
   const auto largest = std::max_element(wanted.begin(), wanted.end() - 1);

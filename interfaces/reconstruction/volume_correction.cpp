@@ -37,8 +37,6 @@ constexpr double kDamping = 1e-3, kDampingFalls = 0.6, kDampingRises = 4, kTooFa
 constexpr double kLeastDamping = 1e-4, kMostDamping = 1;
 /// How often a move is halved where it makes costs greater.
 constexpr int kMostHalvings = 4;
-/// Fractions that differ by no more than so many standard deviations of their errors agree.
-constexpr double kOfError = 3;
 /// Moves that are smaller, in cells, leave what was measured as it is.
 constexpr double kStill = 1e-6;
 
@@ -373,53 +371,6 @@ class Correction {
 void correct_volumes(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
                      Progress& progress) {
   Correction(data, values, cells).run(progress);
-}
-
-VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
-                                 const SiteCells& cells, std::vector<VolumeMove> moves) {
-  if (values.mixed().empty()) return {};
-  std::ranges::stable_sort(moves, {}, &VolumeMove::site);
-  BlurredFractions blurred(data, values, cells);
-  blurred.predict();
-  std::vector<float> differences(data.grid.site_count());
-  parallel_chunks(differences.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t site = begin; site < end; ++site) {
-      const std::span<const Entry> own = values.at(site);
-      for (std::size_t e = 0; e < own.size(); ++e) {
-        const std::uint16_t whole = values.whole(own[e].material);
-        const auto is_same = [&](const Entry& entry) { return values.whole(entry.material) == whole; };
-        if (std::any_of(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(e), is_same)) continue;
-        double found =
-            static_cast<double>(blurred.at(static_cast<std::size_t>(&own[e] - values.entries().data())));
-        float wanted = 0;
-        for (const Entry& entry : own) {
-          if (is_same(entry)) wanted = std::max(wanted, entry.fraction);
-        }
-        auto move = std::ranges::lower_bound(moves, site, {}, &VolumeMove::site);
-        for (; move != moves.end() && move->site == site; ++move) {
-          if (values.material(whole) == move->from) found -= move->volume;
-          if (values.material(whole) == move->to) found += move->volume;
-        }
-        differences[site] =
-            std::max(differences[site], static_cast<float>(std::abs(found - static_cast<double>(wanted))));
-      }
-    }
-  });
-  VolumeAgreement result;
-  result.tolerance = std::max(kCellOff, kOfError * values.findings().fraction_error);
-  for (const std::uint32_t site : values.mixed()) {
-    const auto d = static_cast<double>(std::exchange(differences[site], 0.0f));
-    ++result.mixed_cells;
-    result.cells_off += d > result.tolerance ? 1 : 0;
-    result.greatest = std::max(result.greatest, d);
-    result.mean += d / static_cast<double>(values.mixed().size());
-  }
-  for (const float difference : differences) {
-    const auto d = static_cast<double>(difference);
-    result.full_cells_off += d > kCellOff ? 1 : 0;
-    result.greatest_in_full_cell = std::max(result.greatest_in_full_cell, d);
-  }
-  return result;
 }
 
 }  // namespace adamas

@@ -95,7 +95,7 @@ TEST(ThinSheets, BlurredLayersAreFittedAsTheyAre) {
     for (std::size_t c = 0; c < window.cells; ++c)
       window.fraction[c] = static_cast<float>(layer.part_of_cell(window.place(c)));
     const auto guess = guess_sheet(window);
-    ASSERT_TRUE(guess) << turn;
+    ASSERT_TRUE(guess) << turn << " " << layer.thickness << " " << layer.width << " " << layer.offset;
     double off = 0;
     const auto found = fit_sheet(window, *guess, off);
     ASSERT_TRUE(found) << turn;

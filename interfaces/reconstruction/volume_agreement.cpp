@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/blurred_fit.h"
+#include "interfaces/reconstruction/cell_volumes.h"
+#include "interfaces/reconstruction/given_fractions.h"
+#include "interfaces/reconstruction/volume_correction.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+/// Fractions that differ by no more than so many standard deviations of their errors agree.
+constexpr double kOfError = 3;
+
+}  // namespace
+
+VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
+                                 const SiteCells& cells, std::vector<VolumeMove> moves) {
+  if (values.mixed().empty()) return {};
+  std::ranges::stable_sort(moves, {}, &VolumeMove::site);
+  BlurredFractions blurred(data, values, cells);
+  blurred.predict();
+  std::vector<float> differences(data.grid.site_count());
+  parallel_chunks(differences.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> given;
+    for (std::size_t site = begin; site < end; ++site) {
+      const std::span<const Entry> own = values.at(site);
+      find_given_fractions(data, values, site, given);
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        const std::uint16_t whole = values.whole(own[e].material);
+        const bool first = std::none_of(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(e),
+                                        [&](const Entry& o) { return values.whole(o.material) == whole; });
+        if (!first) continue;
+        const std::size_t entry = static_cast<std::size_t>(&own[e] - values.entries().data());
+        double off = static_cast<double>(blurred.at(entry)) - given[e];
+        auto move = std::ranges::lower_bound(moves, site, {}, &VolumeMove::site);
+        for (; move != moves.end() && move->site == site; ++move) {
+          if (values.material(whole) == move->from) off -= move->volume;
+          if (values.material(whole) == move->to) off += move->volume;
+        }
+        differences[site] = std::max(differences[site], static_cast<float>(std::abs(off)));
+      }
+    }
+  });
+  VolumeAgreement result;
+  result.tolerance = std::max(kCellOff, kOfError * values.findings().fraction_error);
+  for (const std::uint32_t site : values.mixed()) {
+    const auto d = static_cast<double>(std::exchange(differences[site], 0.0f));
+    ++result.mixed_cells;
+    result.cells_off += d > result.tolerance ? 1 : 0;
+    result.greatest = std::max(result.greatest, d);
+    result.mean += d / static_cast<double>(values.mixed().size());
+  }
+  for (const float difference : differences) {
+    const auto d = static_cast<double>(difference);
+    result.full_cells_off += d > kCellOff ? 1 : 0;
+    result.greatest_in_full_cell = std::max(result.greatest_in_full_cell, d);
+  }
+  return result;
+}
+
+}  // namespace adamas
