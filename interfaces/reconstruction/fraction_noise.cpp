@@ -23,9 +23,10 @@ constexpr int kReach = 2, kSquaredReach = 5;
 constexpr int kLeastNeighbours = 14;
 /// The weights of neighbours together are at least this, else they are too far from the interface to tell.
 constexpr double kLeastWeight = 0.05;
-/// Noise is found from fractions between the first and what it leaves of 1, of so many cells at most.
+/// Noise is found from fractions between the first and what it leaves of 1, of so many cells
+/// at most, and of so many at least.
 constexpr double kTelling = 0.02;
-constexpr std::size_t kMostCells = 20000;
+constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
 /// Where less than this part of them can be told nothing is known.
 constexpr double kLeastPart = 0.1;
 /// The median of the size of normally distributed numbers, times this, is their standard deviation.
@@ -169,7 +170,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
   const double sampled = kLeastPart * static_cast<double>(values.mixed().size() / stride);
   std::erase(off, -1.0);
   for (double& o : off) o = std::max(o, 0.0);
-  if (off.size() < kLeastNeighbours || static_cast<double>(off.size()) < sampled) return 0;
+  if (off.size() < kLeastCells || static_cast<double>(off.size()) < sampled) return 0;
   const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
   std::nth_element(off.begin(), middle, off.end());
   const double found = kOfMedian * *middle, own = error_of_method(values.findings().blur_median);

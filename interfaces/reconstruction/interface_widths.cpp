@@ -157,6 +157,24 @@ class WidthSearch {
   GridSites sites_;
 };
 
+/// Makes the sites sharp of materials that have no more than half of any cell, and no sheet: as blurred ones
+/// they would own nothing.
+void make_faint_sharp(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values) {
+  std::vector<float> most(data.materials.size(), 0);
+  std::vector<char> is_sheet(most.size(), 0);
+  for (const SheetPlace& place : sheets.places) is_sheet[place.material] = 1;
+  for (std::uint16_t number = 0; number < most.size(); ++number) {
+    for (const float f : data.fractions[values.material(number)]) most[number] = std::max(most[number], f);
+  }
+  for (const std::uint32_t site : values.mixed()) {
+    const bool faint = std::ranges::any_of(values.at(site), [&](const Entry& entry) {
+      return !entry.settled() && is_sheet[entry.material] == 0 && most[entry.material] <= 0.5f;
+    });
+    if (!faint) continue;
+    for (Entry& entry : values.at(site)) entry.width = 0;
+  }
+}
+
 /// The mean width of a material's entries at the blurred neighbours of a site, coded; 0 where there are none.
 std::uint16_t mean_width(const SiteValues& values, const GridSites& sites, std::size_t site,
                          std::uint16_t material, const std::vector<char>& blurred) {
@@ -190,7 +208,8 @@ void summarise_widths(const MultiMaterialData& data, const SiteValues& values, F
   findings.blur_share = static_cast<double>(widths.size()) / static_cast<double>(values.mixed().size());
 }
 
-void settle_widths(const MultiMaterialData& data, SiteValues& values) {
+void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values) {
+  make_faint_sharp(data, sheets, values);
   const GridSites sites(data.grid);
   std::vector<char> blurred(data.grid.site_count(), 0);
   for (const std::uint32_t site : values.mixed()) blurred[site] = values.is_blurred(site) ? 2 : 1;

@@ -5,6 +5,7 @@
 
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_values.h"
+#include "interfaces/reconstruction/thin_sheets.h"
 
 namespace adamas {
 
@@ -15,7 +16,7 @@ void find_widths(const MultiMaterialData& data, std::optional<double> blur, Site
 
 /// Makes cells that seem blurred sharp, and the other way round, where most of the mixed cells round them
 /// are, and all sharp where few seem blurred.
-void settle_widths(const MultiMaterialData& data, SiteValues& values);
+void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values);
 /// Tells of the widths of mixed cells.
 void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings);
 

@@ -37,12 +37,11 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
   if (!smooth) {
     find_widths(data, options.blur, *this);
     ThinSheets sheets = find_thin_sheets(data, *this);
-    if (has_blurred()) {
-      set_widths_of_sheets(data, sheets);
-      if (!options.blur) settle_widths(data, *this);
-      if (!has_blurred()) sheets = find_thin_sheets(data, *this);
-    }
+    const bool blurred = has_blurred();
+    if (blurred) set_widths_of_sheets(data, sheets);
     findings_.dispersed = take_dispersed(data, sheets, options.keep_dispersed, *this);
+    if (blurred && !options.blur) settle_widths(data, sheets, *this);
+    if (blurred && !has_blurred()) sheets = find_thin_sheets(data, *this);
     find_volumes(data);
     summarise_widths(data, *this, findings_);
     set_distances(data);
