@@ -33,9 +33,8 @@ constexpr double kLeastPart = 0.1;
 constexpr double kOfMedian = 1.4826;
 /// Squares that are greater than those of the noise by this factor are no noise.
 constexpr double kBeyond = 2;
-/// Sharp interfaces tell of errors where they are not more curved than this, in cells, and by what they are
-/// off beyond this part of the square of that.
-constexpr double kMostCurved = 0.4, kOfCurved = 0.5;
+/// Sharp interfaces tell of errors by what they are off beyond this part of the square of the mean curvature.
+constexpr double kOfCurved = 0.5;
 
 /// What a smooth surface through neighbours says of an entry.
 struct LeftOut {
@@ -96,7 +95,7 @@ class SmoothSurface {
     const Terms found = solver.solve(right), unit = solver.solve(Terms::Unit(0));
     const double own_steps = entry.value / width, w = std::exp(-own_steps * own_steps);
     if (!std::isfinite(found[0]) || !std::isfinite(unit[0])) return {};
-    result.curved = found.segment<3>(4).cwiseAbs().maxCoeff() * 2 / std::min({size.x, size.y, size.z});
+    result.curved = (found[4] + found[5] + found[6]) / std::min({size.x, size.y, size.z});
     result.value = found[0];
     result.own = w * unit[0] / (1 + w * unit[0]);
     result.known = true;
@@ -137,6 +136,12 @@ double error_of_method(double width) {
   return kSharp * std::exp(-kFalls * std::max(0.0, width - kFrom));
 }
 
+double median(std::vector<double>& numbers) {
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
 /// The mixed sites at which no sheet is.
 std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const ThinSheets& sheets) {
   std::vector<std::uint32_t> sites;
@@ -154,26 +159,38 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
   const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
   const SmoothSurface surface(data, values);
   const std::size_t stride = mixed.size() / kMostCells + 1;
-  std::vector<double> off((mixed.size() + stride - 1) / stride, -1);
-  parallel_for(off.size(), 64, [&](std::size_t n) {
+  struct Sample {
+    double off = -1, curved = 0;
+    std::uint16_t material = 0;
+    bool is_sharp = false;
+  };
+  std::vector<Sample> samples((mixed.size() + stride - 1) / stride);
+  parallel_for(samples.size(), 64, [&](std::size_t n) {
     const std::size_t site = mixed[n * stride];
     for (const Entry& entry : values.at(site)) {
       const auto f = static_cast<double>(entry.fraction);
       if (f < kTelling || f > 1 - kTelling) continue;
       const LeftOut found = surface.leave_out(site, entry);
-      if (!found.known || (entry.width == 0 && (!found.is_alone || found.curved > kMostCurved))) continue;
-      // Planes in cells tell distances from a curved interface less well.
-      const double own = entry.width == 0 ? kOfCurved * found.curved * found.curved : 0;
-      off[n] = std::max(off[n], std::abs(found.fraction - f) - own);
+      if (!found.known || (entry.width == 0 && !found.is_alone)) continue;
+      const double off = std::abs(found.fraction - f);
+      if (off > samples[n].off) samples[n] = {off, found.curved, entry.material, entry.width == 0};
     }
   });
+  std::erase_if(samples, [](const Sample& sample) { return sample.off < 0; });
   const double sampled = kLeastPart * static_cast<double>(values.mixed().size() / stride);
-  std::erase(off, -1.0);
-  for (double& o : off) o = std::max(o, 0.0);
-  if (off.size() < kLeastCells || static_cast<double>(off.size()) < sampled) return 0;
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::nth_element(off.begin(), middle, off.end());
-  const double found = kOfMedian * *middle, own = error_of_method(values.findings().blur_median);
+  if (samples.size() < kLeastCells || static_cast<double>(samples.size()) < sampled) return 0;
+  // Planes in cells tell distances from a curved interface less well: by what is curved on the whole.
+  std::vector<std::vector<double>> curved(values.number_count());
+  for (const Sample& sample : samples) curved[sample.material].push_back(sample.curved);
+  std::vector<double> means(curved.size(), 0), off;
+  for (std::size_t m = 0; m < means.size(); ++m) {
+    if (!curved[m].empty()) means[m] = median(curved[m]);
+  }
+  for (const Sample& sample : samples) {
+    const double mean = means[sample.material];
+    off.push_back(sample.is_sharp ? std::max(0.0, sample.off - kOfCurved * mean * mean) : sample.off);
+  }
+  const double found = kOfMedian * median(off), own = error_of_method(values.findings().blur_median);
   return found > own ? std::sqrt(found * found - own * own) : 0;
 }
 
