@@ -9,6 +9,7 @@
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
+#include "interfaces/reconstruction/site_entries.h"
 
 namespace adamas {
 
@@ -23,11 +24,6 @@ constexpr double kRelax = 0.7, kMostMove = 0.5;
 
 /// Fractions whose weights are less than this in all tell nothing.
 constexpr double kNothing = 1e-12;
-
-double least_side(const Box3& cell) {
-  const Vec3 size = cell.size();
-  return std::min({size.x, size.y, size.z});
-}
 
 }  // namespace
 
@@ -67,7 +63,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
   };
   std::vector<Found> found(sites.size());
   parallel_for(sites.size(), 1024, [&](std::size_t n) {
-    const std::size_t site = sites[n], entry = find(site, number);
+    const std::size_t site = sites[n], entry = first_entry(values_, site, number);
     // Regions of a material have the width of the material.
     double width = 0;
     for (const Entry& other : values_.at(site)) {
@@ -90,14 +86,6 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
   parts_.push_back(std::move(part));
 }
 
-/// The first entry at a site of a material or of its regions.
-std::size_t BlurredFractions::find(std::size_t site, std::uint16_t number) const {
-  const std::span<const Entry> own = values_.at(site);
-  const auto found =
-      std::ranges::find_if(own, [&](const Entry& entry) { return values_.whole(entry.material) == number; });
-  return static_cast<std::size_t>(&*found - values_.entries().data());
-}
-
 void BlurredFractions::predict() {
   measure();
   predicted_ = owned_;
@@ -116,7 +104,7 @@ void BlurredFractions::measure() {
       const Entry* all = values_.entries().data();
       for (const Entry& entry : own) owned_[static_cast<std::size_t>(&entry - all)] = 0;
       for (std::size_t m = 0; m < volumes.size(); ++m)
-        owned_[find(site, cell.materials()[m].number)] = static_cast<float>(volumes[m]);
+        owned_[first_entry(values_, site, cell.materials()[m].number)] = static_cast<float>(volumes[m]);
     }
   });
 }
@@ -176,10 +164,8 @@ class Fit {
       for (const Entry& entry : own) {
         if (entry.width == 0) continue;
         // A material's first entry has what is predicted.
-        const auto first = std::ranges::find_if(own, [&](const Entry& other) {
-          return values_.whole(other.material) == values_.whole(entry.material);
-        });
-        missing_[index(entry)] = entry.fraction - predicted_.at(index(*first));
+        const std::size_t first = first_entry(values_, site, values_.whole(entry.material));
+        missing_[index(entry)] = entry.fraction - predicted_.at(first);
       }
     }
   }
@@ -203,7 +189,7 @@ class Fit {
     });
     parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {
       const std::size_t site = values_.mixed()[n];
-      const double farthest = kMostMove * least_side(sites_.cell(site));
+      const double farthest = kMostMove * sites_.least_side(site);
       for (Entry& entry : values_.at(site)) {
         if (entry.width == 0) continue;
         const double by = kRelax * values_.width(entry) * std::sqrt(2 * std::numbers::pi) *

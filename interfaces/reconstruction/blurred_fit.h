@@ -38,7 +38,6 @@ class BlurredFractions {
   void add_part(std::uint16_t number, const std::vector<std::uint32_t>& sites);
   void measure();
   void spread(const Part& part);
-  [[nodiscard]] std::size_t find(std::size_t site, std::uint16_t number) const;
 
   const MultiMaterialData& data_;
   const SiteValues& values_;

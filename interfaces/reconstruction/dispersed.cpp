@@ -6,6 +6,7 @@
 
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_box.h"
+#include "interfaces/reconstruction/site_entries.h"
 
 namespace adamas {
 
@@ -42,7 +43,7 @@ class DispersedSearch {
       if (little[number].empty()) continue;
       for (const std::uint32_t site : dispersed(number, little[number])) {
         changed.push_back(site);
-        Entry& entry = *find(site, number);
+        Entry& entry = *find_entry(values_.at(site), number);
         if (keep) {
           for (Entry& each : values_.at(site)) each.width = 0;
           continue;
@@ -58,17 +59,12 @@ class DispersedSearch {
   }
 
  private:
-  Entry* find(std::size_t site, std::uint16_t number) {
-    const std::span<Entry> own = values_.at(site);
-    const auto found = std::ranges::find_if(own, [&](const Entry& e) { return e.material == number; });
-    return found == own.end() ? nullptr : &*found;
-  }
-
   /// Those of the sites that hold little of a material where it is dispersed.
   std::vector<std::uint32_t> dispersed(std::uint16_t number, const std::vector<std::uint32_t>& little) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     double widest = 0;
-    for (const std::uint32_t site : little) widest = std::max(widest, values_.width(*find(site, number)));
+    for (const std::uint32_t site : little)
+      widest = std::max(widest, values_.width(*find_entry(values_.at(site), number)));
     const int reach =
         std::min(kReach + static_cast<int>(std::ceil(widest / data_.grid.least_spacing())), kFarthestReach);
     const SiteBox box = SiteBox::round(data_.grid, little, static_cast<std::size_t>(reach));

@@ -10,6 +10,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/site_entries.h"
 
 namespace adamas {
 
@@ -41,7 +42,7 @@ struct LeftOut {
   double value = 0;      ///< its distance, without its own
   double fraction = 0;   ///< that belongs to this distance
   double own = 0;        ///< the part of its own distance in a surface through it and its neighbours
-  double curved = 0;     ///< the greatest second derivative of distances, in cells
+  double curved = 0;     ///< mean curvature, with its sign, in cells
   bool is_alone = true;  ///< neighbours hold no third material
   bool known = false;
 };
@@ -60,7 +61,7 @@ class SmoothSurface {
     Eigen::Matrix<double, kTerms, kTerms> sums = Eigen::Matrix<double, kTerms, kTerms>::Zero();
     Terms right = Terms::Zero();
     const Vec3 centre = sites_.position(site), size = sites_.cell(site).size();
-    const double width = entry.width > 0 ? values_.width(entry) : std::min({size.x, size.y, size.z});
+    const double width = entry.width > 0 ? values_.width(entry) : sites_.least_side(site);
     int count = 0;
     LeftOut result;
     const auto s = static_cast<std::int64_t>(site);
@@ -74,7 +75,7 @@ class SmoothSurface {
               q[1] >= n_[1] || q[2] >= n_[2])
             continue;
           const auto other = static_cast<std::size_t>(q[0] + n_[0] * (q[1] + n_[1] * q[2]));
-          const Entry* there = find(other, entry.material);
+          const Entry* there = find_entry(values_.at(other), entry.material);
           if (there == nullptr || there->settled() || (there->width > 0) != (entry.width > 0)) continue;
           const Vec3 way = sites_.position(other) - centre;
           const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z,
@@ -95,7 +96,7 @@ class SmoothSurface {
     const Terms found = solver.solve(right), unit = solver.solve(Terms::Unit(0));
     const double own_steps = entry.value / width, w = std::exp(-own_steps * own_steps);
     if (!std::isfinite(found[0]) || !std::isfinite(unit[0])) return {};
-    result.curved = (found[4] + found[5] + found[6]) / std::min({size.x, size.y, size.z});
+    result.curved = (found[4] + found[5] + found[6]) / sites_.least_side(site);
     result.value = found[0];
     result.own = w * unit[0] / (1 + w * unit[0]);
     result.known = true;
@@ -109,17 +110,10 @@ class SmoothSurface {
   }
 
  private:
-  [[nodiscard]] const Entry* find(std::size_t site, std::uint16_t material) const {
-    for (const Entry& entry : values_.at(site)) {
-      if (entry.material == material) return &entry;
-    }
-    return nullptr;
-  }
-
   /// Whether all that a site holds is at another one too.
   [[nodiscard]] bool has_no_third(std::size_t site, std::size_t other) const {
     return std::ranges::all_of(values_.at(other), [&](const Entry& there) {
-      const Entry* here = there.fraction > 0 ? find(site, there.material) : nullptr;
+      const Entry* here = there.fraction > 0 ? find_entry(values_.at(site), there.material) : nullptr;
       return there.fraction <= 0 || (here != nullptr && here->fraction > 0);
     });
   }

@@ -66,6 +66,12 @@ class GridSites {
     return box;
   }
 
+  /// The least side of a site's cell.
+  [[nodiscard]] double least_side(std::size_t site) const {
+    const Vec3 size = cell(site).size();
+    return std::min({size.x, size.y, size.z});
+  }
+
  private:
   [[nodiscard]] std::array<std::size_t, 3> place(std::size_t site) const {
     return {site % n_[0], site / n_[0] % n_[1], site / (n_[0] * n_[1])};

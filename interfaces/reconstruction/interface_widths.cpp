@@ -9,6 +9,7 @@
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_box.h"
+#include "interfaces/reconstruction/site_entries.h"
 
 namespace adamas {
 
@@ -82,7 +83,7 @@ class WidthSearch {
     }
     for (const std::uint32_t site : sites) {
       const std::size_t place = box.place(site);
-      const double h = least_side(site);
+      const double h = sites_.least_side(site);
       const double width = gradients[place] > 0 ? step_width(steps[place] / gradients[place],
                                                              widened[place] / gradients[place])
                                                 : kWidest * h;
@@ -91,7 +92,7 @@ class WidthSearch {
       const bool tells =
           both[place] > 0 ? worse[place] >= kSure * both[place] : own < kTelling || own > 1 - kTelling;
       const bool blurred = tells && deep[place] != 0 && width > kSharp * h;
-      Entry& entry = *find_entry(site, number);
+      Entry& entry = *find_entry(values_.at(site), number);
       entry.width = blurred ? values_.coded_width(std::min(width, kWidest * h)) : 0;
     }
   }
@@ -118,16 +119,6 @@ class WidthSearch {
   static double step_width(double ratio, double widened) {
     const double w = kWidens * widened;
     return std::sqrt(std::max(0.0, -0.5 * w + std::sqrt(0.25 * w * w + ratio * ratio)));
-  }
-
-  [[nodiscard]] double least_side(std::size_t site) const {
-    const Vec3 size = sites_.cell(site).size();
-    return std::min({size.x, size.y, size.z});
-  }
-
-  Entry* find_entry(std::size_t site, std::uint16_t number) {
-    const std::span<Entry> own = values_.at(site);
-    return &*std::find_if(own.begin(), own.end(), [&](const Entry& e) { return e.material == number; });
   }
 
   /// The sums of squares by which fractions round a site differ from those of the sharp plane that cuts its
@@ -197,8 +188,7 @@ void summarise_widths(const MultiMaterialData& data, const SiteValues& values, F
     double greatest = 0;
     for (const Entry& entry : values.at(site)) greatest = std::max(greatest, values.width(entry));
     if (greatest == 0) continue;
-    const Vec3 size = sites.cell(site).size();
-    widths.push_back(greatest / std::min({size.x, size.y, size.z}));
+    widths.push_back(greatest / sites.least_side(site));
   }
   if (widths.empty()) return;
   const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
@@ -245,8 +235,7 @@ void find_widths(const MultiMaterialData& data, std::optional<double> blur, Site
   if (blur) {
     const GridSites sites(data.grid);
     for (const std::uint32_t site : values.mixed()) {
-      const Vec3 size = sites.cell(site).size();
-      const double h = std::min({size.x, size.y, size.z}), width = h * std::sqrt(*blur * *blur + 1.0 / 12);
+      const double width = sites.least_side(site) * std::sqrt(*blur * *blur + 1.0 / 12);
       for (Entry& entry : values.at(site)) {
         if (!entry.settled()) entry.width = values.coded_width(width);
       }

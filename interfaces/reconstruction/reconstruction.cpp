@@ -36,6 +36,21 @@ double area_of(const std::vector<Vec3>& points, const std::vector<InterfaceTrian
   return area;
 }
 
+/// The corners of a tetrahedron of a lattice cell.
+struct Corners {
+  std::array<std::uint32_t, 4> points{};
+  std::array<std::uint64_t, 4> ids{};
+  std::array<Vec3, 4> positions;
+
+  Corners(const MaterialLattice& lattice, const MaterialLattice::Index& cell, std::size_t path) {
+    const auto corners = lattice.tetrahedron(cell, path);
+    for (std::size_t c = 0; c < 4; ++c) {
+      ids[c] = points[c] = lattice.point_index(corners[c]);
+      positions[c] = lattice.position(corners[c]);
+    }
+  }
+};
+
 /// The area of the interfaces of a lattice.
 double interface_area(const MaterialLattice& lattice, double weld) {
   ContactMeshBuilder builder(weld);
@@ -47,14 +62,7 @@ double interface_area(const MaterialLattice& lattice, double weld) {
     for (cell[1] = 0; cell[1] + 1 < lattice.points(1); ++cell[1]) {
       for (cell[0] = 0; cell[0] + 1 < lattice.points(0); ++cell[0]) {
         for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path) {
-          const auto corners = lattice.tetrahedron(cell, path);
-          std::array<std::uint32_t, 4> points{};
-          std::array<std::uint64_t, 4> ids{};
-          std::array<Vec3, 4> positions;
-          for (std::size_t c = 0; c < 4; ++c) {
-            ids[c] = points[c] = lattice.point_index(corners[c]);
-            positions[c] = lattice.position(corners[c]);
-          }
+          const auto [points, ids, positions] = Corners(lattice, cell, path);
           if (lattice.have_one_owner(points)) continue;
           lattice.ownership(points, problem);
           if (problem.candidates.size() > 1) contacts[k].add(ids, positions, problem);
@@ -244,14 +252,7 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
                                          Layer& layer) const {
   thread_local OwnershipProblem problem;
   thread_local std::vector<OwnedTetrahedron> parts;
-  const auto corners = lattice_.tetrahedron(cell, path);
-  std::array<std::uint32_t, 4> points{};
-  std::array<std::uint64_t, 4> ids{};
-  std::array<Vec3, 4> positions;
-  for (std::size_t c = 0; c < 4; ++c) {
-    ids[c] = points[c] = lattice_.point_index(corners[c]);
-    positions[c] = lattice_.position(corners[c]);
-  }
+  const auto [points, ids, positions] = Corners(lattice_, cell, path);
   if (lattice_.have_one_owner(points)) {
     layer.volume[lattice_.material(lattice_.owner(points[0]))] += volume;
     return;

@@ -85,10 +85,9 @@ bool SiteValues::has_blurred() const {
 void SiteValues::fit_sharp_loosely(const RectilinearGrid& grid) {
   const GridSites sites(grid);
   for (const std::uint32_t site : mixed_) {
-    const Vec3 size = sites.cell(site).size();
+    const double width = kOwnWidth * sites.least_side(site);
     for (Entry& entry : at(site)) {
-      if (!entry.settled() && entry.width == 0)
-        entry.width = coded_width(kOwnWidth * std::min({size.x, size.y, size.z}));
+      if (!entry.settled() && entry.width == 0) entry.width = coded_width(width);
     }
   }
 }

@@ -10,8 +10,8 @@
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
-#include "interfaces/reconstruction/given_fractions.h"
 #include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
 namespace adamas {
@@ -35,14 +35,6 @@ constexpr int kSharePower = 4;
 constexpr double kMostOfBody = 0.1;
 /// Values move by at most this part of the grid's spacing in a round.
 constexpr double kMostShift = 0.1;
-
-/// The first of the entries at a site of a material and its regions.
-std::size_t first_entry(const SiteValues& values, std::size_t site, std::uint16_t material) {
-  const std::span<const Entry> own = values.at(site);
-  const auto found =
-      std::ranges::find_if(own, [&](const Entry& e) { return values.whole(e.material) == material; });
-  return static_cast<std::size_t>(&*found - values.entries().data());
-}
 
 /// The groups that entries are in: a material, or a body of it. Entries of one material at a site are in one
 /// group.

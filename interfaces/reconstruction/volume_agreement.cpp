@@ -5,7 +5,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/blurred_fit.h"
 #include "interfaces/reconstruction/cell_volumes.h"
-#include "interfaces/reconstruction/given_fractions.h"
+#include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
 namespace adamas {
@@ -33,10 +33,8 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
       find_given_fractions(data, values, site, given);
       for (std::size_t e = 0; e < own.size(); ++e) {
         const std::uint16_t whole = values.whole(own[e].material);
-        const bool first = std::none_of(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(e),
-                                        [&](const Entry& o) { return values.whole(o.material) == whole; });
-        if (!first) continue;
-        const std::size_t entry = static_cast<std::size_t>(&own[e] - values.entries().data());
+        const auto entry = static_cast<std::size_t>(&own[e] - values.entries().data());
+        if (entry != first_entry(values, site, whole)) continue;
         double off = static_cast<double>(blurred.at(entry)) - given[e];
         auto move = std::ranges::lower_bound(moves, site, {}, &VolumeMove::site);
         for (; move != moves.end() && move->site == site; ++move) {

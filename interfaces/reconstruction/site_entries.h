@@ -1,11 +1,30 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas {
+
+/// The entry with a number among those of a site; null where there is none.
+template <class Entry>
+Entry* find_entry(std::span<Entry> entries, std::uint16_t number) {
+  const auto found = std::ranges::find_if(entries, [&](const Entry& e) { return e.material == number; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+/// The place among all entries of a site's first entry of a material, which it has, or of its regions.
+inline std::size_t first_entry(const SiteValues& values, std::size_t site, std::uint16_t material) {
+  const std::span<const SiteValues::Entry> own = values.at(site);
+  const auto found =
+      std::ranges::find_if(own, [&](const auto& e) { return values.whole(e.material) == material; });
+  return static_cast<std::size_t>(&*found - values.entries().data());
+}
 
 /// What the data say of a site's entries, before errors are smoothed away, but without what is dispersed:
 /// `given[e]` is the fraction of the material of the e-th entry, 0 for all but the first of a material and
