@@ -83,7 +83,7 @@ class SmoothSurface {
           const double w = std::exp(-0.5 * static_cast<double>(squared) - steps * steps);
           Terms terms;
           terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
-          sums += w * terms * terms.transpose();
+          sums.selfadjointView<Eigen::Lower>().rankUpdate(terms, w);
           right += w * there->value * terms;
           result.is_alone = result.is_alone && has_no_third(site, other);
           ++count;

@@ -28,7 +28,10 @@ constexpr double kNearRadius = 2, kRadiusGrows = 1.8, kMostCurved = 0.4;
 constexpr double kMostRelative = 0.5, kMostLeft = 0.15, kMostRelativeBlurred = 0.2;
 /// The weight of cells on either side of a layer at least.
 constexpr double kLeastSeen = 0.1;
-constexpr int kRounds = 6, kRoundsBlurred = 12;
+constexpr int kRounds = 6, kRoundsBlurred = 10;
+/// After so many rounds a fit that leaves more than this part of the fractions is given up.
+constexpr int kFirstRounds = 3;
+constexpr double kHopeless = 0.35;
 
 struct Sides {
   std::array<double, 3> m;
@@ -192,10 +195,18 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
     Matrix a = Matrix::Zero();
     Unknowns b = Unknowns::Zero();
+    double left = 0, all = 0;
     for (const Sample& sample : samples) {
       const Unknowns g = growth(layer, sample.place);
-      a += sample.weight * g * g.transpose();
-      b += sample.weight * (sample.fraction - layer.part_of_cell(sample.place)) * g;
+      const double missing = sample.fraction - layer.part_of_cell(sample.place);
+      a.selfadjointView<Eigen::Lower>().rankUpdate(g, sample.weight);
+      b += sample.weight * missing * g;
+      left += sample.weight * missing * missing;
+      all += sample.weight * sample.fraction * sample.fraction;
+    }
+    if (blurred && round == kFirstRounds && left > kHopeless * kHopeless * all) {
+      off = std::sqrt(left / all);
+      return {};
     }
     a.diagonal().array() += 1e-3;
     const Unknowns x = a.ldlt().solve(b);
@@ -209,7 +220,7 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
       layer.xy = limited(layer.xy + limited(x[6], 0.1), kMostCurved);
       layer.yy = limited(layer.yy + limited(x[7], 0.1), kMostCurved);
     }
-    if (x.lpNorm<Eigen::Infinity>() < 1e-4) break;
+    if (x.lpNorm<Eigen::Infinity>() < (blurred ? 1e-3 : 1e-4)) break;
   }
   // Both sides show where little of the layer is, of a blurred one in relation to its middle.
   const double seen = blurred ? 0.4 * slab.part_of_cell(slab.offset * slab.normal) : 0.02;

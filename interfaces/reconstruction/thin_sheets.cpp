@@ -81,7 +81,8 @@ class SheetSearch {
     }
   }
 
-  /// The sites of a window round one; those beyond the domain are left out.
+  /// The sites of a window round one; those beyond the domain are left out, and of a blurred layer's window
+  /// every second one, beside those that are kept: their fractions tell enough.
   template <class Visit>
   bool for_each_in_window(std::size_t site, int reach, const Visit& visit) const {
     const auto s = static_cast<std::int64_t>(site);
@@ -92,6 +93,7 @@ class SheetSearch {
         for (int di = -reach; di <= reach; ++di, ++cell) {
           const std::int64_t i = x + di, j = y + dj, k = z + dk;
           if (i < 0 || j < 0 || k < 0 || i >= n_[0] || j >= n_[1] || k >= n_[2]) continue;
+          if (reach == SheetWindow::kBlurredReach && (di + dj + dk) % 2 != 0) continue;
           if (!visit(cell, static_cast<std::size_t>(i + n_[0] * (j + n_[1] * k)))) return false;
         }
       }
@@ -168,24 +170,24 @@ class SheetSearch {
   /// The materials that there is most of before a layer and behind it; the layer's own where there is nothing
   /// else.
   [[nodiscard]] std::array<std::uint16_t, 2> sides_of(const SheetPlace& place, const Slab& slab) const {
-    std::vector<std::uint16_t> near;
+    std::vector<std::uint16_t> near(place.sides.begin(), place.sides.end());
     for (const Entry& entry : values_.at(place.site)) near.push_back(entry.material);
-    near.insert(near.end(), place.sides.begin(), place.sides.end());
     std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    std::erase(near, place.material);
+    std::vector<std::array<double, 2>> sums(near.size(), {0, 0});
+    const SheetWindow window(slab.width > 0);
+    for_each_in_window(place.site, window.reach, [&](std::size_t cell, std::size_t other) {
+      const double y = slab.height(window.place(cell));
+      if (std::abs(y) <= 0.5 * slab.thickness || std::abs(y) >= window.reach + 0.2) return true;
+      for (std::size_t m = 0; m < near.size(); ++m) sums[m][y > 0 ? 0 : 1] += fraction(near[m], other);
+      return true;
+    });
     std::array<std::uint16_t, 2> sides = place.sides;
     std::array<double, 2> most{0, 0};
-    for (const std::uint16_t material : near) {
-      if (material == place.material) continue;
-      std::array<double, 2> sums{0, 0};
-      const SheetWindow window(slab.width > 0);
-      for_each_in_window(place.site, window.reach, [&](std::size_t cell, std::size_t other) {
-        const double y = slab.height(window.place(cell));
-        if (std::abs(y) > 0.5 * slab.thickness && std::abs(y) < window.reach + 0.2)
-          sums[y > 0 ? 0 : 1] += fraction(material, other);
-        return true;
-      });
+    for (std::size_t m = 0; m < near.size(); ++m) {
       for (std::size_t side = 0; side < 2; ++side) {
-        if (sums[side] > most[side]) most[side] = sums[side], sides[side] = material;
+        if (sums[m][side] > most[side]) most[side] = sums[m][side], sides[side] = near[m];
       }
     }
     if (most[0] == 0 || most[1] == 0) return place.sides;
