@@ -24,8 +24,11 @@ constexpr double kMostOffset = 1.2;
 constexpr double kSharpest = 0.34, kWidest = 2.5;
 /// The radius of the window of a blurred layer is the first and so many widths; its greatest curvature in it.
 constexpr double kNearRadius = 2, kRadiusGrows = 1.8, kMostCurved = 0.4;
-/// What a fit may leave, as a part of the fractions' and of a cell; as a part of those of a blurred layer.
-constexpr double kMostRelative = 0.5, kMostLeft = 0.15, kMostRelativeBlurred = 0.2;
+/// What a fit may leave, as a part of the fractions' and of a cell; and of a blurred layer, as a part of them
+/// beside so many times the noise.
+constexpr double kMostRelative = 0.5, kMostLeft = 0.15, kMostRelativeBlurred = 0.2, kOfNoise = 1.3;
+/// The layer is looked for where fractions are greater than this times the noise.
+constexpr double kAboveNoise = 2;
 /// The weight of cells on either side of a layer at least.
 constexpr double kLeastSeen = 0.1;
 constexpr int kRounds = 6, kRoundsBlurred = 10;
@@ -44,6 +47,11 @@ struct Sides {
 double weight(const SheetWindow& window, const Vec3& d) {
   const double u = 1 - squared_norm(d) / (window.radius * window.radius);
   return u > 0 ? u * u : 0;
+}
+
+/// The sum of squares that a fit may leave of all, with some part of the fractions beside the noise.
+double most_left(double part, double all, double noise, double weights) {
+  return part * part * all + kOfNoise * kOfNoise * noise * noise * weights;
 }
 
 /// Layers thicker than this need no care.
@@ -127,9 +135,10 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
   double sum = 0;
   const auto gather = [&](auto&& visit) {
     for (std::size_t c = 0; c < window.cells; ++c) {
-      if (window.fraction[c] <= 0) continue;
+      const double above = static_cast<double>(window.fraction[c]) - kAboveNoise * window.noise;
+      if (above <= 0) continue;
       const Vec3 p = window.place(c) - middle;
-      const double w = weight(window, p) * static_cast<double>(window.fraction[c]);
+      const double w = weight(window, p) * above;
       if (w > 0) visit(p, w);
     }
   };
@@ -195,7 +204,7 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
     Matrix a = Matrix::Zero();
     Unknowns b = Unknowns::Zero();
-    double left = 0, all = 0;
+    double left = 0, all = 0, weights = 0;
     for (const Sample& sample : samples) {
       const Unknowns g = growth(layer, sample.place);
       const double missing = sample.fraction - layer.part_of_cell(sample.place);
@@ -203,8 +212,9 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
       b += sample.weight * missing * g;
       left += sample.weight * missing * missing;
       all += sample.weight * sample.fraction * sample.fraction;
+      weights += sample.weight;
     }
-    if (blurred && round == kFirstRounds && left > kHopeless * kHopeless * all) {
+    if (blurred && round == kFirstRounds && left > most_left(kHopeless, all, window.noise, weights)) {
       off = std::sqrt(left / all);
       return {};
     }
@@ -236,8 +246,8 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
   const double farthest = kMostOffset + (blurred ? 0.5 * slab.thickness : 0);
   if (slab.thickness > thickest(slab) || slab.thickness < kThinnest || std::abs(slab.offset) > farthest)
     return {};
-  if (off > (blurred ? kMostRelativeBlurred : kMostRelative) || left > kMostLeft * kMostLeft * weights)
-    return {};
+  if (blurred && left > most_left(kMostRelativeBlurred, all, window.noise, weights)) return {};
+  if (off > kMostRelative || left > kMostLeft * kMostLeft * weights) return {};
   if (std::min(before, behind) < kLeastSeen) return {};
   return slab;
 }

@@ -34,6 +34,7 @@ struct SheetWindow {
         known(cells, 0) {}
 
   int reach, side;
+  double noise = 0;             ///< standard deviation of the fractions' errors
   double radius = reach + 0.5;  ///< cells have less weight the farther they are away, and none from here on
   std::size_t cells;
   std::vector<float> fraction;

@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas {
@@ -27,8 +28,9 @@ constexpr double kLeastCosine = 0.7, kMostStep = 0.5;
 /// than this, in cells.
 constexpr double kAside = 0.4;
 /// It ends there where the cell should hold so much of it and has none. Where the cell has less than the
-/// second part of what it should hold, the layer is as much thinner.
-constexpr double kMissing = 0.1, kHalf = 0.5;
+/// second part of what it should hold, the layer is as much thinner. Of blurred fractions it is missing where it is
+/// so many times the noise as well.
+constexpr double kMissing = 0.1, kHalf = 0.5, kAboveNoise = 2;
 /// A sharp layer that leaves no more than this part of the fractions is what they are of.
 constexpr double kExact = 0.1, kFailed = std::numeric_limits<double>::infinity();
 /// Of a cell's neighbours so many are cut by a blurred layer only.
@@ -38,6 +40,10 @@ constexpr double kSharpWidth = 0.4;
 /// Blurred sheets are looked for where the greatest fraction near is between the first two, and that of the
 /// cell is not below this part of it.
 constexpr double kLowest = 0.06, kHighest = 0.8, kOfHighest = 0.3;
+/// Noise is told from so many cells at most, and of so many at least; the median of the size of normally
+/// distributed numbers, times this, is their standard deviation.
+constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
+constexpr double kOfMedian = 1.4826;
 
 class SheetSearch {
  public:
@@ -46,9 +52,11 @@ class SheetSearch {
         values_(values),
         sites_(data.grid),
         n_{static_cast<std::int64_t>(data.grid.sites(0)), static_cast<std::int64_t>(data.grid.sites(1)),
-           static_cast<std::int64_t>(data.grid.sites(2))} {}
+           static_cast<std::int64_t>(data.grid.sites(2))},
+        noise_(data.materials.size(), 0) {}
 
   std::vector<SheetPlace> run() {
+    for (std::uint16_t m = 0; m < noise_.size(); ++m) noise_[m] = noise(m);
     find_own();
     if (places_.empty()) return {};
     double widest = 0;
@@ -63,6 +71,31 @@ class SheetSearch {
  private:
   [[nodiscard]] double fraction(std::uint16_t number, std::size_t site) const {
     return static_cast<double>(data_.fractions[values_.material(number)][site]);
+  }
+
+  /// The standard deviation of errors of a material's blurred fractions: by their second differences along all
+  /// three axes at once, of which a blurred step has next to none.
+  [[nodiscard]] double noise(std::uint16_t material) const {
+    const auto& mixed = values_.mixed();
+    const std::size_t stride = mixed.size() / kMostCells + 1;
+    std::vector<double> sizes;
+    for (std::size_t n = 0; n < mixed.size(); n += stride) {
+      const Entry* entry = find_entry(values_.at(mixed[n]), material);
+      if (entry == nullptr || entry->width == 0) continue;
+      double sum = -8 * static_cast<double>(entry->fraction);
+      int count = 0;
+      sites_.for_each_neighbour(mixed[n], [&](std::size_t other, int di, int dj, int dk) {
+        const double f = fraction(material, other);
+        const int zeros = (di == 0 ? 1 : 0) + (dj == 0 ? 1 : 0) + (dk == 0 ? 1 : 0);
+        sum += f * (zeros % 2 == 0 ? 1 : -1) * (1 << zeros);
+        count += f > 0 && f < 1 ? 1 : 0;
+      });
+      if (count == 26) sizes.push_back(std::abs(sum));
+    }
+    if (sizes.size() < kLeastCells) return 0;
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return kOfMedian * *middle / std::sqrt(216.0);
   }
 
   /// Layers fitted to what is round each mixed site.
@@ -139,6 +172,7 @@ class SheetSearch {
   [[nodiscard]] std::optional<SheetPlace> fit(std::size_t site, std::uint16_t material, bool blurred,
                                               double& off) const {
     SheetWindow window(blurred);
+    if (blurred) window.noise = noise_[material];
     // Where it fills a cell and all round it there is no thin sheet.
     const bool thin = for_each_in_window(site, SheetWindow::kReach, [&](std::size_t, std::size_t other) {
       return !values_.at(other).empty() || values_.sole_material(other) != material;
@@ -259,7 +293,7 @@ class SheetSearch {
     const double aside = norm(middle - dot(middle, place.slab.normal) * place.slab.normal);
     const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
     if (place.slab.width > 0) {
-      if (own < kHalf * part) return {};
+      if (own < kHalf * part && !is_held(place, own, part)) return {};
       place.sides = sides_of(place, place.slab);
       return place;
     }
@@ -279,12 +313,24 @@ class SheetSearch {
     return place;
   }
 
+  /// Whether a blurred layer of which a cell seems to hold too little is there all the same: it may be for the
+  /// noise, and together with its neighbours the cell holds enough.
+  [[nodiscard]] bool is_held(const SheetPlace& place, double own, double part) const {
+    if (own + kAboveNoise * noise_[place.material] < kHalf * part) return false;
+    sites_.for_each_neighbour(place.site, [&](std::size_t other, int di, int dj, int dk) {
+      own += fraction(place.material, other);
+      part += place.slab.part_of_cell({static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
+    });
+    return own >= kHalf * part;
+  }
+
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   const MultiMaterialData& data_;
   const SiteValues& values_;
   GridSites sites_;
   std::array<std::int64_t, 3> n_;
+  std::vector<double> noise_;  // by number of the material
   std::vector<SheetPlace> places_;
 };
 
