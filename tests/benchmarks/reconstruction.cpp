@@ -1,5 +1,5 @@
 // Interfaces from volume fractions: ours beside planes in cells (PLIC), discrete Flying Edges on the material
-// with the greatest fraction, and the same smoothed.
+// with the greatest fraction, the same smoothed, and the contours at one half of each material's fractions.
 //   bench_reconstruction DATA.vtr [SCENE]    SCENE: the scene that the data are of, for distances from the
 //   truth
 // Prints a line of JSON for each method; lengths are in cells of the grid, volumes in parts of a cell or of a
@@ -206,6 +206,7 @@ void run(const std::string& path, const std::string& scene) {
   print(measure_peer("discrete Flying Edges", discrete_flying_edges(data, 0), data, truth));
   constexpr int kIterations = 20;
   print(measure_peer("the same smoothed", discrete_flying_edges(data, kIterations), data, truth));
+  print(measure_peer("contours at one half", fraction_contours(data), data, truth));
 }
 
 }  // namespace

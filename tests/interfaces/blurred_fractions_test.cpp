@@ -16,7 +16,7 @@
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/reconstruction/site_box.h"
-#include "tests/support/closed_surface.h"
+#include "tests/support/closed_reconstruction.h"
 
 namespace adamas {
 namespace {
@@ -53,24 +53,6 @@ Distance distance_from_truth(const Reconstruction& found, const Scene& scene, st
   }
   result.mean = sum / area;
   return result;
-}
-
-void expect_closed_with_totals(const Reconstruction& found, const MultiMaterialData& data) {
-  const Box3 box = data.grid.domain();
-  const auto report =
-      test::check_edges(found.mesh().points, test::sided_by_material(found.mesh()), box, 1e-9);
-  EXPECT_EQ(report.open, 0u) << report.first;
-  EXPECT_EQ(report.lonely, 0u) << report.first;
-  // Fractions are floats that do not quite add up to 1: what they are beyond that all materials do without.
-  double beyond = -box.volume();
-  double dispersed = 0;
-  for (const double volume : found.findings().dispersed) dispersed += volume;
-  for (const double volume : found.volume_wanted()) beyond += volume;
-  beyond /= static_cast<double>(data.materials.size());
-  for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
-    EXPECT_NEAR(found.volume_reconstructed()[m], found.volume_wanted()[m] - beyond, 1e-9 * box.volume());
-    EXPECT_NEAR(found.volume_wanted()[m], found.volume_input()[m], 1e-12 + dispersed);
-  }
 }
 
 TEST(NormalDistribution, QuantileIsTheInverse) {
@@ -149,7 +131,7 @@ TEST(BlurredFractions, SurfacesAreWhereTheyWere) {
       for (const double noise : {0.0, 0.02}) {
         const MultiMaterialData data = blurred_scene(c.scene, blur, noise);
         const Reconstruction found(data);
-        expect_closed_with_totals(found, data);
+        test::expect_closed_with_totals(found, data);
         const Distance off = distance_from_truth(found, scene, kCells);
         const double allowed = noise > 0 ? 2 : 1;
         EXPECT_LT(off.mean, allowed * c.mean) << c.scene << " " << blur << " " << noise;
@@ -181,13 +163,13 @@ TEST(BlurredFractions, ThinSheetsAreWhole) {
     for (const float f : data.fractions[MaterialId(1)]) most = std::max(most, f);
     ASSERT_LT(std::min(most, 1 - most), 0.35f);
     const Reconstruction found(data);
-    expect_closed_with_totals(found, data);
+    test::expect_closed_with_totals(found, data);
     EXPECT_EQ(found.body_materials().size(), 2u) << blur;
   }
   for (const double blur : {1.0, 1.5}) {
     const MultiMaterialData data = blurred_scene("shell3", blur, 0);
     const Reconstruction found(data);
-    expect_closed_with_totals(found, data);
+    test::expect_closed_with_totals(found, data);
     EXPECT_EQ(found.body_materials().size(), 3u) << blur;
   }
 }

@@ -14,21 +14,11 @@
 #include "interfaces/network/body_topology.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/reconstruction/sheet_fit.h"
-#include "tests/support/closed_surface.h"
+#include "tests/support/closed_reconstruction.h"
 #include "tests/support/sheet_fractions.h"
 
 namespace adamas {
 namespace {
-
-void expect_closed(const Reconstruction& found, const MultiMaterialData& data) {
-  const Box3 box = data.grid.domain();
-  const auto report =
-      test::check_edges(found.mesh().points, test::sided_by_material(found.mesh()), box, 1e-9);
-  EXPECT_EQ(report.open, 0u) << report.first;
-  EXPECT_EQ(report.lonely, 0u) << report.first;
-  for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
-    EXPECT_NEAR(found.volume_reconstructed()[m], found.volume_input()[m], 1e-9 * box.volume());
-}
 
 double part_off(const Reconstruction& found) {
   return static_cast<double>(found.agreement().cells_off) /
@@ -138,7 +128,7 @@ TEST(ThinSheets, ShellsAreWhole) {
     const Reconstruction found(data);
     EXPECT_EQ(found.body_materials().size(), 3u);
     EXPECT_EQ(characteristics(found, data, shell), std::vector<long>{4});
-    expect_closed(found, data);
+    test::expect_closed_with_totals(found, data);
     EXPECT_LT(part_off(found), most_off);
   }
 }
@@ -149,7 +139,7 @@ TEST(ThinSheets, PlatesEnd) {
     const MultiMaterialData data = sample_scene(make_scene("plate"), {n, n, n}, {3, false});
     const Reconstruction found(data);
     EXPECT_EQ(found.body_materials().size(), 2u) << n;
-    expect_closed(found, data);
+    test::expect_closed_with_totals(found, data);
     EXPECT_LT(part_off(found), 0.05) << n;
     for (std::uint32_t m = 0; m < 2; ++m)
       EXPECT_EQ(characteristics(found, data, m), std::vector<long>{2}) << n;
@@ -166,7 +156,7 @@ TEST(ThinSheets, HollowTori) {
     const Reconstruction found(data);
     EXPECT_EQ(found.body_materials().size(), 3u) << cells;
     EXPECT_EQ(characteristics(found, data, 1), std::vector<long>{0}) << cells;
-    expect_closed(found, data);
+    test::expect_closed_with_totals(found, data);
     EXPECT_LT(part_off(found), 0.1) << cells;
   }
 }
@@ -182,7 +172,7 @@ TEST(ThinSheets, ParallelSheetsStayApart) {
   });
   const Reconstruction found(data);
   EXPECT_EQ(found.body_materials().size(), 5u);
-  expect_closed(found, data);
+  test::expect_closed_with_totals(found, data);
   EXPECT_LT(part_off(found), 0.05);
 }
 

@@ -30,4 +30,7 @@ MaterialSurfaces youngs_interfaces(const MultiMaterialData& data);
 /// `smoothing_iterations` of vtkWindowedSincPolyDataFilter.
 MaterialSurfaces discrete_flying_edges(const MultiMaterialData& data, int smoothing_iterations);
 
+/// vtkFlyingEdges3D of each material's fractions, apart, at one half.
+MaterialSurfaces fraction_contours(const MultiMaterialData& data);
+
 }  // namespace adamas::bench

@@ -1,5 +1,6 @@
 #include <vtkCellArray.h>
 #include <vtkDiscreteFlyingEdges3D.h>
+#include <vtkFlyingEdges3D.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -25,16 +26,16 @@ constexpr int kRays = 6;
 /// As VTK's examples have it for labels.
 constexpr double kPassBand = 0.01;
 
-/// Labels, 1 and up, of the padded grid in units of cells: cell i has its centre at i + 1/2.
-void fill_labels(const MultiMaterialData& data, vtkImageData& image) {
-  const RectilinearGrid& grid = data.grid;
+/// Numbers of the padded grid in units of cells: cell i has its centre at i + 1/2. Those of no material are
+/// 0.
+template <class Number, class OfSite>
+void fill(const RectilinearGrid& grid, int type, const OfSite& of_site, vtkImageData& image) {
   const std::array<int, 3> n{static_cast<int>(grid.sites(0)), static_cast<int>(grid.sites(1)),
                              static_cast<int>(grid.sites(2))};
   image.SetDimensions(n[0] + 2 * kPadding, n[1] + 2 * kPadding, n[2] + 2 * kPadding);
   image.SetOrigin(0.5 - kPadding, 0.5 - kPadding, 0.5 - kPadding);
-  image.AllocateScalars(VTK_SHORT, 1);
-  const std::vector<std::uint16_t> greatest = greatest_material(data);
-  auto* to = static_cast<short*>(image.GetScalarPointer());
+  image.AllocateScalars(type, 1);
+  auto* to = static_cast<Number*>(image.GetScalarPointer());
   for (int k = -kPadding; k < n[2] + kPadding; ++k) {
     for (int j = -kPadding; j < n[1] + kPadding; ++j) {
       for (int i = -kPadding; i < n[0] + kPadding; ++i) {
@@ -45,8 +46,8 @@ void fill_labels(const MultiMaterialData& data, vtkImageData& image) {
           nearest[a] = static_cast<std::size_t>(std::clamp(at[a], 0, n[a] - 1));
           outside = outside || at[a] < 1 - kPadding || at[a] > n[a] - 2 + kPadding;
         }
-        const std::uint16_t label = greatest[grid.site_index(nearest[0], nearest[1], nearest[2])];
-        *to++ = static_cast<short>(outside ? 0 : label + 1);
+        const Number number = of_site(grid.site_index(nearest[0], nearest[1], nearest[2]));
+        *to++ = outside ? Number{0} : number;
       }
     }
   }
@@ -121,17 +122,41 @@ class RayVolumes {
   std::vector<std::vector<double>> crossings_;
 };
 
+/// Adds a material's surface, in units of cells, and what it leaves of each cell to the material.
+void add(vtkPolyData& found, const MultiMaterialData& data, MaterialSurfaces& result) {
+  const auto first = static_cast<std::uint32_t>(result.points.size());
+  std::vector<Vec3> in_cells;
+  for (vtkIdType p = 0; p < found.GetNumberOfPoints(); ++p) {
+    const double* x = found.GetPoint(p);
+    in_cells.push_back({x[0], x[1], x[2]});
+    result.points.push_back({place_on(data.grid.nodes[0], x[0]), place_on(data.grid.nodes[1], x[1]),
+                             place_on(data.grid.nodes[2], x[2])});
+  }
+  RayVolumes volumes(data.grid);
+  vtkNew<vtkIdList> corners;
+  vtkCellArray& polygons = *found.GetPolys();
+  for (polygons.InitTraversal(); polygons.GetNextCell(corners) != 0;) {
+    const auto corner = [&](vtkIdType n) { return static_cast<std::uint32_t>(corners->GetId(n)); };
+    volumes.add({in_cells[corner(0)], in_cells[corner(1)], in_cells[corner(2)]});
+    result.triangles.push_back({first + corner(0), first + corner(1), first + corner(2)});
+  }
+  result.fractions.push_back(volumes.fractions());
+}
+
 }  // namespace
 
 MaterialSurfaces discrete_flying_edges(const MultiMaterialData& data, int smoothing_iterations) {
   keep_vtk_on_one_thread();
-  vtkNew<vtkImageData> image;
-  fill_labels(data, *image);
+  const std::vector<std::uint16_t> greatest = greatest_material(data);
+  vtkNew<vtkImageData> labels;
+  fill<short>(
+      data.grid, VTK_SHORT, [&](std::size_t site) { return static_cast<short>(greatest[site] + 1); },
+      *labels);
   MaterialSurfaces result;
   for (std::size_t m = 0; m < data.materials.size(); ++m) {
     const double start = thread_seconds();
     vtkNew<vtkDiscreteFlyingEdges3D> edges;
-    edges->SetInputData(image);
+    edges->SetInputData(labels);
     edges->SetValue(0, static_cast<double>(m) + 1);
     edges->ComputeNormalsOff();
     edges->ComputeGradientsOff();
@@ -150,23 +175,27 @@ MaterialSurfaces discrete_flying_edges(const MultiMaterialData& data, int smooth
       found = smoother->GetOutput();
     }
     result.seconds += thread_seconds() - start;
-    const auto first = static_cast<std::uint32_t>(result.points.size());
-    std::vector<Vec3> in_cells;
-    for (vtkIdType p = 0; p < found->GetNumberOfPoints(); ++p) {
-      const double* x = found->GetPoint(p);
-      in_cells.push_back({x[0], x[1], x[2]});
-      result.points.push_back({place_on(data.grid.nodes[0], x[0]), place_on(data.grid.nodes[1], x[1]),
-                               place_on(data.grid.nodes[2], x[2])});
-    }
-    RayVolumes volumes(data.grid);
-    vtkNew<vtkIdList> corners;
-    vtkCellArray& polygons = *found->GetPolys();
-    for (polygons.InitTraversal(); polygons.GetNextCell(corners) != 0;) {
-      const auto corner = [&](vtkIdType n) { return static_cast<std::uint32_t>(corners->GetId(n)); };
-      volumes.add({in_cells[corner(0)], in_cells[corner(1)], in_cells[corner(2)]});
-      result.triangles.push_back({first + corner(0), first + corner(1), first + corner(2)});
-    }
-    result.fractions.push_back(volumes.fractions());
+    add(*found, data, result);
+  }
+  return result;
+}
+
+MaterialSurfaces fraction_contours(const MultiMaterialData& data) {
+  keep_vtk_on_one_thread();
+  MaterialSurfaces result;
+  for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
+    vtkNew<vtkImageData> fractions;
+    fill<float>(
+        data.grid, VTK_FLOAT, [&](std::size_t site) { return data.fraction(m, site); }, *fractions);
+    const double start = thread_seconds();
+    vtkNew<vtkFlyingEdges3D> edges;
+    edges->SetInputData(fractions);
+    edges->SetValue(0, 0.5);
+    edges->ComputeNormalsOff();
+    edges->ComputeGradientsOff();
+    edges->Update();
+    result.seconds += thread_seconds() - start;
+    add(*edges->GetOutput(), data, result);
   }
   return result;
 }
