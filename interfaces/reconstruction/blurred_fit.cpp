@@ -17,8 +17,11 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Rounds, and those where fractions have errors, of which more would fit what is not there.
-constexpr int kRounds = 5, kRoundsWithErrors = 2;
+/// Rounds, and those by means where fractions have errors, of which more would fit what is not there.
+constexpr int kRounds = 5, kRoundsByMeans = 2;
+/// So it is too where the median width, in cells, is less than this: what the model itself is off by would
+/// make interfaces rough.
+constexpr double kNarrow = 0.7;
 /// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
 constexpr double kRelax = 0.7, kMostMove = 0.5;
 
@@ -140,13 +143,14 @@ class Fit {
       : values_(values), sites_(data.grid), predicted_(data, values, cells) {}
 
   void run(Progress& progress) {
-    const bool with_errors = values_.findings().fraction_error > SiteValues::kLeastError;
-    const int rounds = with_errors ? kRoundsWithErrors : kRounds;
+    const FractionFindings& found = values_.findings();
+    const bool by_means = found.fraction_error > SiteValues::kLeastError || found.blur_median < kNarrow;
+    const int rounds = by_means ? kRoundsByMeans : kRounds;
     for (int round = 0; round < rounds; ++round) {
       progress.step("fitting blurred fractions", static_cast<double>(round) / rounds);
       predicted_.predict();
       find_missing();
-      move(with_errors);
+      move(by_means);
       values_.hold_layers();
     }
   }
@@ -176,15 +180,15 @@ class Fit {
     return std::exp(-steps * steps);
   }
 
-  /// Moves values, where fractions have errors by the mean of what is missing round each.
-  void move(bool smooth) {
+  /// Moves values, by what is missing at each or by the mean of what is missing round each.
+  void move(bool by_means) {
     const double most = values_.greatest();
     moves_.assign(missing_.size(), 0);
     parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {
       const std::size_t site = values_.mixed()[n];
       for (const Entry& entry : std::as_const(values_).at(site)) {
         if (entry.width > 0)
-          moves_[index(entry)] = smooth ? mean_missing(site, entry) : missing_[index(entry)];
+          moves_[index(entry)] = by_means ? mean_missing(site, entry) : missing_[index(entry)];
       }
     });
     parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {

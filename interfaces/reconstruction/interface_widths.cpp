@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
@@ -34,7 +35,8 @@ constexpr double kWidens = 0.07;
 /// Of a site's neighbours so many, of all, are cut by blurred steps only; and how far from such a site others
 /// are blurred.
 constexpr int kDeep = 22, kAllNeighbours = 26, kNearDeep = 6;
-/// Where less than this part of mixed cells seems blurred none is.
+/// Where less than this part of mixed cells seems blurred none is, and where less seems sharp all are
+/// blurred.
 constexpr double kFew = 0.02;
 
 class WidthSearch {
@@ -166,17 +168,50 @@ void make_faint_sharp(const MultiMaterialData& data, const ThinSheets& sheets, S
   }
 }
 
-/// The mean width of a material's entries at the blurred neighbours of a site, coded; 0 where there are none.
-std::uint16_t mean_width(const SiteValues& values, const GridSites& sites, std::size_t site,
-                         std::uint16_t material, const std::vector<char>& blurred) {
-  std::uint32_t sum = 0, count = 0;
-  sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-    if (blurred[other] < 2) return;
-    for (const Entry& entry : values.at(other)) {
-      if (entry.material == material && entry.width > 0) sum += entry.width, ++count;
-    }
+enum : char { kFull, kSharpCell, kBlurredCell };
+
+/// Mixed cells become what most of the mixed cells round them are.
+std::vector<char> settled_kinds(const SiteValues& values, const GridSites& sites,
+                                const std::vector<char>& kinds) {
+  std::vector<char> settled = kinds;
+  parallel_for(values.mixed().size(), 1024, [&](std::size_t n) {
+    const std::size_t site = values.mixed()[n];
+    int mixed = 0, blurred = 0;
+    sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      mixed += kinds[other] != kFull ? 1 : 0;
+      blurred += kinds[other] == kBlurredCell ? 1 : 0;
+    });
+    if (2 * blurred < mixed) settled[site] = kSharpCell;
+    if (2 * blurred > mixed) settled[site] = kBlurredCell;
   });
-  return count == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(sum / count);
+  return settled;
+}
+
+/// The mean width of a material's blurred entries at the neighbours of a site, or else of what else is at the
+/// site, or else `other`; coded.
+std::uint16_t mean_width(const SiteValues& values, const GridSites& sites, std::size_t site,
+                         std::uint16_t material, std::uint16_t other) {
+  std::uint32_t sum = 0, count = 0;
+  sites.for_each_neighbour(site, [&](std::size_t neighbour, int, int, int) {
+    const Entry* entry = find_entry(values.at(neighbour), material);
+    if (entry != nullptr && entry->width > 0) sum += entry->width, ++count;
+  });
+  if (count > 0) return static_cast<std::uint16_t>(sum / count);
+  std::uint16_t greatest = 0;
+  for (const Entry& entry : values.at(site)) greatest = std::max(greatest, entry.width);
+  return greatest > 0 ? greatest : other;
+}
+
+/// The median of the widths of blurred entries, coded.
+std::uint16_t median_width(const SiteValues& values) {
+  std::vector<std::uint16_t> widths;
+  for (const Entry& entry : values.entries()) {
+    if (entry.width > 0) widths.push_back(entry.width);
+  }
+  if (widths.empty()) return 0;
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::nth_element(widths.begin(), middle, widths.end());
+  return *middle;
 }
 
 }  // namespace
@@ -201,33 +236,24 @@ void summarise_widths(const MultiMaterialData& data, const SiteValues& values, F
 void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values) {
   make_faint_sharp(data, sheets, values);
   const GridSites sites(data.grid);
-  std::vector<char> blurred(data.grid.site_count(), 0);
-  for (const std::uint32_t site : values.mixed()) blurred[site] = values.is_blurred(site) ? 2 : 1;
-  std::vector<std::uint32_t> sharp, joined;
-  std::size_t left = 0;
+  std::vector<char> kinds(data.grid.site_count(), kFull);
+  for (const std::uint32_t site : values.mixed())
+    kinds[site] = values.is_blurred(site) ? kBlurredCell : kSharpCell;
+  const std::vector<char> settled = settled_kinds(values, sites, kinds);
+  const auto mixed = static_cast<double>(values.mixed().size());
+  const auto blurred = static_cast<double>(std::ranges::count(settled, kBlurredCell));
+  const bool none = blurred < kFew * mixed, all = mixed - blurred < kFew * mixed;
+  const std::uint16_t median = median_width(values);
+  std::vector<std::pair<Entry*, std::uint16_t>> found;
   for (const std::uint32_t site : values.mixed()) {
-    int mixed = 0, many = 0;
-    sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-      mixed += blurred[other] > 0 ? 1 : 0;
-      many += blurred[other] > 1 ? 1 : 0;
-    });
-    const bool is_blurred = blurred[site] > 1;
-    if (is_blurred && 2 * many < mixed) sharp.push_back(site);
-    if (!is_blurred && 2 * many > mixed) joined.push_back(site);
-    left += is_blurred && 2 * many >= mixed ? 1 : 0;
-  }
-  if (static_cast<double>(left) < kFew * static_cast<double>(values.mixed().size())) {
-    sharp = values.mixed();
-    joined.clear();
-  }
-  for (const std::uint32_t site : joined) {
+    const bool is_blurred = !none && (all || settled[site] == kBlurredCell);
     for (Entry& entry : values.at(site)) {
-      if (!entry.settled()) entry.width = mean_width(values, sites, site, entry.material, blurred);
+      if (!is_blurred) found.emplace_back(&entry, std::uint16_t{0});
+      if (is_blurred && kinds[site] == kSharpCell && !entry.settled())
+        found.emplace_back(&entry, mean_width(values, sites, site, entry.material, median));
     }
   }
-  for (const std::uint32_t site : sharp) {
-    for (Entry& entry : values.at(site)) entry.width = 0;
-  }
+  for (const auto& [entry, width] : found) entry->width = width;
 }
 
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values) {

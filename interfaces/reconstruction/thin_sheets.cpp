@@ -28,8 +28,8 @@ constexpr double kLeastCosine = 0.7, kMostStep = 0.5;
 /// than this, in cells.
 constexpr double kAside = 0.4;
 /// It ends there where the cell should hold so much of it and has none. Where the cell has less than the
-/// second part of what it should hold, the layer is as much thinner. Of blurred fractions it is missing where it is
-/// so many times the noise as well.
+/// second part of what it should hold, the layer is as much thinner. Of blurred fractions it is missing where
+/// it is so many times the noise as well.
 constexpr double kMissing = 0.1, kHalf = 0.5, kAboveNoise = 2;
 /// A sharp layer that leaves no more than this part of the fractions is what they are of.
 constexpr double kExact = 0.1, kFailed = std::numeric_limits<double>::infinity();
@@ -73,8 +73,8 @@ class SheetSearch {
     return static_cast<double>(data_.fractions[values_.material(number)][site]);
   }
 
-  /// The standard deviation of errors of a material's blurred fractions: by their second differences along all
-  /// three axes at once, of which a blurred step has next to none.
+  /// The standard deviation of errors of a material's blurred fractions: by their second differences along
+  /// all three axes at once, of which a blurred step has next to none.
   [[nodiscard]] double noise(std::uint16_t material) const {
     const auto& mixed = values_.mixed();
     const std::size_t stride = mixed.size() / kMostCells + 1;
@@ -313,13 +313,14 @@ class SheetSearch {
     return place;
   }
 
-  /// Whether a blurred layer of which a cell seems to hold too little is there all the same: it may be for the
-  /// noise, and together with its neighbours the cell holds enough.
+  /// Whether a blurred layer of which a cell seems to hold too little is there all the same: it may be for
+  /// the noise, and together with its neighbours the cell holds enough.
   [[nodiscard]] bool is_held(const SheetPlace& place, double own, double part) const {
     if (own + kAboveNoise * noise_[place.material] < kHalf * part) return false;
     sites_.for_each_neighbour(place.site, [&](std::size_t other, int di, int dj, int dk) {
       own += fraction(place.material, other);
-      part += place.slab.part_of_cell({static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
+      part += place.slab.part_of_cell(
+          {static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
     });
     return own >= kHalf * part;
   }
