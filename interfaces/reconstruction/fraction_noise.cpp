@@ -172,7 +172,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
   });
   std::erase_if(samples, [](const Sample& sample) { return sample.off < 0; });
   const double sampled = kLeastPart * static_cast<double>(values.mixed().size() / stride);
-  if (samples.size() < kLeastCells || static_cast<double>(samples.size()) < sampled) return 0;
+  if (samples.size() < kLeastCells || static_cast<double>(samples.size()) < sampled) return sheets.noise;
   // Planes in cells tell distances from a curved interface less well: by what is curved on the whole.
   std::vector<std::vector<double>> curved(values.number_count());
   for (const Sample& sample : samples) curved[sample.material].push_back(sample.curved);

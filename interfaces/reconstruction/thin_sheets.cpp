@@ -40,8 +40,10 @@ constexpr double kSharpWidth = 0.4;
 /// Blurred sheets are looked for where the greatest fraction near is between the first two, and that of the
 /// cell is not below this part of it.
 constexpr double kLowest = 0.06, kHighest = 0.8, kOfHighest = 0.3;
-/// Noise is told from so many cells at most, and of so many at least; the median of the size of normally
-/// distributed numbers, times this, is their standard deviation.
+/// Noise is told from cells with steps of this width, in cells, or wider, from so many at most, and of so
+/// many at least; the median of the size of normally distributed numbers, times this, is their standard
+/// deviation.
+constexpr double kLeastWidth = 0.8;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
 constexpr double kOfMedian = 1.4826;
 
@@ -55,17 +57,21 @@ class SheetSearch {
            static_cast<std::int64_t>(data.grid.sites(2))},
         noise_(data.materials.size(), 0) {}
 
-  std::vector<SheetPlace> run() {
+  ThinSheets run() {
     for (std::uint16_t m = 0; m < noise_.size(); ++m) noise_[m] = noise(m);
     find_own();
     if (places_.empty()) return {};
-    double widest = 0;
-    for (const SheetPlace& place : places_) widest = std::max(widest, place.slab.width);
+    double widest = 0, noise = 0;
+    for (const SheetPlace& place : places_) {
+      widest = std::max(widest, place.slab.width);
+      if (place.slab.width >= kLeastWidth) noise += noise_[place.material];
+    }
+    noise /= static_cast<double>(places_.size());
     const int rings = kRings + static_cast<int>(std::ceil(widest));
     for (int ring = 0; ring < rings; ++ring) add_ring(ring >= kRings);
     std::sort(places_.begin(), places_.end(),
               [](const SheetPlace& a, const SheetPlace& b) { return a.site < b.site; });
-    return std::move(places_);
+    return {std::move(places_), 0, noise};
   }
 
  private:
@@ -81,7 +87,7 @@ class SheetSearch {
     std::vector<double> sizes;
     for (std::size_t n = 0; n < mixed.size(); n += stride) {
       const Entry* entry = find_entry(values_.at(mixed[n]), material);
-      if (entry == nullptr || entry->width == 0) continue;
+      if (entry == nullptr || values_.width(*entry) < kLeastWidth * sites_.least_side(mixed[n])) continue;
       double sum = -8 * static_cast<double>(entry->fraction);
       int count = 0;
       sites_.for_each_neighbour(mixed[n], [&](std::size_t other, int di, int dj, int dk) {
@@ -338,9 +344,8 @@ class SheetSearch {
 }  // namespace
 
 ThinSheets find_thin_sheets(const MultiMaterialData& data, const SiteValues& values) {
-  ThinSheets sheets;
-  if (!data.labels.empty()) return sheets;
-  sheets.places = SheetSearch(data, values).run();
+  if (!data.labels.empty()) return {};
+  ThinSheets sheets = SheetSearch(data, values).run();
   if (!sheets.places.empty()) join_regions(data, values, sheets);
   return sheets;
 }

@@ -33,6 +33,7 @@ struct SheetPlace {
 struct ThinSheets {
   std::vector<SheetPlace> places;  ///< in the order of sites
   std::size_t regions = 0;
+  double noise = 0;  ///< standard deviation of errors of fractions at blurred sheets, the mean over places
 };
 
 /// Finds sheets by fitting layers of even thickness to the fractions round mixed cells, and what they are
