@@ -149,10 +149,17 @@ class SheetSearch {
       sharp = fit(site, entry.material, false, off);
       if (entry.width == 0 || (sharp && off < kExact)) return sharp;
     }
-    if (!may_be_blurred_sheet(site, entry)) return {};
+    if (!is_on_black(site) || !may_be_blurred_sheet(site, entry)) return {};
     const auto blurred = fit(site, entry.material, true, off_blurred);
     const bool is_sharp = off < off_blurred || (blurred && blurred->slab.width <= kSharpWidth);
     return sharp && is_sharp ? sharp : blurred;
+  }
+
+  /// Blurred layers are fitted at every second site, as on the black fields of a chessboard, and continued to
+  /// the others.
+  [[nodiscard]] bool is_on_black(std::size_t site) const {
+    const auto s = static_cast<std::int64_t>(site);
+    return (s % n_[0] + s / n_[0] % n_[1] + s / (n_[0] * n_[1])) % 2 == 0;
   }
 
   /// Whether a material has a part of nearly all cells round a site, as sharp layers have not.
