@@ -21,7 +21,7 @@
 namespace adamas {
 namespace {
 
-constexpr std::size_t kCells = 32;
+constexpr std::size_t kCells = 24;
 
 MultiMaterialData blurred_scene(const char* name, double blur, double noise, std::size_t cells = kCells) {
   SamplingOptions options;
@@ -147,7 +147,7 @@ TEST(BlurredFractions, SurfacesAreWhereTheyWere) {
 TEST(BlurredFractions, AreOfSecondOrder) {
   const Scene scene = make_scene("sphere", 3);
   std::vector<double> lengths;
-  for (const std::size_t cells : {16u, 32u, 64u}) {
+  for (const std::size_t cells : {12u, 24u, 48u}) {
     const MultiMaterialData data = blurred_scene("sphere", 1, 0, cells);
     lengths.push_back(distance_from_truth(Reconstruction(data), scene, cells).mean /
                       static_cast<double>(cells));
@@ -167,7 +167,7 @@ TEST(BlurredFractions, ThinSheetsAreWhole) {
   for (const Case& c : {Case{"plate", 1, 0, 2}, Case{"plate", 1.5, 0, 2}, Case{"shell3", 1.5, 0, 3},
                         Case{"shell3", 1, 0.02, 3}}) {
     SCOPED_TRACE(c.scene);
-    const MultiMaterialData data = blurred_scene(c.scene, c.blur, c.noise);
+    const MultiMaterialData data = blurred_scene(c.scene, c.blur, c.noise, 32);
     const Reconstruction found(data);
     test::expect_closed_with_totals(found, data);
     EXPECT_EQ(found.body_materials().size(), c.bodies) << c.blur;
