@@ -143,7 +143,6 @@ TEST(LongResamplerSeries, CertifiedAndConserved) {
   ResamplingOptions options = within(0.03);
   expect_all_ways(follow(moving_steps(14, true), options));
   options.volume_error = 0.01;
-  expect_all_ways(follow(moving_steps(12, false), options));
   options.conserve = true;
   expect_all_ways(follow(moving_steps(12, false), options));
 }
