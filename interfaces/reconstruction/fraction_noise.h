@@ -10,8 +10,8 @@ namespace adamas {
 
 /// How far fractions are to be trusted, as a standard deviation (docs/blurred_fractions.md, Errors of
 /// fractions): each mixed cell is left out and told from a smooth surface through its neighbours' distances.
-/// The scaled median of what is off is the noise. Cells at thin sheets, where there are two surfaces, are left
-/// out, here and below; where there are too few others to say the noise is that at blurred sheets.
+/// The scaled median of what is off is the noise. Cells at thin sheets, where there are two surfaces, are
+/// left out, here and below; where there are too few others to say the noise is that at blurred sheets.
 double fraction_noise(const MultiMaterialData& data, const SiteValues& values, const ThinSheets& sheets);
 
 /// Smooths values and fractions of mixed entries by surfaces through their neighbours', as far as the noise
