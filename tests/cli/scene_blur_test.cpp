@@ -1,5 +1,7 @@
 // adamas generate scene --blur --noise: what it writes, and what it refuses.
 
+#include <array>
+
 #include "core/io/multi_material_reader.h"
 #include "program.h"
 
