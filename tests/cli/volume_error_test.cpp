@@ -94,7 +94,8 @@ TEST_F(VolumeErrors, OfSeriesAndExperimentsToo) {
   const RunResult series = run({"resample", "balls.nrrd", "balls.nrrd", "--labels", "balls.nrrd", "--cells",
                                 "--interface-error", "6%", "--volume-error", "2%", "--json", "s.json"});
   ASSERT_EQ(series.status, 0) << series.err;
-  for (const auto& step : read_json("s.json").at("steps")) EXPECT_LE(step.at("volume_error"), 0.02);
+  const auto figures = read_json("s.json");
+  for (const auto& step : figures.at("steps")) EXPECT_LE(step.at("volume_error"), 0.02);
   write("e.toml", "labels = balls.nrrd\ncells = true\ninterface-error = 6%\nvolume-error = 2%\n");
   const RunResult experiment = run({"experiment", "balls.nrrd", "-c", "e.toml", "-o", "out"});
   ASSERT_EQ(experiment.status, 0) << experiment.err;
