@@ -33,7 +33,8 @@ struct Borders {
   std::vector<BorderEdge> edges;      ///< by triangle and corner
   std::vector<std::uint32_t> points;  ///< their ends, ascending
   std::vector<std::uint32_t> welded;  ///< of each point of the mesh the lowest one with the same coordinates
-  ClosestPointTree tree;              ///< of the edges
+  std::map<std::uint32_t, std::vector<std::uint32_t>> neighbours;  ///< of each point along the borders
+  ClosestPointTree tree;                                           ///< of the edges
 };
 
 Borders::Borders(const InterfaceMesh& mesh, const Box3* domain) {
@@ -57,6 +58,8 @@ Borders::Borders(const InterfaceMesh& mesh, const Box3* domain) {
   std::vector<ClosestPointTree::Triangle> segments;
   for (const BorderEdge& e : edges) {
     points.insert(points.end(), e.ends.begin(), e.ends.end());
+    neighbours[e.ends[0]].push_back(e.ends[1]);
+    neighbours[e.ends[1]].push_back(e.ends[0]);
     segments.push_back({e.ends[0], e.ends[1], e.ends[1]});
   }
   std::sort(points.begin(), points.end());
@@ -126,6 +129,22 @@ class GapClosing {
     borders.tree.overlapping({p - margin, p + margin}, edges);
   }
 
+  /// Whether a border runs from one point to the other by a single point between them, nearer to both: no gap
+  /// is between them then, and as one point they would fold the border.
+  [[nodiscard]] bool follow_each_other(const Borders& borders, std::uint32_t p, std::uint32_t q) const {
+    const std::vector<std::uint32_t>&of_p = borders.neighbours.at(p), &of_q = borders.neighbours.at(q);
+    const double apart = squared_norm(mesh_.points[q] - mesh_.points[p]);
+    std::size_t common = 0;
+    bool between = false;
+    for (const std::uint32_t n : of_p) {
+      if (std::find(of_q.begin(), of_q.end(), n) == of_q.end()) continue;
+      ++common;
+      between = std::max(squared_norm(mesh_.points[n] - mesh_.points[p]),
+                         squared_norm(mesh_.points[n] - mesh_.points[q])) < apart;
+    }
+    return common == 1 && between;
+  }
+
   [[nodiscard]] std::vector<Pair> find_pairs(const Borders& borders) const {
     std::vector<Pair> pairs;
     std::vector<std::uint32_t> near;
@@ -134,7 +153,9 @@ class GapClosing {
       for (const std::uint32_t e : near) {
         for (const std::uint32_t q : borders.edges[e].ends) {
           const double squared = squared_norm(mesh_.points[q] - mesh_.points[p]);
-          if (squared <= tolerance_ * tolerance_ && before(p, q)) pairs.push_back({squared, p, q});
+          if (squared > tolerance_ * tolerance_ || !before(p, q) || follow_each_other(borders, p, q))
+            continue;
+          pairs.push_back({squared, p, q});
         }
       }
     }

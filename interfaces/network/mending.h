@@ -25,10 +25,11 @@ struct ClosedGaps {
 
 /// Closes gaps between open borders that are at most `tolerance` wide, a length: borders that run along a
 /// face of the domain are moved onto it; of points of borders that near each other one remains, nearest
-/// first, unless a triangle would lose an edge; edges of borders are split at points of other borders. No
-/// point moves farther than the gaps are wide, unless several gaps follow each other. What is not on an open
-/// border does not change, nor does anything with a tolerance of 0. The result does not depend on the order
-/// of triangles and points. Points must be finite and indices within range; `domain` may be null.
+/// first, unless a triangle would lose an edge or a border would be folded at a point between them; edges of
+/// borders are split at points of other borders. No point moves farther than the gaps are wide, unless
+/// several gaps follow each other. What is not on an open border does not change, nor does anything with a
+/// tolerance of 0. The result does not depend on the order of triangles and points. Points must be finite and
+/// indices within range; `domain` may be null.
 ClosedGaps close_gaps(InterfaceMesh& mesh, const Box3* domain, double tolerance);
 
 /// What became of triangles on the same three points; each is counted where it was taken out.

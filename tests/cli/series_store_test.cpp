@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <random>
 
@@ -208,14 +209,16 @@ TEST_F(SeriesStores, WhatDiffersOfTheGridIsTold) {
                  {"wide.vti", "spacing of a.vti, (1, 1, 1), found (1, 1, 2)"});
 }
 
-/// The program is killed 200 times while it adds steps: the store has all steps that were finished, and no
+/// The program is killed 100 times while it adds steps: the store has all steps that were finished, and no
 /// others.
 TEST_F(SeriesStores, AreWholeWhereverTheProgramIsKilled) {
+  const auto start = std::chrono::steady_clock::now();
   run_well(store({file(0)}, "a.adm"));
+  const std::chrono::duration<double, std::micro> taken = std::chrono::steady_clock::now() - start;
   std::mt19937 random(7);
-  unsigned longest = 20000;  // microseconds that a run takes, as far as is known
+  auto longest = static_cast<unsigned>(taken.count());  // that a run takes, as far as is known
   std::size_t steps = 1, killed = 0;
-  for (int time = 0; time < 200; ++time) {
+  for (int time = 0; time < 100; ++time) {
     RunOptions options;
     options.interrupt_when = [] { return true; };
     options.act = [&](pid_t program) {
@@ -237,8 +240,8 @@ TEST_F(SeriesStores, AreWholeWhereverTheProgramIsKilled) {
     steps = found;
     if (time % 20 == 19) run_well({"verify", "a.adm", "-q"});
   }
-  EXPECT_GT(killed, 50u);
-  EXPECT_GT(steps, 20u);
+  EXPECT_GT(killed, 25u);
+  EXPECT_GT(steps, 10u);
   for (std::size_t step = 0; step < steps; step += 9) {
     run_well({"restore", "a.adm", "--step", std::to_string(step), "-o", "out.raw", "-q"});
     EXPECT_EQ(read("out.raw"), samples(static_cast<int>(step % 5))) << step;

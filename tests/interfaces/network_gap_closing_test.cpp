@@ -74,6 +74,16 @@ TEST(GapClosing, WiderGapsStayOpen) {
   EXPECT_EQ(check_interface_mesh(mesh, &box).open_border_edges, 0u);
 }
 
+TEST(GapClosing, BordersFinerThanTheToleranceAreNotFolded) {
+  // A fan whose outer border has two edges that are shorter than gaps that are closed; no box cuts it.
+  InterfaceMesh mesh = test::mesh_with_materials(2);
+  mesh.points = {{-1, 0, 0}, {0, -1, 0}, {0, -1e-7, 2e-8}, {0, 0, 0}, {0, 1e-7, 0}, {0, 1, 0}};
+  for (std::uint32_t p = 1; p < 5; ++p) mesh.triangles.push_back({{0, p, p + 1}, kA, kB});
+  const InterfaceMesh before = mesh;
+  EXPECT_EQ(changes(mend_interface_mesh(mesh, nullptr)), 0u);
+  expect_same(mesh, before);
+}
+
 TEST(GapClosing, EdgesAreSplitWhereOthersEndOnThem) {
   // A sheet of strips whose points do not match, across the domain.
   const Box3 box = test::unit_box();
