@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
@@ -30,8 +31,6 @@ constexpr double kTelling = 0.02;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
 /// Where less than this part of them can be told nothing is known.
 constexpr double kLeastPart = 0.1;
-/// The median of the size of normally distributed numbers, times this, is their standard deviation.
-constexpr double kOfMedian = 1.4826;
 /// Squares that are greater than those of the noise by this factor are no noise.
 constexpr double kBeyond = 2;
 /// Sharp interfaces tell of errors by what they are off beyond this part of the square of the mean curvature.
@@ -130,12 +129,6 @@ double error_of_method(double width) {
   return kSharp * std::exp(-kFalls * std::max(0.0, width - kFrom));
 }
 
-double median(std::vector<double>& numbers) {
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
-}
-
 /// The mixed sites at which no sheet is.
 std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const ThinSheets& sheets) {
   std::vector<std::uint32_t> sites;
@@ -184,7 +177,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
     const double mean = means[sample.material];
     off.push_back(sample.is_sharp ? std::max(0.0, sample.off - kOfCurved * mean * mean) : sample.off);
   }
-  const double found = kOfMedian * median(off), own = error_of_method(values.findings().blur_median);
+  const double found = kDeviationByMedian * median(off), own = error_of_method(values.findings().blur_median);
   return found > own ? std::sqrt(found * found - own * own) : 0;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
@@ -208,10 +209,7 @@ std::uint16_t median_width(const SiteValues& values) {
   for (const Entry& entry : values.entries()) {
     if (entry.width > 0) widths.push_back(entry.width);
   }
-  if (widths.empty()) return 0;
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
-  return *middle;
+  return widths.empty() ? std::uint16_t{0} : median(widths);
 }
 
 }  // namespace
@@ -226,9 +224,7 @@ void summarise_widths(const MultiMaterialData& data, const SiteValues& values, F
     widths.push_back(greatest / sites.least_side(site));
   }
   if (widths.empty()) return;
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
-  findings.blur_median = *middle;
+  findings.blur_median = median(widths);
   findings.blur_greatest = *std::max_element(widths.begin(), widths.end());
   findings.blur_share = static_cast<double>(widths.size()) / static_cast<double>(values.mixed().size());
 }
@@ -243,14 +239,14 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
   const auto mixed = static_cast<double>(values.mixed().size());
   const auto blurred = static_cast<double>(std::ranges::count(settled, kBlurredCell));
   const bool none = blurred < kFew * mixed, all = mixed - blurred < kFew * mixed;
-  const std::uint16_t median = median_width(values);
+  const std::uint16_t typical = median_width(values);
   std::vector<std::pair<Entry*, std::uint16_t>> found;
   for (const std::uint32_t site : values.mixed()) {
     const bool is_blurred = !none && (all || settled[site] == kBlurredCell);
     for (Entry& entry : values.at(site)) {
       if (!is_blurred) found.emplace_back(&entry, std::uint16_t{0});
       if (is_blurred && kinds[site] == kSharpCell && !entry.settled())
-        found.emplace_back(&entry, mean_width(values, sites, site, entry.material, median));
+        found.emplace_back(&entry, mean_width(values, sites, site, entry.material, typical));
     }
   }
   for (const auto& [entry, width] : found) entry->width = width;

@@ -32,6 +32,8 @@ constexpr double kAboveNoise = 2;
 /// The weight of cells on either side of a layer at least.
 constexpr double kLeastSeen = 0.1;
 constexpr int kRounds = 6, kRoundsBlurred = 10;
+/// A fit has settled when no unknown changes by more; what damps its normal equations.
+constexpr double kSettled = 1e-4, kSettledBlurred = 1e-3, kDamping = 1e-3;
 /// After so many rounds a fit that leaves more than this part of the fractions is given up.
 constexpr int kFirstRounds = 3;
 constexpr double kHopeless = 0.35;
@@ -117,6 +119,20 @@ Unknowns growth(const CurvedSlab& layer, const Vec3& place) {
   const double part = slab.part_of_cell(place);
   for (int i = 0; i < 4; ++i) g[i] = (moved[static_cast<std::size_t>(i)].part_of_cell(place) - part) / kStep;
   return g;
+}
+
+/// Changes a layer by the unknowns of growth(), none by more than a step of a fit may.
+void change(CurvedSlab& layer, const Unknowns& by) {
+  const auto limited = [](double value, double most) { return std::clamp(value, -most, most); };
+  Slab& slab = layer.slab;
+  layer.turn(limited(by[0], 0.3), limited(by[1], 0.3));
+  slab.offset += limited(by[2], 0.4);
+  slab.thickness = std::max(slab.thickness + limited(by[3], 0.3), 0.5 * kThinnest);
+  if (slab.width == 0) return;
+  slab.width = std::clamp(slab.width + limited(by[4], 0.3), kSharpest, kWidest);
+  layer.xx = limited(layer.xx + limited(by[5], 0.1), kMostCurved);
+  layer.xy = limited(layer.xy + limited(by[6], 0.1), kMostCurved);
+  layer.yy = limited(layer.yy + limited(by[7], 0.1), kMostCurved);
 }
 
 }  // namespace
@@ -218,19 +234,10 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
       off = std::sqrt(left / all);
       return {};
     }
-    a.diagonal().array() += 1e-3;
+    a.diagonal().array() += kDamping;
     const Unknowns x = a.ldlt().solve(b);
-    const auto limited = [](double by, double most) { return std::clamp(by, -most, most); };
-    layer.turn(limited(x[0], 0.3), limited(x[1], 0.3));
-    slab.offset += limited(x[2], 0.4);
-    slab.thickness = std::max(slab.thickness + limited(x[3], 0.3), 0.5 * kThinnest);
-    if (blurred) {
-      slab.width = std::clamp(slab.width + limited(x[4], 0.3), kSharpest, kWidest);
-      layer.xx = limited(layer.xx + limited(x[5], 0.1), kMostCurved);
-      layer.xy = limited(layer.xy + limited(x[6], 0.1), kMostCurved);
-      layer.yy = limited(layer.yy + limited(x[7], 0.1), kMostCurved);
-    }
-    if (x.lpNorm<Eigen::Infinity>() < (blurred ? 1e-3 : 1e-4)) break;
+    change(layer, x);
+    if (x.lpNorm<Eigen::Infinity>() < (blurred ? kSettledBlurred : kSettled)) break;
   }
   // Both sides show where little of the layer is, of a blurred one in relation to its middle.
   const double seen = blurred ? 0.4 * slab.part_of_cell(slab.offset * slab.normal) : 0.02;

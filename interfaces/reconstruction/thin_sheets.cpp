@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_entries.h"
@@ -41,11 +42,9 @@ constexpr double kSharpWidth = 0.4;
 /// cell is not below this part of it.
 constexpr double kLowest = 0.06, kHighest = 0.8, kOfHighest = 0.3;
 /// Noise is told from cells with steps of this width, in cells, or wider, from so many at most, and of so
-/// many at least; the median of the size of normally distributed numbers, times this, is their standard
-/// deviation.
+/// many at least.
 constexpr double kLeastWidth = 0.8;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
-constexpr double kOfMedian = 1.4826;
 
 class SheetSearch {
  public:
@@ -99,9 +98,7 @@ class SheetSearch {
       if (count == 26) sizes.push_back(std::abs(sum));
     }
     if (sizes.size() < kLeastCells) return 0;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return kOfMedian * *middle / std::sqrt(216.0);
+    return kDeviationByMedian * median(sizes) / std::sqrt(216.0);
   }
 
   /// Layers fitted to what is round each mixed site.
