@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/border_continuation.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
+#include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_entries.h"
 
 namespace adamas {
@@ -25,6 +27,8 @@ constexpr double kNarrow = 0.7;
 /// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
 constexpr double kRelax = 0.7, kMostMove = 0.5;
 
+/// Distances are told from fractions up to so many widths.
+constexpr double kFarthest = 3;
 /// Fractions whose weights are less than this in all tell nothing.
 constexpr double kNothing = 1e-12;
 
@@ -58,7 +62,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
     }
   }
   const auto margin = static_cast<std::size_t>(std::ceil(3 * widest / data_.grid.least_spacing())) + 1;
-  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, {}};
+  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, margin, {}};
   part.step = part.box.greatest_step();
   struct Found {
     std::size_t steps;
@@ -91,8 +95,13 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
 
 void BlurredFractions::predict() {
   measure();
+  if (beyond_.empty()) look_beyond();
   predicted_ = owned_;
-  for (const Part& part : parts_) spread(part);
+  for (const Part& part : parts_) {
+    spread(
+        part, part.box, volumes(part), [](std::size_t place) { return place; },
+        [&](std::size_t entry, float fraction) { predicted_[entry] = fraction + beyond_[entry]; });
+  }
 }
 
 /// The volumes that materials own in the cells of sites.
@@ -112,8 +121,8 @@ void BlurredFractions::measure() {
   });
 }
 
-void BlurredFractions::spread(const Part& part) {
-  std::vector<float> now(part.box.size()), before, scratch;
+std::vector<float> BlurredFractions::volumes(const Part& part) const {
+  std::vector<float> found(part.box.size());
   part.box.for_each([&](std::size_t place, std::size_t site) {
     const std::span<const Entry> own = values_.at(site);
     float volume = own.empty() && values_.sole_material(site) == part.number ? 1.0f : 0.0f;
@@ -122,15 +131,48 @@ void BlurredFractions::spread(const Part& part) {
       volume = owned_[static_cast<std::size_t>(&entry - values_.entries().data())];
       break;
     }
-    now[place] = volume;
+    found[place] = volume;
   });
+  return found;
+}
+
+template <class Place, class Set>
+void BlurredFractions::spread(const Part& part, const SiteBox& box, std::vector<float> now,
+                              const Place& place, const Set& set) const {
+  std::vector<float> before, scratch;
   for (const auto& targets : part.targets) {
     before = now;
-    part.box.diffuse(now, part.step, scratch);
+    box.diffuse(now, part.step, scratch);
     parallel_for(targets.size(), 4096, [&](std::size_t n) {
-      const auto& [entry, place, rest] = targets[n];
-      predicted_[entry] = before[place] + rest * (now[place] - before[place]);
+      const std::size_t at = place(targets[n].place);
+      set(targets[n].entry, before[at] + targets[n].rest * (now[at] - before[at]));
     });
+  }
+}
+
+void BlurredFractions::look_beyond() {
+  beyond_.assign(owned_.size(), 0);
+  const GridSides sides = sides_that_run_on(data_, values_);
+  for (const Part& part : parts_) {
+    const ContinuedBox continued(data_.grid, part.box, sides, part.margin);
+    if (!continued.reaches_beyond()) continue;
+    const auto farthest = static_cast<float>(kFarthest * part.widest);
+    std::vector<float> distances(part.box.size());
+    part.box.for_each([&](std::size_t place, std::size_t site) {
+      const float f = data_.fractions[values_.material(part.number)][site];
+      distances[place] = f < 0.5f ? -farthest : farthest;
+      const std::span<const Entry> own = values_.at(site);
+      const auto blurred = std::ranges::find_if(
+          own, [&](const Entry& e) { return values_.whole(e.material) == part.number && e.width > 0; });
+      if (f <= 0 || f >= 1 || blurred == own.end()) return;
+      distances[place] =
+          std::clamp(static_cast<float>(values_.width(*blurred) * normal_quantile(static_cast<double>(f))),
+                     -farthest, farthest);
+    });
+    spread(
+        part, continued.box(), continued.beyond_mirrored(volumes(part), distances),
+        [&](std::size_t place) { return continued.place(place); },
+        [&](std::size_t entry, float fraction) { beyond_[entry] = fraction; });
   }
 }
 

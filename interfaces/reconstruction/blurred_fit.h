@@ -27,7 +27,9 @@ class BlurredFractions {
   struct Part {
     std::uint16_t number;
     SiteBox box;
-    double step;  ///< variance of a step of diffusion
+    double step;         ///< variance of a step of diffusion
+    double widest;       ///< greatest width
+    std::size_t margin;  ///< of the box, in sites
     /// Entries with their place in the box, by the steps that they need; and the rest of a step, as a part.
     struct Target {
       std::uint32_t entry, place;
@@ -37,12 +39,21 @@ class BlurredFractions {
   };
   void add_part(std::uint16_t number, const std::vector<std::uint32_t>& sites);
   void measure();
-  void spread(const Part& part);
+  /// The volumes of a part's material in the cells of its box.
+  [[nodiscard]] std::vector<float> volumes(const Part& part) const;
+  /// Calls set(entry, fraction) for the targets of a part, with what diffusion makes of volumes in a box;
+  /// place(p) is where a place of the part's box is in it.
+  template <class Place, class Set>
+  void spread(const Part& part, const SiteBox& box, std::vector<float> now, const Place& place,
+              const Set& set) const;
+  /// What lies beyond the sides on which fractions run on.
+  void look_beyond();
 
   const MultiMaterialData& data_;
   const SiteValues& values_;
   const SiteCells& cells_;
   std::vector<Part> parts_;
+  std::vector<float> beyond_;     // by entry: what is to be added for cells beyond the sides; empty at first
   std::vector<float> owned_;      // by entry: a material's first at a site has the volume of all its regions
   std::vector<float> predicted_;  // by entry
 };

@@ -25,6 +25,8 @@ class SiteBox {
 
   [[nodiscard]] std::size_t size() const { return n_[0] * n_[1] * n_[2]; }
   [[nodiscard]] std::size_t sites(int axis) const { return n_[static_cast<std::size_t>(axis)]; }
+  /// The first site along an axis.
+  [[nodiscard]] std::size_t low(int axis) const { return low_[static_cast<std::size_t>(axis)]; }
   /// The place in arrays of a site that lies in the box.
   [[nodiscard]] std::size_t place(std::size_t site) const {
     const std::size_t nx = grid_.sites(0), ny = grid_.sites(1);

@@ -11,6 +11,8 @@ namespace {
 
 /// Points that are looked at, about, and along a side of a triangle, at most.
 constexpr double kMostPoints = 1e6, kMostAlongSide = 64;
+/// Of more triangles than this that are no larger than the spacing not all are looked at.
+constexpr std::size_t kMostSmall = 500'000;
 
 /// Calls visit(point) at the middles of n^2 equal parts of a triangle.
 template <typename Visit>
@@ -40,6 +42,7 @@ std::vector<ThinPlace> thin_places(const InterfaceNetwork& network, const Box3& 
     squares += side * side;
   }
   spacing = std::max(spacing, std::sqrt(squares / kMostPoints));
+  const std::size_t stride = (count + kMostSmall - 1) / kMostSmall;
   constexpr std::size_t kChunk = 256;
   std::vector<std::vector<ThinPlace>> parts((count + kChunk - 1) / kChunk);
   const auto look = [&](std::uint32_t t, const Vec3& p, std::vector<ThinPlace>& places) {
@@ -59,6 +62,7 @@ std::vector<ThinPlace> thin_places(const InterfaceNetwork& network, const Box3& 
       const auto number = static_cast<std::uint32_t>(t);
       const auto& corners = network.triangle_corners(number);
       const double n = std::clamp(std::ceil(longest_side(corners) / spacing), 1.0, kMostAlongSide);
+      if (n == 1 && t % stride != 0) continue;
       for_each_middle(corners, static_cast<int>(n),
                       [&](const Vec3& p) { look(number, p, parts[first / kChunk]); });
     }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "datasets/scene_sampling.h"
 #include "interfaces/network/body_topology.h"
 #include "interfaces/reconstruction/blurred_fit.h"
+#include "interfaces/reconstruction/border_continuation.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/reconstruction/site_box.h"
@@ -159,6 +161,44 @@ TEST(BlurredFractions, AreOfSecondOrder) {
 
 /// A plate that peaks at far less than one half is one closed body, and a shell of a third of a cell is
 /// whole, also with noise that is half of what it peaks at.
+/// A plane at a slant to two sides, blurred by 1.5 cells of 1; where `bends`, as a wall on the side of least
+/// x would mirror it: y is a convolution of |x| with the normal distribution there.
+MultiMaterialData slanted_step(bool bends) {
+  constexpr std::size_t kSites = 20;
+  constexpr double kBlur = 1.5, kSlope = 0.6;
+  MultiMaterialData data;
+  data.grid = RectilinearGrid::uniform({kSites, kSites, kSites}, {0, 0, 0}, {1, 1, 1});
+  for (const char* name : {"above", "below"}) {
+    data.materials.emplace_back(name);
+    data.fractions.emplace_back(data.grid.site_count());
+  }
+  const double along = std::sqrt(1 + kSlope * kSlope), width = std::sqrt(kBlur * kBlur + 1.0 / 12);
+  for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+    const Vec3 p = data.grid.site(site % kSites, site / kSites % kSites, site / (kSites * kSites));
+    const double bent = p.x * std::erf(p.x / (std::numbers::sqrt2 * width)) +
+                        2 * width * normal_density(p.x / width),
+                 y = 5 + kSlope * (bends ? bent : p.x);
+    const auto f = static_cast<float>(normal_probability((p.y - y) / along / width));
+    data.fractions[MaterialId(0)][site] = f;
+    data.fractions[MaterialId(1)][site] = 1 - f;
+  }
+  return data;
+}
+
+/// A step that runs on beyond the grid does not bend at its sides.
+TEST(BlurredFractions, StepsRunOnBeyondTheGrid) {
+  const MultiMaterialData data = slanted_step(false);
+  const GridSides sides = sides_that_run_on(data, SiteValues(data));
+  EXPECT_TRUE(sides[0] && sides[1]);
+  const Reconstruction found(data);
+  const Vec3 normal = normalized(Vec3{-0.6, 1, 0});
+  double greatest = 0;
+  for (const Vec3& p : found.mesh().points)
+    greatest = std::max(greatest, std::abs(dot(normal, p - Vec3{0, 5, 0})));
+  EXPECT_LT(greatest, 0.05);
+  EXPECT_FALSE(sides_that_run_on(slanted_step(true), SiteValues(slanted_step(true)))[0]);
+}
+
 TEST(BlurredFractions, ThinSheetsAreWhole) {
   struct Case {
     const char* scene;
