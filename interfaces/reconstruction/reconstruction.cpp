@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"
+#include "core/geometry/partition.h"
 #include "interfaces/reconstruction/flakes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/volume_correction.h"
@@ -36,6 +38,20 @@ double area_of(const std::vector<Vec3>& points, const std::vector<InterfaceTrian
   return area;
 }
 
+/// The area of a contact in a tetrahedron with these corners.
+double area_of(const ContactPolygon& contact, const std::array<Vec3, 4>& corners) {
+  const auto place = [&](std::size_t i) {
+    Vec3 p;
+    for (std::size_t v = 0; v < 4; ++v) p += contact.corners[i].weights[v] * corners[v];
+    return p;
+  };
+  const Vec3 first = place(0);
+  Vec3 sum;
+  for (std::size_t i = 1; i + 1 < contact.corners.size(); ++i)
+    sum += cross(place(i) - first, place(i + 1) - first);
+  return 0.5 * norm(sum);
+}
+
 /// The corners of a tetrahedron of a lattice cell.
 struct Corners {
   std::array<std::uint32_t, 4> points{};
@@ -52,27 +68,28 @@ struct Corners {
 };
 
 /// The area of the interfaces of a lattice.
-double interface_area(const MaterialLattice& lattice, double weld) {
-  ContactMeshBuilder builder(weld);
+double interface_area(const MaterialLattice& lattice) {
   const std::uint32_t layers = lattice.points(2) - 1;
-  std::vector<ContactBuffer> contacts(layers);
+  std::vector<double> areas(layers, 0);
   parallel_for(layers, 1, [&](std::size_t k) {
     OwnershipProblem problem;
+    std::vector<ContactPolygon> contacts;
     MaterialLattice::Index cell{0, 0, static_cast<std::uint32_t>(k)};
     for (cell[1] = 0; cell[1] + 1 < lattice.points(1); ++cell[1]) {
       for (cell[0] = 0; cell[0] + 1 < lattice.points(0); ++cell[0]) {
         for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path) {
-          const auto [points, ids, positions] = Corners(lattice, cell, path);
-          if (lattice.have_one_owner(points)) continue;
-          lattice.ownership(points, problem);
-          if (problem.candidates.size() > 1) contacts[k].add(ids, positions, problem);
+          const Corners corners(lattice, cell, path);
+          if (lattice.have_one_owner(corners.points)) continue;
+          lattice.ownership(corners.points, problem);
+          if (problem.candidates.size() < 2) continue;
+          contacts.clear();
+          contact_polygons(problem, contacts);
+          for (const ContactPolygon& contact : contacts) areas[k] += area_of(contact, corners.positions);
         }
       }
     }
   });
-  for (ContactBuffer& layer : contacts) builder.append(layer);
-  const InterfaceMesh mesh = builder.finish();
-  return area_of(mesh.points, mesh.triangles);
+  return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
 /// Throws Error at options out of range.
@@ -139,8 +156,7 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   findings_.tolerance = agreement_.tolerance;
   findings_.area = findings_.area_of_fractions = area_of(mesh_.points, mesh_.triangles);
   if (findings_.blur_share > 0 || findings_.fraction_error > 0)
-    findings_.area_of_fractions = interface_area(MaterialLattice(data, SiteValues::fractions(data)),
-                                                 kWeldTolerance * data.grid.domain().diagonal());
+    findings_.area_of_fractions = interface_area(MaterialLattice(data, SiteValues::fractions(data)));
 }
 
 /// Closes totals again until they are right together with what neighbours get, and returns what they get.
