@@ -139,7 +139,7 @@ void add_reconstruction_options(const Command& command, InputOptions& options) {
       .add_option("--fraction-error", options.fraction_error,
                   "The standard deviation of errors of volume fractions, within which interfaces are smooth, "
                   "as 2%; auto, which is the default, reads it off them")
-      .type_name("auto|P%")
+      .type_name("auto|P|P%")
       .group("Input");
   command
       .add_flag(
@@ -149,11 +149,29 @@ void add_reconstruction_options(const Command& command, InputOptions& options) {
       .group("Input");
 }
 
-std::string reconstruction_option(const InputOptions& options) {
-  if (options.smooth_labels) return "--smooth-labels";
+namespace {
+
+std::string fraction_option(const InputOptions& options) {
   if (!options.blur.empty()) return "--blur";
   if (!options.fraction_error.empty()) return "--fraction-error";
   return options.keep_dispersed ? "--keep-dispersed" : "";
+}
+
+FractionOptions fraction_options(const InputOptions& options) {
+  FractionOptions fractions;
+  fractions.keep_dispersed = options.keep_dispersed;
+  if (!options.blur.empty() && options.blur != "auto")
+    fractions.blur =
+        options.blur == "none" ? 0 : parse_up_to("--blur", options.blur, FractionOptions::kMostBlur);
+  if (!options.fraction_error.empty() && options.fraction_error != "auto")
+    fractions.error = parse_part("--fraction-error", options.fraction_error, FractionOptions::kMostError);
+  return fractions;
+}
+
+}  // namespace
+
+std::string reconstruction_option(const InputOptions& options) {
+  return options.smooth_labels ? "--smooth-labels" : fraction_option(options);
 }
 
 void refuse_reconstruction_options(const InputOptions& options) {
@@ -163,19 +181,12 @@ void refuse_reconstruction_options(const InputOptions& options) {
 }
 
 ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data) {
+  const std::string option = fraction_option(options);
   if (options.smooth_labels && data.labels.empty())
     wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
-  FractionOptions fractions;
-  fractions.keep_dispersed = options.keep_dispersed;
-  if (!options.blur.empty() && options.blur != "auto")
-    fractions.blur =
-        options.blur == "none" ? 0 : parse_up_to("--blur", options.blur, FractionOptions::kMostBlur);
-  if (!options.fraction_error.empty() && options.fraction_error != "auto")
-    fractions.error = parse_part("--fraction-error", options.fraction_error);
-  const std::string option = reconstruction_option(options);
-  if (!option.empty() && !options.smooth_labels && !data.labels.empty())
+  if (!option.empty() && !data.labels.empty())
     wrong_usage("{}: expected volume fractions, found labels in {}", option, data.source);
-  return {.smooth_labels = options.smooth_labels, .fractions = fractions};
+  return {.smooth_labels = options.smooth_labels, .fractions = fraction_options(options)};
 }
 
 void add_interface_options(const Command& command, InputOptions& options, bool resampled) {
@@ -304,6 +315,7 @@ Input load_input(const InputOptions& given, Console& console, const InputCheck& 
   if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
   if (!options.weld.empty() || options.tolerant)
     wrong_usage("{}: expected given interfaces", options.tolerant ? "--tolerant" : "--weld");
+  fraction_options(options);  // Wrong ones are told before anything is read.
   input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
   if (check)
     check({options.path, input.data->grid.domain(), field_infos(*input.data),

@@ -44,12 +44,13 @@ double parse_up_to(const std::string& option, const std::string& text, double gr
   return *value;
 }
 
-double parse_part(const std::string& option, const std::string& text) {
+double parse_part(const std::string& option, const std::string& text, double greatest) {
   const bool percent = !text.empty() && text.back() == '%';
   const auto value = to_number(percent ? text.substr(0, text.size() - 1) : text);
   const double whole = percent ? 100 : 1;
-  if (!value || !(*value >= 0 && *value <= whole))
-    wrong_usage("{}: expected a part from 0 to 1, or from 0% to 100%, found '{}'", option, text);
+  if (!value || !(*value >= 0 && *value <= greatest * whole))
+    wrong_usage("{}: expected a part from 0 to {}, or from 0% to {}%, found '{}'", option, greatest,
+                100 * greatest, text);
   return *value / whole;
 }
 

@@ -20,8 +20,8 @@ namespace adamas {
 double parse_positive(const std::string& option, const std::string& text);
 /// A number from 0 to `greatest`.
 double parse_up_to(const std::string& option, const std::string& text, double greatest);
-/// A part of a whole, as "0.02" or "2%": from 0 to 1.
-double parse_part(const std::string& option, const std::string& text);
+/// A part of a whole, as "0.02" or "2%": from 0 to `greatest`.
+double parse_part(const std::string& option, const std::string& text, double greatest = 1);
 /// "1%": a part of something, above 0% and below 100%, as 0.01.
 double parse_percentage(const std::string& option, const std::string& text);
 /// A whole number of at least that.

@@ -12,6 +12,7 @@
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/network/network_mesh.h"
+#include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
 namespace adamas {
@@ -61,7 +62,8 @@ void note_losses(const MultiMaterialData& data, const Reconstruction& result, Fi
   Figures materials = Figures::array(), bodies = Figures::array();
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
     const double volume = result.volume_input()[m];
-    if (volume <= 0 || result.volume_reconstructed()[m] > 0 || result.volume_wanted()[m] <= 0) continue;
+    if (volume <= 0 || result.volume_reconstructed()[m] > 0 || is_all_dispersed(result.findings(), m, volume))
+      continue;
     materials.push_back({{"name", data.materials[m]}, {"volume", volume}});
     console.note("{}: the interfaces show nothing of '{}', whose volume is {}", data.source,
                  data.materials[m], volume_text(volume));

@@ -27,6 +27,8 @@ constexpr double kNarrow = 0.7;
 /// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
 constexpr double kRelax = 0.7, kMostMove = 0.5;
 
+/// What is farther away than so many widths does not count.
+constexpr double kReach = 3;
 /// Distances are told from fractions up to so many widths.
 constexpr double kFarthest = 3;
 /// Fractions whose weights are less than this in all tell nothing.
@@ -61,8 +63,8 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
       if (values_.whole(entry.material) == number) widest = std::max(widest, values_.width(entry));
     }
   }
-  const auto margin = static_cast<std::size_t>(std::ceil(3 * widest / data_.grid.least_spacing())) + 1;
-  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, margin, {}};
+  const auto margin = static_cast<std::size_t>(std::ceil(kReach * widest / data_.grid.least_spacing())) + 1;
+  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, {}};
   part.step = part.box.greatest_step();
   struct Found {
     std::size_t steps;
@@ -154,7 +156,7 @@ void BlurredFractions::look_beyond() {
   beyond_.assign(owned_.size(), 0);
   const GridSides sides = sides_that_run_on(data_, values_);
   for (const Part& part : parts_) {
-    const ContinuedBox continued(data_.grid, part.box, sides, part.margin);
+    const ContinuedBox continued(data_.grid, part.box, sides, kReach * part.widest);
     if (!continued.reaches_beyond()) continue;
     const auto farthest = static_cast<float>(kFarthest * part.widest);
     std::vector<float> distances(part.box.size());

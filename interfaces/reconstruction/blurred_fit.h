@@ -27,9 +27,8 @@ class BlurredFractions {
   struct Part {
     std::uint16_t number;
     SiteBox box;
-    double step;         ///< variance of a step of diffusion
-    double widest;       ///< greatest width
-    std::size_t margin;  ///< of the box, in sites
+    double step;    ///< variance of a step of diffusion
+    double widest;  ///< greatest width
     /// Entries with their place in the box, by the steps that they need; and the rest of a step, as a part.
     struct Target {
       std::uint32_t entry, place;
@@ -53,7 +52,8 @@ class BlurredFractions {
   const SiteValues& values_;
   const SiteCells& cells_;
   std::vector<Part> parts_;
-  std::vector<float> beyond_;     // by entry: what is to be added for cells beyond the sides; empty at first
+  // By entry: what is to be added for cells beyond the sides, as they are at first; empty before.
+  std::vector<float> beyond_;
   std::vector<float> owned_;      // by entry: a material's first at a site has the volume of all its regions
   std::vector<float> predicted_;  // by entry
 };

@@ -19,8 +19,6 @@ constexpr double kNearOne = 0.9;
 constexpr double kMostSlope = 0.8;
 /// A mirror image bends a step nearer to the side than so many widths.
 constexpr double kBends = 2;
-/// The width of the step of a sharp interface's fractions, in cells.
-constexpr double kOwnWidth = 0.2887;
 
 /// The sites from one at a side of the grid inwards along an axis.
 struct WayInwards {
@@ -83,34 +81,36 @@ GridSides sides_that_run_on(const MultiMaterialData& data, const SiteValues& val
   return sides;
 }
 
+/// The sites of the box and those beyond it, as the points of a grid.
 RectilinearGrid ContinuedBox::extended(const RectilinearGrid& grid, const SiteBox& box,
                                        std::array<std::array<std::size_t, 2>, 3>& cells,
-                                       const GridSides& sides, std::size_t margin) {
+                                       const GridSides& sides, double reach) {
   RectilinearGrid wider;
-  wider.centering = grid.centering;
+  wider.centering = Centering::kPoints;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const std::size_t low = box.low(axis), high = low + box.sites(axis);
-    cells[a] = {sides[2 * a] && low == 0 ? margin : 0,
-                sides[2 * a + 1] && high == grid.sites(axis) ? margin : 0};
-    const auto begin = grid.nodes[a].begin() + static_cast<std::ptrdiff_t>(low);
-    const std::vector<double> inner(begin, begin + static_cast<std::ptrdiff_t>(high - low) +
-                                               (grid.centering == Centering::kCells ? 1 : 0));
-    if (inner.size() < 2) cells[a] = {0, 0};
+    const std::size_t n = box.sites(axis), low = box.low(axis);
+    const auto site = [&](std::size_t i) { return grid.site_coordinate(axis, low + i); };
+    std::array<double, 2> gaps{};
+    if (n > 1) gaps = {site(1) - site(0), site(n - 1) - site(n - 2)};
+    const std::array<bool, 2> at_side{low == 0, low + n == grid.sites(axis)};
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (sides[2 * a + end] && at_side[end] && n > 1)
+        cells[a][end] = static_cast<std::size_t>(std::ceil(reach / gaps[end])) + 1;
+    }
     auto& nodes = wider.nodes[a];
-    for (std::size_t k = cells[a][0]; k > 0; --k)
-      nodes.push_back(inner[0] - static_cast<double>(k) * (inner[1] - inner[0]));
-    nodes.insert(nodes.end(), inner.begin(), inner.end());
+    for (std::size_t k = cells[a][0]; k > 0; --k) nodes.push_back(site(0) - static_cast<double>(k) * gaps[0]);
+    for (std::size_t i = 0; i < n; ++i) nodes.push_back(site(i));
     for (std::size_t k = 1; k <= cells[a][1]; ++k)
-      nodes.push_back(inner.back() + static_cast<double>(k) * (inner.back() - inner[inner.size() - 2]));
+      nodes.push_back(site(n - 1) + static_cast<double>(k) * gaps[1]);
   }
   return wider;
 }
 
 ContinuedBox::ContinuedBox(const RectilinearGrid& grid, const SiteBox& box, const GridSides& sides,
-                           std::size_t margin)
+                           double reach)
     : inner_(box),
-      grid_(extended(grid, box, cells_, sides, margin)),
+      grid_(extended(grid, box, cells_, sides, reach)),
       box_(grid_, {0, 0, 0}, {grid_.sites(0), grid_.sites(1), grid_.sites(2)}) {}
 
 std::size_t ContinuedBox::place(std::size_t inner) const {
@@ -139,7 +139,7 @@ void ContinuedBox::run_on(std::vector<float>& values, const Next& next) const {
             return at[inwards * static_cast<std::ptrdiff_t>(std::min(steps, within - 1))];
           };
           for (std::size_t k = 1; k <= cells_[a][side]; ++k)
-            at[-inwards * static_cast<std::ptrdiff_t>(k)] = next(a, line, k);
+            at[-inwards * static_cast<std::ptrdiff_t>(k)] = next(a, side, line, k);
         }
       }
     }
@@ -156,18 +156,14 @@ std::vector<float> ContinuedBox::beyond_mirrored(const std::vector<float>& volum
     beyond[at] = distances[p];
     is_within[at] = 1;
   }
-  run_on(mirrored, [](std::size_t, const auto& line, std::size_t k) { return line(k - 1); });
-  std::array<float, 3> spacing{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto& x = grid_.nodes[a];
-    spacing[a] =
-        x.size() < 2 ? 0.0f : static_cast<float>((x.back() - x.front()) / static_cast<double>(x.size() - 1));
-  }
+  run_on(mirrored, [](std::size_t, std::size_t, const auto& line, std::size_t k) { return line(k - 1); });
   // A distance changes by no more than the way does.
-  run_on(beyond, [&](std::size_t a, const auto& line, std::size_t k) {
-    return line(0) + static_cast<float>(k) * std::clamp(line(0) - line(1), -spacing[a], spacing[a]);
+  run_on(beyond, [&](std::size_t a, std::size_t side, const auto& line, std::size_t k) {
+    const auto& x = grid_.nodes[a];
+    const auto gap = static_cast<float>(side == 0 ? x[1] - x[0] : x.back() - x[x.size() - 2]);
+    return line(0) + static_cast<float>(k) * std::clamp(line(0) - line(1), -gap, gap);
   });
-  const double own = kOwnWidth * grid_.least_spacing();
+  const double own = kUniformDeviation * grid_.least_spacing();
   parallel_for(beyond.size(), 1 << 14, [&](std::size_t p) {
     const double volume = normal_probability(static_cast<double>(beyond[p]) / own);
     beyond[p] = is_within[p] != 0 ? 0.0f : static_cast<float>(volume) - mirrored[p];

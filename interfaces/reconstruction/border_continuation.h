@@ -17,17 +17,18 @@ using GridSides = std::array<bool, 6>;
 /// they are mirrored, as at a solver's walls: their slope across the side becomes less towards it.
 GridSides sides_that_run_on(const MultiMaterialData& data, const SiteValues& values);
 
-/// A box of sites with cells beyond the sides on which fractions run on, as wide as those at the side.
+/// A box of sites with more of them beyond the sides on which fractions run on, as far from each other as the
+/// two nearest to the side.
 class ContinuedBox {
  public:
-  /// `margin`: the number of cells beyond each such side that the box reaches. `box` must outlive this.
-  ContinuedBox(const RectilinearGrid& grid, const SiteBox& box, const GridSides& sides, std::size_t margin);
+  /// `reach`: how far the box reaches beyond each such side, a length. `box` must outlive this.
+  ContinuedBox(const RectilinearGrid& grid, const SiteBox& box, const GridSides& sides, double reach);
   ContinuedBox(const ContinuedBox&) = delete;
   ContinuedBox& operator=(const ContinuedBox&) = delete;
 
   /// Whether there are such cells.
   [[nodiscard]] bool reaches_beyond() const { return box_.size() > inner_.size(); }
-  /// Box and grid with these cells.
+  /// The box with these cells.
   [[nodiscard]] const SiteBox& box() const { return box_; }
   /// Where a place of the box is in the box with these cells.
   [[nodiscard]] std::size_t place(std::size_t inner) const;
@@ -41,8 +42,9 @@ class ContinuedBox {
  private:
   static RectilinearGrid extended(const RectilinearGrid& grid, const SiteBox& box,
                                   std::array<std::array<std::size_t, 2>, 3>& cells, const GridSides& sides,
-                                  std::size_t margin);
-  /// Continues an array beyond the sides, axis by axis: next(nearest, the one within, cells from nearest).
+                                  double reach);
+  /// Continues an array beyond the sides, axis by axis: next(axis, end, line, k) is the value k cells beyond
+  /// an end of the axis, where line(i) is that i cells within from the nearest one.
   template <class Next>
   void run_on(std::vector<float>& values, const Next& next) const;
 

@@ -42,8 +42,13 @@ class DispersedSearch {
     for (std::uint16_t number = 0; number < little.size(); ++number) {
       if (little[number].empty()) continue;
       for (const std::uint32_t site : dispersed(number, little[number])) {
-        changed.push_back(site);
         Entry& entry = *find_entry(values_.at(site), number);
+        // Something is left in each cell.
+        if (std::ranges::none_of(values_.at(site), [&](const Entry& other) {
+              return other.material != number && other.fraction > 0;
+            }))
+          continue;
+        changed.push_back(site);
         if (keep) {
           for (Entry& each : values_.at(site)) each.width = 0;
           continue;
@@ -128,6 +133,12 @@ class DispersedSearch {
 };
 
 }  // namespace
+
+bool is_all_dispersed(const FractionFindings& findings, MaterialId material, double volume) {
+  constexpr double kRoundOff = 1e-9;
+  return material.value < findings.dispersed.size() && findings.dispersed[material.value] > 0 &&
+         findings.dispersed[material.value] >= (1 - kRoundOff) * volume;
+}
 
 std::vector<double> take_dispersed(const MultiMaterialData& data, const ThinSheets& sheets, bool keep,
                                    SiteValues& values) {

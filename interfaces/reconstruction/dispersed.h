@@ -15,4 +15,7 @@ namespace adamas {
 std::vector<double> take_dispersed(const MultiMaterialData& data, const ThinSheets& sheets, bool keep,
                                    SiteValues& values);
 
+/// Whether all there is of a material, this volume, was found to be dispersed.
+bool is_all_dispersed(const FractionFindings& findings, MaterialId material, double volume);
+
 }  // namespace adamas

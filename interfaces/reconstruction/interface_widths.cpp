@@ -127,13 +127,15 @@ class WidthSearch {
   /// The sums of squares by which fractions round a site differ from those of the sharp plane that cuts its
   /// fraction off its cell, and of a blurred one.
   [[nodiscard]] std::array<double, 2> compare(std::size_t site, const SiteArray<float>& fractions,
-                                              float density, float squared, float widened) const {
+                                              float squared_density, float squared_gradient,
+                                              float widened) const {
     const auto f = static_cast<double>(fractions[site]);
-    if (f < kTelling || f > 1 - kTelling || squared <= 0) return {0, 0};
+    if (f < kTelling || f > 1 - kTelling || squared_gradient <= 0) return {0, 0};
     const Vec3 towards = normalized(fraction_gradient(sites_, site, {fractions.begin(), fractions.size()}));
     if (!(squared_norm(towards) > 0)) return {0, 0};
     const Vec3 centre = sites_.position(site);
-    const double width = step_width(static_cast<double>(density / squared), static_cast<double>(widened)),
+    const double width = step_width(static_cast<double>(squared_density / squared_gradient),
+                                    static_cast<double>(widened)),
                  sharp = plane_distance(towards, sites_.cell(site).size(), f), blurred = normal_quantile(f);
     std::array<double, 2> misses{0, 0};
     sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
@@ -230,7 +232,6 @@ void summarise_widths(const MultiMaterialData& data, const SiteValues& values, F
 }
 
 void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values) {
-  make_faint_sharp(data, sheets, values);
   const GridSites sites(data.grid);
   std::vector<char> kinds(data.grid.site_count(), kFull);
   for (const std::uint32_t site : values.mixed())
@@ -250,6 +251,7 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
     }
   }
   for (const auto& [entry, width] : found) entry->width = width;
+  make_faint_sharp(data, sheets, values);
 }
 
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values) {

@@ -5,6 +5,10 @@
 
 namespace adamas {
 
+/// The standard deviation of a number that is anywhere in an interval of length 1: the width of the step of a
+/// sharp interface's fractions, in cells.
+inline constexpr double kUniformDeviation = 0.288675;
+
 /// The density of the normal distribution of mean 0 and variance 1.
 inline double normal_density(double x) {
   return std::exp(-0.5 * x * x) * (0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2);

@@ -25,8 +25,6 @@ constexpr double kLeastOfLabels = 0.02;
 constexpr double kWidestCoded = 64;
 /// Values of blurred steps are known no farther from the interface than this, in widths.
 constexpr double kFarthest = 4;
-/// The standard deviation of a number that is anywhere in a cell, in its length.
-constexpr double kOwnWidth = 0.2887;
 
 }  // namespace
 
@@ -85,7 +83,7 @@ bool SiteValues::has_blurred() const {
 void SiteValues::fit_sharp_loosely(const RectilinearGrid& grid) {
   const GridSites sites(grid);
   for (const std::uint32_t site : mixed_) {
-    const double width = kOwnWidth * sites.least_side(site);
+    const double width = kUniformDeviation * sites.least_side(site);
     for (Entry& entry : at(site)) {
       if (!entry.settled() && entry.width == 0) entry.width = coded_width(width);
     }

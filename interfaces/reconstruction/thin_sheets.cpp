@@ -61,11 +61,12 @@ class SheetSearch {
     find_own();
     if (places_.empty()) return {};
     double widest = 0, noise = 0;
+    std::size_t wide = 0;
     for (const SheetPlace& place : places_) {
       widest = std::max(widest, place.slab.width);
-      if (place.slab.width >= kLeastWidth) noise += noise_[place.material];
+      if (place.slab.width >= kLeastWidth) noise += noise_[place.material], ++wide;
     }
-    noise /= static_cast<double>(places_.size());
+    if (wide > 0) noise /= static_cast<double>(wide);
     const int rings = kRings + static_cast<int>(std::ceil(widest));
     for (int ring = 0; ring < rings; ++ring) add_ring(ring >= kRings);
     std::sort(places_.begin(), places_.end(),
@@ -256,7 +257,7 @@ class SheetSearch {
     std::vector<std::optional<SheetPlace>> found(beside.size());
     parallel_for(beside.size(), 256, [&](std::size_t n) { found[n] = continued_to(beside[n], place_of); });
     for (const auto& place : found) {
-      if (place) places_.push_back(*place);
+      if (place && !(blurred_alone && place->slab.width == 0)) places_.push_back(*place);
     }
   }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "interfaces/reconstruction/dispersed.h"
+
 namespace adamas {
 
 namespace {
@@ -82,7 +84,8 @@ std::vector<MaterialId> lost_materials(const ResampleFigures& measured, const Re
   for (MaterialId m(0); m.value < measured.volumes.size(); ++m.value) {
     const bool in_input = std::any_of(measured.bodies.begin(), measured.bodies.end(),
                                       [m](const BodyFigures& body) { return body.material == m; }) ||
-                          (m.value < source.volumes.size() && source.volumes[m] > 0);
+                          (m.value < source.volumes.size() && source.volumes[m] > 0 &&
+                           !(source.findings && is_all_dispersed(*source.findings, m, source.volumes[m])));
     if (in_input && measured.volumes[m] == 0) lost.push_back(m);
   }
   return lost;

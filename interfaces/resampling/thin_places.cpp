@@ -42,7 +42,10 @@ std::vector<ThinPlace> thin_places(const InterfaceNetwork& network, const Box3& 
     squares += side * side;
   }
   spacing = std::max(spacing, std::sqrt(squares / kMostPoints));
-  const std::size_t stride = (count + kMostSmall - 1) / kMostSmall;
+  std::size_t small = 0;
+  for (std::uint32_t t = 0; t < count; ++t)
+    small += longest_side(network.triangle_corners(t)) <= spacing ? 1 : 0;
+  const std::size_t stride = small / kMostSmall + 1;
   constexpr std::size_t kChunk = 256;
   std::vector<std::vector<ThinPlace>> parts((count + kChunk - 1) / kChunk);
   const auto look = [&](std::uint32_t t, const Vec3& p, std::vector<ThinPlace>& places) {
