@@ -279,6 +279,7 @@ InputFacts facts_of(const ResamplingSource& source) {
 }
 
 MultiMaterialData load_data(const InputOptions& given, Console& console) {
+  fraction_options(given);  // Wrong ones are told before anything is read.
   const InputOptions options = with_needed_main_file(given);
   MaterialDataOptions how = material_options(options);
   how.note = [&console](const std::string& text) { console.note("{}", text); };
@@ -315,7 +316,6 @@ Input load_input(const InputOptions& given, Console& console, const InputCheck& 
   if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
   if (!options.weld.empty() || options.tolerant)
     wrong_usage("{}: expected given interfaces", options.tolerant ? "--tolerant" : "--weld");
-  fraction_options(options);  // Wrong ones are told before anything is read.
   input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
   if (check)
     check({options.path, input.data->grid.domain(), field_infos(*input.data),

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "datasets/fraction_blur.h"
 #include "datasets/random_numbers.h"
 #include "datasets/scene.h"
@@ -195,6 +196,42 @@ TEST(BlurredFractions, StepsRunOnBeyondTheGrid) {
     greatest = std::max(greatest, std::abs(dot(normal, p - Vec3{0, 5, 0})));
   EXPECT_LT(greatest, 0.05);
   EXPECT_FALSE(sides_that_run_on(slanted_step(true), SiteValues(slanted_step(true)))[0]);
+}
+
+/// On grids that are graded, or of one site along an axis, interfaces close, and are the same bit by bit on
+/// any number of threads.
+TEST(BlurredFractions, OnAnyGridAndNumberOfThreads) {
+  for (const std::array<std::size_t, 3> n : {std::array<std::size_t, 3>{14, 9, 11}, {12, 12, 1}, {9, 1, 1}}) {
+    MultiMaterialData data;
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t i = 0; i <= n[a]; ++i)
+        data.grid.nodes[a].push_back(static_cast<double>(i) * (1 + 0.3 * static_cast<double>(i * a)));
+    }
+    for (const char* name : {"in", "out"}) {
+      data.materials.emplace_back(name);
+      data.fractions.emplace_back(data.grid.site_count());
+    }
+    RandomNumbers random(3);
+    for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+      const Vec3 p = data.grid.site(site % n[0], site / n[0] % n[1], site / (n[0] * n[1]));
+      const double noise = random.uniform(-0.01, 0.01);
+      const double f = normal_probability((4.3 + 0.2 * p.y - p.x) / 1.4) + noise;
+      data.fractions[MaterialId(0)][site] = static_cast<float>(std::clamp(f, 0.0, 1.0));
+      data.fractions[MaterialId(1)][site] = 1 - data.fractions[MaterialId(0)][site];
+    }
+    SCOPED_TRACE(n[2]);
+    set_thread_limit(1);
+    const Reconstruction alone(data);
+    set_thread_limit(4);
+    const Reconstruction together(data);
+    set_thread_limit(0);
+    test::expect_closed(alone, data.grid.domain());
+    if (n[2] > 1) test::expect_closed_with_totals(alone, data);
+    EXPECT_GT(alone.findings().blur_share, 0);
+    ASSERT_FALSE(alone.mesh().triangles.empty());
+    EXPECT_EQ(alone.mesh().points, together.mesh().points);
+    EXPECT_EQ(alone.volume_reconstructed(), together.volume_reconstructed());
+  }
 }
 
 /// A plate that peaks at far less than one half is one closed body, and a shell of a third of a cell is
