@@ -38,7 +38,7 @@ TEST_F(FractionOptionsOf, NoSenseAreRefused) {
   write("b.vtr", "no grid");
   for (const std::string value : {"-1", "17", "sharp", "nan"}) {
     expect_wrong_usage({"reconstruct", "b.vtr", "--blur=" + value, "-o", "b.ply"},
-                       {"--blur: expected a number from 0 to 16, found '" + value + "'"});
+                       {"--blur: expected a number from 0 to 4, found '" + value + "'"});
   }
   for (const std::string value : {"-1%", "60%", "0.6", "much"}) {
     expect_wrong_usage(
