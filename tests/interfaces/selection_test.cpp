@@ -93,7 +93,7 @@ void expect_equal(const VertexRecord& a, const VertexRecord& b) {
 }
 
 TEST(SavedHierarchies, HoldTheWholeMesh) {
-  for (const char* name : {"tjunction", "shell3"}) {
+  for (const char* name : {"tjunction", "reflex"}) {
     const Saved saved(name);
     saved.hierarchy.validate("saved");
     const ResampledMesh mesh = whole_mesh(saved.hierarchy), expected = resampled_mesh(*saved.scene.resampler);

@@ -125,8 +125,7 @@ TEST(ThinSheets, OtherShapesAreNone) {
 
 /// The same material inside and outside of a shell, or another one: closed, one body, both its sides spheres.
 TEST(ThinSheets, ShellsAreWhole) {
-  for (const auto& [name, n, most_off] :
-       {std::tuple{"shell2", 32, 0.06}, {"shell2", 58, 0.02}, {"shell3", 32, 0.06}}) {
+  for (const auto& [name, n, most_off] : {std::tuple{"shell2", 44, 0.03}, {"shell3", 32, 0.06}}) {
     SCOPED_TRACE(std::string(name) + ' ' + std::to_string(n));
     const auto cells = static_cast<std::size_t>(n);
     const MultiMaterialData data = sample_scene(make_scene(name), {cells, cells, cells}, {3, false});

@@ -49,10 +49,10 @@ void expect_same_pages(const std::filesystem::path& path, const std::filesystem:
 
 TEST(PageGroups, OfAnySizeHoldTheSamePages) {
   const test::Scratch folder;
-  const TestSeries<std::uint16_t> series({70, 41, 36}, Motion::kWaves, 11);
-  for (const std::uint32_t block : {1u, 4u, 32u}) {
+  const TestSeries<std::uint16_t> series({38, 35, 34}, Motion::kWaves, 11);
+  for (const std::uint32_t block : {1u, 4u}) {
     build_series(folder / "one.adm", "one.adm", series.source(), in_groups(1, block));
-    for (const std::uint32_t group : {2u, 8u, 64u, 512u}) {
+    for (const std::uint32_t group : {2u, 512u}) {
       SCOPED_TRACE(testing::Message() << "groups of " << group << ", blocks of " << block);
       const auto path = folder / "a.adm";
       build_series(path, "a.adm", series.source(), in_groups(group, block));

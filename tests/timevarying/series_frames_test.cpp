@@ -129,7 +129,7 @@ TEST_P(SeriesFramesWalk, FramesOfResidentPagesComeToBeThose) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, SeriesFramesWalk, testing::Range(1u, 4u));
+INSTANTIATE_TEST_SUITE_P(Seeds, SeriesFramesWalk, testing::Range(1u, 3u));
 
 /// Pages of one step that are damaged are an error of that step alone.
 TEST(SeriesFrames, GoOnAfterAStepThatIsDamaged) {
