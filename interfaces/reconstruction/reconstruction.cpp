@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"
 #include "core/geometry/partition.h"
+#include "core/geometry/plane.h"
 #include "interfaces/reconstruction/flakes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/volume_correction.h"
@@ -40,16 +41,11 @@ double area_of(const std::vector<Vec3>& points, const std::vector<InterfaceTrian
 
 /// The area of a contact in a tetrahedron with these corners.
 double area_of(const ContactPolygon& contact, const std::array<Vec3, 4>& corners) {
-  const auto place = [&](std::size_t i) {
-    Vec3 p;
-    for (std::size_t v = 0; v < 4; ++v) p += contact.corners[i].weights[v] * corners[v];
-    return p;
-  };
-  const Vec3 first = place(0);
-  Vec3 sum;
-  for (std::size_t i = 1; i + 1 < contact.corners.size(); ++i)
-    sum += cross(place(i) - first, place(i + 1) - first);
-  return 0.5 * norm(sum);
+  std::vector<Vec3> places(contact.corners.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t v = 0; v < 4; ++v) places[i] += contact.corners[i].weights[v] * corners[v];
+  }
+  return polygon_area(places);
 }
 
 /// The corners of a tetrahedron of a lattice cell.

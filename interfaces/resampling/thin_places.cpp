@@ -36,16 +36,15 @@ double longest_side(const std::array<Vec3, 3>& corners) {
 std::vector<ThinPlace> thin_places(const InterfaceNetwork& network, const Box3& box, double thickest,
                                    double spacing) {
   const std::size_t count = network.triangles().size();
+  std::vector<double> sides(count);
   double squares = 0;
   for (std::uint32_t t = 0; t < count; ++t) {
-    const double side = longest_side(network.triangle_corners(t));
-    squares += side * side;
+    sides[t] = longest_side(network.triangle_corners(t));
+    squares += sides[t] * sides[t];
   }
   spacing = std::max(spacing, std::sqrt(squares / kMostPoints));
-  std::size_t small = 0;
-  for (std::uint32_t t = 0; t < count; ++t)
-    small += longest_side(network.triangle_corners(t)) <= spacing ? 1 : 0;
-  const std::size_t stride = small / kMostSmall + 1;
+  const auto small = std::ranges::count_if(sides, [spacing](double side) { return side <= spacing; });
+  const std::size_t stride = static_cast<std::size_t>(small) / kMostSmall + 1;
   constexpr std::size_t kChunk = 256;
   std::vector<std::vector<ThinPlace>> parts((count + kChunk - 1) / kChunk);
   const auto look = [&](std::uint32_t t, const Vec3& p, std::vector<ThinPlace>& places) {
@@ -63,10 +62,9 @@ std::vector<ThinPlace> thin_places(const InterfaceNetwork& network, const Box3& 
   parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t) {
       const auto number = static_cast<std::uint32_t>(t);
-      const auto& corners = network.triangle_corners(number);
-      const double n = std::clamp(std::ceil(longest_side(corners) / spacing), 1.0, kMostAlongSide);
+      const double n = std::clamp(std::ceil(sides[t] / spacing), 1.0, kMostAlongSide);
       if (n == 1 && t % stride != 0) continue;
-      for_each_middle(corners, static_cast<int>(n),
+      for_each_middle(network.triangle_corners(number), static_cast<int>(n),
                       [&](const Vec3& p) { look(number, p, parts[first / kChunk]); });
     }
   });
