@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/walls.h"
 
 namespace adamas {
 
@@ -31,6 +33,11 @@ constexpr double kRelax = 0.7, kMostMove = 0.5;
 constexpr double kReach = 3;
 /// Distances are told from fractions up to so many widths.
 constexpr double kFarthest = 3;
+/// Of a cell that is to hold something walls leave no less than this, spread alike.
+constexpr float kLeastLeft = 1e-3f;
+/// And where spread walls have more than this of a cell, what is before them is not all that blur mixes
+/// there.
+constexpr float kNearWall = 0.03f;
 /// Fractions whose weights are less than this in all tell nothing.
 constexpr double kNothing = 1e-12;
 
@@ -51,6 +58,7 @@ BlurredFractions::BlurredFractions(const MultiMaterialData& data, const SiteValu
     if (!sites[number].empty()) add_part(number, sites[number]);
   }
   owned_.resize(values.entries().size());
+  near_wall_.resize(owned_.size());
   predicted_.resize(owned_.size());
 }
 
@@ -64,8 +72,9 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
     }
   }
   const auto margin = static_cast<std::size_t>(std::ceil(kReach * widest / data_.grid.least_spacing())) + 1;
-  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, {}};
+  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, {}, {}};
   part.step = part.box.greatest_step();
+  find_walls(part, margin);
   struct Found {
     std::size_t steps;
     Part::Target target;
@@ -95,14 +104,54 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
   parts_.push_back(std::move(part));
 }
 
+/// Marks where walls before which a part's material may lie are, with what of them is within reach.
+void BlurredFractions::find_walls(Part& part, std::size_t reach) const {
+  std::map<std::uint16_t, std::vector<std::uint8_t>> walls;
+  for (const std::uint32_t site : values_.mixed()) {
+    for (const Entry& entry : values_.at(site)) {
+      const std::uint16_t wall = values_.whole(entry.material);
+      if (!values_.is_wall(entry) || wall == part.number || !part.box.contains(site)) continue;
+      auto& marks = walls[wall];
+      marks.resize(part.box.size(), 0);
+      marks[part.box.place(site)] = 1;
+    }
+  }
+  for (auto& [wall, marks] : walls) {
+    part.box.dilate(marks, static_cast<int>(reach));
+    part.walls.push_back({wall, std::move(marks)});
+  }
+}
+
+std::vector<float> BlurredFractions::wall_volumes(const Part& part) const {
+  std::vector<float> found(part.box.size());
+  for (const Part::Wall& wall : part.walls) {
+    const std::vector<float> own = volumes(part.box, wall.number);
+    for (std::size_t place = 0; place < own.size(); ++place)
+      found[place] += wall.marks[place] != 0 ? own[place] : 0;
+  }
+  return found;
+}
+
 void BlurredFractions::predict() {
   measure();
   if (beyond_.empty()) look_beyond();
   predicted_ = owned_;
   for (const Part& part : parts_) {
-    spread(
-        part, part.box, volumes(part), [](std::size_t place) { return place; },
-        [&](std::size_t entry, float fraction) { predicted_[entry] = fraction + beyond_[entry]; });
+    const auto same = [](std::size_t place) { return place; };
+    spread(part, part.box, volumes(part.box, part.number), same,
+           [&](const Part::Target& target, float fraction) {
+             predicted_[target.entry] = fraction + beyond_[target.entry];
+           });
+    if (part.walls.empty()) continue;
+    // Nothing is spread into walls: fractions are parts of what these leave of a cell.
+    const std::vector<float> walls = wall_volumes(part);
+    spread(part, part.box, walls, same, [&](const Part::Target& target, float spread_walls) {
+      if (values_.is_wall(values_.entries()[target.entry])) return;
+      near_wall_[target.entry] = spread_walls > kNearWall ? 1 : 0;
+      float& predicted = predicted_[target.entry];
+      predicted =
+          (1 - walls[target.place]) * std::min(predicted / std::max(1 - spread_walls, kLeastLeft), 1.0f);
+    });
   }
 }
 
@@ -123,13 +172,13 @@ void BlurredFractions::measure() {
   });
 }
 
-std::vector<float> BlurredFractions::volumes(const Part& part) const {
-  std::vector<float> found(part.box.size());
-  part.box.for_each([&](std::size_t place, std::size_t site) {
+std::vector<float> BlurredFractions::volumes(const SiteBox& box, std::uint16_t number) const {
+  std::vector<float> found(box.size());
+  box.for_each([&](std::size_t place, std::size_t site) {
     const std::span<const Entry> own = values_.at(site);
-    float volume = own.empty() && values_.sole_material(site) == part.number ? 1.0f : 0.0f;
+    float volume = own.empty() && values_.sole_material(site) == number ? 1.0f : 0.0f;
     for (const Entry& entry : own) {
-      if (values_.whole(entry.material) != part.number) continue;
+      if (values_.whole(entry.material) != number) continue;
       volume = owned_[static_cast<std::size_t>(&entry - values_.entries().data())];
       break;
     }
@@ -147,7 +196,7 @@ void BlurredFractions::spread(const Part& part, const SiteBox& box, std::vector<
     box.diffuse(now, part.step, scratch);
     parallel_for(targets.size(), 4096, [&](std::size_t n) {
       const std::size_t at = place(targets[n].place);
-      set(targets[n].entry, before[at] + targets[n].rest * (now[at] - before[at]));
+      set(targets[n], before[at] + targets[n].rest * (now[at] - before[at]));
     });
   }
 }
@@ -168,13 +217,14 @@ void BlurredFractions::look_beyond() {
           own, [&](const Entry& e) { return values_.whole(e.material) == part.number && e.width > 0; });
       if (f <= 0 || f >= 1 || blurred == own.end()) return;
       distances[place] =
-          std::clamp(static_cast<float>(values_.width(*blurred) * normal_quantile(static_cast<double>(f))),
+          std::clamp(static_cast<float>(values_.width(*blurred) *
+                                        normal_quantile(fraction_before_walls(values_, site, *blurred))),
                      -farthest, farthest);
     });
     spread(
-        part, continued.box(), continued.beyond_mirrored(volumes(part), distances),
+        part, continued.box(), continued.beyond_mirrored(volumes(part.box, part.number), distances),
         [&](std::size_t place) { return continued.place(place); },
-        [&](std::size_t entry, float fraction) { beyond_[entry] = fraction; });
+        [&](const Part::Target& target, float fraction) { beyond_[target.entry] = fraction; });
   }
 }
 
@@ -184,7 +234,7 @@ namespace {
 class Fit {
  public:
   Fit(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
-      : values_(values), sites_(data.grid), predicted_(data, values, cells) {}
+      : grid_(data.grid), values_(values), sites_(data.grid), predicted_(data, values, cells) {}
 
   void run(Progress& progress) {
     const FractionFindings& found = values_.findings();
@@ -194,7 +244,9 @@ class Fit {
       progress.step("fitting blurred fractions", static_cast<double>(round) / rounds);
       predicted_.predict();
       find_missing();
+      set_distances_at_walls(values_);
       move(by_means);
+      set_values_at_walls(grid_, values_);
       values_.hold_layers();
     }
   }
@@ -210,7 +262,7 @@ class Fit {
     for (const std::uint32_t site : values_.mixed()) {
       const std::span<const Entry> own = std::as_const(values_).at(site);
       for (const Entry& entry : own) {
-        if (entry.width == 0) continue;
+        if (entry.width == 0 && !values_.is_wall(entry)) continue;
         // A material's first entry has what is predicted.
         const std::size_t first = first_entry(values_, site, values_.whole(entry.material));
         missing_[index(entry)] = entry.fraction - predicted_.at(first);
@@ -231,27 +283,93 @@ class Fit {
     parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {
       const std::size_t site = values_.mixed()[n];
       for (const Entry& entry : std::as_const(values_).at(site)) {
-        if (entry.width > 0)
-          moves_[index(entry)] = by_means ? mean_missing(site, entry) : missing_[index(entry)];
+        if (entry.width > 0 || values_.is_wall(entry))
+          moves_[index(entry)] =
+              by_means && entry.width > 0 ? mean_missing(site, entry) : missing_[index(entry)];
       }
     });
+    continue_moves();
     parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {
       const std::size_t site = values_.mixed()[n];
       const double farthest = kMostMove * sites_.least_side(site);
-      for (Entry& entry : values_.at(site)) {
-        if (entry.width == 0) continue;
+      const std::span<Entry> own = values_.at(site);
+      for (Entry& entry : own) {
+        if (values_.is_wall(entry) || entry.width == 0) continue;
         const double by = kRelax * values_.width(entry) * std::sqrt(2 * std::numbers::pi) *
                           static_cast<double>(moves_[index(entry)]);
         entry.value = std::clamp(entry.value + std::clamp(by, -farthest, farthest), -most, most);
       }
+      for (Entry& entry : own) {
+        if (!values_.is_wall(entry)) continue;
+        const double by = sites_.least_side(site) * static_cast<double>(moves_[index(entry)]);
+        entry.value += std::clamp(by, -farthest, farthest);
+      }
     });
   }
 
+  /// Whether what an entry's fraction misses tells nothing, since a wall is near.
+  [[nodiscard]] bool is_untold(const Entry& entry) const {
+    return predicted_.is_near_wall(index(entry)) && !values_.is_wall(entry);
+  }
+
+  /// Moves entries near walls as those round them that are farther away, ring by ring.
+  void continue_moves() {
+    if (values_.at_walls().empty()) return;
+    std::vector<std::uint32_t> left;
+    std::vector<char> known(moves_.size(), 1);
+    for (const std::uint32_t site : values_.mixed()) {
+      for (const Entry& entry : std::as_const(values_).at(site)) {
+        if (!is_untold(entry)) continue;
+        known[index(entry)] = 0, moves_[index(entry)] = 0;
+        if (left.empty() || left.back() != site) left.push_back(site);
+      }
+    }
+    while (!left.empty()) {
+      std::vector<std::pair<std::size_t, float>> found;
+      std::vector<std::uint32_t> rest;
+      for (const std::uint32_t site : left) {
+        const std::size_t before = found.size();
+        for (const Entry& entry : std::as_const(values_).at(site)) {
+          if (known[index(entry)] == 0) add_mean_move(site, entry, known, found);
+        }
+        if (found.size() == before) rest.push_back(site);
+      }
+      for (const auto& [entry, move] : found) moves_[entry] = move, known[entry] = 1;
+      if (found.empty()) return;
+      left = std::move(rest);
+    }
+  }
+
+  /// Adds the mean move of a material's known entries at the neighbours of a site, where there are any.
+  void add_mean_move(std::size_t site, const Entry& entry, const std::vector<char>& known,
+                     std::vector<std::pair<std::size_t, float>>& found) const {
+    float sum = 0, count = 0;
+    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      const Entry* there = find_entry(std::as_const(values_).at(other), entry.material);
+      if (there != nullptr && there->width > 0 && known[index(*there)] != 0)
+        sum += moves_[index(*there)], ++count;
+    });
+    if (count > 0) found.emplace_back(index(entry), sum / count);
+  }
+
+  [[nodiscard]] float mean_missing_of_wall(std::size_t site, const Entry& entry) const {
+    float weights = 1, sum = missing_[index(entry)];
+    sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+      const Entry* there = find_entry(std::as_const(values_).at(other), entry.material);
+      if (there == nullptr || !values_.is_wall(*there) || there->settled()) return;
+      const float w = 1.0f / static_cast<float>(1 << (di * di + dj * dj + dk * dk));
+      sum += w * missing_[index(*there)];
+      weights += w;
+    });
+    return sum / weights;
+  }
+
   [[nodiscard]] float mean_missing(std::size_t site, const Entry& entry) const {
+    if (values_.is_wall(entry)) return mean_missing_of_wall(site, entry);
     double weights = told(entry), sum = weights * static_cast<double>(missing_[index(entry)]);
     sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
       for (const Entry& there : std::as_const(values_).at(other)) {
-        if (there.material != entry.material || there.width == 0) continue;
+        if (there.material != entry.material || there.width == 0 || is_untold(there)) continue;
         const double w = told(there) / (1 << (di * di + dj * dj + dk * dk));
         sum += w * static_cast<double>(missing_[index(there)]);
         weights += w;
@@ -260,6 +378,7 @@ class Fit {
     return weights > kNothing ? static_cast<float>(sum / weights) : 0;
   }
 
+  const RectilinearGrid& grid_;
   SiteValues& values_;
   GridSites sites_;
   BlurredFractions predicted_;

@@ -21,6 +21,8 @@ class BlurredFractions {
   void predict();
   /// What a blurred entry's fraction should be; of entries that are not blurred the volume itself.
   [[nodiscard]] float at(std::size_t entry) const { return predicted_[entry]; }
+  /// Whether a wall is within reach of the blur of an entry's step.
+  [[nodiscard]] bool is_near_wall(std::size_t entry) const { return near_wall_[entry] != 0; }
 
  private:
   /// The entries of a material that are blurred, in a box round them.
@@ -35,12 +37,20 @@ class BlurredFractions {
       float rest;
     };
     std::vector<std::vector<Target>> targets;
+    /// A wall before which the material lies, and where in the box it counts as one.
+    struct Wall {
+      std::uint16_t number;
+      std::vector<std::uint8_t> marks;
+    };
+    std::vector<Wall> walls;
   };
   void add_part(std::uint16_t number, const std::vector<std::uint32_t>& sites);
   void measure();
-  /// The volumes of a part's material in the cells of its box.
-  [[nodiscard]] std::vector<float> volumes(const Part& part) const;
-  /// Calls set(entry, fraction) for the targets of a part, with what diffusion makes of volumes in a box;
+  void find_walls(Part& part, std::size_t reach) const;
+  /// The volumes of a material in the cells of a box; and of a part's walls in those of its own.
+  [[nodiscard]] std::vector<float> volumes(const SiteBox& box, std::uint16_t number) const;
+  [[nodiscard]] std::vector<float> wall_volumes(const Part& part) const;
+  /// Calls set(target, fraction) for the targets of a part, with what diffusion makes of volumes in a box;
   /// place(p) is where a place of the part's box is in it.
   template <class Place, class Set>
   void spread(const Part& part, const SiteBox& box, std::vector<float> now, const Place& place,
@@ -56,6 +66,7 @@ class BlurredFractions {
   std::vector<float> beyond_;
   std::vector<float> owned_;      // by entry: a material's first at a site has the volume of all its regions
   std::vector<float> predicted_;  // by entry
+  std::vector<char> near_wall_;   // by entry
 };
 
 /// Moves values until predicted fractions are those of the data: blurred entries by what they miss, times the

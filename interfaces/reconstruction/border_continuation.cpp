@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/walls.h"
 
 namespace adamas {
 
@@ -40,7 +41,8 @@ struct WayInwards {
 
 /// By how much the slope at a side of a step of some width is nearer to that within than one that is mirrored
 /// has to be, in squares of slopes; 0 where nothing tells.
-double runs_on(const WayInwards& way, const SiteArray<float>& fractions, double width) {
+double runs_on(const SiteValues& values, const WayInwards& way, const SiteArray<float>& fractions,
+               double width) {
   const double gap = way.gap(0);
   const auto within = static_cast<std::size_t>(std::max(2.0, std::round(kBends * width / gap)));
   if (within + 1 >= way.grid.sites(static_cast<int>(way.axis))) return 0;
@@ -48,7 +50,7 @@ double runs_on(const WayInwards& way, const SiteArray<float>& fractions, double 
   const std::array<std::size_t, 4> steps{0, 1, within, within + 1};
   for (std::size_t i = 0; i < 4; ++i) {
     const auto f = static_cast<double>(fractions[way.at(steps[i])]);
-    if (f < kTelling || f > 1 - kTelling) return 0;
+    if (f < kTelling || f > 1 - kTelling || has_wall(values, way.at(steps[i]))) return 0;
     distances[i] = width * normal_quantile(f);
   }
   const double outer = (distances[1] - distances[0]) / gap,
@@ -72,7 +74,7 @@ GridSides sides_that_run_on(const MultiMaterialData& data, const SiteValues& val
       for (const SiteValues::Entry& entry : values.at(site)) {
         if (entry.width > 0)
           sums[way.side()] +=
-              runs_on(way, data.fractions[values.material(entry.material)], values.width(entry));
+              runs_on(values, way, data.fractions[values.material(entry.material)], values.width(entry));
       }
     }
   }

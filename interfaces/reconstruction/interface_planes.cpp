@@ -141,7 +141,7 @@ class PlaneFit {
     parallel_for(mixed.size(), 128, [&](std::size_t n) {
       const Entry* twin = nullptr;
       if (const Entry* first = lesser_of_two(mixed[n], &twin)) {
-        if (first->width == 0) visit(std::size_t{mixed[n]}, *first);
+        if (first->width == 0 || values_.is_wall(*twin)) visit(std::size_t{mixed[n]}, *first);
         return;
       }
       for (const Entry& entry : values_.at(mixed[n])) {

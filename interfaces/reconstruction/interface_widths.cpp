@@ -12,6 +12,7 @@
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_box.h"
 #include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/walls.h"
 
 namespace adamas {
 
@@ -46,10 +47,22 @@ class WidthSearch {
       : data_(data), values_(values), sites_(data.grid) {}
 
   void run() {
+    find_all([](const Entry& entry) { return !entry.settled(); });
+  }
+
+  /// The widths anew of what is blurred, where fractions are parts of what walls leave.
+  void run_before_walls() {
+    before_walls_ = true;
+    find_all([](const Entry& entry) { return entry.width > 0; });
+  }
+
+ private:
+  template <class Which>
+  void find_all(const Which& which) {
     std::vector<std::vector<std::uint32_t>> entries(data_.materials.size());
     for (const std::uint32_t site : values_.mixed()) {
       for (const Entry& entry : values_.at(site)) {
-        if (!entry.settled()) entries[entry.material].push_back(site);
+        if (which(entry)) entries[entry.material].push_back(site);
       }
     }
     for (std::uint16_t number = 0; number < entries.size(); ++number) {
@@ -57,17 +70,36 @@ class WidthSearch {
     }
   }
 
- private:
   void find(std::uint16_t number, const std::vector<std::uint32_t>& sites) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     const SiteBox box = SiteBox::round(data_.grid, sites, 1);
     std::vector<float> f(box.size()), gradients, widened, steps(box.size()), scratch;
-    box.for_each([&](std::size_t place, std::size_t site) { f[place] = fractions[site]; });
+    box.for_each([&](std::size_t place, std::size_t site) {
+      f[place] = before_walls_ ? fraction_before_walls(site, fractions) : fractions[site];
+    });
     box.squared_gradient(f, gradients, widened);
     parallel_for(sites.size(), 4096, [&](std::size_t n) {
       const double d = normal_density(normal_quantile(static_cast<double>(fractions[sites[n]])));
       steps[box.place(sites[n])] = static_cast<float>(d * d);
     });
+    if (before_walls_) {
+      // Steps at walls tell nothing, but take the widths of those round them.
+      box.for_each([&](std::size_t place, std::size_t site) {
+        if (has_wall(values_, site)) steps[place] = gradients[place] = 0;
+      });
+      for (std::size_t p = 0; p < box.size(); ++p) widened[p] *= gradients[p];
+      for (auto* array : {&gradients, &widened, &steps}) {
+        for (int n = 0; n < kBlends; ++n) box.blend(*array, kBlend, scratch);
+      }
+      for (const std::uint32_t site : sites) {
+        const std::size_t place = box.place(site);
+        if (!(gradients[place] > 0)) continue;
+        const double width = step_width(steps[place] / gradients[place], widened[place] / gradients[place]);
+        find_entry(values_.at(site), number)->width =
+            values_.coded_width(std::min(width, kWidest * sites_.least_side(site)));
+      }
+      return;
+    }
     // How much worse a sharp plane tells the neighbours than a blurred one does, and both.
     std::vector<float> worse(box.size()), both(box.size());
     parallel_for(sites.size(), 256, [&](std::size_t n) {
@@ -98,6 +130,21 @@ class WidthSearch {
       Entry& entry = *find_entry(values_.at(site), number);
       entry.width = blurred ? values_.coded_width(std::min(width, kWidest * h)) : 0;
     }
+  }
+
+  /// The part of what walls leave of a cell that a material fills, of it and its neighbours together where
+  /// that is little.
+  [[nodiscard]] float fraction_before_walls(std::size_t site, const SiteArray<float>& fractions) const {
+    constexpr double kLittle = 0.3;
+    if (!has_wall(values_, site)) return fractions[site];
+    double left = part_before_walls(values_, site), sum = fractions[site];
+    if (left < kLittle) {
+      sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+        left += part_before_walls(values_, other);
+        sum += fractions[other];
+      });
+    }
+    return static_cast<float>(std::min(1.0, sum / left));
   }
 
   /// Marks what is near cells that a blurred step alone can make: nearly all of whose neighbours are mixed.
@@ -151,6 +198,7 @@ class WidthSearch {
   const MultiMaterialData& data_;
   SiteValues& values_;
   GridSites sites_;
+  bool before_walls_ = false;
 };
 
 /// Makes the sites sharp of materials that have no more than half of any cell, and no sheet: as blurred ones
@@ -190,19 +238,24 @@ std::vector<char> settled_kinds(const SiteValues& values, const GridSites& sites
   return settled;
 }
 
-/// The mean width of a material's blurred entries at the neighbours of a site, or else of what else is at the
-/// site, or else `other`; coded.
+/// The mean width of a material's blurred entries at the neighbours of a site that `counts` is true of; 0
+/// where there are none; coded.
+template <class Counts>
 std::uint16_t mean_width(const SiteValues& values, const GridSites& sites, std::size_t site,
-                         std::uint16_t material, std::uint16_t other) {
+                         std::uint16_t material, const Counts& counts) {
   std::uint32_t sum = 0, count = 0;
   sites.for_each_neighbour(site, [&](std::size_t neighbour, int, int, int) {
     const Entry* entry = find_entry(values.at(neighbour), material);
-    if (entry != nullptr && entry->width > 0) sum += entry->width, ++count;
+    if (entry != nullptr && entry->width > 0 && counts(neighbour)) sum += entry->width, ++count;
   });
-  if (count > 0) return static_cast<std::uint16_t>(sum / count);
+  return count > 0 ? static_cast<std::uint16_t>(sum / count) : std::uint16_t{0};
+}
+
+/// The greatest width of a site's entries, coded.
+std::uint16_t greatest_width(std::span<const Entry> entries) {
   std::uint16_t greatest = 0;
-  for (const Entry& entry : values.at(site)) greatest = std::max(greatest, entry.width);
-  return greatest > 0 ? greatest : other;
+  for (const Entry& entry : entries) greatest = std::max<std::uint16_t>(greatest, entry.width);
+  return greatest;
 }
 
 /// The median of the widths of blurred entries, coded.
@@ -240,18 +293,28 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
   const auto mixed = static_cast<double>(values.mixed().size());
   const auto blurred = static_cast<double>(std::ranges::count(settled, kBlurredCell));
   const bool none = blurred < kFew * mixed, all = mixed - blurred < kFew * mixed;
+  std::vector<char> is_blurred(settled.size(), 0);
+  for (const std::uint32_t site : values.mixed())
+    is_blurred[site] = !none && (all || settled[site] == kBlurredCell) ? 1 : 0;
+  find_walls(data.grid, is_blurred, values);
   const std::uint16_t typical = median_width(values);
   std::vector<std::pair<Entry*, std::uint16_t>> found;
   for (const std::uint32_t site : values.mixed()) {
-    const bool is_blurred = !none && (all || settled[site] == kBlurredCell);
     for (Entry& entry : values.at(site)) {
-      if (!is_blurred) found.emplace_back(&entry, std::uint16_t{0});
-      if (is_blurred && kinds[site] == kSharpCell && !entry.settled())
-        found.emplace_back(&entry, mean_width(values, sites, site, entry.material, typical));
+      if (is_blurred[site] == 0 || values.is_wall(entry)) {
+        found.emplace_back(&entry, std::uint16_t{0});
+      } else if (!entry.settled() &&
+                 (kinds[site] == kSharpCell || (has_wall(values, site) && entry.width == 0))) {
+        std::uint16_t width =
+            mean_width(values, sites, site, entry.material, [](std::size_t) { return true; });
+        if (width == 0) width = greatest_width(values.at(site));
+        found.emplace_back(&entry, width > 0 ? width : typical);
+      }
     }
   }
   for (const auto& [entry, width] : found) entry->width = width;
   make_faint_sharp(data, sheets, values);
+  if (!values.at_walls().empty()) WidthSearch(data, values).run_before_walls();
 }
 
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values) {

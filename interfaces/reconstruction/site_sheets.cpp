@@ -42,15 +42,19 @@ void SiteValues::split_at_sheets(const MultiMaterialData& data, const ThinSheets
 
   std::vector<Entry> entries;
   entries.reserve(entries_.size() + 4 * changed.size());
+  std::vector<char> is_wall;  // none in sheets
   std::vector<std::uint32_t> first(first_.size(), 0);
   auto place = sheets.places.begin();
   for (std::size_t site = 0; site + 1 < first_.size(); ++site) {
     if (place != sheets.places.end() && place->site == site) {
       const auto& own = changed[static_cast<std::size_t>(place - sheets.places.begin())];
       entries.insert(entries.end(), own.begin(), own.end());
+      if (!is_wall_.empty()) is_wall.resize(entries.size(), 0);
       ++place;
     } else {
       entries.insert(entries.end(), entries_.begin() + first_[site], entries_.begin() + first_[site + 1]);
+      if (!is_wall_.empty())
+        is_wall.insert(is_wall.end(), is_wall_.begin() + first_[site], is_wall_.begin() + first_[site + 1]);
     }
     if (entries.size() > 0xffffffffu)
       fail("{}: expected fewer materials beside sites, found too many", data.source);
@@ -63,6 +67,7 @@ void SiteValues::split_at_sheets(const MultiMaterialData& data, const ThinSheets
     by_name_.push_back(by_name_[part.material]);
   }
   entries_ = std::move(entries);
+  is_wall_ = std::move(is_wall);
   first_ = std::move(first);
   find_layers(data, sheets, values);
 }

@@ -14,6 +14,7 @@
 #include "interfaces/reconstruction/label_smoothing.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/thin_sheets.h"
+#include "interfaces/reconstruction/walls.h"
 
 namespace adamas {
 
@@ -47,6 +48,7 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
     error = options.error ? *options.error : fraction_noise(data, *this, sheets);
     if (error > kLeastError) smooth_within_noise(data, sheets, error, *this);
     split_at_sheets(data, sheets);
+    set_values_at_walls(data.grid, *this);
     if (error > kLeastError) fit_sharp_loosely(data.grid);
     return;
   }
@@ -115,7 +117,7 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
     for (std::size_t e = first_[mixed_[n]]; e < first_[mixed_[n] + 1]; ++e) {
       if (entries_[e].settled()) continue;
       if (entries_[e].width > 0) {
-        const double steps = normal_quantile(static_cast<double>(entries_[e].fraction));
+        const double steps = normal_quantile(fraction_before_walls(*this, mixed_[n], entries_[e]));
         entries_[e].value = std::clamp(width(entries_[e]) * std::clamp(steps, -kFarthest, kFarthest),
                                        -greatest(), greatest());
         continue;
@@ -130,6 +132,8 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
     if (first_[site] == first_[site + 1]) return;
     const Vec3 centre = sites.position(site), size = sites.cell(site).size();
     const double half = 0.5 * std::min({size.x, size.y, size.z});
+    const bool in_wall = std::ranges::any_of(
+        at(site), [&](const Entry& entry) { return entry.fraction >= 1 && is_wall(entry); });
     for (std::size_t e = first_[site]; e < first_[site + 1]; ++e) {
       Entry& entry = entries_[e];
       if (!entry.settled()) continue;
@@ -147,6 +151,11 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
       });
       const double side = entry.fraction > 0 ? 1 : -1;
       const double mean = weights > 0 ? sum / weights : 0;
+      if (in_wall && weights > 0 && !is_wall(entry)) {
+        // What lies before a wall runs on in it, until set_values_at_walls().
+        entry.value = mean;
+        continue;
+      }
       entry.value = side * std::clamp(side * mean, half, greatest());
     }
   });

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "adamas/fractions.h"
@@ -49,6 +50,10 @@ class SiteValues {
   }
   [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
+  /// The place of an entry among all.
+  [[nodiscard]] std::size_t index(const Entry& entry) const {
+    return static_cast<std::size_t>(&entry - entries_.data());
+  }
   /// The material with a number in the order of names, on which nothing else may depend. Above these are
   /// regions of materials, which may lie on the two sides of a thin sheet. Where a site has a value of the
   /// material itself it is that of all its regions.
@@ -94,6 +99,15 @@ class SiteValues {
   [[nodiscard]] const FractionFindings& findings() const { return findings_; }
   /// The volumes that interfaces are to enclose: those of the fractions, without what is dispersed.
   [[nodiscard]] const IdVector<MaterialId, double>& volumes() const { return volumes_; }
+  /// Whether an entry is that of a wall (walls.h), the sites that have such entries, in order, and how they
+  /// are told.
+  [[nodiscard]] bool is_wall(const Entry& entry) const {
+    return !is_wall_.empty() && is_wall_[index(entry)] != 0;
+  }
+  [[nodiscard]] const std::vector<std::uint32_t>& at_walls() const { return at_walls_; }
+  void set_walls(std::vector<char> is_wall, std::vector<std::uint32_t> sites) {
+    is_wall_ = std::move(is_wall), at_walls_ = std::move(sites);
+  }
   /// Sites where two materials or more have a fraction, in order.
   [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
 
@@ -118,7 +132,8 @@ class SiteValues {
   std::vector<std::uint16_t> sole_;     // by site; the number of materials where there are several
   std::vector<std::uint32_t> first_;
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> mixed_;
+  std::vector<std::uint32_t> mixed_, at_walls_;
+  std::vector<char> is_wall_;  // by entry; empty where there are no walls
   std::vector<Layer> layers_;
   FractionFindings findings_;
   IdVector<MaterialId, double> volumes_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -196,6 +197,78 @@ TEST(BlurredFractions, StepsRunOnBeyondTheGrid) {
     greatest = std::max(greatest, std::abs(dot(normal, p - Vec3{0, 5, 0})));
   EXPECT_LT(greatest, 0.05);
   EXPECT_FALSE(sides_that_run_on(slanted_step(true), SiteValues(slanted_step(true)))[0]);
+}
+
+/// A sharp wall where x is less than that of a plane through `wall` with a normal, and before it gas above
+/// air, whose step is blurred by 1.5 cells. A cell's fractions are means over 5 x 5 x 5 points.
+MultiMaterialData walled_gas(const Vec3& wall, const Vec3& normal, const Vec3& up) {
+  constexpr std::size_t kSites = 24;
+  constexpr int kPoints = 5;
+  MultiMaterialData data;
+  data.grid = RectilinearGrid::uniform({kSites, kSites, kSites}, {0, 0, 0}, {1, 1, 1});
+  for (const char* name : {"air", "gas", "wall"}) {
+    data.materials.emplace_back(name);
+    data.fractions.emplace_back(data.grid.site_count());
+  }
+  for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+    const Vec3 centre = data.grid.site(site % kSites, site / kSites % kSites, site / (kSites * kSites));
+    double gas = 0, solid = 0;
+    for (int n = 0; n < kPoints * kPoints * kPoints; ++n) {
+      const auto at = [&](int i) { return (i + 0.5) / kPoints - 0.5; };
+      const Vec3 p = centre + Vec3{at(n % kPoints), at(n / kPoints % kPoints), at(n / (kPoints * kPoints))};
+      const bool in_wall = dot(normal, p - wall) < 0;
+      solid += in_wall ? 1 : 0;
+      gas += in_wall ? 0 : normal_probability(dot(up, p - Vec3{12, 12, 12}) / 1.5);
+    }
+    solid /= kPoints * kPoints * kPoints, gas /= kPoints * kPoints * kPoints;
+    data.fractions[MaterialId(1)][site] = static_cast<float>(gas);
+    data.fractions[MaterialId(2)][site] = static_cast<float>(solid);
+    data.fractions[MaterialId(0)][site] = static_cast<float>(std::max(0.0, 1 - gas - solid));
+  }
+  data.normalise();
+  return data;
+}
+
+/// The mean and greatest distance of the points of some interfaces, a cell and more from the domain's border,
+/// from a plane.
+std::array<double, 2> distance_from_plane(const Reconstruction& found, bool of_wall, const Vec3& on,
+                                          const Vec3& normal) {
+  std::set<std::uint32_t> points;
+  for (const InterfaceTriangle& t : found.mesh().triangles) {
+    if ((t.front == MaterialId(2) || t.back == MaterialId(2)) == of_wall)
+      points.insert(t.points.begin(), t.points.end());
+  }
+  EXPECT_FALSE(points.empty());
+  std::array<double, 2> result{0, 0};
+  std::erase_if(points, [&](std::uint32_t p) {
+    const Vec3& x = found.mesh().points[p];
+    return std::min({x.x, x.y, x.z}) < 1 || std::max({x.x, x.y, x.z}) > 23;
+  });
+  for (const std::uint32_t p : points) {
+    const double d = std::abs(dot(normal, found.mesh().points[p] - on));
+    result[0] += d / static_cast<double>(points.size());
+    result[1] = std::max(result[1], d);
+  }
+  return result;
+}
+
+/// A sharp wall stays sharp, and the blurred interface before it runs up to it: where the wall cuts cells and
+/// where it lies between them.
+TEST(BlurredFractions, WallsAreSharpBesideABlurredInterface) {
+  const Vec3 up = normalized(Vec3{-0.2, 1, 0.3}), slanted = normalized(Vec3{1, 0.3, 0.2});
+  for (const auto& [wall, normal] :
+       {std::pair{Vec3{10.3, 12, 12}, slanted}, {Vec3{9, 0, 0}, Vec3{1, 0, 0}}}) {
+    SCOPED_TRACE(wall.x);
+    const MultiMaterialData data = walled_gas(wall, normal, up);
+    const Reconstruction found(data);
+    test::expect_closed(found, data.grid.domain());
+    const auto of_wall = distance_from_plane(found, true, wall, normal),
+               of_gas = distance_from_plane(found, false, {12, 12, 12}, up);
+    EXPECT_LT(of_wall[0], 0.03);
+    EXPECT_LT(of_wall[1], 0.5);
+    EXPECT_LT(of_gas[0], 0.03);
+    EXPECT_LT(of_gas[1], 0.3);
+  }
 }
 
 /// On grids that are graded, or of one site along an axis, interfaces close, and are the same bit by bit on

@@ -1,0 +1,243 @@
+#include "interfaces/reconstruction/walls.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/site_entries.h"
+
+namespace adamas {
+
+namespace {
+
+using Entry = SiteValues::Entry;
+
+/// Of a wall's steps round a site this part is sharp at least, and of those at the site and its neighbours;
+/// of the steps of two materials before it these parts at most.
+constexpr double kOfSharp = 0.95, kOfSharpAtOnce = 0.5, kOfBlurred = 0.7, kSurelyBlurred = 0.3;
+/// How far these are looked at, in sites along each axis.
+constexpr std::size_t kReach = 4;
+/// Values are continued into walls by those of sites within so many along each axis, at least so many; slopes
+/// of which little is known are taken for less by this part.
+constexpr std::size_t kContinued = 2;
+constexpr int kLeastCount = 6;
+constexpr double kSteady = 1e-3;
+/// Walls leave no less of a mixed cell.
+constexpr double kLeastPart = 1e-6;
+
+/// Calls visit(site) for the sites within so many of one along each axis, and itself.
+template <class Visit>
+void for_each_within(const RectilinearGrid& grid, std::size_t site, std::size_t reach, const Visit& visit) {
+  std::array<std::size_t, 3> low{}, high{};
+  for (std::size_t axis = 0, rest = site; axis < 3; ++axis) {
+    const std::size_t n = grid.sites(static_cast<int>(axis)), i = rest % n;
+    rest /= n;
+    low[axis] = i - std::min(i, reach), high[axis] = std::min(i + reach + 1, n);
+  }
+  for (std::size_t k = low[2]; k < high[2]; ++k) {
+    for (std::size_t j = low[1]; j < high[1]; ++j) {
+      for (std::size_t i = low[0]; i < high[0]; ++i) visit(grid.site_index(i, j, k));
+    }
+  }
+}
+
+/// The part of a material's steps round a site that are sharp.
+double sharp_round(const SiteValues& values, const RectilinearGrid& grid, std::size_t site,
+                   std::uint16_t material, std::size_t reach) {
+  int sharp = 0, count = 0;
+  for_each_within(grid, site, reach, [&](std::size_t other) {
+    const Entry* there = find_entry(values.at(other), material);
+    if (there == nullptr || there->settled()) return;
+    ++count;
+    sharp += there->width == 0 ? 1 : 0;
+  });
+  return count > 0 ? static_cast<double>(sharp) / count : 1;
+}
+
+/// Whether a material that is absent from a site fills a neighbour, so that its boundary is where cells meet.
+bool fills_a_neighbour(const SiteValues& values, const GridSites& sites, std::size_t site,
+                       const Entry& entry) {
+  bool found = false;
+  sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+    const Entry* there = find_entry(values.at(other), entry.material);
+    found = found || (there != nullptr && there->fraction >= 1);
+  });
+  return found && entry.fraction <= 0;
+}
+
+enum : char { kNoWall, kPerhaps, kSurely };
+
+/// Marks the entries of walls at a blurred site: surely where two others have blurred steps at it, perhaps
+/// where the step of one of them ends there.
+void find_walls_at(const SiteValues& values, const RectilinearGrid& grid, const GridSites& sites,
+                   std::size_t site, std::vector<char>& found) {
+  const std::span<const Entry> own = values.at(site);
+  const auto may_be_wall = [&](const Entry& entry) {
+    return (!entry.settled() || fills_a_neighbour(values, sites, site, entry)) &&
+           sharp_round(values, grid, site, entry.material, 1) >= kOfSharpAtOnce;
+  };
+  if (own.size() < 3 || std::ranges::none_of(own, may_be_wall)) return;
+  // Two materials at least are before a wall, and the step between them is blurred.
+  std::vector<double> sharp;
+  for (const Entry& entry : own) sharp.push_back(sharp_round(values, grid, site, entry.material, kReach));
+  const auto count = [&](double most) {
+    return std::ranges::count_if(sharp, [&](double part) { return part <= most; });
+  };
+  if (count(kOfBlurred) < 2 || count(kSurelyBlurred) < 1) return;
+  const char kind = count(kSurelyBlurred) < 2 ? kPerhaps : kSurely;
+  for (std::size_t e = 0; e < own.size(); ++e) {
+    if (sharp[e] >= kOfSharp && may_be_wall(own[e])) found[values.index(own[e])] = kind;
+  }
+}
+
+/// Leaves of what is perhaps a wall what hangs together, by neighbours, with what surely is.
+void keep_connected(const SiteValues& values, const GridSites& sites, std::vector<char>& found) {
+  std::vector<std::pair<std::size_t, std::uint16_t>> reached;
+  for (const std::uint32_t site : values.mixed()) {
+    for (const Entry& entry : values.at(site)) {
+      if (found[values.index(entry)] == kSurely) reached.emplace_back(site, entry.material);
+    }
+  }
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    const std::uint16_t material = reached[next].second;
+    sites.for_each_neighbour(reached[next].first, [&](std::size_t other, int, int, int) {
+      const Entry* there = find_entry(values.at(other), material);
+      if (there == nullptr || found[values.index(*there)] != kPerhaps) return;
+      found[values.index(*there)] = kSurely;
+      reached.emplace_back(other, material);
+    });
+  }
+  std::ranges::replace(found, char{kPerhaps}, char{kNoWall});
+}
+
+}  // namespace
+
+void find_walls(const RectilinearGrid& grid, const std::vector<char>& is_blurred, SiteValues& values) {
+  const GridSites sites(grid);
+  std::vector<char> found(values.entries().size(), 0);
+  parallel_for(values.mixed().size(), 256, [&](std::size_t n) {
+    const std::size_t site = values.mixed()[n];
+    if (is_blurred[site] != 0) find_walls_at(std::as_const(values), grid, sites, site, found);
+  });
+  keep_connected(std::as_const(values), sites, found);
+  // And beside those that cut cells where the material is absent or alone; beside others where it is alone.
+  std::vector<std::uint32_t> at_walls;
+  std::vector<std::size_t> beside;
+  for (const std::uint32_t site : values.mixed()) {
+    for (Entry& entry : values.at(site)) {
+      if (found[values.index(entry)] == kNoWall) continue;
+      at_walls.push_back(site);
+      sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+        const Entry* there = find_entry(std::as_const(values).at(other), entry.material);
+        if (there == nullptr || !there->settled() || (entry.settled() && there->fraction < 1)) return;
+        at_walls.push_back(static_cast<std::uint32_t>(other));
+        beside.push_back(values.index(*there));
+      });
+    }
+  }
+  if (at_walls.empty()) return;
+  for (const std::size_t entry : beside) found[entry] = kSurely;
+  std::ranges::sort(at_walls);
+  at_walls.erase(std::unique(at_walls.begin(), at_walls.end()), at_walls.end());
+  values.set_walls(std::move(found), std::move(at_walls));
+}
+
+bool has_wall(const SiteValues& values, std::size_t site) {
+  return std::ranges::any_of(values.at(site), [&](const Entry& entry) { return values.is_wall(entry); });
+}
+
+double part_before_walls(const SiteValues& values, std::size_t site) {
+  double part = 1;
+  for (const Entry& entry : values.at(site)) {
+    if (values.is_wall(entry)) part -= static_cast<double>(entry.fraction);
+  }
+  return std::max(part, kLeastPart);
+}
+
+double fraction_before_walls(const SiteValues& values, std::size_t site, const Entry& entry) {
+  return std::min(static_cast<double>(entry.fraction) / part_before_walls(values, site), 1 - kLeastPart);
+}
+
+namespace {
+
+/// Whether walls have the middle of a cell.
+bool is_behind_wall(const SiteValues& values, std::size_t site) {
+  return part_before_walls(values, site) < 0.5;
+}
+
+/// The greatest value of what is no wall at a site; that of what is far where all are.
+double greatest_before_walls(const SiteValues& values, std::size_t site) {
+  double greatest = values.far();
+  for (const Entry& entry : values.at(site)) {
+    if (!values.is_wall(entry)) greatest = std::max(greatest, entry.value);
+  }
+  return greatest;
+}
+
+/// The value of a material at a site by the plane through those round it that no wall is at, or leaves most
+/// of their cells; or else `value`.
+double continued_value(const SiteValues& values, const GridSites& sites, const RectilinearGrid& grid,
+                       std::size_t site, std::uint16_t material, double value) {
+  Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  const Vec3 centre = sites.position(site), size = sites.cell(site).size();
+  int count = 0;
+  for_each_within(grid, site, kContinued, [&](std::size_t other) {
+    const Entry* there = find_entry(values.at(other), material);
+    if (there == nullptr || there->width == 0 || is_behind_wall(values, other)) return;
+    const Vec3 way = sites.position(other) - centre;
+    const Eigen::Vector4d terms(1, way.x / size.x, way.y / size.y, way.z / size.z);
+    const double w = std::exp(-0.5 * (terms.squaredNorm() - 1));
+    sums += w * terms * terms.transpose();
+    right += w * there->value * terms;
+    ++count;
+  });
+  if (count < kLeastCount) return value;
+  sums.diagonal().tail<3>().array() += kSteady * sums(0, 0);
+  const double found = sums.ldlt().solve(right)[0];
+  return std::isfinite(found) ? std::clamp(found, -values.greatest(), values.greatest()) : value;
+}
+
+}  // namespace
+
+void set_values_at_walls(const RectilinearGrid& grid, SiteValues& values) {
+  if (values.at_walls().empty()) return;
+  const GridSites sites(grid);
+  std::vector<double> continued(values.entries().size());
+  parallel_for(values.at_walls().size(), 64, [&](std::size_t n) {
+    const std::size_t site = values.at_walls()[n];
+    const std::span<const Entry> own = std::as_const(values).at(site);
+    for (const Entry& entry : own) {
+      continued[values.index(entry)] =
+          !values.is_wall(entry) && is_behind_wall(values, site)
+              ? continued_value(std::as_const(values), sites, grid, site, entry.material, entry.value)
+              : entry.value;
+    }
+  });
+  for (const std::uint32_t site : values.at_walls()) {
+    const std::span<Entry> own = values.at(site);
+    for (Entry& entry : own) entry.value = continued[values.index(entry)];
+    const double before = greatest_before_walls(values, site);
+    if (before == values.far()) continue;
+    for (Entry& entry : own) {
+      if (values.is_wall(entry)) entry.value = before + 2 * entry.value;
+    }
+  }
+}
+
+void set_distances_at_walls(SiteValues& values) {
+  for (const std::uint32_t site : values.at_walls()) {
+    const std::span<Entry> own = values.at(site);
+    const double before = greatest_before_walls(values, site);
+    if (before == values.far()) continue;
+    for (Entry& entry : own) {
+      if (values.is_wall(entry)) entry.value = 0.5 * (entry.value - before);
+    }
+  }
+}
+
+}  // namespace adamas
