@@ -47,88 +47,113 @@ class WidthSearch {
       : data_(data), values_(values), sites_(data.grid) {}
 
   void run() {
-    find_all([](const Entry& entry) { return !entry.settled(); });
+    for_each_material([](const Entry& entry) { return !entry.settled(); },
+                      [&](std::uint16_t number, const auto& sites) { find(number, sites); });
   }
 
   /// The widths anew of what is blurred, where fractions are parts of what walls leave.
   void run_before_walls() {
-    before_walls_ = true;
-    find_all([](const Entry& entry) { return entry.width > 0; });
+    for_each_material([](const Entry& entry) { return entry.width > 0; },
+                      [&](std::uint16_t number, const auto& sites) { find_before_walls(number, sites); });
   }
 
  private:
-  template <class Which>
-  void find_all(const Which& which) {
-    std::vector<std::vector<std::uint32_t>> entries(data_.materials.size());
+  /// Calls visit(number, sites) for the materials with such entries.
+  template <class Which, class Visit>
+  void for_each_material(const Which& which, const Visit& visit) const {
+    std::vector<std::vector<std::uint32_t>> sites(data_.materials.size());
     for (const std::uint32_t site : values_.mixed()) {
-      for (const Entry& entry : values_.at(site)) {
-        if (which(entry)) entries[entry.material].push_back(site);
+      for (const Entry& entry : std::as_const(values_).at(site)) {
+        if (which(entry)) sites[entry.material].push_back(site);
       }
     }
-    for (std::uint16_t number = 0; number < entries.size(); ++number) {
-      if (!entries[number].empty()) find(number, entries[number]);
+    for (std::uint16_t number = 0; number < sites.size(); ++number) {
+      if (!sites[number].empty()) visit(number, sites[number]);
     }
+  }
+
+  /// What tells the widths of steps, in a box of sites, before it is blended over neighbourhoods.
+  struct Steps {
+    std::vector<float> densities, gradients, widened;  // squared; the last as in SiteBox::squared_gradient()
+
+    /// The width at a place, once blended.
+    [[nodiscard]] double width(std::size_t place, double widest) const {
+      if (!(gradients[place] > 0)) return widest;
+      return std::min(step_width(densities[place] / gradients[place], widened[place] / gradients[place]),
+                      widest);
+    }
+  };
+
+  [[nodiscard]] Steps steps(const std::vector<std::uint32_t>& sites, const std::vector<float>& fractions,
+                            const SiteBox& box) const {
+    Steps found;
+    found.densities.resize(box.size());
+    box.squared_gradient(fractions, found.gradients, found.widened);
+    parallel_for(sites.size(), 4096, [&](std::size_t n) {
+      const std::size_t place = box.place(sites[n]);
+      const double d = normal_density(normal_quantile(static_cast<double>(fractions[place])));
+      found.densities[place] = static_cast<float>(d * d);
+    });
+    return found;
+  }
+
+  static void blend(Steps& steps, const SiteBox& box, std::vector<float>& scratch) {
+    for (std::size_t p = 0; p < box.size(); ++p) steps.widened[p] *= steps.gradients[p];
+    for (auto* array : {&steps.gradients, &steps.widened, &steps.densities}) blend(*array, box, scratch);
+  }
+  static void blend(std::vector<float>& array, const SiteBox& box, std::vector<float>& scratch) {
+    for (int n = 0; n < kBlends; ++n) box.blend(array, kBlend, scratch);
   }
 
   void find(std::uint16_t number, const std::vector<std::uint32_t>& sites) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     const SiteBox box = SiteBox::round(data_.grid, sites, 1);
-    std::vector<float> f(box.size()), gradients, widened, steps(box.size()), scratch;
-    box.for_each([&](std::size_t place, std::size_t site) {
-      f[place] = before_walls_ ? fraction_before_walls(site, fractions) : fractions[site];
-    });
-    box.squared_gradient(f, gradients, widened);
-    parallel_for(sites.size(), 4096, [&](std::size_t n) {
-      const double d = normal_density(normal_quantile(static_cast<double>(fractions[sites[n]])));
-      steps[box.place(sites[n])] = static_cast<float>(d * d);
-    });
-    if (before_walls_) {
-      // Steps at walls tell nothing, but take the widths of those round them.
-      box.for_each([&](std::size_t place, std::size_t site) {
-        if (has_wall(values_, site)) steps[place] = gradients[place] = 0;
-      });
-      for (std::size_t p = 0; p < box.size(); ++p) widened[p] *= gradients[p];
-      for (auto* array : {&gradients, &widened, &steps}) {
-        for (int n = 0; n < kBlends; ++n) box.blend(*array, kBlend, scratch);
-      }
-      for (const std::uint32_t site : sites) {
-        const std::size_t place = box.place(site);
-        if (!(gradients[place] > 0)) continue;
-        const double width = step_width(steps[place] / gradients[place], widened[place] / gradients[place]);
-        find_entry(values_.at(site), number)->width =
-            values_.coded_width(std::min(width, kWidest * sites_.least_side(site)));
-      }
-      return;
-    }
+    std::vector<float> f(box.size()), scratch;
+    box.for_each([&](std::size_t place, std::size_t site) { f[place] = fractions[site]; });
+    Steps found = steps(sites, f, box);
     // How much worse a sharp plane tells the neighbours than a blurred one does, and both.
     std::vector<float> worse(box.size()), both(box.size());
     parallel_for(sites.size(), 256, [&](std::size_t n) {
       const std::size_t place = box.place(sites[n]);
       const std::array<double, 2> misses =
-          compare(sites[n], fractions, steps[place], gradients[place], widened[place]);
+          compare(sites[n], fractions, found.densities[place], found.gradients[place], found.widened[place]);
       const double sum = misses[0] + misses[1];
       if (sum == 0) return;
       worse[place] = static_cast<float>((misses[0] - misses[1]) / (sum + kNothing));
       both[place] = 1;
     });
     const std::vector<std::uint8_t> deep = find_deep(sites, fractions, box);
-    for (std::size_t p = 0; p < box.size(); ++p) widened[p] *= gradients[p];
-    for (auto* array : {&gradients, &widened, &steps, &worse, &both}) {
-      for (int n = 0; n < kBlends; ++n) box.blend(*array, kBlend, scratch);
-    }
+    blend(found, box, scratch);
+    for (auto* array : {&worse, &both}) blend(*array, box, scratch);
     for (const std::uint32_t site : sites) {
       const std::size_t place = box.place(site);
-      const double h = sites_.least_side(site);
-      const double width = gradients[place] > 0 ? step_width(steps[place] / gradients[place],
-                                                             widened[place] / gradients[place])
-                                                : kWidest * h;
+      const double h = sites_.least_side(site), width = found.width(place, kWidest * h);
       const auto own = static_cast<double>(fractions[site]);
       // Far in the tail of a step nothing near tells.
       const bool tells =
           both[place] > 0 ? worse[place] >= kSure * both[place] : own < kTelling || own > 1 - kTelling;
       const bool blurred = tells && deep[place] != 0 && width > kSharp * h;
-      Entry& entry = *find_entry(values_.at(site), number);
-      entry.width = blurred ? values_.coded_width(std::min(width, kWidest * h)) : 0;
+      find_entry(values_.at(site), number)->width = blurred ? values_.coded_width(width) : 0;
+    }
+  }
+
+  /// As find(), but for whether steps are blurred, and steps at walls take the widths of those round them.
+  void find_before_walls(std::uint16_t number, const std::vector<std::uint32_t>& sites) {
+    const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
+    const SiteBox box = SiteBox::round(data_.grid, sites, 1);
+    std::vector<float> f(box.size()), scratch;
+    box.for_each(
+        [&](std::size_t place, std::size_t site) { f[place] = fraction_before_walls(site, fractions); });
+    Steps found = steps(sites, f, box);
+    box.for_each([&](std::size_t place, std::size_t site) {
+      if (has_wall(values_, site)) found.densities[place] = found.gradients[place] = 0;
+    });
+    blend(found, box, scratch);
+    for (const std::uint32_t site : sites) {
+      const std::size_t place = box.place(site);
+      if (found.gradients[place] > 0)
+        find_entry(values_.at(site), number)->width =
+            values_.coded_width(found.width(place, kWidest * sites_.least_side(site)));
     }
   }
 
@@ -198,7 +223,6 @@ class WidthSearch {
   const MultiMaterialData& data_;
   SiteValues& values_;
   GridSites sites_;
-  bool before_walls_ = false;
 };
 
 /// Makes the sites sharp of materials that have no more than half of any cell, and no sheet: as blurred ones
@@ -238,24 +262,19 @@ std::vector<char> settled_kinds(const SiteValues& values, const GridSites& sites
   return settled;
 }
 
-/// The mean width of a material's blurred entries at the neighbours of a site that `counts` is true of; 0
-/// where there are none; coded.
-template <class Counts>
+/// The mean width of a material's blurred entries at the neighbours of a site, or else of what else is at the
+/// site, or else `other`; coded.
 std::uint16_t mean_width(const SiteValues& values, const GridSites& sites, std::size_t site,
-                         std::uint16_t material, const Counts& counts) {
+                         std::uint16_t material, std::uint16_t other) {
   std::uint32_t sum = 0, count = 0;
   sites.for_each_neighbour(site, [&](std::size_t neighbour, int, int, int) {
     const Entry* entry = find_entry(values.at(neighbour), material);
-    if (entry != nullptr && entry->width > 0 && counts(neighbour)) sum += entry->width, ++count;
+    if (entry != nullptr && entry->width > 0) sum += entry->width, ++count;
   });
-  return count > 0 ? static_cast<std::uint16_t>(sum / count) : std::uint16_t{0};
-}
-
-/// The greatest width of a site's entries, coded.
-std::uint16_t greatest_width(std::span<const Entry> entries) {
+  if (count > 0) return static_cast<std::uint16_t>(sum / count);
   std::uint16_t greatest = 0;
-  for (const Entry& entry : entries) greatest = std::max<std::uint16_t>(greatest, entry.width);
-  return greatest;
+  for (const Entry& entry : values.at(site)) greatest = std::max(greatest, entry.width);
+  return greatest > 0 ? greatest : other;
 }
 
 /// The median of the widths of blurred entries, coded.
@@ -305,10 +324,7 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
         found.emplace_back(&entry, std::uint16_t{0});
       } else if (!entry.settled() &&
                  (kinds[site] == kSharpCell || (has_wall(values, site) && entry.width == 0))) {
-        std::uint16_t width =
-            mean_width(values, sites, site, entry.material, [](std::size_t) { return true; });
-        if (width == 0) width = greatest_width(values.at(site));
-        found.emplace_back(&entry, width > 0 ? width : typical);
+        found.emplace_back(&entry, mean_width(values, sites, site, entry.material, typical));
       }
     }
   }
