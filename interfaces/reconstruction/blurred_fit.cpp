@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -74,7 +75,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
   const auto margin = static_cast<std::size_t>(std::ceil(kReach * widest / data_.grid.least_spacing())) + 1;
   Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, {}, {}};
   part.step = part.box.greatest_step();
-  find_walls(part, margin);
+  mark_walls(part, margin);
   struct Found {
     std::size_t steps;
     Part::Target target;
@@ -105,9 +106,9 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
 }
 
 /// Marks where walls before which a part's material may lie are, with what of them is within reach.
-void BlurredFractions::find_walls(Part& part, std::size_t reach) const {
+void BlurredFractions::mark_walls(Part& part, std::size_t reach) const {
   std::map<std::uint16_t, std::vector<std::uint8_t>> walls;
-  for (const std::uint32_t site : values_.mixed()) {
+  for (const std::uint32_t site : values_.at_walls()) {
     for (const Entry& entry : values_.at(site)) {
       const std::uint16_t wall = values_.whole(entry.material);
       if (!values_.is_wall(entry) || wall == part.number || !part.box.contains(site)) continue;
@@ -164,8 +165,7 @@ void BlurredFractions::measure() {
       if (own.empty()) continue;
       cell.go_to(site);
       const std::vector<double>& volumes = cell.measure();
-      const Entry* all = values_.entries().data();
-      for (const Entry& entry : own) owned_[static_cast<std::size_t>(&entry - all)] = 0;
+      for (const Entry& entry : own) owned_[values_.index(entry)] = 0;
       for (std::size_t m = 0; m < volumes.size(); ++m)
         owned_[first_entry(values_, site, cell.materials()[m].number)] = static_cast<float>(volumes[m]);
     }
@@ -179,7 +179,7 @@ std::vector<float> BlurredFractions::volumes(const SiteBox& box, std::uint16_t n
     float volume = own.empty() && values_.sole_material(site) == number ? 1.0f : 0.0f;
     for (const Entry& entry : own) {
       if (values_.whole(entry.material) != number) continue;
-      volume = owned_[static_cast<std::size_t>(&entry - values_.entries().data())];
+      volume = owned_[values_.index(entry)];
       break;
     }
     found[place] = volume;
@@ -204,7 +204,12 @@ void BlurredFractions::spread(const Part& part, const SiteBox& box, std::vector<
 void BlurredFractions::look_beyond() {
   beyond_.assign(owned_.size(), 0);
   const GridSides sides = sides_that_run_on(data_, values_);
+  // The two faces of a thin sheet are no single step that runs on.
+  std::set<std::uint16_t> sheets;
+  for (const SiteValues::Layer& layer : values_.layers())
+    sheets.insert(values_.whole(values_.entries()[layer.sheet].material));
   for (const Part& part : parts_) {
+    if (sheets.contains(part.number)) continue;
     const ContinuedBox continued(data_.grid, part.box, sides, kReach * part.widest);
     if (!continued.reaches_beyond()) continue;
     const auto farthest = static_cast<float>(kFarthest * part.widest);
@@ -218,7 +223,7 @@ void BlurredFractions::look_beyond() {
       if (f <= 0 || f >= 1 || blurred == own.end()) return;
       distances[place] =
           std::clamp(static_cast<float>(values_.width(*blurred) *
-                                        normal_quantile(fraction_before_walls(values_, site, *blurred))),
+                                        normal_quantile(fraction_before_walls(values_, site, f))),
                      -farthest, farthest);
     });
     spread(
@@ -252,9 +257,7 @@ class Fit {
   }
 
  private:
-  [[nodiscard]] std::size_t index(const Entry& entry) const {
-    return static_cast<std::size_t>(&entry - values_.entries().data());
-  }
+  [[nodiscard]] std::size_t index(const Entry& entry) const { return values_.index(entry); }
 
   /// What the fractions of blurred entries are beyond those predicted.
   void find_missing() {
@@ -297,7 +300,9 @@ class Fit {
         if (values_.is_wall(entry) || entry.width == 0) continue;
         const double by = kRelax * values_.width(entry) * std::sqrt(2 * std::numbers::pi) *
                           static_cast<double>(moves_[index(entry)]);
-        entry.value = std::clamp(entry.value + std::clamp(by, -farthest, farthest), -most, most);
+        // Values of what lies across a sheet are below what others have, and stay there.
+        entry.value = std::clamp(entry.value + std::clamp(by, -farthest, farthest),
+                                 std::min(-most, entry.value), std::max(most, entry.value));
       }
       for (Entry& entry : own) {
         if (!values_.is_wall(entry)) continue;
@@ -308,48 +313,58 @@ class Fit {
   }
 
   /// Whether what an entry's fraction misses tells nothing, since a wall is near.
-  [[nodiscard]] bool is_untold(const Entry& entry) const {
-    return predicted_.is_near_wall(index(entry)) && !values_.is_wall(entry);
+  [[nodiscard]] bool is_untold(std::size_t site, const Entry& entry) const {
+    if (values_.at_walls().empty() || values_.is_wall(entry)) return false;
+    return predicted_.is_near_wall(first_entry(values_, site, values_.whole(entry.material)));
   }
 
-  /// Moves entries near walls as those round them that are farther away, ring by ring.
+  /// Moves entries near walls as those round them that are farther away, ring by ring. What no such is near
+  /// moves by what it misses itself.
   void continue_moves() {
     if (values_.at_walls().empty()) return;
-    std::vector<std::uint32_t> left;
+    struct Place {
+      std::size_t site, entry;
+    };
+    std::vector<Place> left;
     std::vector<char> known(moves_.size(), 1);
     for (const std::uint32_t site : values_.mixed()) {
       for (const Entry& entry : std::as_const(values_).at(site)) {
-        if (!is_untold(entry)) continue;
-        known[index(entry)] = 0, moves_[index(entry)] = 0;
-        if (left.empty() || left.back() != site) left.push_back(site);
+        if (entry.width == 0 || !is_untold(site, entry)) continue;
+        known[index(entry)] = 0;
+        left.push_back({site, index(entry)});
       }
     }
-    while (!left.empty()) {
-      std::vector<std::pair<std::size_t, float>> found;
-      std::vector<std::uint32_t> rest;
-      for (const std::uint32_t site : left) {
-        const std::size_t before = found.size();
-        for (const Entry& entry : std::as_const(values_).at(site)) {
-          if (known[index(entry)] == 0) add_mean_move(site, entry, known, found);
+    for (bool changed = true; changed;) {
+      std::vector<float> means(left.size());
+      std::vector<char> found(left.size(), 0);
+      parallel_for(left.size(), 1024, [&](std::size_t n) {
+        found[n] = find_mean_move(left[n].site, left[n].entry, known, means[n]) ? 1 : 0;
+      });
+      std::vector<Place> rest;
+      for (std::size_t n = 0; n < left.size(); ++n) {
+        if (found[n] == 0) {
+          rest.push_back(left[n]);
+        } else {
+          moves_[left[n].entry] = means[n], known[left[n].entry] = 1;
         }
-        if (found.size() == before) rest.push_back(site);
       }
-      for (const auto& [entry, move] : found) moves_[entry] = move, known[entry] = 1;
-      if (found.empty()) return;
+      changed = rest.size() < left.size();
       left = std::move(rest);
     }
   }
 
-  /// Adds the mean move of a material's known entries at the neighbours of a site, where there are any.
-  void add_mean_move(std::size_t site, const Entry& entry, const std::vector<char>& known,
-                     std::vector<std::pair<std::size_t, float>>& found) const {
+  /// The mean move of a material's known entries at the neighbours of a site; whether there are any.
+  [[nodiscard]] bool find_mean_move(std::size_t site, std::size_t entry, const std::vector<char>& known,
+                                    float& mean) const {
+    const std::uint16_t material = std::as_const(values_).entries()[entry].material;
     float sum = 0, count = 0;
     sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-      const Entry* there = find_entry(std::as_const(values_).at(other), entry.material);
+      const Entry* there = find_entry(std::as_const(values_).at(other), material);
       if (there != nullptr && there->width > 0 && known[index(*there)] != 0)
         sum += moves_[index(*there)], ++count;
     });
-    if (count > 0) found.emplace_back(index(entry), sum / count);
+    mean = count > 0 ? sum / count : 0;
+    return count > 0;
   }
 
   [[nodiscard]] float mean_missing_of_wall(std::size_t site, const Entry& entry) const {
@@ -369,7 +384,7 @@ class Fit {
     double weights = told(entry), sum = weights * static_cast<double>(missing_[index(entry)]);
     sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
       for (const Entry& there : std::as_const(values_).at(other)) {
-        if (there.material != entry.material || there.width == 0 || is_untold(there)) continue;
+        if (there.material != entry.material || there.width == 0 || is_untold(other, there)) continue;
         const double w = told(there) / (1 << (di * di + dj * dj + dk * dk));
         sum += w * static_cast<double>(missing_[index(there)]);
         weights += w;

@@ -21,7 +21,7 @@ class BlurredFractions {
   void predict();
   /// What a blurred entry's fraction should be; of entries that are not blurred the volume itself.
   [[nodiscard]] float at(std::size_t entry) const { return predicted_[entry]; }
-  /// Whether a wall is within reach of the blur of an entry's step.
+  /// Whether more than a little of a wall is spread to where a material's first entry at a site is.
   [[nodiscard]] bool is_near_wall(std::size_t entry) const { return near_wall_[entry] != 0; }
 
  private:
@@ -46,7 +46,7 @@ class BlurredFractions {
   };
   void add_part(std::uint16_t number, const std::vector<std::uint32_t>& sites);
   void measure();
-  void find_walls(Part& part, std::size_t reach) const;
+  void mark_walls(Part& part, std::size_t reach) const;
   /// The volumes of a material in the cells of a box; and of a part's walls in those of its own.
   [[nodiscard]] std::vector<float> volumes(const SiteBox& box, std::uint16_t number) const;
   [[nodiscard]] std::vector<float> wall_volumes(const Part& part) const;

@@ -101,8 +101,7 @@ class SmoothSurface {
     result.own = w * unit[0] / (1 + w * unit[0]);
     result.known = true;
     if (entry.width > 0) {
-      const double part = values_.is_wall(entry) ? 1 : part_before_walls(values_, site);
-      result.fraction = part * normal_probability(found[0] / width);
+      result.fraction = part_before_walls(values_, site) * normal_probability(found[0] / width);
     } else {
       const Vec3 towards = normalized(Vec3{found[1] / size.x, found[2] / size.y, found[3] / size.z});
       result.fraction = part_behind_plane(towards, size, found[0]);

@@ -47,14 +47,23 @@ class WidthSearch {
       : data_(data), values_(values), sites_(data.grid) {}
 
   void run() {
-    for_each_material([](const Entry& entry) { return !entry.settled(); },
+    for_each_material([](std::size_t, const Entry& entry) { return !entry.settled(); },
                       [&](std::uint16_t number, const auto& sites) { find(number, sites); });
   }
 
-  /// The widths anew of what is blurred, where fractions are parts of what walls leave.
-  void run_before_walls() {
-    for_each_material([](const Entry& entry) { return entry.width > 0; },
-                      [&](std::uint16_t number, const auto& sites) { find_before_walls(number, sites); });
+  /// The widths anew of what is blurred at walls and near them, but in sheets, where fractions are parts of
+  /// what walls leave.
+  void run_before_walls(const ThinSheets& sheets) {
+    const SiteBox all(data_.grid, {0, 0, 0}, {data_.grid.sites(0), data_.grid.sites(1), data_.grid.sites(2)});
+    std::vector<std::uint8_t> near(data_.grid.site_count(), 0);
+    for (const std::uint32_t site : values_.at_walls()) near[site] = 1;
+    all.dilate(near, kBlends);
+    std::vector<std::uint8_t> tells = near;
+    all.dilate(tells, kBlends);
+    for (const SheetPlace& place : sheets.places) near[place.site] = tells[place.site] = 0;
+    for_each_material(
+        [&](std::size_t site, const Entry& entry) { return entry.width > 0 && tells[site] != 0; },
+        [&](std::uint16_t number, const auto& sites) { find_before_walls(number, sites, near); });
   }
 
  private:
@@ -64,7 +73,7 @@ class WidthSearch {
     std::vector<std::vector<std::uint32_t>> sites(data_.materials.size());
     for (const std::uint32_t site : values_.mixed()) {
       for (const Entry& entry : std::as_const(values_).at(site)) {
-        if (which(entry)) sites[entry.material].push_back(site);
+        if (which(site, entry)) sites[entry.material].push_back(site);
       }
     }
     for (std::uint16_t number = 0; number < sites.size(); ++number) {
@@ -137,13 +146,14 @@ class WidthSearch {
     }
   }
 
-  /// As find(), but for whether steps are blurred, and steps at walls take the widths of those round them.
-  void find_before_walls(std::uint16_t number, const std::vector<std::uint32_t>& sites) {
+  /// As find(), at sites near walls, but for whether steps are blurred; steps at walls take the widths of
+  /// those round them.
+  void find_before_walls(std::uint16_t number, const std::vector<std::uint32_t>& sites,
+                         const std::vector<std::uint8_t>& near) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     const SiteBox box = SiteBox::round(data_.grid, sites, 1);
     std::vector<float> f(box.size()), scratch;
-    box.for_each(
-        [&](std::size_t place, std::size_t site) { f[place] = fraction_before_walls(site, fractions); });
+    box.for_each([&](std::size_t place, std::size_t site) { f[place] = open_fraction(site, fractions); });
     Steps found = steps(sites, f, box);
     box.for_each([&](std::size_t place, std::size_t site) {
       if (has_wall(values_, site)) found.densities[place] = found.gradients[place] = 0;
@@ -151,7 +161,7 @@ class WidthSearch {
     blend(found, box, scratch);
     for (const std::uint32_t site : sites) {
       const std::size_t place = box.place(site);
-      if (found.gradients[place] > 0)
+      if (near[site] != 0 && found.gradients[place] > 0)
         find_entry(values_.at(site), number)->width =
             values_.coded_width(found.width(place, kWidest * sites_.least_side(site)));
     }
@@ -159,7 +169,7 @@ class WidthSearch {
 
   /// The part of what walls leave of a cell that a material fills, of it and its neighbours together where
   /// that is little.
-  [[nodiscard]] float fraction_before_walls(std::size_t site, const SiteArray<float>& fractions) const {
+  [[nodiscard]] float open_fraction(std::size_t site, const SiteArray<float>& fractions) const {
     constexpr double kLittle = 0.3;
     if (!has_wall(values_, site)) return fractions[site];
     double left = part_before_walls(values_, site), sum = fractions[site];
@@ -225,22 +235,23 @@ class WidthSearch {
   GridSites sites_;
 };
 
-/// Makes the sites sharp of materials that have no more than half of any cell, and no sheet: as blurred ones
-/// they would own nothing.
-void make_faint_sharp(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values) {
+/// Marks the sites of materials that have no more than half of any cell, and no sheet: as blurred ones they
+/// would own nothing.
+std::vector<char> faint_sites(const MultiMaterialData& data, const ThinSheets& sheets,
+                              const SiteValues& values) {
   std::vector<float> most(data.materials.size(), 0);
-  std::vector<char> is_sheet(most.size(), 0);
+  std::vector<char> is_sheet(most.size(), 0), faint(data.grid.site_count(), 0);
   for (const SheetPlace& place : sheets.places) is_sheet[place.material] = 1;
   for (std::uint16_t number = 0; number < most.size(); ++number) {
     for (const float f : data.fractions[values.material(number)]) most[number] = std::max(most[number], f);
   }
   for (const std::uint32_t site : values.mixed()) {
-    const bool faint = std::ranges::any_of(values.at(site), [&](const Entry& entry) {
+    const bool is_faint = std::ranges::any_of(values.at(site), [&](const Entry& entry) {
       return !entry.settled() && is_sheet[entry.material] == 0 && most[entry.material] <= 0.5f;
     });
-    if (!faint) continue;
-    for (Entry& entry : values.at(site)) entry.width = 0;
+    faint[site] = is_faint ? 1 : 0;
   }
+  return faint;
 }
 
 enum : char { kFull, kSharpCell, kBlurredCell };
@@ -312,10 +323,11 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
   const auto mixed = static_cast<double>(values.mixed().size());
   const auto blurred = static_cast<double>(std::ranges::count(settled, kBlurredCell));
   const bool none = blurred < kFew * mixed, all = mixed - blurred < kFew * mixed;
+  const std::vector<char> faint = faint_sites(data, sheets, values);
   std::vector<char> is_blurred(settled.size(), 0);
   for (const std::uint32_t site : values.mixed())
-    is_blurred[site] = !none && (all || settled[site] == kBlurredCell) ? 1 : 0;
-  find_walls(data.grid, is_blurred, values);
+    is_blurred[site] = !none && (all || settled[site] == kBlurredCell) && faint[site] == 0 ? 1 : 0;
+  find_walls(data.grid, sheets, is_blurred, values);
   const std::uint16_t typical = median_width(values);
   std::vector<std::pair<Entry*, std::uint16_t>> found;
   for (const std::uint32_t site : values.mixed()) {
@@ -329,8 +341,7 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
     }
   }
   for (const auto& [entry, width] : found) entry->width = width;
-  make_faint_sharp(data, sheets, values);
-  if (!values.at_walls().empty()) WidthSearch(data, values).run_before_walls();
+  if (!values.at_walls().empty()) WidthSearch(data, values).run_before_walls(sheets);
 }
 
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values) {

@@ -117,7 +117,7 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
     for (std::size_t e = first_[mixed_[n]]; e < first_[mixed_[n] + 1]; ++e) {
       if (entries_[e].settled()) continue;
       if (entries_[e].width > 0) {
-        const double steps = normal_quantile(fraction_before_walls(*this, mixed_[n], entries_[e]));
+        const double steps = normal_quantile(fraction_before_walls(*this, mixed_[n], entries_[e].fraction));
         entries_[e].value = std::clamp(width(entries_[e]) * std::clamp(steps, -kFarthest, kFarthest),
                                        -greatest(), greatest());
         continue;

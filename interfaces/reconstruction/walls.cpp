@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/thin_sheets.h"
 
 namespace adamas {
 
@@ -94,14 +95,16 @@ void find_walls_at(const SiteValues& values, const RectilinearGrid& grid, const 
   }
 }
 
-/// Leaves of what is perhaps a wall what hangs together, by neighbours, with what surely is.
-void keep_connected(const SiteValues& values, const GridSites& sites, std::vector<char>& found) {
+/// Leaves of what is perhaps a wall what hangs together, by neighbours, with what surely is; whether
+/// anything.
+bool keep_connected(const SiteValues& values, const GridSites& sites, std::vector<char>& found) {
   std::vector<std::pair<std::size_t, std::uint16_t>> reached;
   for (const std::uint32_t site : values.mixed()) {
     for (const Entry& entry : values.at(site)) {
       if (found[values.index(entry)] == kSurely) reached.emplace_back(site, entry.material);
     }
   }
+  if (reached.empty()) return false;
   for (std::size_t next = 0; next < reached.size(); ++next) {
     const std::uint16_t material = reached[next].second;
     sites.for_each_neighbour(reached[next].first, [&](std::size_t other, int, int, int) {
@@ -112,23 +115,28 @@ void keep_connected(const SiteValues& values, const GridSites& sites, std::vecto
     });
   }
   std::ranges::replace(found, char{kPerhaps}, char{kNoWall});
+  return true;
 }
 
 }  // namespace
 
-void find_walls(const RectilinearGrid& grid, const std::vector<char>& is_blurred, SiteValues& values) {
+void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std::vector<char>& is_blurred,
+                SiteValues& values) {
   const GridSites sites(grid);
   std::vector<char> found(values.entries().size(), 0);
   parallel_for(values.mixed().size(), 256, [&](std::size_t n) {
     const std::size_t site = values.mixed()[n];
     if (is_blurred[site] != 0) find_walls_at(std::as_const(values), grid, sites, site, found);
   });
-  keep_connected(std::as_const(values), sites, found);
+  for (const SheetPlace& place : sheets.places) {
+    for (const Entry& entry : std::as_const(values).at(place.site)) found[values.index(entry)] = kNoWall;
+  }
+  if (!keep_connected(std::as_const(values), sites, found)) return;
   // And beside those that cut cells where the material is absent or alone; beside others where it is alone.
   std::vector<std::uint32_t> at_walls;
   std::vector<std::size_t> beside;
   for (const std::uint32_t site : values.mixed()) {
-    for (Entry& entry : values.at(site)) {
+    for (const Entry& entry : std::as_const(values).at(site)) {
       if (found[values.index(entry)] == kNoWall) continue;
       at_walls.push_back(site);
       sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
@@ -139,8 +147,10 @@ void find_walls(const RectilinearGrid& grid, const std::vector<char>& is_blurred
       });
     }
   }
-  if (at_walls.empty()) return;
   for (const std::size_t entry : beside) found[entry] = kSurely;
+  for (const SheetPlace& place : sheets.places) {
+    for (const Entry& entry : std::as_const(values).at(place.site)) found[values.index(entry)] = kNoWall;
+  }
   std::ranges::sort(at_walls);
   at_walls.erase(std::unique(at_walls.begin(), at_walls.end()), at_walls.end());
   values.set_walls(std::move(found), std::move(at_walls));
@@ -158,8 +168,8 @@ double part_before_walls(const SiteValues& values, std::size_t site) {
   return std::max(part, kLeastPart);
 }
 
-double fraction_before_walls(const SiteValues& values, std::size_t site, const Entry& entry) {
-  return std::min(static_cast<double>(entry.fraction) / part_before_walls(values, site), 1 - kLeastPart);
+double fraction_before_walls(const SiteValues& values, std::size_t site, float fraction) {
+  return std::min(static_cast<double>(fraction) / part_before_walls(values, site), 1 - kLeastPart);
 }
 
 namespace {

@@ -15,15 +15,16 @@ class GridSites;
 
 /// Marks the entries of walls, by `is_blurred` of sites: of materials whose steps are sharp nearly everywhere
 /// round a blurred cell, where two others have blurred ones, at cells that they cut, or beside those that
-/// they fill.
-void find_walls(const RectilinearGrid& grid, const std::vector<char>& is_blurred, SiteValues& values);
+/// they fill. No site of a thin sheet has any.
+void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std::vector<char>& is_blurred,
+                SiteValues& values);
 
 /// Whether a site has an entry of a wall.
 bool has_wall(const SiteValues& values, std::size_t site);
 
-/// The part of a cell that its walls leave, above 0, and the part of that which an entry has, below 1.
+/// The part of a cell that its walls leave, above 0, and the part of that which a fraction is, below 1.
 double part_before_walls(const SiteValues& values, std::size_t site);
-double fraction_before_walls(const SiteValues& values, std::size_t site, const SiteValues::Entry& entry);
+double fraction_before_walls(const SiteValues& values, std::size_t site, float fraction);
 
 /// Turns values of walls, which are distances from their planes, into those that own as much beside the
 /// greatest of the others at a site: that and twice the distance. Before that the others' values are

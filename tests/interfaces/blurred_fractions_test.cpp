@@ -199,6 +199,41 @@ TEST(BlurredFractions, StepsRunOnBeyondTheGrid) {
   EXPECT_FALSE(sides_that_run_on(slanted_step(true), SiteValues(slanted_step(true)))[0]);
 }
 
+/// A thin layer between two materials, blurred by more than its thickness and cut by the domain's sides at a
+/// slant, is one closed body there too.
+TEST(BlurredFractions, ALayerMeetsTheDomainsBorder) {
+  constexpr std::size_t kSites = 20;
+  constexpr double kThickness = 0.9, kWidth = 1.1;
+  MultiMaterialData data;
+  data.grid = RectilinearGrid::uniform({kSites, kSites, kSites}, {0, 0, 0}, {1, 1, 1});
+  for (const char* name : {"above", "below", "layer"}) {
+    data.materials.emplace_back(name);
+    data.fractions.emplace_back(data.grid.site_count());
+  }
+  const Vec3 normal = normalized(Vec3{-0.5, 1, 0.2});
+  for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
+    const Vec3 p = data.grid.site(site % kSites, site / kSites % kSites, site / (kSites * kSites));
+    const double y = dot(normal, p - Vec3{10, 10, 10});
+    const std::array<double, 2> sides{normal_probability((y - kThickness / 2) / kWidth),
+                                      normal_probability((-y - kThickness / 2) / kWidth)};
+    data.fractions[MaterialId(0)][site] = static_cast<float>(sides[0]);
+    data.fractions[MaterialId(1)][site] = static_cast<float>(sides[1]);
+    data.fractions[MaterialId(2)][site] = static_cast<float>(1 - sides[0] - sides[1]);
+  }
+  data.normalise();
+  const GridSides sides = sides_that_run_on(data, SiteValues(data));
+  EXPECT_TRUE(sides[0] && sides[1]);
+  const Reconstruction found(data);
+  test::expect_closed_with_totals(found, data);
+  EXPECT_EQ(found.body_materials().size(), 3u);
+  double farthest = 0;
+  for (const Vec3& p : found.mesh().points) {
+    const double height = std::abs(dot(normal, p - Vec3{10, 10, 10}));
+    farthest = std::max(farthest, std::abs(height - kThickness / 2));
+  }
+  EXPECT_LT(farthest, 0.4);
+}
+
 /// A sharp wall where x is less than that of a plane through `wall` with a normal, and before it gas above
 /// air, whose step is blurred by 1.5 cells. A cell's fractions are means over 5 x 5 x 5 points.
 MultiMaterialData walled_gas(const Vec3& wall, const Vec3& normal, const Vec3& up) {
@@ -260,8 +295,12 @@ TEST(BlurredFractions, WallsAreSharpBesideABlurredInterface) {
        {std::pair{Vec3{10.3, 12, 12}, slanted}, {Vec3{9, 0, 0}, Vec3{1, 0, 0}}}) {
     SCOPED_TRACE(wall.x);
     const MultiMaterialData data = walled_gas(wall, normal, up);
+    set_thread_limit(1);
+    const Reconstruction alone(data);
+    set_thread_limit(0);
     const Reconstruction found(data);
     test::expect_closed(found, data.grid.domain());
+    EXPECT_TRUE(found.mesh().points == alone.mesh().points);
     const auto of_wall = distance_from_plane(found, true, wall, normal),
                of_gas = distance_from_plane(found, false, {12, 12, 12}, up);
     EXPECT_LT(of_wall[0], 0.03);
