@@ -105,7 +105,8 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
   parts_.push_back(std::move(part));
 }
 
-/// Marks where walls before which a part's material may lie are, with what of them is within reach.
+/// Marks the places of a part's box at which the volume of another material counts as a wall's: those within
+/// reach of sites at which it is one.
 void BlurredFractions::mark_walls(Part& part, std::size_t reach) const {
   std::map<std::uint16_t, std::vector<std::uint8_t>> walls;
   for (const std::uint32_t site : values_.at_walls()) {

@@ -99,8 +99,8 @@ class SiteValues {
   [[nodiscard]] const FractionFindings& findings() const { return findings_; }
   /// The volumes that interfaces are to enclose: those of the fractions, without what is dispersed.
   [[nodiscard]] const IdVector<MaterialId, double>& volumes() const { return volumes_; }
-  /// Whether an entry is that of a wall (walls.h), the sites that have such entries, in order, and how they
-  /// are told.
+  /// Whether an entry is that of a wall (walls.h); the sites that have such entries, in order; and where both
+  /// are set.
   [[nodiscard]] bool is_wall(const Entry& entry) const {
     return !is_wall_.empty() && is_wall_[index(entry)] != 0;
   }

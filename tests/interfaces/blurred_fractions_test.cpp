@@ -132,8 +132,8 @@ TEST(BlurredFractions, SurfacesAreWhereTheyWere) {
   struct Fault {
     double blur, noise;
   };
-  for (const Case& c :
-       {Case{"sphere", 0.02, 0.12}, Case{"voronoi10", 0.06, 0.7}, Case{"reflex", 0.08, 0.7}}) {
+  for (const Case& c : {Case{"sphere", 0.02, 0.12}, Case{"voronoi10", 0.06, 0.7},
+                        Case{"tjunction", 0.06, 0.7}, Case{"reflex", 0.08, 0.7}}) {
     const Scene scene = make_scene(c.scene, 3);
     for (const auto& [blur, noise] : {Fault{0.5, 0}, Fault{1, 0.02}, Fault{1.5, 0}}) {
       const MultiMaterialData data = blurred_scene(c.scene, blur, noise);
@@ -354,8 +354,8 @@ TEST(BlurredFractions, ThinSheetsAreWhole) {
     double blur, noise;
     std::size_t bodies;
   };
-  for (const Case& c : {Case{"plate", 1, 0, 2}, Case{"plate", 1.5, 0, 2}, Case{"shell3", 1.5, 0, 3},
-                        Case{"shell3", 1, 0.02, 3}}) {
+  for (const Case& c : {Case{"plate", 1, 0, 2}, Case{"plate", 1.5, 0, 2}, Case{"shell3", 1, 0, 3},
+                        Case{"shell3", 1.5, 0, 3}, Case{"shell3", 1, 0.02, 3}}) {
     SCOPED_TRACE(c.scene);
     const MultiMaterialData data = blurred_scene(c.scene, c.blur, c.noise, 32);
     float most = 0;
