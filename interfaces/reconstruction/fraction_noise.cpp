@@ -188,9 +188,7 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
   const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
   std::vector<LeftOut> found(values.entries().size());
   std::vector<float> squares(found.size(), -1);
-  const auto index = [&](const Entry& entry) {
-    return static_cast<std::size_t>(&entry - values.entries().data());
-  };
+  const auto index = [&](const Entry& entry) { return values.index(entry); };
   parallel_for(mixed.size(), 64, [&](std::size_t n) {
     for (const Entry& entry : std::as_const(values).at(mixed[n])) {
       if (entry.settled()) continue;

@@ -29,9 +29,7 @@ class HeldCells {
   void collect(std::size_t site, MaterialId material, std::vector<std::pair<std::size_t, double>>& cells);
 
  private:
-  [[nodiscard]] std::size_t index(const SiteValues::Entry* entry) const {
-    return static_cast<std::size_t>(entry - values_.entries().data());
-  }
+  [[nodiscard]] std::size_t index(const SiteValues::Entry* entry) const { return values_.index(*entry); }
 
   GridSites sites_;
   const SiteValues& values_;

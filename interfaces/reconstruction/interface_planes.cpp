@@ -115,9 +115,7 @@ class PlaneFit {
  private:
   using Entry = SiteValues::Entry;
 
-  [[nodiscard]] std::size_t index(const Entry& entry) const {
-    return static_cast<std::size_t>(&entry - values_.entries().data());
-  }
+  [[nodiscard]] std::size_t index(const Entry& entry) const { return values_.index(entry); }
 
   /// Where two materials share a cell: the one with the lesser fraction, which is the more exact number.
   const Entry* lesser_of_two(std::size_t site, const Entry** other) const {

@@ -23,7 +23,7 @@ inline std::size_t first_entry(const SiteValues& values, std::size_t site, std::
   const std::span<const SiteValues::Entry> own = values.at(site);
   const auto found =
       std::ranges::find_if(own, [&](const auto& e) { return values.whole(e.material) == material; });
-  return static_cast<std::size_t>(&*found - values.entries().data());
+  return values.index(*found);
 }
 
 /// What the data say of a site's entries, before errors are smoothed away, but without what is dispersed:

@@ -276,8 +276,7 @@ class BodyGroups {
 
   void set(std::size_t site, std::uint16_t material, std::uint32_t group) {
     for (const Entry& entry : values_.at(site)) {
-      if (values_.whole(entry.material) == material)
-        of_entry_[static_cast<std::size_t>(&entry - values_.entries().data())] = group;
+      if (values_.whole(entry.material) == material) of_entry_[values_.index(entry)] = group;
     }
   }
 
@@ -313,14 +312,13 @@ class BodyGroups {
       for (const std::size_t site : front) {
         bool open = false;
         for (const Entry& entry : values_.at(site)) {
-          const auto e = static_cast<std::size_t>(&entry - values_.entries().data());
+          const std::size_t e = values_.index(entry);
           if (of_entry_[e] != kNone) continue;
           std::uint32_t group = kNone;
           sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
             for (const Entry& there : values_.at(other)) {
               if (values_.whole(there.material) == values_.whole(entry.material))
-                group =
-                    std::min(group, of_entry_[static_cast<std::size_t>(&there - values_.entries().data())]);
+                group = std::min(group, of_entry_[values_.index(there)]);
             }
           });
           if (group != kNone) found.emplace_back(e, group);

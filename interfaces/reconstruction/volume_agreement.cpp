@@ -33,7 +33,7 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
       find_given_fractions(data, values, site, given);
       for (std::size_t e = 0; e < own.size(); ++e) {
         const std::uint16_t whole = values.whole(own[e].material);
-        const auto entry = static_cast<std::size_t>(&own[e] - values.entries().data());
+        const std::size_t entry = values.index(own[e]);
         if (entry != first_entry(values, site, whole)) continue;
         double off = static_cast<double>(blurred.at(entry)) - given[e];
         auto move = std::ranges::lower_bound(moves, site, {}, &VolumeMove::site);

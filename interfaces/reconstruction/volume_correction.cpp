@@ -200,9 +200,7 @@ class Correction {
       }
     }
   }
-  [[nodiscard]] std::size_t index_of(const Entry& entry) const {
-    return static_cast<std::size_t>(&entry - values_.entries().data());
-  }
+  [[nodiscard]] std::size_t index_of(const Entry& entry) const { return values_.index(entry); }
   [[nodiscard]] std::uint32_t unknown(std::uint32_t entry) const {
     return entry == CellVolumes::kNone ? kNone : unknown_of_[entry];
   }
