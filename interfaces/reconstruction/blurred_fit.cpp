@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/blurred_fractions.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/predicted_fractions.h"
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/walls.h"
 

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/blurred_fractions.h"
 #include "interfaces/reconstruction/cell_volumes.h"
-#include "interfaces/reconstruction/predicted_fractions.h"
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/volume_correction.h"
 

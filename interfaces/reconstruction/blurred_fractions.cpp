@@ -1,4 +1,4 @@
-#include "interfaces/reconstruction/predicted_fractions.h"
+#include "interfaces/reconstruction/blurred_fractions.h"
 
 #include <algorithm>
 #include <cmath>
