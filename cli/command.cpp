@@ -79,6 +79,11 @@ void Session::begin() {
   outputs.declare("--json", json, {".json"});
 }
 
+void Session::commit() {
+  console.flush();
+  outputs.commit();
+}
+
 CommandOption CommandOption::required() {
   option_->required();
   return *this;

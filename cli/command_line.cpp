@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -256,7 +257,8 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& app, std
 
 CommandLine::CommandLine(Session& session)
     : app_(std::make_unique<CLI::App>(
-          "Adaptive tetrahedral meshes of multi-material data, with sharp interfaces.", "adamas")) {
+          "Adaptive tetrahedral meshes of multi-material data, with sharp interfaces.", "adamas")),
+      session_(session) {
   const Command root(*app_);
   app_->set_help_flag("--help,-h", "Print this and stop");
   app_->set_version_flag("--version", std::string("adamas ") + kVersion, "Print the version and stop");
@@ -277,7 +279,9 @@ bool CommandLine::parse(int argc, char** argv) {
     app_->parse(argc, argv);
     return true;
   } catch (const CLI::Success& page) {
-    app_->exit(page);
+    std::ostringstream text;
+    app_->exit(page, text, text);
+    session_.console.write(text.str());
     return false;
   } catch (const CLI::ParseError& error) {
     throw UsageError(usage_message(error, *app_, argc > 1 ? argv[argc - 1] : ""));

@@ -1,5 +1,6 @@
 #include "cli/console.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,6 +27,14 @@ void to_stderr(const std::string& text) { std::fwrite(text.data(), 1, text.size(
 
 }  // namespace
 
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0) continue;
+    // The lowest free number is this one, since those below are occupied.
+    static_cast<void>(::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
+
 void Console::table(std::vector<std::vector<std::string>> rows) {
   for (auto& row : rows) std::transform(row.begin(), row.end(), row.begin(), visible_text);
   std::vector<std::size_t> widths;
@@ -46,22 +55,29 @@ void Console::table(std::vector<std::vector<std::string>> rows) {
 
 void Console::write(std::string_view text) {
   clear();
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() && write_error_ == 0)
+    write_error_ = errno;
+}
+
+/// A later call may succeed although what was written before is lost, so that the first error is kept.
+void Console::push_out() {
+  errno = 0;
+  if (std::fflush(stdout) != 0 && write_error_ == 0) write_error_ = errno;
 }
 
 void Console::write_note(const std::string& text) {
   clear();
-  std::fflush(stdout);
+  push_out();
   // Many notes begin with the name of their file.
   const std::string name = about.empty() ? "" : visible_text(about) + ": ";
   to_stderr("adamas: note: " + (text.starts_with(name) ? "" : name) + text + "\n");
 }
 
 void Console::flush() {
-  errno = 0;
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
-  if (errno == EPIPE || errno == 0) return;
-  fail("standard output: could not be written: {}", std::strerror(errno));
+  push_out();
+  if (write_error_ != 0 && write_error_ != EPIPE)
+    fail("standard output: could not be written: {}", std::strerror(write_error_));
 }
 
 void Console::report(std::string_view stage, double fraction) {

@@ -15,6 +15,10 @@
 
 namespace adamas {
 
+/// Opens the null device for each of the three standard streams that is closed, so that no file of the
+/// program gets its number: nothing can be read from it or written to it.
+void occupy_closed_streams();
+
 /// What the user sees of a run: results on stdout, notes and progress on stderr. Progress is a bar where
 /// stderr is a terminal, a line per stage with `verbose`, else nothing. Texts that are put into messages,
 /// which may be names of files and what files hold, cannot act on a terminal (visible_text).
@@ -47,7 +51,7 @@ class Console final : public Progress {
   void table(std::vector<std::vector<std::string>> rows);
   /// To stdout as it is, whatever `quiet` says.
   void write(std::string_view text);
-  /// Throws Error where stdout could not take everything, a closed pipe apart.
+  /// Throws Error where stdout has not taken everything since the program started, a closed pipe apart.
   void flush();
 
   void report(std::string_view stage, double fraction) override;
@@ -62,6 +66,7 @@ class Console final : public Progress {
  private:
   using Clock = std::chrono::steady_clock;
   void write_note(const std::string& text);
+  void push_out();
 
   template <class T>
   static decltype(auto) shown(const T& value) {
@@ -79,6 +84,7 @@ class Console final : public Progress {
   Clock::time_point start_ = Clock::now(), drawn_{};
   std::string stage_;
   bool bar_ = false, damage_noted_ = false;
+  int write_error_ = 0;  ///< errno of the first write to stdout that failed
 };
 
 }  // namespace adamas

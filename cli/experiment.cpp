@@ -285,7 +285,8 @@ void run(ExperimentOptions& options, Session& session) {
   for (const SeriesEntry& step : steps) session.outputs.protect(step.file);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.protect_other(options.output);
-  OutputFolder folder(options.output, options.overwrite, {"metrics.json", "report.html"});
+  session.outputs.check_outside("-o", options.output);
+  OutputFolder folder(options.output, options.overwrite);
   ExperimentRecord record;
   Figures figures;
   folder.fill([&] {
@@ -296,9 +297,10 @@ void run(ExperimentOptions& options, Session& session) {
   });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.console.check();
-  folder.commit();
-  session.outputs.commit();
   print_record(record, options.output, session.console);
+  session.console.flush();
+  folder.commit();
+  session.commit();
 }
 
 }  // namespace

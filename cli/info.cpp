@@ -292,7 +292,7 @@ void run(const Options& given, Session& session) {
   const std::vector<InputStep> steps = steps_of(all);
   const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

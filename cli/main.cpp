@@ -86,6 +86,7 @@ int run_to_the_end(adamas::CommandLine& command_line, adamas::Session& session, 
 }  // namespace
 
 int main(int argc, char** argv) {
+  adamas::occupy_closed_streams();
   adamas::catch_signals();
   adamas::Session session;
   adamas::CommandLine command_line(session);

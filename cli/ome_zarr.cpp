@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 
 #include "cli/data_summary.h"
 #include "cli/restored_steps.h"
@@ -80,15 +79,7 @@ Figures own_attributes(const VolumeGrid& volume, const std::vector<double>& time
 
 bool is_zarr(const std::string& path) { return file_extension(folder_path(path)) == ".zarr"; }
 
-OmeZarr::OmeZarr(const std::string& path, bool overwrite)
-    : folder_(folder_path(path), overwrite, {".zgroup", ".zattrs"}) {}
-
-void OmeZarr::check_apart(const std::string& input) const {
-  std::error_code code;
-  const auto within = std::filesystem::relative(input, folder_.path(), code);
-  if (!code && !within.empty() && *within.begin() != "..")
-    wrong_usage("-o: expected a folder without the input, found {} in {}", input, folder_.path().string());
-}
+OmeZarr::OmeZarr(const std::string& path, bool overwrite) : folder_(folder_path(path), overwrite) {}
 
 void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content, Session& session) const {
   const VolumeGrid& volume = file.header().grid;

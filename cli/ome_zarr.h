@@ -28,8 +28,6 @@ class OmeZarr {
  public:
   /// Throws Error where the folder cannot be made (OutputFolder).
   OmeZarr(const std::string& path, bool overwrite);
-  /// Throws UsageError where a file lies in the folder, which would be replaced with it.
-  void check_apart(const std::string& input) const;
 
   /// Returns the bytes that were written.
   std::size_t write(StoreFile& file, const ZarrContent& content, PageCounts& counts, Session& session) const;

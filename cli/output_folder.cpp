@@ -1,13 +1,20 @@
 #include "cli/output_folder.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <fstream>
+#include <set>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/io/output_stream.h"
 
 namespace adamas {
 
@@ -15,19 +22,77 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void check_replaceable(const fs::path& path, bool overwrite, std::initializer_list<const char*> signs) {
+constexpr const char* kList = ".adamas-files";
+/// The first line of a list; lines "SIZE NAME" follow, with names from the folder on.
+constexpr std::string_view kListTitle = "Files of this folder that adamas wrote, with their sizes in bytes";
+
+std::string list_line(const fs::path& folder, const fs::path& file) {
+  return fmt::format("{} {}", fs::file_size(file), file.lexically_relative(folder).generic_string());
+}
+
+void write_list(const fs::path& folder) {
+  std::vector<std::string> lines;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) lines.push_back(list_line(folder, entry.path()));
+  }
+  std::sort(lines.begin(), lines.end());
+  OutputStream stream(folder / kList);
+  stream.write(fmt::format("{}\n{}\n", kListTitle, fmt::join(lines, "\n")));
+  stream.finish();
+}
+
+/// The lines of the list in a folder; none where it has no list.
+std::set<std::string> listed(const fs::path& folder) {
+  std::set<std::string> lines;
+  std::ifstream stream(folder / kList);
+  std::string line;
+  if (!std::getline(stream, line) || line != kListTitle) return lines;
+  while (std::getline(stream, line)) lines.insert(line);
+  return lines;
+}
+
+/// A file of a folder that is not on its list, or a folder in it without such files; empty for none.
+fs::path unlisted(const fs::path& folder) {
+  const std::set<std::string> lines = listed(folder);
+  std::set<fs::path> folders, above;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory() && !entry.is_symlink()) {
+      folders.insert(entry.path());
+      continue;
+    }
+    const bool is_plain = entry.is_regular_file() && !entry.is_symlink();
+    if (!is_plain || !(entry.path() == folder / kList || lines.contains(list_line(folder, entry.path()))))
+      return entry.path();
+    for (fs::path at = entry.path().parent_path(); above.insert(at).second && at != folder;)
+      at = at.parent_path();
+  }
+  const auto without_files = std::find_if(folders.begin(), folders.end(),
+                                          [&](const fs::path& each) { return !above.contains(each); });
+  return without_files == folders.end() ? fs::path() : *without_files;
+}
+
+void check_replaceable(const fs::path& path, const fs::path& place, bool overwrite) {
   std::error_code code;
-  if (!fs::exists(path, code)) return;
-  if (!fs::is_directory(path, code)) fail("{}: expected an output folder, found a file", path.string());
-  if (fs::is_empty(path, code)) return;
+  if (!fs::exists(place, code)) return;
+  if (!fs::is_directory(place, code)) fail("{}: expected an output folder, found a file", path.string());
+  if (fs::is_empty(place, code)) return;
   if (!overwrite) {
     fail("{}: expected a new or an empty folder, found one with files (--overwrite replaces an earlier run)",
          path.string());
   }
-  for (const char* sign : signs) {
-    if (!fs::exists(path / sign, code))
-      fail("{}: expected the folder of an earlier run to replace, found one without {}", path.string(), sign);
-  }
+  if (!fs::exists(place / kList, code))
+    fail("{}: expected the folder of an earlier run to replace, found one without its list {}", path.string(),
+         kList);
+  const fs::path other = unlisted(place);
+  if (!other.empty())
+    fail("{}: expected an earlier run's folder as it was written, found '{}', which is new or has changed",
+         path.string(), other.lexically_relative(place).string());
+}
+
+/// Where a path leads that is a link to a folder.
+fs::path followed(const fs::path& path) {
+  std::error_code code;
+  return fs::is_symlink(path, code) && fs::is_directory(path, code) ? fs::canonical(path) : path;
 }
 
 fs::path without_slash(fs::path path) {
@@ -37,10 +102,10 @@ fs::path without_slash(fs::path path) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path path, bool overwrite, std::initializer_list<const char*> signs)
-    : path_(without_slash(std::move(path))) {
-  check_replaceable(path_, overwrite, signs);
-  const fs::path above = path_.has_parent_path() ? path_.parent_path() : ".";
+OutputFolder::OutputFolder(fs::path path, bool overwrite)
+    : path_(without_slash(std::move(path))), place_(followed(path_)), overwrite_(overwrite) {
+  check_replaceable(path_, place_, overwrite_);
+  const fs::path above = place_.has_parent_path() ? place_.parent_path() : ".";
   std::error_code code;
   if (!fs::is_directory(above, code))
     fail("{}: expected an existing folder above, found none at {}", path_.string(), above.string());
@@ -73,18 +138,20 @@ void OutputFolder::fill(const std::function<void()>& work) const {
 }
 
 void OutputFolder::commit() {
+  fill([this] { write_list(temporary_); });
+  check_replaceable(path_, place_, overwrite_);
   std::error_code code;
-  const bool replace = fs::exists(path_, code);
+  const bool replace = fs::exists(place_, code);
   fs::path old;
   // Where the file system can exchange two names, the old or the new folder is there at any time.
-  if (replace && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0) {
+  if (replace && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, place_.c_str(), RENAME_EXCHANGE) == 0) {
     old = temporary_;
   } else {
     // The old folder must not get a temporary name here: the next run would remove it, although the new one
     // may not have its final name yet.
-    if (replace) old = path_.string() + "-replaced-by" + temporary_.filename().string();
-    if (replace) fs::rename(path_, old, code);
-    if (!code) fs::rename(temporary_, path_, code);
+    if (replace) old = place_.string() + "-replaced-by" + temporary_.filename().string();
+    if (replace) fs::rename(place_, old, code);
+    if (!code) fs::rename(temporary_, place_, code);
   }
   if (code) fail("{}: could not be given its final name: {}", path_.string(), code.message());
   temporary_.clear();

@@ -56,6 +56,18 @@ void OutputSet::protect_other(const std::filesystem::path& path) {
   if (!path.empty()) others_.push_back(path);
 }
 
+void OutputSet::check_outside(const std::string& option, const std::filesystem::path& folder) const {
+  for (const auto* files : {&inputs_, &others_}) {
+    for (const auto& file : *files) {
+      std::error_code code;
+      const auto within = std::filesystem::relative(file, folder, code);
+      if (!code && !within.empty() && *within.begin() != ".." && *within.begin() != ".")
+        wrong_usage("{}: expected a folder without the input, found {} in {}", option, file.string(),
+                    folder.string());
+    }
+  }
+}
+
 std::string OutputSet::naming_input(const std::string& message) const {
   // A name within a longer word does not count.
   const auto ends_word = [](char c) {

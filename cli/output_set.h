@@ -18,6 +18,8 @@ class OutputSet {
   void protect(const std::filesystem::path& input);
   /// The same of what is no data: a file of options, a folder for what is only kept meanwhile.
   void protect_other(const std::filesystem::path& path);
+  /// Throws UsageError where an input lies in a folder that is to be replaced as a whole.
+  void check_outside(const std::string& option, const std::filesystem::path& folder) const;
   /// A message of what went wrong, with the first input before it where it names none of all these files.
   [[nodiscard]] std::string naming_input(const std::string& message) const;
   /// An output that will be written, to be declared before long work; an empty path is none. Throws

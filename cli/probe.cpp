@@ -164,7 +164,7 @@ void run(const Options& options, Session& session) {
     stream.finish();
   });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

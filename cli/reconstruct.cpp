@@ -159,7 +159,7 @@ void run(const Options& options, Session& session) {
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

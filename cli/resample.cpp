@@ -146,9 +146,9 @@ void run(Options& options, Session& session) {
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
   console.print("\n  {:.2f} s, {} of memory at most\n", console.seconds(),
                 bytes_text(static_cast<double>(peak_memory_bytes())));
+  session.commit();
 }
 
 }  // namespace

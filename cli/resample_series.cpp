@@ -85,9 +85,9 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
                   {"seconds", console.seconds()},
                   {"peak_memory_bytes", peak_memory_bytes()}};
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
   console.print("\n  {} steps, {:.2f} s, {} of memory at most\n", steps.size(), console.seconds(),
                 bytes_text(static_cast<double>(peak_memory_bytes())));
+  session.commit();
 }
 
 }  // namespace adamas

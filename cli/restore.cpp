@@ -187,13 +187,13 @@ void run(const Options& options, Session& session) {
   std::optional<OmeZarr> zarr;
   if (is_zarr(options.output)) {
     zarr.emplace(options.output, options.overwrite);
-    zarr->check_apart(options.input.path);
   } else if (is_series) {
     session.outputs.declare("-o", options.output, {".pvd"});
   } else {
     declare_volume_output(options.output, session.outputs);
   }
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
+  if (zarr) session.outputs.check_outside("-o", options.output);
   const Wanted wanted = find_wanted(options, *file, session);
   Written written;
   if (zarr) {
@@ -213,8 +213,9 @@ void run(const Options& options, Session& session) {
   // Each part of the work has counted those of the whole file.
   written.counts.bytes = file->bytes_read();
   report(options, wanted, written, session);
+  session.console.flush();
   if (zarr) zarr->commit();
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ void run(const Options& options, Session& session) {
   figures["ledger"] = ledger_figures(ledgers, mesh.materials, mesh.fields);
   figures["seconds"] = console.seconds();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ void run(SliceRequest& request, Session& session) {
     write_slice(picture, path, size);
   });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 void add_drawing_options(const Command& command, SliceRequest& options) {

@@ -180,7 +180,7 @@ void slice_series(const SliceRequest& request, const SliceSteps& all, Session& s
   session.console.print("  {}{}\n", counted(steps.size(), "step"),
                         shown ? fmt::format(", values from {:.6g} to {:.6g}", shown->low, shown->high) : "");
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace adamas

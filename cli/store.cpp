@@ -133,7 +133,7 @@ void run(const Options& options, Session& session) {
   std::error_code unknown;
   if (options.append && std::filesystem::exists(options.output, unknown)) {
     append(options, std::move(input), session);
-    session.outputs.commit();
+    session.commit();
     return;
   }
   session.outputs.declare("-o", options.output, {".adm"});
@@ -148,7 +148,7 @@ void run(const Options& options, Session& session) {
     fail("{}: expected no store there, as when this run began, found one that was made meanwhile",
          options.output);
   report(steps, figures, {}, options.output, session);
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

@@ -162,8 +162,9 @@ void run_offscreen(const ViewOptions& options, Session& session) {
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
   output.finish();
+  session.console.flush();
   output.commit();
-  session.outputs.commit();
+  session.commit();
 }
 
 void run_window(const ViewOptions& options, Session& session) {

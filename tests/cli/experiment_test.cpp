@@ -186,7 +186,7 @@ TEST_F(Experiment, FoldersThatExist) {
   std::filesystem::create_directory(folder() / "mine");
   write("mine/letter.txt", "dear");
   expect_failure(with({"-o", "mine"}), {"mine", "expected a new or an empty folder"});
-  expect_failure(with({"-o", "mine", "--overwrite"}), {"mine", "earlier run", "metrics.json"});
+  expect_failure(with({"-o", "mine", "--overwrite"}), {"mine", "earlier run", ".adamas-files"});
   EXPECT_EQ(read("mine/letter.txt"), "dear");
   write("file", "x");
   expect_failure(with({"-o", "file"}), {"file", "expected an output folder, found a file"});
@@ -195,6 +195,37 @@ TEST_F(Experiment, FoldersThatExist) {
   RunOptions full;
   full.file_size_limit = 3000;
   expect_failure(with({"-o", "out"}), {"out"}, full);
+}
+
+TEST_F(Experiment, ReplacesWhatItWroteAndNothingElse) {
+  const std::vector<std::string> again{"experiment", "--generate",        "sphere", "--dimensions", "6", "-o",
+                                       "run",        "--interface-error", "10%",    "--overwrite"};
+  ASSERT_EQ(run(again).status, 0);
+  const std::string metrics = read("run/metrics.json");
+  expect_wrong_usage({"experiment", "run/input.vtr", "-o", "run", "--interface-error", "10%", "--overwrite"},
+                     {"expected a folder without the input, found run/input.vtr"});
+  const auto refuses = [&](const std::string& found) {
+    expect_failure(again,
+                   {"run: expected an earlier run's folder as it was written", "found '" + found + "'"});
+  };
+  std::filesystem::create_directory(folder() / "run/sub");
+  refuses("sub");
+  write("run/sub/thesis.txt", "dear");
+  refuses("sub/thesis.txt");
+  EXPECT_EQ(read("run/sub/thesis.txt"), "dear");
+  std::filesystem::remove_all(folder() / "run/sub");
+  write("run/metrics.json", metrics + " ");
+  refuses("metrics.json");
+  write("run/metrics.json", metrics);
+  std::filesystem::create_symlink("/dev/null", folder() / "run/link");
+  refuses("link");
+  std::filesystem::remove(folder() / "run/link");
+  std::filesystem::rename(folder() / "run", folder() / "elsewhere");
+  std::filesystem::create_symlink("elsewhere", folder() / "run");
+  std::filesystem::remove(folder() / "elsewhere/report.html");
+  ASSERT_EQ(run(again).status, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder() / "run"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "elsewhere/report.html"));
 }
 
 TEST_F(Experiment, CanBeStopped) {
