@@ -250,6 +250,8 @@ Figures print_one(const Options& all, Session& session) {
   session.console.print("{}: {}\n", options.path, summary.kind);
   print_grid(summary, session.console, figures);
   print_details(summary, options, session.console, figures);
+  if (!summary.remark.empty() && !has_data(summary, options))
+    session.console.note("{}: {}", options.path, summary.remark);
   return figures;
 }
 

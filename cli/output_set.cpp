@@ -147,7 +147,18 @@ void OutputSet::commit(const std::string& path) {
 }
 
 void OutputSet::commit() {
-  for (const auto& [option, file] : files_) file->commit();
+  std::vector<std::filesystem::path> named;
+  try {
+    // What refers to others, as the list of a series, is declared before them and gets its name behind them.
+    for (auto each = files_.rbegin(); each != files_.rend(); ++each) {
+      each->file->commit();
+      named.push_back(each->file->path());
+    }
+  } catch (const Error&) {
+    std::error_code code;
+    for (const auto& path : named) std::filesystem::remove(path, code);
+    throw;
+  }
   files_.clear();
 }
 

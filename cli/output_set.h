@@ -34,6 +34,8 @@ class OutputSet {
   void publish(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
   /// Bytes written for a path.
   [[nodiscard]] std::size_t bytes(const std::string& path) const;
+  /// Gives all outputs their names, the last that was declared first. Throws Error where one cannot have it;
+  /// then none has.
   void commit();
   /// The same for one output alone, which is done then.
   void commit(const std::string& path);

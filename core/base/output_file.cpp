@@ -27,6 +27,10 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (!std::filesystem::is_directory(folder, code)) {
     fail("{}: expected an existing output folder, found none at {}", path_.string(), folder.string());
   }
+  const long most = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+  const std::size_t length = path_.filename().string().size();
+  if (most > 0 && length > static_cast<std::size_t>(most))
+    fail("{}: expected a file name of at most {} bytes, found one of {}", path_.string(), most, length);
   if (std::filesystem::is_directory(path_, code))
     fail("{}: expected an output file, found a folder", path_.string());
   if (::access(folder.c_str(), W_OK) != 0) {

@@ -67,6 +67,7 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
   }
   if (summary.points > 0) set_grid_box(file, summary);
   summary.space = file.space;
+  summary.remark = file.remark;
   for (const GridArray& array : file.arrays) {
     ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
                       array.components};

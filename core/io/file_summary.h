@@ -31,7 +31,8 @@ struct FileSummary {
   /// of its first node then.
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 origin;
-  std::string space;  ///< what places are told in, as of VolumeGrid; mostly empty
+  std::string space;   ///< what places are told in, as of VolumeGrid; mostly empty
+  std::string remark;  ///< what the file holds beside and nobody reads; mostly empty
   std::vector<ArraySummary> arrays;
 };
 

@@ -51,7 +51,8 @@ struct GridFile {
 
   /// Of a grid whose axes are not parallel to x, y and z: its nodes are places along these.
   std::optional<GridAxes> aslant;
-  std::string space;  ///< what places are told in, as of VolumeGrid; mostly empty
+  std::string space;   ///< what places are told in, as of VolumeGrid; mostly empty
+  std::string remark;  ///< what the file holds beside and nobody reads; mostly empty
 
   [[nodiscard]] bool has_samples() const { return !faces[0].empty(); }
 

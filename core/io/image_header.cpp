@@ -28,7 +28,7 @@ const ImageArray& chosen_array(const ImageHeader& header, const std::string& wan
   std::string names;
   std::vector<std::string> on_cells;
   const ImageArray* only = nullptr;
-  std::size_t count = 0;
+  std::size_t count = 0, of_one_value = 0;
   for (const ImageArray& array : header.arrays) {
     if (array.centering != Centering::kPoints) {
       on_cells.push_back(array.name);
@@ -36,10 +36,11 @@ const ImageArray& chosen_array(const ImageHeader& header, const std::string& wan
     }
     if (!name.empty() && array.name == name) return array;
     names += (names.empty() ? "'" : ", '") + printable(array.name, kShown) + "'";
-    only = &array;
+    const bool is_first = array.source.components == 1 && of_one_value++ == 0;
+    if (is_first || only == nullptr) only = &array;
     ++count;
   }
-  if (wanted.empty() && count == 1) return *only;
+  if (wanted.empty() && (count == 1 || of_one_value == 1)) return *only;
   if (count == 0) fail("{}: expected an array on points, found {}", header.name, no_points_text(on_cells));
   if (wanted.empty())
     fail("{}: expected one array on points or the name of one, found {}", header.name, names);
@@ -70,6 +71,7 @@ void set_time(const ImageHeader& header, std::optional<std::uint64_t> time, Volu
   if (before > 0 && header.time_step > (std::uint64_t{1} << 62) / before)
     fail("{}: expected times that a file can hold, found {}", header.name, header.times);
   (source.packed() ? source.skip_bytes : source.header_bytes) += before * header.time_step;
+  if (before + 1 < header.times) source.rest = SampleRest::kElse;
 }
 
 /// Calls `take` with each number of an array, converted to Stored, until it says false.
@@ -131,8 +133,9 @@ VolumeReader open_whole(VolumeSource source) {
   return VolumeReader(std::move(source));
 }
 
-GridArray read_array(const ImageArray& array) {
+GridArray read_array(const ImageArray& array, std::string& remark) {
   VolumeReader reader = open_whole(array.source);
+  remark = reader.source().remark;
   GridArray result;
   result.name = array.name;
   result.type = stored_name(array.source.stored);
@@ -172,6 +175,19 @@ std::vector<std::string> read_texts(VolumeSource source) {
 
 }  // namespace
 
+std::vector<double> read_doubles(const VolumeSource& source) {
+  VolumeReader reader = open_whole(source);
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(source.values()));
+  visit_stored_type(source.stored, [&]<class Stored>(Stored) {
+    for_each_number<Stored>(reader, [&values](Stored value) {
+      values.push_back(static_cast<double>(value));
+      return true;
+    });
+  });
+  return values;
+}
+
 VolumeSource volume_of(const ImageHeader& header, const std::string& array,
                        std::optional<std::uint64_t> time) {
   const ImageArray& chosen = chosen_array(header, array);
@@ -190,6 +206,12 @@ VolumeSource volume_of(const ImageHeader& header, const std::string& array,
   for (std::size_t a = 0; a < 3; ++a) {
     if (header.first[a] != 0) axes.origin += static_cast<double>(header.first[a]) * axes.directions[a];
   }
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& nodes = header.nodes[static_cast<std::size_t>(axis)];
+    if (nodes.empty()) continue;
+    axes.directions[static_cast<std::size_t>(axis)] *= even_step(header.name, axis, nodes);
+    axes.origin[axis] = nodes.front();
+  }
   source.set_axes(axes);
   return source;
 }
@@ -202,11 +224,17 @@ GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path) {
     for (const ImageArray& array : header.arrays) {
       if (array.centering != centering) continue;
       require_found(header, array);
-      file.arrays.push_back(read_array(array));
+      ImageArray first = array;
+      if (header.times > 1) first.source.rest = SampleRest::kElse;
+      file.arrays.push_back(read_array(first, file.remark));
       if (array.name.empty() && header.arrays.size() == 1) file.arrays.back().name = file_stem(path);
     }
   }
   if (header.material_names) file.material_names = read_texts(*header.material_names);
+  if (!header.nodes[0].empty()) {
+    file.nodes = header.nodes;
+    return file;
+  }
   GridAxes axes = header.axes;
   for (std::size_t a = 0; a < 3; ++a) {
     const double step = header.spacing[static_cast<int>(a)];

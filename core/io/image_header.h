@@ -38,7 +38,9 @@ struct ImageHeader {
   std::string name;                                  ///< the file's, for messages
   std::array<std::uint64_t, 3> dimensions{1, 1, 1};  ///< numbers of samples, or of points, along the axes
   std::array<std::int64_t, 3> first{};               ///< the index of the first of them
-  GridAxes axes;          ///< a step along each axis, and the place of the sample (0, 0, 0)
+  GridAxes axes;  ///< a step along each axis, and the place of the sample (0, 0, 0)
+  /// Where steps along an axis differ: the places of all points along each, in place of these; else empty.
+  std::array<std::vector<double>, 3> nodes;
   Vec3 spacing{1, 1, 1};  ///< how long the header says that steps are; 1 where their directions say it
   std::string space;      ///< as of VolumeGrid
   /// Of samples, which may be values at points or of the cells round them; nothing where the arrays say
@@ -58,6 +60,9 @@ struct ImageHeader {
 /// one number per sample, or no place in space.
 VolumeSource volume_of(const ImageHeader& header, const std::string& array,
                        std::optional<std::uint64_t> time);
+
+/// The numbers of a source, read whole.
+std::vector<double> read_doubles(const VolumeSource& source);
 
 /// All arrays of the file, of the first time, read whole. Throws Error where they are not.
 GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path);

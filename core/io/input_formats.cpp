@@ -134,7 +134,9 @@ VolumeSource unpacked_time(const ImageHeader& header, const VolumeOptions& optio
     VolumeSource all = volume_of(header, options.array, header.times - 1);
     all.skip_bytes -= (header.times - 1) * header.time_step;
     all.grid.dimensions[2] *= header.times;
-    samples = unpack_volume(std::move(all), options.scratch_folder, progress).scratch;
+    const VolumeSource unpacked = unpack_volume(std::move(all), options.scratch_folder, progress);
+    samples = unpacked.scratch;
+    source.remark = unpacked.remark;
   }
   source.scratch = samples;
   source.coding = SamplePacking::kRaw;
@@ -176,7 +178,7 @@ VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume&
   source.name = path.string();
   source.file = path;
   source.skip_bytes = volume.header_bytes;
-  source.exact = true;
+  source.rest = SampleRest::kRefused;
   source.set_stored(volume.type);
   source.big_endian = volume.big_endian;
   source.grid.dimensions = volume.dimensions;

@@ -72,6 +72,7 @@ class Reader {
            options_.fraction_scale);
     }
     read_materials();
+    if (options_.note && !main_.remark.empty()) options_.note(data_.source + ": " + main_.remark);
     if (!plain_) tell(centering);
     read_fields();
     progress_.step("check materials", 0.9);

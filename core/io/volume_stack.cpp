@@ -22,14 +22,18 @@ struct Part {
   std::size_t digits = 0;  ///< of a number, at least
 };
 
-/// "%d", "%i", "%4d" or "%04d" at the beginning: how many characters it takes, and the digits; 0: none.
+/// No number that is counted has more.
+constexpr std::size_t kMostDigits = 20;
+
+/// "%d", "%i", "%4d" or "%04d" at the beginning: how many characters it takes, and the digits, or more than
+/// kMostDigits; 0: none.
 std::size_t number_format(const std::string& text, std::size_t at, std::size_t& digits) {
   std::size_t end = at + 1;
   while (end < text.size() && is_digit(text[end])) ++end;
   if (end >= text.size() || (text[end] != 'd' && text[end] != 'i' && text[end] != 'u')) return 0;
   digits = 1;
-  std::from_chars(text.data() + at + 1, text.data() + end, digits);
-  digits = std::max<std::size_t>(digits, 1);
+  const auto [stop, code] = std::from_chars(text.data() + at + 1, text.data() + end, digits);
+  digits = code == std::errc::result_out_of_range ? kMostDigits + 1 : std::max<std::size_t>(digits, 1);
   return end + 1 - at;
 }
 
@@ -53,6 +57,10 @@ std::vector<Part> parts_of(const std::string& pattern) {
     at += length;
   }
   return parts;
+}
+
+bool has_too_wide_number(const std::vector<Part>& parts) {
+  return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.digits > kMostDigits; });
 }
 
 /// By the table of which prefixes fit, so that no pattern takes long.
@@ -127,7 +135,9 @@ void check_numbers(const std::filesystem::path& pattern, const std::vector<Part>
 std::string numbered_name(const std::string& pattern, std::size_t number) {
   std::string name;
   std::size_t numbers = 0;
-  for (const Part& part : parts_of(pattern)) {
+  const std::vector<Part> parts = parts_of(pattern);
+  if (has_too_wide_number(parts)) return {};
+  for (const Part& part : parts) {
     if (part.kind == Part::Kind::kAny || part.kind == Part::Kind::kOne) return {};
     if (part.kind == Part::Kind::kNumber) ++numbers;
     name += part.kind == Part::Kind::kNumber ? fmt::format("{:0{}}", number, part.digits) : part.text;
@@ -162,6 +172,9 @@ std::vector<std::filesystem::path> match_stack(const std::filesystem::path& patt
   if (std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.kind == Part::Kind::kText; })) {
     fail("{}: expected a pattern with *, ?, # or %d in the file's name, found none", pattern.string());
   }
+  if (has_too_wide_number(parts))
+    fail("{}: expected numbers of at most {} digits in the pattern, found more", pattern.string(),
+         kMostDigits);
   const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
   std::error_code code;
   std::filesystem::directory_iterator entries(folder, code);

@@ -18,6 +18,7 @@
 #include "core/io/grid_axes.h"
 #include "core/io/grid_file.h"
 #include "core/io/input_file.h"
+#include "core/io/png_image.h"
 #include "core/io/tiff_pages.h"
 #include "core/io/vtk_support.h"
 
@@ -206,6 +207,7 @@ bool lists_extension(const char* list, const std::string& extension) {
 GridFile read_image(const std::filesystem::path& path, const std::string& extension,
                     const VtkMessages& messages) {
   const std::string name = path.string();
+  if (extension == ".png") check_png(path);
   GridFile file;
   const auto reader = vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(name.c_str()));
   // Some readers claim files of any kind: the extension has to agree as well.

@@ -78,6 +78,27 @@ TEST_F(Series, EachMeshIsThatOfItsStepAlone) {
     EXPECT_NE(read("c.svg").find(text), std::string::npos) << text;
 }
 
+/// No list is left that names files which are not there.
+TEST_F(Series, NamesThatCannotBe) {
+  make_series("2");
+  const std::string longest(251, 'm');
+  for (const std::string& name : {longest + ".pvd", std::string(250, 'm') + "_%04d.vtu"})
+    expect_failure({"resample", "s.pvd", "--interface-error", "8%", "-o", name},
+                   {"expected a file name of at most 255 bytes, found one of"});
+  for (const char* name : {"a\x1b.pvd", "a\xff.pvd"}) {
+    expect_failure({"resample", "s.pvd", "--interface-error", "8%", "-o", name},
+                   {"expected names of files of UTF-8 without control characters"});
+    expect_failure({"generate", "scene", "moving", "--dimensions", "6", "--steps", "2", "-o", name},
+                   {"expected names of files of UTF-8 without control characters"});
+  }
+  for (const char* name : {"m_%300d.vtu", "m_%2147483647d.vtu"})
+    expect_wrong_usage({"resample", "s.pvd", "--interface-error", "8%", "-o", name},
+                       {"expected a list of steps (.pvd) or a pattern of names"});
+  for (const char* name : {"s_%300d.vtr", "s_%2147483647d.vtr"})
+    expect_failure({"resample", name, "--interface-error", "8%", "-o", "m.pvd"},
+                   {"expected numbers of at most 20 digits"});
+}
+
 TEST_F(Series, NumberedFiles) {
   make_series("3");
   run_well({"resample", "-q", "s.pvd", "--interface-error", "8%", "-o", "m.pvd"});

@@ -214,6 +214,25 @@ TEST_F(WrongUsage, Configurations) {
   expect_wrong_usage({"resample", "scene.vtr", "--config", "c.toml"}, {"expected options", "'nonsense'"});
   write("c.toml", "[nonsense]\nghost = \"linear\"\n");
   expect_wrong_usage({"resample", "scene.vtr", "--config", "c.toml"}, {"expected sections", "'nonsense'"});
+  for (const std::string line : {"=1", " = 1", "x", "\"\" = 1", "-- = 1"}) {
+    write("c.toml", "# a comment\n\n; another\nquiet = true\n" + line + "\n");
+    expect_wrong_usage({"info", "scene.vtr", "--config", "c.toml"},
+                       {"--config: expected lines NAME = VALUE"});
+  }
+}
+
+TEST_F(WrongUsage, ConfigurationsThatCannotBeReadWhole) {
+  make_scene("sphere", 4);
+  const auto expect = [this](const std::string& file, const std::string& message) {
+    expect_wrong_usage({"info", "scene.vtr", "--config", file}, {"--config: expected a file " + message});
+  };
+  expect("/proc/self/mem", "that can be read whole, found an error");
+  expect("/dev/zero", "of at most 1048576 bytes, found more");
+  const std::string limit = "quiet = true\n";
+  write("c.toml", limit + std::string((1 << 20) - limit.size(), '\n'));
+  EXPECT_EQ(run({"info", "scene.vtr", "--config", "c.toml"}).status, 0);
+  write("c.toml", limit + std::string((1 << 20) + 1 - limit.size(), '\n'));
+  expect("c.toml", "of at most 1048576 bytes, found more");
 }
 
 }  // namespace

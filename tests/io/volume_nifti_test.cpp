@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/io/grid_file.h"
 #include "tests/io/volume_files.h"
 
 namespace adamas {
@@ -269,6 +270,27 @@ TEST(NiftiVolume, EveryTruncationIsAnError) {
   const std::string packed = deflated(whole, Wrapping::kGzip);
   put_bytes(scratch / "b.nii.gz", packed);
   test::expect_every_truncation_is_an_error(scratch / "b.nii.gz", scratch / "b.nii.gz", packed.size());
+}
+
+TEST(NiftiVolume, WhatFollowsTheSamplesIsTold) {
+  const test::Scratch scratch;
+  const std::vector<double> samples{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  put_bytes(scratch / "a.nii", NiftiHeader().text() + kBytes + "more");
+  VolumeReader plain = open_volume(scratch / "a.nii");
+  EXPECT_EQ(read_numbers(plain), samples);
+  EXPECT_TRUE(says(plain.note(), "a.nii: 4 bytes behind the samples are not read"));
+  EXPECT_EQ(read_grid_file(scratch / "a.nii").remark, "4 bytes behind the samples are not read");
+  // Were it unpacked to its end, the damage there would be found.
+  std::string packed = deflated(NiftiHeader().text() + kBytes + std::string(1 << 22, '\0'), Wrapping::kGzip);
+  packed[packed.size() - 6] = static_cast<char>(packed[packed.size() - 6] + 1);
+  put_bytes(scratch / "a.nii.gz", packed);
+  VolumeReader unpacked = open_volume(scratch / "a.nii.gz");
+  EXPECT_EQ(read_numbers(unpacked), samples);
+  EXPECT_TRUE(says(unpacked.note(), "a.nii.gz: bytes behind the samples are not read"));
+  // The times that follow the first are nothing to be told of.
+  put_bytes(scratch / "t.nii", NiftiHeader().put<std::int16_t>(40, {4, 3, 2, 2, 2}).text() + kBytes + kBytes);
+  for (const std::uint64_t time : {0u, 1u})
+    EXPECT_EQ(open_volume(scratch / "t.nii", {.array = {}, .scratch_folder = {}, .time = time}).note(), "");
 }
 
 }  // namespace

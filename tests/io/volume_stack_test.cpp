@@ -205,6 +205,10 @@ TEST(MatchStack, Patterns) {
   EXPECT_TRUE(says(error_of([&] { match("c*.tif"); }), "c*.tif: expected files of such names, found none"));
   EXPECT_TRUE(says(error_of([&] { match("a8.tif"); }), "a8.tif: expected a pattern with *, ?, # or %d"));
   EXPECT_TRUE(says(error_of([&] { match("100%.tif"); }), "expected a pattern with"));
+  for (const std::string wide :
+       {"%21d", "%2147483647d", "%99999999999999999999999d", "#####################"})
+    EXPECT_TRUE(says(error_of([&] { match(wide + ".tif"); }), "expected numbers of at most 20 digits"))
+        << wide;
   EXPECT_TRUE(says(error_of([&] { match_stack(scratch / "none" / "*.tif"); }),
                    "none: expected a folder that can be read"));
 }
@@ -268,6 +272,9 @@ TEST(VolumeStack, NamesOfNumbers) {
   EXPECT_EQ(numbered_name("%d", 0), "0");
   for (const char* none : {"s.png", "s_%04d_%d.png", "s_*_%d.png", "s_?#.png", "100%.png", ""})
     EXPECT_EQ(numbered_name(none, 1), "") << none;
+  EXPECT_EQ(numbered_name("%020d", 7), "00000000000000000007");
+  for (const std::string none : {"%21d", "%300d", "%2147483647d", "%99999999999999999999999d"})
+    EXPECT_EQ(numbered_name("s_" + none + ".png", 1), "") << none;
 }
 
 }  // namespace
