@@ -301,6 +301,7 @@ void run(ExperimentOptions& options, Session& session) {
   folder.commit();
   session.outputs.commit();
   print_record(record, options.output, session.console);
+  if (record.series) record.series->left_out.note(session.console);
 }
 
 }  // namespace
