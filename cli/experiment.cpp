@@ -17,6 +17,7 @@
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
+#include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
 #include "interfaces/cutting/cut_mesh.h"
@@ -155,9 +156,10 @@ void Experiment::show_meshes() {
   }
   const ResampledMesh& mesh = record_.with_fields ? mesh_ : interface_mesh_;
   write_unstructured_mesh(folder_.file("mesh.vtu"), to_unstructured_mesh(mesh));
-  write_unstructured_mesh(
-      folder_.file("cut-mesh.vtu"),
-      to_unstructured_mesh(cut_mesh(mesh, kCutTolerance * targets_.interface_error, console_), mesh));
+  const SolverMesh cut =
+      to_solver_mesh(cut_mesh(mesh, kCutTolerance * targets_.interface_error, console_), mesh);
+  write_solver_mesh(folder_.file("cut-mesh.vtu"), cut);
+  write_unstructured_mesh(folder_.file("cut-mesh-faces.vtp"), face_surface(cut));
 }
 
 void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name,
@@ -301,6 +303,7 @@ void run(ExperimentOptions& options, Session& session) {
   session.console.flush();
   folder.commit();
   session.commit();
+  if (record.series) record.series->left_out.note(session.console);
 }
 
 }  // namespace

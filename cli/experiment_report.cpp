@@ -244,6 +244,7 @@ Figures experiment_figures(const ExperimentRecord& record) {
     figures["ledger"].push_back(std::move(entry));
   }
   figures["steps"] = record.series ? series_figures(*record.series) : Figures(nullptr);
+  if (record.series) figures["damaged_steps"] = record.series->left_out.numbers();
   figures["seconds"] = record.seconds;
   figures["peak_memory_bytes"] = peak_memory_bytes();
   return figures;

@@ -157,7 +157,7 @@ Figures print_hierarchy(const std::string& path, Session& session) {
 void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures) {
   figures["materials"] = Figures::array();
   for (const std::string& name : mesh.materials) figures["materials"].push_back({{"name", name}});
-  figures["interfaces"] = print_interfaces(mesh, console);
+  figures["interfaces"] = print_interfaces(mesh, false, console);
   InterfaceMeshReport report;
   try {
     report = check_interface_mesh(mesh, nullptr, {true, true});

@@ -256,6 +256,13 @@ MaterialDataOptions material_options(const InputOptions& options) {
   return result;
 }
 
+std::string input_name(const InputOptions& options) {
+  const std::size_t files = options.fractions.size();
+  const bool first =
+      files > 1 && parse_assignment("--fraction", options.fractions.front()).second == options.path;
+  return first ? fmt::format("{} and {}", options.path, counted(files - 1, "more file")) : options.path;
+}
+
 InputOptions with_main_file(const InputOptions& options) {
   InputOptions result = options;
   if (!options.path.empty()) return result;
@@ -297,6 +304,7 @@ MultiMaterialData load_data(const InputOptions& given, Console& console) {
       break;
   }
   MultiMaterialData data = read_multi_material_data(options.path, how, console);
+  data.source = input_name(options);
   check_extensive(options, data);
   note_mended_fractions(data, console);
   return data;

@@ -74,6 +74,10 @@ MaterialDataOptions material_options(const InputOptions& options);
 /// those that hold volume fractions or labels.
 InputOptions with_main_file(const InputOptions& options);
 
+/// What messages call the input: its path, and where that is the first of several files, how many more there
+/// are. `options` are those with a main file.
+std::string input_name(const InputOptions& options);
+
 /// The same where a file is needed: throws UsageError where there is none. `expected` is what the input is
 /// called.
 InputOptions with_needed_main_file(const InputOptions& options, const char* expected = "an INPUT");

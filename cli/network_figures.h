@@ -7,8 +7,9 @@
 
 namespace adamas {
 
-/// Prints how many triangles each interface has, "A | B"; the figures are a list of interfaces.
-Figures print_interfaces(const InterfaceMesh& mesh, Console& console);
+/// Prints how many triangles each interface has, "A | B", and how large it is where `areas` are wanted; the
+/// figures are a list of interfaces.
+Figures print_interfaces(const InterfaceMesh& mesh, bool areas, Console& console);
 
 /// Prints the volumes that given interfaces enclose, where they are closed; the figures are a list of
 /// materials with `key` for the volume.

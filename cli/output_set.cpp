@@ -135,6 +135,10 @@ void OutputSet::publish(const std::string& path,
   if (OutputFile* file = find(path)) file->publish();
 }
 
+void OutputSet::leave_out(const std::string& path) {
+  std::erase_if(files_, [&path](const Declared& each) { return each.file->path() == path; });
+}
+
 std::size_t OutputSet::bytes(const std::string& path) const {
   const OutputFile* file = find(path);
   std::error_code code;

@@ -32,6 +32,8 @@ class OutputSet {
   /// The same for an output that is whole at several moments: it gets its name at once, and may be written
   /// again.
   void publish(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
+  /// An output that will not be written after all.
+  void leave_out(const std::string& path);
   /// Bytes written for a path.
   [[nodiscard]] std::size_t bytes(const std::string& path) const;
   /// Gives all outputs their names, the last that was declared first. Throws Error where one cannot have it;

@@ -72,6 +72,13 @@ void add_bodies(Figures& figures, const ResampleFigures& measured, const Resampl
   figures["changed_bodies"] = changed;
   figures["wrong_bodies"] = std::move(rows);
   figures["contacts"] = measured.contacts.size();
+  figures["contact_pairs"] = Figures::array();
+  for (const auto& [a, b] : measured.contacts) {
+    const auto name = [&](BodyId body) {
+      return resampler.source().materials[measured.bodies[body.value].material];
+    };
+    figures["contact_pairs"].push_back({name(a), name(b)});
+  }
   const double whole = resampler.source().box.volume();
   figures["conserved"] =
       !resampler.options().conserve

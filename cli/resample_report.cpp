@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <utility>
 
 #include "cli/figures.h"
 #include "cli/fraction_report.h"
+#include "cli/several_notes.h"
 #include "interfaces/resampling/shortfall.h"
 
 namespace adamas {
@@ -33,41 +37,57 @@ void note_shortfalls(const InterfaceCertificate& certificate, const Resampler& r
     note("the interface error wanted for the lines where three materials meet", *certificate.junctions);
 }
 
+void note_lost_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+  std::vector<MaterialId> lost = lost_materials(m, source);
+  const bool known = !source.volumes.empty();
+  if (known) std::ranges::stable_sort(lost, std::greater{}, [&](MaterialId i) { return source.volumes[i]; });
+  std::vector<std::string> notes;
+  for (const MaterialId material : lost)
+    notes.push_back(
+        fmt::format("the mesh shows nothing of the material '{}'{}", source.materials[material],
+                    known ? fmt::format(" of volume {}", volume_text(source.volumes[material])) : ""));
+  note_several(notes, {"material", "materials"}, console);
+}
+
+/// Those that are lost or torn, the greatest first.
+std::vector<BodyFigures> wrong_bodies(const ResampleFigures& m) {
+  std::vector<BodyFigures> wrong;
+  std::ranges::copy_if(m.bodies, std::back_inserter(wrong),
+                       [](const BodyFigures& body) { return body.lost || body.changed; });
+  std::ranges::stable_sort(wrong, std::greater{},
+                           [](const BodyFigures& body) { return body.volume_input.value_or(body.volume); });
+  return wrong;
+}
+
+void note_contacts(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+  std::vector<std::string> notes;
+  for (const auto& [a, b] : m.contacts)
+    notes.push_back(fmt::format("bodies of '{}' and '{}' touch in the mesh and not in the input",
+                                source.materials[m.bodies[a.value].material],
+                                source.materials[m.bodies[b.value].material]));
+  note_several(notes, {"pair", "pairs"}, console);
+}
+
 /// Notes the materials and bodies of the input that the mesh shows changed or not at all.
 void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
-  constexpr std::size_t kMost = 10;
-  for (const MaterialId material : lost_materials(m, source)) {
-    const bool known = !source.volumes.empty();
-    console.note("the mesh shows nothing of the material '{}'{}", source.materials[material],
-                 known ? fmt::format(" of volume {}", volume_text(source.volumes[material])) : "");
-  }
-  std::size_t noted = 0;
-  for (const BodyFigures& body : m.bodies) {
-    if (!body.lost && !body.changed) continue;
-    if (++noted > kMost) continue;
+  note_lost_materials(m, source, console);
+  std::vector<std::string> notes;
+  for (const BodyFigures& body : wrong_bodies(m)) {
     const std::string volume =
         body.volume_input ? fmt::format(" of volume {}", volume_text(*body.volume_input)) : "";
     const std::string what = fmt::format("a body of '{}'{} at {}", source.materials[body.material], volume,
                                          place_text(body.place));
     if (body.lost) {
-      console.note("the mesh shows nothing of {}", what);
+      notes.push_back("the mesh shows nothing of " + what);
     } else {
-      console.note(
+      notes.push_back(fmt::format(
           "the mesh shows {} in {} piece{}, and its boundary has the Euler characteristic {} instead of {}",
           what, body.topology_mesh.pieces, body.topology_mesh.pieces == 1 ? "" : "s",
-          body.topology_mesh.euler, body.topology_input.euler);
+          body.topology_mesh.euler, body.topology_input.euler));
     }
   }
-  if (noted > kMost) console.note("... and {} more bodies that are lost or torn", noted - kMost);
-  if (m.contacts.empty()) return;
-  std::string pairs;
-  for (std::size_t i = 0; i < std::min(m.contacts.size(), kMost); ++i) {
-    const auto& [a, b] = m.contacts[i];
-    pairs += fmt::format("{}'{}' and '{}'", i == 0 ? "" : ", ", source.materials[m.bodies[a.value].material],
-                         source.materials[m.bodies[b.value].material]);
-  }
-  console.note("{} pairs of bodies touch in the mesh and not in the input: {}{}", m.contacts.size(), pairs,
-               m.contacts.size() > kMost ? ", ..." : "");
+  note_several(notes, {"body that is lost or torn", "bodies that are lost or torn"}, console);
+  note_contacts(m, source, console);
 }
 
 void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& console) {
@@ -144,31 +164,36 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
 }
 
 void note_field_shortfalls(const ResampleFigures& m, const Resampler& resampler, Console& console) {
+  std::vector<std::pair<double, std::string>> missed;
   for (std::size_t f = 0; f < m.fields.size(); ++f) {
     const FieldError& all = m.fields[f].all;
     const auto shortfall = field_shortfall(resampler, f, all);
     if (!shortfall) continue;
-    console.note("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}, at {}: {}",
-                 resampler.source().fields->fields()[f].name, all.max, *resampler.options().field_errors[f],
-                 place_text(shortfall->place), shortfall->reason);
+    const double wanted = *resampler.options().field_errors[f];
+    missed.emplace_back(
+        all.max / wanted,
+        fmt::format("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}, at {}: {}",
+                    resampler.source().fields->fields()[f].name, all.max, wanted,
+                    place_text(shortfall->place), shortfall->reason));
   }
+  note_several(worst_first(std::move(missed)), {"field", "fields"}, console);
 }
 
 /// Notes the bodies whose volumes are not as wanted, and why.
 void note_volume_shortfalls(const ResampleFigures& m, const Resampler& resampler, Console& console) {
-  constexpr std::size_t kMost = 10;
-  std::size_t noted = 0;
+  std::vector<std::pair<double, std::string>> missed;
   for (BodyId b(0); b.value < m.bodies.size(); ++b.value) {
     const auto shortfall = volume_shortfall(resampler, m, b);
-    if (!shortfall || ++noted > kMost) continue;
+    if (!shortfall) continue;
     const BodyFigures& body = m.bodies[b.value];
-    console.note(
-        "the volume error wanted was not reached: a body of '{}' at {} has {} instead of {} ({:.4g}%): {}",
-        resampler.source().materials[body.material], place_text(shortfall->place), volume_text(body.volume),
-        volume_text(*body.volume_input), 100 * body.volume_error(), shortfall->reason);
+    missed.emplace_back(body.volume_error(),
+                        fmt::format("the volume error wanted was not reached: a body of '{}' at {} has {} "
+                                    "instead of {} ({:.4g}%): {}",
+                                    resampler.source().materials[body.material], place_text(shortfall->place),
+                                    volume_text(body.volume), volume_text(*body.volume_input),
+                                    100 * body.volume_error(), shortfall->reason));
   }
-  if (noted > kMost)
-    console.note("... and {} more bodies with greater volume errors than wanted", noted - kMost);
+  note_several(worst_first(std::move(missed)), {"body", "bodies"}, console);
 }
 
 /// Notes where volumes are not conserved, though the options ask for it.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -8,6 +9,7 @@
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
+#include "cli/several_notes.h"
 #include "cli/usage_error.h"
 #include "interfaces/selection/selection.h"
 
@@ -55,11 +57,15 @@ void note_shortfalls(const Selection& selection, const SelectionTargets& targets
   if (targets.interface_error && selection.interface_error() > *targets.interface_error)
     console.note("the interface error wanted was not reached: {:.4g} instead of {:.4g}: {}",
                  selection.interface_error(), *targets.interface_error, why);
+  std::vector<std::pair<double, std::string>> missed;
   for (std::size_t f = 0; f < targets.field_errors.size(); ++f) {
-    if (targets.field_errors[f] && selection.field_error(f) > *targets.field_errors[f])
-      console.note("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}: {}",
-                   hierarchy.tree.fields[f].name, selection.field_error(f), *targets.field_errors[f], why);
+    if (!targets.field_errors[f] || selection.field_error(f) <= *targets.field_errors[f]) continue;
+    missed.emplace_back(
+        selection.field_error(f) / *targets.field_errors[f],
+        fmt::format("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}: {}",
+                    hierarchy.tree.fields[f].name, selection.field_error(f), *targets.field_errors[f], why));
   }
+  note_several(worst_first(std::move(missed)), {"field", "fields"}, console);
 }
 
 Figures report(const Selection& selection, const SelectionTargets& targets, const ResampledMesh& mesh,

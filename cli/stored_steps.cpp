@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "cli/several_notes.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
@@ -130,11 +131,18 @@ void StoredSteps::close() {
   const std::string note = open_->reader().note();
   if (!note.empty() && note != last_note_) session_.console.note("{}", note);
   last_note_ = note;
-  const std::uint64_t infinite = open_->infinite();
-  if (infinite > 0)
-    session_.console.note("{}: {} not finite: surfaces have holes there", steps_[opened_].name,
-                          infinite == 1 ? "1 sample is" : fmt::format("{} samples are", infinite));
+  if (const std::uint64_t infinite = open_->infinite(); infinite > 0) infinite_[opened_] = infinite;
   open_.reset();
+}
+
+void StoredSteps::finish() {
+  close();
+  std::vector<std::pair<double, std::string>> notes;
+  for (const auto& [step, samples] : infinite_)
+    notes.emplace_back(static_cast<double>(samples),
+                       fmt::format("{}: {} not finite: surfaces have holes there", steps_[step].name,
+                                   samples == 1 ? "1 sample is" : fmt::format("{} samples are", samples)));
+  note_several(worst_first(std::move(notes)), {"step", "steps"}, session_.console);
 }
 
 void StoredSteps::note_array(const InputStep& step, const VolumeSource& source) {

@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/store_options.h"
 #include "cli/view_flight.h"
@@ -178,11 +179,13 @@ void run_window(const ViewOptions& options, Session& session) {
   restore_state(options, view);
   apply_view_options(options, view);
   session.console.clear();
+  window.is_ended = interrupted;
   show_window(view, window);
   std::vector<std::string> names;
   for (const auto& document : view.documents()) names.push_back(document->facts().name);
   const std::filesystem::path memory = remembered_states_file();
   if (!memory.empty()) remember_state(memory, names, view.remembered());
+  session.console.check();
 }
 
 void run(const ViewOptions& options, Session& session) {

@@ -78,6 +78,7 @@ class Reader {
     progress_.step("check materials", 0.9);
     if (options_.region) crop(*options_.region, data_);
     data_.normalise();
+    data_.report.step = step_;
     for (const std::string& field : options_.extensive) make_intensive(field, data_);
     data_.check();
     progress_.step("check materials", 1);
@@ -219,6 +220,7 @@ class Reader {
     add_material(name);
     if (data_.materials.size() == 1) data_.grid.centering = array.centering;
     const RectilinearGrid from{main_.nodes, array.centering};
+    if (array.integral()) step_ = 1 / options_.fraction_scale;
     std::vector<float> values = array.take_floats();
     if (from.centering != data_.grid.centering) values = average_to(data_.grid.centering, from, 1, values);
     if (options_.fraction_scale != 1) {
@@ -296,6 +298,7 @@ class Reader {
   GridFile main_;
   std::vector<std::string> taken_;  // arrays of the main file that have found their use
   bool plain_ = false;
+  double step_ = 0;  // of FractionReport
   MultiMaterialData data_;
 };
 

@@ -58,11 +58,12 @@ class LostBodySearch {
   }
 
   [[nodiscard]] LostBody describe(MaterialId material) const {
-    LostBody body{material, 0, group_.size(), {}};
+    LostBody body{material, 0, group_.size(), {}, 0};
     for (const auto& [site, fraction] : group_) {
       const double volume = fraction * sites_.cell(site).volume();
       body.volume += volume;
       body.place += volume * sites_.cell(site).center();
+      body.fraction = std::max(body.fraction, fraction);
     }
     body.place *= 1 / body.volume;
     return body;
@@ -76,6 +77,11 @@ class LostBodySearch {
 };
 
 }  // namespace
+
+bool is_one_step(double fraction, const FractionReport& report) {
+  constexpr double kScaled = 1.5;  // less than two steps
+  return fraction <= kScaled * report.step;
+}
 
 std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const SiteValues& values,
                                        const SiteCells& cells) {

@@ -52,6 +52,7 @@ void Experiment::expect_all_files() const {
                                        "interface-mesh.vtu",
                                        "mesh.vtu",
                                        "cut-mesh.vtu",
+                                       "cut-mesh-faces.vtp",
                                        "slice-1.png",
                                        "slice-1-detail.png",
                                        "slice-1-fields.png",

@@ -245,9 +245,36 @@ TEST_F(Series, StepsThatDiffer) {
   for (const auto& command : {resample, slice})
     expect_failure(command, {"s_0002.vtr: expected the materials of s_0000.vtr ('surrounding'", "found"});
   write("s_0002.vtr", "none");
-  for (const auto& command : {resample, slice}) expect_failure(command, {"s_0002.vtr"});
+  // What is damaged is left out; the others are as without it.
+  for (const auto& command : {resample, slice}) {
+    const RunResult result = run(command);
+    EXPECT_EQ(result.status, 3) << result.err;
+    EXPECT_NE(result.err.find("s_0002.vtr: "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("step 2 is left out"), std::string::npos) << result.err;
+  }
+  const auto made = files();
+  for (const char* name : {"m_0000.vtu", "m_0001.vtu", "p_0.svg", "p_1.svg"})
+    EXPECT_TRUE(made.contains(name));
+  for (const char* name : {"m_0002.vtu", "p_2.svg"}) EXPECT_FALSE(made.contains(name)) << name;
+  EXPECT_EQ(read("m.pvd").find("m_0002"), std::string::npos);
   write("s_0002.vtr", kept);
   run_well(resample);
+}
+
+TEST_F(Series, ExperimentsGoOnWithoutDamagedSteps) {
+  make_series("3");
+  write("s_0001.vtr", "none");
+  const RunResult result = run({"experiment", "s.pvd", "--interface-error", "8%", "-o", "out"});
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_NE(result.err.find("s_0001.vtr: "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("step 1 is left out"), std::string::npos) << result.err;
+  const auto metrics = read_json("out/metrics.json");
+  EXPECT_EQ(metrics["damaged_steps"], std::vector<int>{1});
+  ASSERT_EQ(metrics["steps"].size(), 2u);
+  EXPECT_EQ(metrics["steps"][1]["step"], 2);
+  for (int step = 0; step < 3; ++step)
+    EXPECT_EQ(std::filesystem::exists(folder() / ("out/mesh_000" + std::to_string(step) + ".vtu")),
+              step != 1);
 }
 
 TEST_F(Series, WrongUsage) {
