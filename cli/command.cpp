@@ -47,7 +47,7 @@ void add_common_options(const Command& command, Session& session) {
       .group("Common");
   command
       .add_flag("--quiet,-q", session.console.quiet,
-                "Print nothing but errors and what is missing of a damaged input")
+                "Print nothing but errors and what the result lacks of what was wanted")
       .group("Common");
   command.add_flag("--verbose,-v", session.console.verbose, "Print a line per stage of the work")
       .group("Common");

@@ -44,9 +44,16 @@ class Console final : public Progress {
   template <class... Args>
   void note_damage(fmt::format_string<Args...> format, Args&&... args) {
     write_note(text<Args...>(format, args...));
-    damage_noted_ = true;
+    incomplete_ = true;
   }
-  [[nodiscard]] bool damage_noted() const { return damage_noted_; }
+  /// An error that was wanted and not reached: the same.
+  template <class... Args>
+  void note_unreached(fmt::format_string<Args...> format, Args&&... args) {
+    write_note(text<Args...>(format, args...));
+    incomplete_ = true;
+  }
+  /// Whether the result is not all that was wanted.
+  [[nodiscard]] bool incomplete() const { return incomplete_; }
   /// Columns of text, the first one to the left and the others to the right.
   void table(std::vector<std::vector<std::string>> rows);
   /// To stdout as it is, whatever `quiet` says.
@@ -83,7 +90,7 @@ class Console final : public Progress {
 
   Clock::time_point start_ = Clock::now(), drawn_{};
   std::string stage_;
-  bool bar_ = false, damage_noted_ = false;
+  bool bar_ = false, incomplete_ = false;
   int write_error_ = 0;  ///< errno of the first write to stdout that failed
 };
 

@@ -257,6 +257,7 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
   add("interfaces", record.interfaces);
   if (record.with_fields) add("with fields", *record.with_fields);
   console.table(rows);
+  for (const auto& [mesh, line] : unreached_of_meshes(record)) console.note_unreached("{}: {}", mesh, line);
   if (record.series) {
     console.print("\n");
     print_series(*record.series, console);

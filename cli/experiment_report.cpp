@@ -98,6 +98,18 @@ ReportTable runs_table(const ExperimentRecord& record, const std::vector<Experim
   return table;
 }
 
+/// The errors that were wanted and not reached, mesh by mesh.
+ReportTable unreached_table(const ExperimentRecord& record) {
+  ReportTable table{"Errors that were not reached", {"mesh", "what, and why"}, {}};
+  for (const auto& [mesh, line] : unreached_of_meshes(record)) table.rows.push_back({mesh, line});
+  if (!record.series) return table;
+  for (std::size_t n = 0; n < record.series->steps.size(); ++n) {
+    for (const std::string& line : record.series->steps[n].run.unreached)
+      table.rows.push_back({"step " + std::to_string(n), line});
+  }
+  return table;
+}
+
 ReportTable triangles_table(const ExperimentRecord& record) {
   ReportTable table{"Interfaces of the input", {"between", "triangles"}, {}};
   for (const auto& [pair, count] : record.triangles) table.rows.push_back({pair, std::to_string(count)});
@@ -208,6 +220,20 @@ void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> unreached_of_meshes(const ExperimentRecord& record) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  const auto add = [&lines](const std::string& mesh, const ExperimentRun& run) {
+    for (const std::string& line : run.unreached) lines.emplace_back(mesh, line);
+  };
+  add("interfaces", record.interfaces);
+  if (record.with_fields) add("with fields", *record.with_fields);
+  for (const ExperimentRun& run : record.curve) {
+    const double error = run.options.interface_error;
+    if (error != record.interfaces.options.interface_error) add("curve, " + number(error), run);
+  }
+  return lines;
+}
+
 Figures experiment_figures(const ExperimentRecord& record) {
   Figures figures;
   figures["title"] = record.title;
@@ -261,6 +287,7 @@ void write_experiment_report(const ExperimentRecord& record, const std::filesyst
   report.table(runs_table(record, {record.interfaces}, "Refined for interfaces alone"));
   if (record.with_fields)
     report.table(runs_table(record, {*record.with_fields}, "Refined for interfaces and fields"));
+  if (const ReportTable unreached = unreached_table(record); !unreached.rows.empty()) report.table(unreached);
   if (!record.fields.empty()) {
     report.table(fields_table(record));
     report.paragraph(

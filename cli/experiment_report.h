@@ -49,6 +49,10 @@ struct ExperimentRecord {
 /// The keys of metrics.json.
 Figures experiment_figures(const ExperimentRecord& record);
 
+/// The errors that meshes of the input were wanted with and did not reach: which mesh, and a line that says
+/// what and why. Without those of the steps of a series.
+std::vector<std::pair<std::string, std::string>> unreached_of_meshes(const ExperimentRecord& record);
+
 /// Draws the curves of error against tetrahedra into the folder and writes report.html with all pictures.
 void write_experiment_report(const ExperimentRecord& record, const std::filesystem::path& folder);
 

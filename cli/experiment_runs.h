@@ -24,7 +24,8 @@ struct ExperimentRun {
   ResamplingOptions options;
   ResampleFigures figures;
   std::optional<InterfaceCertificate> certificate;
-  std::vector<NestedSummary> nested;  ///< per field; empty without a mesh
+  std::vector<NestedSummary> nested;   ///< per field; empty without a mesh
+  std::vector<std::string> unreached;  ///< a line for each error that was wanted and not reached
   Figures json;
   double seconds = 0;
 };

@@ -355,7 +355,9 @@ bool is_saved_hierarchy(const std::string& path) {
 SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console) {
   check_input_file(path);
   console.step("reading " + path, -1);
-  return from_arrays(read_array_file(path, kHierarchyFormat, kHierarchyVersion).arrays, path);
+  const ArrayFile file =
+      read_array_file(path, kHierarchyFormat, names_of_arrays(), kOldestHierarchyVersion, kHierarchyVersion);
+  return from_arrays(file.arrays, path, file.version);
 }
 
 }  // namespace adamas

@@ -51,7 +51,7 @@ int run(adamas::CommandLine& command_line, adamas::Session& session, int argc, c
       session.console.clear();
     }
     session.console.flush();
-    return session.console.damage_noted() ? kIncomplete : kDone;
+    return session.console.incomplete() ? kIncomplete : kDone;
   } catch (const adamas::UsageError& e) {
     return usage_status(e.what(), command_line.named_command());
   }

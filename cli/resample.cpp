@@ -55,7 +55,7 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
         [&resampler] { return resampled_mesh(resampler); }, session);
   session.outputs.write(options.save, [&](const auto& path) {
     console.step("measuring all cells of the hierarchy", -1);
-    const SavedHierarchy hierarchy = take_hierarchy(resampler);
+    const SavedHierarchy hierarchy = take_hierarchy(resampler, console);
     console.step("writing " + options.save, -1);
     write_array_file(path, {kHierarchyFormat, kHierarchyVersion, to_arrays(hierarchy)});
   });

@@ -100,6 +100,7 @@ void add_volume_errors(Figures& figures, const ResampleFigures& measured, const 
   }
   figures["volume_error_target"] = known(target.has_value(), target.value_or(0));
   figures["volume_error"] = worst ? Figures(measured.bodies[worst->value].volume_error()) : Figures(nullptr);
+  figures["worst_body"] = worst ? body_row(measured.bodies[worst->value], resampler) : Figures(nullptr);
   figures["volume_error_reached"] = target ? Figures(rows.empty()) : Figures(nullptr);
   figures["volume_error_shortfall"] =
       shortfall_figures(worst ? volume_shortfall(resampler, measured, *worst) : std::nullopt);

@@ -9,7 +9,6 @@
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
-#include "cli/several_notes.h"
 #include "cli/usage_error.h"
 #include "interfaces/selection/selection.h"
 
@@ -54,41 +53,73 @@ void note_shortfalls(const Selection& selection, const SelectionTargets& targets
       selection.budget_spent()
           ? fmt::format("the mesh may have no more than {} tetrahedra", *targets.max_tetrahedra)
           : std::string("the hierarchy that was saved goes no further");
-  if (targets.interface_error && selection.interface_error() > *targets.interface_error)
-    console.note("the interface error wanted was not reached: {:.4g} instead of {:.4g}: {}",
-                 selection.interface_error(), *targets.interface_error, why);
-  std::vector<std::pair<double, std::string>> missed;
-  for (std::size_t f = 0; f < targets.field_errors.size(); ++f) {
-    if (!targets.field_errors[f] || selection.field_error(f) <= *targets.field_errors[f]) continue;
-    missed.emplace_back(
-        selection.field_error(f) / *targets.field_errors[f],
-        fmt::format("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}: {}",
-                    hierarchy.tree.fields[f].name, selection.field_error(f), *targets.field_errors[f], why));
+  const auto note = [&](const std::string& what, double found, double wanted) {
+    if (found <= wanted) return;
+    console.note_unreached("{} was not reached: {} instead of {:.4g}: {}", what, length_text(found), wanted,
+                           why);
+  };
+  if (const auto& wanted = targets.interface_error) {
+    const InterfaceCertificate* found = selection.certificate();
+    const std::string what = "the interface error wanted";
+    note(what, found != nullptr ? found->networks.upper : selection.interface_error(), *wanted);
+    if (found != nullptr && hierarchy.tree.materials.size() > 2)
+      note(fmt::format("{} for the boundary of '{}'", what, hierarchy.tree.materials[found->worst_material]),
+           found->materials.upper, *wanted);
+    if (found != nullptr && found->junctions)
+      note(what + " for the lines where three materials meet", found->junctions->upper, *wanted);
   }
-  note_several(worst_first(std::move(missed)), {"field", "fields"}, console);
+  for (std::size_t f = 0; f < targets.field_errors.size(); ++f) {
+    if (targets.field_errors[f])
+      note(fmt::format("the error wanted of the field '{}'", hierarchy.tree.fields[f].name),
+           selection.field_error(f), *targets.field_errors[f]);
+  }
+}
+
+/// Adds what is known of the interfaces' distance: certified, or estimated where the mesh was not measured.
+void add_interface_errors(const Selection& selection, std::vector<std::vector<std::string>>& rows,
+                          Figures& figures) {
+  figures["interface_error_estimate"] = nullptr;
+  for (const char* key : {"interface_error", "interface_error_per_material", "junction_error"}) {
+    figures[key] = nullptr;
+    figures[key + std::string("_measured")] = nullptr;
+  }
+  const InterfaceCertificate* certificate = selection.certificate();
+  if (certificate == nullptr) {
+    rows.push_back({"interface error estimated", length_text(selection.interface_error())});
+    figures["interface_error_estimate"] = selection.interface_error();
+    return;
+  }
+  const auto add = [&](const std::string& name, const std::string& key, const InterfaceDistance& distance) {
+    rows.push_back({name + " certified", length_text(distance.upper)});
+    rows.push_back({name + " found", length_text(distance.lower)});
+    figures[key] = distance.upper;
+    figures[key + "_measured"] = distance.lower;
+  };
+  add("interface error", "interface_error", certificate->networks);
+  if (selection.hierarchy().tree.materials.size() > 2)
+    add("interface error per material", "interface_error_per_material", certificate->materials);
+  if (certificate->junctions) add("junction error", "junction_error", *certificate->junctions);
 }
 
 Figures report(const Selection& selection, const SelectionTargets& targets, const ResampledMesh& mesh,
                Session& session) {
   const SavedHierarchy& hierarchy = selection.hierarchy();
   Console& console = session.console;
-  const double interface_error = selection.interface_error();
   std::vector<std::vector<std::string>> rows{
       {"tetrahedra", std::to_string(mesh.cells.size())},
       {"vertices", std::to_string(mesh.points.size())},
       {"interface error wanted",
-       targets.interface_error ? fmt::format("{:.4g}", *targets.interface_error) : std::string("-")},
-      {"interface error estimated", fmt::format("{:.4g}", interface_error)}};
-  console.table(rows);
+       targets.interface_error ? fmt::format("{:.4g}", *targets.interface_error) : std::string("-")}};
   Figures figures{{"input", hierarchy.tree.source},
                   {"tetrahedra", mesh.cells.size()},
                   {"vertices", mesh.points.size()},
                   {"changed_tetrahedra", selection.changed()},
                   {"whole_hierarchy", selection.is_whole()},
-                  {"interface_error_estimate", interface_error},
                   {"fields", Figures::object()},
                   {"materials", Figures::array()}};
   if (targets.interface_error) figures["interface_error_target"] = *targets.interface_error;
+  add_interface_errors(selection, rows, figures);
+  console.table(rows);
   const std::vector<FieldError> errors = measured_errors(selection);
   if (!errors.empty()) {
     rows = {{"field error", "wanted", "greatest", "mean", "that smaller cells lower"}};

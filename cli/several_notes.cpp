@@ -5,14 +5,16 @@
 
 namespace adamas {
 
-void note_several(const std::vector<std::string>& notes, const NoteKind& kind, Console& console) {
-  if (console.verbose || notes.size() < 2) {
-    for (const std::string& note : notes) console.note("{}", note);
-    return;
-  }
+std::vector<std::string> several_lines(const std::vector<std::string>& notes, const NoteKind& kind,
+                                       bool verbose) {
+  if (verbose || notes.size() < 2) return notes;
   const std::size_t more = notes.size() - 1;
-  console.note("{}; and {} more {} (--verbose names all)", notes.front(), more,
-               more == 1 ? kind.one : kind.several);
+  return {fmt::format("{}; and {} more {} (--verbose names all)", notes.front(), more,
+                      more == 1 ? kind.one : kind.several)};
+}
+
+void note_several(const std::vector<std::string>& notes, const NoteKind& kind, Console& console) {
+  for (const std::string& line : several_lines(notes, kind, console.verbose)) console.note("{}", line);
 }
 
 std::vector<std::string> worst_first(std::vector<std::pair<double, std::string>> notes) {

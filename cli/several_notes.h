@@ -14,8 +14,12 @@ struct NoteKind {
   const char* several;
 };
 
-/// Notes several things of one kind, the worst of them first: all with `verbose`, otherwise the first and how
-/// many more there are: "...; and 4 more bodies (--verbose names all)".
+/// Lines for several things of one kind, the worst of them first: all with `verbose`, otherwise the first and
+/// how many more there are: "...; and 4 more bodies (--verbose names all)".
+std::vector<std::string> several_lines(const std::vector<std::string>& notes, const NoteKind& kind,
+                                       bool verbose);
+
+/// Notes these lines.
 void note_several(const std::vector<std::string>& notes, const NoteKind& kind, Console& console);
 
 /// The notes, those with the greatest numbers first.

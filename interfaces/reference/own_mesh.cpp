@@ -111,14 +111,15 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
       measure_distance(source, extracted.mesh.points, triangles, options.interface_error, progress);
   const auto& certified = resampler.certificate();
   own.half_width = std::max(options.interface_error, certified ? certified->materials.upper : 0);
-  if (certified && certified->networks.upper > options.interface_error)
-    row.note = "the interface error wanted was not reached";
   if (source.fields) {
     const ElementErrors errors =
         measure_element_errors(source, measured_cells(mesh), own.half_width, progress);
     own.at_interface = elements_at_interfaces(mesh, errors, progress);
     figures.fields = errors.figures(own.at_interface);
   }
+  row.unreached = unreached_errors(resampler, figures.fields);
+  for (const UnreachedError& error : row.unreached)
+    row.note += (row.note.empty() ? "" : "; ") + error.what + " was not reached";
   add_cut_row(source, mesh, own, progress);
   return own;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -29,6 +30,12 @@ struct InterfaceCertificate {
   /// shown, or where they are not known because its interfaces are open.
   std::optional<InterfaceDistance> junctions;
   std::size_t triangles = 0;  ///< of what is shown
+
+  /// The greatest of the certified distances.
+  [[nodiscard]] double upper() const {
+    const double parts = std::max(networks.upper, materials.upper);
+    return junctions ? std::max(parts, junctions->upper) : parts;
+  }
 };
 
 /// The input's interfaces beside those that a mesh shows: the distances of the whole networks, of each
@@ -42,6 +49,8 @@ class InterfaceComparison {
   /// end at each other or at the box, so that junction lines are known.
   InterfaceComparison(InterfaceMesh input, const Box3& box, bool closed, double target);
 
+  /// Another distance is wanted of what is measured from now on.
+  void set_target(double target) { target_ = target; }
   /// Measures what is shown now, so well that each triangle's distance is known to be within the target or
   /// not. The mesh's materials are those of the source.
   void measure(const InterfaceMesh& shown, const Progress& progress);

@@ -156,6 +156,28 @@ TEST_F(Experiment, TakesDataOfOthers) {
   EXPECT_FALSE(files.contains("slice-1.png"));
 }
 
+/// The terminal, the report and the figures say which error was not reached, and why; quiet or not.
+TEST_F(Experiment, ErrorsThatAreNotReachedAreTold) {
+  make_scene("tjunction", 8);
+  const RunResult result = run({"experiment", "scene.vtr", "--interface-error", "3%", "--field-error",
+                                "smooth=1e-9", "--max-tetrahedra", "150", "--quiet", "-o", "out"});
+  EXPECT_EQ(result.status, 3);
+  const auto figures = read_json("out/metrics.json").at("mesh");
+  const std::string report = read("out/report.html");
+  EXPECT_NE(report.find("Errors that were not reached"), std::string::npos);
+  const std::string reason = figures.at("fields").at("smooth").at("shortfall").at("reason");
+  for (const std::string& text : {std::string("error wanted of the field"), reason}) {
+    EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
+    EXPECT_NE(report.find(text), std::string::npos) << text;
+  }
+  for (const auto& [key, text] : {std::pair("interface_error", "the interface error wanted was not reached"),
+                                  {"interface_error_per_material", "wanted for the boundary of "},
+                                  {"junction_error", "wanted for the lines where three materials meet"}}) {
+    EXPECT_EQ(figures.at(key + std::string("_reached")), result.err.find(text) == std::string::npos) << text;
+    EXPECT_EQ(figures.at(key + std::string("_reached")), report.find(text) == std::string::npos) << text;
+  }
+}
+
 TEST_F(Experiment, SlicesMaterialsWithoutAField) {
   make_scene("tjunction", 6);
   const RunResult result = run({"experiment", "scene.vtr", "--interface-error", "10%", "--plane", "x=0.5",

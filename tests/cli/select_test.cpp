@@ -30,7 +30,9 @@ TEST_F(Select, WholeAndCoarserMeshes) {
             "--cut-mesh", "c.vtu", "--ledger", "l.csv", "--picture", "p.png", "--json", "m.json"});
   const auto coarse = read_json("m.json");
   EXPECT_LT(coarse.at("tetrahedra"), full);
-  EXPECT_LE(coarse.at("interface_error_estimate"), coarse.at("interface_error_target"));
+  for (const char* error : {"interface_error", "interface_error_per_material", "junction_error"})
+    EXPECT_LE(coarse.at(error), coarse.at("interface_error_target")) << error;
+  EXPECT_TRUE(coarse.at("interface_error_estimate").is_null());
   double input = 0, mesh = 0;
   for (const auto& material : coarse.at("materials"))
     input += material.at("volume_input").get<double>(), mesh += material.at("volume_mesh").get<double>();
@@ -120,7 +122,18 @@ TEST_F(Select, FilesOfVersionOneAreRead) {
   run_well({"select", golden, "--interface-error", "6%", "-o", "m.vtu", "--json", "m.json"});
   const auto figures = read_json("m.json");
   EXPECT_EQ(figures.at("tetrahedra"), 6);
-  EXPECT_NEAR(figures.at("interface_error_estimate").get<double>(), 0.09473044295287736, 1e-12);
+  EXPECT_LE(figures.at("interface_error_estimate"), figures.at("interface_error_target"));
+  EXPECT_TRUE(figures.at("interface_error").is_null());
+}
+
+TEST_F(Select, ErrorsThatAreNotReachedAreTold) {
+  const RunResult result = run({"select", "h.h5", "--interface-error", "0.01%", "--field-error",
+                                "smooth=1e-9", "--quiet", "--json", "m.json"});
+  EXPECT_EQ(result.status, 3);
+  for (const char* text : {"the interface error wanted was not reached", "wanted for the boundary of '",
+                           "the error wanted of the field 'smooth' was not reached",
+                           "the hierarchy that was saved goes no further"})
+    EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
 }
 
 TEST_F(Select, TheSameBytesOnAnyNumberOfThreads) {
