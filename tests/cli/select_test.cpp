@@ -126,6 +126,18 @@ TEST_F(Select, FilesOfVersionOneAreRead) {
   EXPECT_TRUE(figures.at("interface_error").is_null());
 }
 
+/// The same of version 2, which has certified errors.
+TEST_F(Select, FilesOfVersionTwoAreRead) {
+  const std::string golden = std::string(ADAMAS_SOURCE_DIR) + "/tests/cli/golden/hierarchy-2.h5";
+  run_well({"select", golden, "--json", "all.json"});
+  EXPECT_EQ(read_json("all.json").at("tetrahedra"), 32);
+  run_well({"select", golden, "--interface-error", "6%", "-o", "m.vtu", "--json", "m.json"});
+  const auto figures = read_json("m.json");
+  EXPECT_EQ(figures.at("tetrahedra"), 6);
+  EXPECT_NEAR(figures.at("interface_error_per_material").get<double>(), 0.08817, 1e-5);
+  EXPECT_LE(figures.at("junction_error"), figures.at("interface_error_target"));
+}
+
 TEST_F(Select, ErrorsThatAreNotReachedAreTold) {
   const std::vector<std::pair<std::vector<std::string>, std::vector<const char*>>> cases{
       {{"--interface-error", "0.01%"},
