@@ -180,8 +180,10 @@ void run(const Options& options, Session& session) {
   std::vector<Ledger> ledgers;
   if (!hierarchy.input_volumes.empty()) ledgers.push_back(volume_ledger("input", hierarchy.input_volumes));
   if (options.outputs.need_mesh()) {
-    figures["cut_mesh"] =
-        write_mesh(options.outputs, mesh, selection.interface_error(), nullptr, ledgers, session);
+    // As where the mesh is made anew, the error that was wanted says how closely it is cut.
+    const double error =
+        targets.interface_error.value_or(std::max(selection.interface_error(), hierarchy.interface_target));
+    figures["cut_mesh"] = write_mesh(options.outputs, mesh, error, nullptr, ledgers, session);
   }
   figures["ledger"] = ledger_figures(ledgers, mesh.materials, mesh.fields);
   figures["seconds"] = console.seconds();
@@ -203,8 +205,8 @@ void add_select(const Command& app, Session& session) {
   command
       .add_option(
           "--interface-error", options->interface_error,
-          "Greatest estimated distance of the interfaces: a length, in % of the domain's diagonal, or "
-          "in voxels of the input's grid (default: all that was saved)")
+          "Greatest distance of the interfaces: a length, in % of the domain's diagonal, or in voxels of "
+          "the input's grid (default: all that was saved)")
       .type_name("E|E%|Evoxels");
   command
       .add_option("--field-error", options->field_errors,

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -17,7 +18,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 /// Each error is that of the mesh before divided by this, or by less where the mesh would be greater than
 /// that by more than `kGrowth`, down to the least step. Meshes for errors in between are finer than they need
 /// be.
-constexpr double kStep = 1.1, kLeastStep = 1.01, kGrowth = 1.15;
+constexpr double kStep = 1.1, kLeastStep = 1.02, kGrowth = 1.2;
 /// Estimates are held to this part of the error wanted, as when the hierarchy was made.
 constexpr double kEstimatePart = 0.95;
 constexpr int kMostRounds = 20;
@@ -47,14 +48,13 @@ class Certifier {
     bool stuck = false;
     for (double step = kStep; least_ > last && std::count(known_.begin(), known_.end(), 0) > 0;) {
       const double target = std::max(least_ / step, last);
-      const InterfaceMesh shown = split_to(target);
-      const bool steep = static_cast<double>(cells_.size()) > kGrowth * static_cast<double>(known_size_);
-      if (steep && !stuck && step > kLeastStep) {
+      const std::optional<InterfaceMesh> shown = split_to(target, !stuck && step > kLeastStep);
+      if (!shown) {
         split_ = known_;
         step = std::sqrt(step);
         continue;
       }
-      stuck = !record(shown);
+      stuck = !record(*shown);
       if (stuck && target == last) break;
       step = stuck ? step * kStep : std::min(step * step, kStep);
     }
@@ -68,13 +68,16 @@ class Certifier {
  private:
   using Found = std::vector<std::atomic<bool>>;
 
-  /// Goes on to a mesh whose interfaces are within an error, as far as there is one; returns these.
-  InterfaceMesh split_to(double target) {
-    split_for_estimates(kEstimatePart * target);
+  /// Goes on to a mesh whose interfaces are within an error, as far as there is one; returns these. None
+  /// where the mesh grows too much for one step, and may not.
+  std::optional<InterfaceMesh> split_to(double target, bool in_small_steps) {
     for (int round = 0;; ++round) {
+      split_for_estimates(kEstimatePart * target);
+      selection_.choose(split_);
+      const double most = kGrowth * static_cast<double>(known_size_);
+      if (in_small_steps && static_cast<double>(selection_.size()) > most) return std::nullopt;
       InterfaceMesh shown = measure(target);
       if (comparison_.within() || round == kMostRounds || !split_what_fails(shown, target)) return shown;
-      split_for_estimates(kEstimatePart * target);
     }
   }
 
@@ -99,6 +102,8 @@ class Certifier {
     for (std::size_t d = 0; d < split_.size(); ++d) {
       if (split_[d] != 0 && known_[d] == 0) hierarchy_.interface_errors[d] = least_;
     }
+    // The same mesh, measured anew for a smaller error, has tighter bounds.
+    if (known_ == split_ && !hierarchy_.certificates.empty()) hierarchy_.certificates.pop_back();
     known_ = split_;
     known_size_ = cells_.size();
     least_ = certificate.upper();
