@@ -7,7 +7,9 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -29,6 +31,9 @@ constexpr const char* kFirstSteps =
     "  adamas resample cells.vtr --interface-error 1% -o mesh.vtu\n"
     "  adamas slice mesh.vtu --plane z=0.5 -o slice.png\n"
     "  adamas resample --help";
+
+/// Of values of options, behind their number.
+constexpr std::string_view kUnits[] = {"%", "voxels", "voxel", "cells", "cell"};
 
 void add_all_commands(const Command& root, Session& session) {
   const Command generate =
@@ -227,6 +232,20 @@ std::string no_value(const CLI::App& command, std::string_view last_word) {
   return {};
 }
 
+/// A unit that a blank parts from its number, which would count as a file of input.
+void check_units(std::span<char* const> words) {
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::string_view number = words[i - 1], unit = words[i];
+    const bool is_unit = std::ranges::find(kUnits, unit) != std::end(kUnits);
+    if (!is_unit || number.empty() || number.find_first_not_of("0123456789.,eE+-") != number.npos) continue;
+    std::error_code unknown;
+    if (std::filesystem::exists(unit, unknown)) continue;
+    const std::string option = i >= 2 && words[i - 2][0] == '-' ? fmt::format("{}: ", words[i - 2]) : "";
+    throw UsageError(fmt::format("{}expected '{}{}' without a blank, found '{}' and '{}'", option, number,
+                                 unit, number, unit));
+  }
+}
+
 template <class Kind>
 bool is(const CLI::ParseError& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
@@ -275,6 +294,7 @@ CommandLine::CommandLine(Session& session)
 CommandLine::~CommandLine() = default;
 
 bool CommandLine::parse(int argc, char** argv) {
+  check_units({argv, static_cast<std::size_t>(argc)});
   try {
     app_->parse(argc, argv);
     return true;

@@ -264,7 +264,7 @@ Figures print_store(const std::string& path, Session& session) {
   print_range(*file, console, figures);
   const auto pages = file->grid().page_count();
   const std::string coarsest =
-      levels > 1 ? fmt::format(" to every {}th along each axis", std::uint64_t{1} << (levels - 1)) : "";
+      levels > 1 ? fmt::format(" to one in {} along each axis", std::uint64_t{1} << (levels - 1)) : "";
   console.print("  levels 0 to {}, all samples{}; {}{}\n", levels - 1, coarsest, counted(pages, "page"),
                 file->steps() > 1 ? fmt::format(" a step, {} in all", pages * file->steps()) : "");
   console.print("  coding {}, {} gradients: {}\n\n", coding.name, header.gradients ? "with" : "without",

@@ -243,9 +243,10 @@ Figures print_one(const Options& all, Session& session) {
   if (auto volume = find_volume(options, all.volume, session))
     return print_volume(std::move(*volume), options.path, all.volume.array, session);
   // Unless an option says otherwise, labels and fractions belong to cells.
-  const bool materials = !options.labels.empty() || !options.fractions.empty();
-  const FileSummary summary =
-      summarize_file(options.path, options.centering(), materials ? Centering::kCells : Centering::kPoints);
+  const std::optional<RawVolume> raw = raw_volume(options.raw);
+  const FileSummary summary = summarize_file(
+      options.path, options.centering(), options.names_materials() ? Centering::kCells : Centering::kPoints,
+      raw ? &*raw : nullptr);
   Figures figures{{"file", options.path}, {"kind", summary.kind}};
   session.console.print("{}: {}\n", options.path, summary.kind);
   print_grid(summary, session.console, figures);
@@ -289,7 +290,8 @@ Figures print_series(const Options& all, const std::vector<InputStep>& steps, Se
 }
 
 void run(const Options& given, Session& session) {
-  const Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
+  Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
+  give_raw_options(all.volume, all.input);
   session.outputs.protect(all.input.path);
   const std::vector<InputStep> steps = steps_of(all);
   const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);

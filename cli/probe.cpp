@@ -189,6 +189,7 @@ void add_probe(const Command& app, Session& session) {
                   "The samples: .csv (default: stdout). Integrals are printed where there are no points")
       .type_name("FILE");
   add_material_options(command, options->input);
+  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
   add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }

@@ -207,6 +207,7 @@ void add_reconstruct(const Command& app, Session& session) {
   add_simplification_options(command, options->simplification, "the interfaces");
   add_surface_picture_options(command, options->picture);
   add_material_options(command, options->input);
+  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
   add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }

@@ -193,6 +193,7 @@ void add_resample(const Command& app, Session& session) {
                   "The hierarchy, from which adamas select takes meshes of other errors: .h5")
       .type_name("FILE");
   add_material_options(command, options->input);
+  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
   add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }

@@ -46,6 +46,7 @@ void check_options(const SliceRequest& request, OutputSet& outputs) {
 }
 
 void run(SliceRequest& request, Session& session) {
+  give_raw_options(request.volume, request.input);
   const SliceSteps steps = find_slice_steps(request, session);
   if (!request.inputs.empty()) request.input.path = request.inputs.front();
   Console& console = session.console;

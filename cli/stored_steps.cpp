@@ -16,7 +16,7 @@ namespace {
 
 /// The series that the file of some options is; no steps where it is none, or one of its volumes is named.
 InputSteps steps_of_file(const VolumeInput& options) {
-  if (!options.time.empty() || !options.dimensions.empty()) return {};
+  if (!options.time.empty() || !options.raw.dimensions.empty()) return {};
   const VolumeSeries series = find_volume_series(options.path, options.array);
   InputSteps result{{}, series.times, series.remark};
   const auto unpacked = std::make_shared<UnpackedTimes>();

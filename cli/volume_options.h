@@ -12,6 +12,7 @@
 #include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/input_options.h"
+#include "cli/raw_options.h"
 #include "core/geometry/vec3.h"
 #include "core/io/volume_reader.h"
 
@@ -21,8 +22,8 @@ namespace adamas {
 struct VolumeInput {
   std::string path;
   bool stack = false;
-  std::string array, scratch;
-  std::string dimensions, type, spacing, origin, endian, header_bytes, time;
+  std::string array, scratch, time;
+  RawOptions raw;
   std::shared_ptr<UnpackedTimes> all_times;  ///< as of VolumeOptions; mostly null
 
   /// The first option given that only a volume can mean, for messages; empty where there is none.
@@ -33,6 +34,9 @@ struct VolumeInput {
 void add_volume_input(const Command& command, VolumeInput& input);
 /// The options alone. `origin`: the names of that for the first sample.
 void add_volume_options(const Command& command, VolumeInput& input, const char* origin);
+
+/// Where volume fractions or labels are named, bare samples are those of a grid with materials.
+void give_raw_options(VolumeInput& volume, InputOptions& input);
 
 /// Opens it. Throws UsageError where options do not go together.
 VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale = false);

@@ -12,6 +12,8 @@
 
 namespace adamas {
 
+struct RawVolume;
+
 /// One array of a file. The range is over all components' finite values; min > max where there is none.
 struct ArraySummary {
   std::string name;
@@ -37,8 +39,8 @@ struct FileSummary {
 };
 
 /// Reads a file of any kind (input_kind) and says what is in it; `wanted` and `otherwise`: see
-/// choose_centering. Throws Error at unusable files.
+/// choose_centering, `raw`: read_grid_file. Throws Error at unusable files.
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
-                           Centering otherwise = Centering::kPoints);
+                           Centering otherwise = Centering::kPoints, const RawVolume* raw = nullptr);
 
 }  // namespace adamas

@@ -274,7 +274,8 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   source.components = header.components;
   source.big_endian = header.big_endian;
   source.grid.dimensions = image.dimensions;
-  image.arrays.push_back({.name = {}, .centering = Centering::kPoints, .source = std::move(source)});
+  image.arrays.push_back(
+      {.name = {}, .centering = Centering::kPoints, .source = std::move(source), .planar = header.planar});
   return image;
 }
 

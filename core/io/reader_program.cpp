@@ -85,6 +85,7 @@ ReaderRequest receive(ByteSource& source) {
 void run_reader(const ReaderRequest& request, ByteSink& sink) {
   switch (request.reader) {
     case LibraryReader::kGrid:
+    case LibraryReader::kHdf5Grid:
       return send_grid(request, sink);
     case LibraryReader::kMesh:
       return send_mesh(request, sink);
@@ -130,6 +131,8 @@ ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out)
     fail("{}: expected a readable file, found a corrupt one (its reader ended by signal {}, {})", name,
          number, ::strsignal(number));
   }
+  if (WEXITSTATUS(status) == ChildProcess::kTooManyFiles)
+    fail("{}: no process for its reader: too many files are open (ulimit -n)", name);
   if (WEXITSTATUS(status) == ChildProcess::kNotStarted) {
     fail("{}: its reader, the program adamas-reader, could not be started", name);
   }

@@ -15,6 +15,7 @@ namespace adamas {
 /// of the program adamas-reader.
 enum class LibraryReader : std::uint8_t {
   kGrid,         ///< a grid file by VTK or libtiff
+  kHdf5Grid,     ///< all data sets of one by HDF5
   kMesh,         ///< .vtu or .vtp by VTK
   kPolygons,     ///< a surface by CGAL
   kGridVolume,   ///< a volume on a grid by VTK

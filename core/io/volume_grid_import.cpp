@@ -61,11 +61,11 @@ void set_directions(const GridAxes& axes, ImportedVolume& volume) {
   }
 }
 
-/// The type of a file's array that its values, which are int32 or float here, still are of.
+/// The type of a file's array where its numbers here are still of it, else float.
 StoredType kept_type(const GridArray& array) {
   const auto type = find_stored_type(array.type);
-  if (array.integral()) return type && stored_bytes(*type) < 4 ? *type : StoredType::kInt32;
-  return StoredType::kFloat32;
+  const bool whole = type && *type != StoredType::kFloat64;
+  return array.integral() && whole ? *type : StoredType::kFloat32;
 }
 
 void send(const GridArray& array, StoredType type, ImportSink& sink) {
@@ -119,7 +119,7 @@ void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
   if (array.size() != n[0] * n[1] * n[2]) {
     fail("{}: array '{}': expected {} values, found {}", name, array.name, n[0] * n[1] * n[2], array.size());
   }
-  const bool wide = !array.integral() && array.type != "float32";
+  const bool wide = volume.stored == StoredType::kFloat32 && array.type != "float32";
   ImportSink import(request, sink);
   import.begin(volume, array.name, wide ? array.type + " samples are read as float32" : "");
   send(array, volume.stored, import);

@@ -63,6 +63,17 @@ bool has_too_wide_number(const std::vector<Part>& parts) {
   return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.digits > kMostDigits; });
 }
 
+/// A name with a number in place of each format of one.
+std::string example_of(const std::vector<Part>& parts) {
+  std::string name;
+  for (const Part& part : parts) {
+    if (part.kind == Part::Kind::kAny) name += '*';
+    if (part.kind == Part::Kind::kOne) name += '?';
+    name += part.kind == Part::Kind::kNumber ? fmt::format("{:0{}}", 1, part.digits) : part.text;
+  }
+  return name;
+}
+
 /// By the table of which prefixes fit, so that no pattern takes long.
 bool fits(const std::string& name, const std::vector<Part>& parts) {
   const std::size_t size = name.size();
@@ -180,12 +191,21 @@ std::vector<std::filesystem::path> match_stack(const std::filesystem::path& patt
   std::filesystem::directory_iterator entries(folder, code);
   if (code) fail("{}: expected a folder that can be read: {}", folder.string(), code.message());
   std::vector<std::string> names;
+  std::size_t others = 0;
   for (; !code && entries != std::filesystem::directory_iterator(); entries.increment(code)) {
     std::error_code other;
     std::string name = entries->path().filename().string();
-    if (entries->is_regular_file(other) && fits(name, parts)) names.push_back(std::move(name));
+    if (!entries->is_regular_file(other)) continue;
+    if (fits(name, parts)) {
+      names.push_back(std::move(name));
+    } else {
+      ++others;
+    }
   }
-  if (names.empty()) fail("{}: expected files of such names, found none", pattern.string());
+  if (names.empty()) {
+    fail("{}: expected files with names such as '{}' in '{}', found none among its {} files",
+         pattern.string(), example_of(parts), folder.string(), others);
+  }
   std::sort(names.begin(), names.end(), natural_less);
   check_numbers(pattern, parts, names);
   std::vector<std::filesystem::path> paths;

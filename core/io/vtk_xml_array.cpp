@@ -8,6 +8,21 @@
 
 namespace adamas {
 
+namespace {
+
+/// One of each; none where one is missing.
+std::vector<std::string> component_names(const XmlTag& tag, std::size_t components) {
+  std::vector<std::string> names;
+  while (names.size() < components) {
+    const std::string_view name = tag.value(fmt::format("ComponentName{}", names.size()));
+    if (name.empty()) return {};
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+}  // namespace
+
 void VtkXmlArrays::fail_value(std::string_view what, std::string_view expected,
                               std::string_view found) const {
   fail("{}: {}", name_, expected_value(what, expected, found));
@@ -56,6 +71,7 @@ ImageArray VtkXmlArrays::array_of(const XmlTag& tag) const {
   if (tag.has("slope") || tag.has("intercept")) read_scale(tag, source);
   if (tag.has("NumberOfComponents"))
     source.components = numbers<std::size_t>(tag, "NumberOfComponents", 1).front();
+  array.component_names = component_names(tag, source.components);
   if (compressed_ && format != "ascii") source.coding = SamplePacking::kVtkBlocks;
   if (format == "ascii") source.coding = SamplePacking::kText;
   if (format == "appended") {

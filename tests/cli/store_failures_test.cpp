@@ -170,7 +170,7 @@ TEST_F(StoreFailures, DiskFull) {
   expect_failure({"store", "one.raw", "--dimensions", "1", "--type", "uint8", "-o", "c.adm"},
                  {"c.adm", "is the disk full?"}, full);
   expect_failure({"store", "ball.nhdr", "--scratch", "none", "-o", "c.adm"},
-                 {"none", "expected a folder for scratch data"});
+                 {"none", "expected a folder for temporary files that can be written"});
   expect_failure({"store", "ball.nhdr", "-o", "none/c.adm"}, {"none", "expected an existing output folder"});
   EXPECT_TRUE(std::filesystem::is_empty(folder() / "scratch"));
 }

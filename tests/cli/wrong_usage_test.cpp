@@ -33,7 +33,8 @@ TEST_F(WrongUsage, IsToldAsExpectedAndFound) {
                      {"--interface-error: expected a value E|E%|Evoxels, found none"});
   expect_wrong_usage({"slice", "x.vtr", "--draw-cells=maybe"},
                      {"--draw-cells: expected no value", "found 'maybe'"});
-  expect_wrong_usage({"info"}, {"expected a FILE, or files in --fraction or --labels, found neither"});
+  expect_wrong_usage({"info"},
+                     {"expected a FILE, or files in --fraction, --fractions or --labels, found neither"});
   expect_wrong_usage({"info", "x.vtr", "--config", "none.toml"}, {"--config: expected a file", "none.toml"});
 }
 

@@ -2,10 +2,15 @@
 
 #include "core/io/reader_program.h"
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
@@ -73,6 +78,20 @@ TEST_F(ReaderProgram, TellsHowItEnded) {
   EXPECT_EQ(error_with("kill -ALRM $$"),
             begun(": expected a readable file, found none within the time limit"));
   EXPECT_EQ(error_with("exit 127"), begun(": its reader, the program adamas-reader, could not be started"));
+}
+
+TEST_F(ReaderProgram, TellsThatTooManyFilesAreOpen) {
+  // As many as this side of the reader needs; its own streams are more.
+  std::array<int, 3> files{};
+  for (int& one : files) one = ::open("/dev/null", O_RDONLY);
+  rlimit before{};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit few{static_cast<rlim_t>(*std::max_element(files.begin(), files.end())) + 1, before.rlim_max};
+  for (const int one : files) ::close(one);
+  ::setrlimit(RLIMIT_NOFILE, &few);
+  const std::string message = error_of([&] { read_grid_file(file); });
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_EQ(message, begun(": no process for its reader: too many files are open (ulimit -n)"));
 }
 
 TEST_F(ReaderProgram, StopsWithItsReader) {

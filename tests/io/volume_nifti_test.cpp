@@ -11,41 +11,11 @@ namespace {
 using test::bytes_of_values;
 using test::deflated;
 using test::message_of_volume;
+using test::NiftiHeader;
 using test::put_bytes;
 using test::read_numbers;
 using test::says;
 using test::Wrapping;
-
-/// The header of a volume of 3 x 2 x 2 samples, and what comes before the samples in a single file.
-class NiftiHeader {
- public:
-  explicit NiftiHeader(bool big_endian = false) : big_(big_endian) {
-    put<std::int32_t>(0, {348});
-    put<std::int16_t>(40, {3, 3, 2, 2, 1, 1, 1, 1});
-    put<std::int16_t>(70, {2, 8});
-    put<float>(76, {1, 0.5f, 2, 3});
-    put<float>(108, {352});
-    magic("n+1");
-  }
-  template <class T>
-  NiftiHeader& put(std::size_t at, const std::vector<T>& values) {
-    const std::string bytes = bytes_of_values(values, big_);
-    bytes_.replace(at, bytes.size(), bytes);
-    return *this;
-  }
-  NiftiHeader& magic(const std::string& text) {
-    bytes_.replace(344, text.size(), text);
-    return *this;
-  }
-  NiftiHeader& type(std::int16_t code, std::size_t bytes) {
-    return put<std::int16_t>(70, {code, static_cast<std::int16_t>(8 * bytes)});
-  }
-  [[nodiscard]] std::string text() const { return bytes_; }
-
- private:
-  std::string bytes_ = std::string(352, '\0');
-  bool big_;
-};
 
 const std::string kBytes = "\1\2\3\4\5\6\7\10\11\12\13\14";
 
