@@ -16,6 +16,12 @@ namespace {
 
 constexpr std::size_t kBarWidth = 24;
 constexpr std::chrono::milliseconds kBarInterval{100};
+/// How often a stage that lasts is told again where there is no bar.
+constexpr std::chrono::seconds kLineInterval{10};
+
+std::string percentage(double fraction) {
+  return fraction < 0 ? "" : fmt::format("  {:.0f}%", 100 * std::min(fraction, 1.0));
+}
 
 /// The number of characters of UTF-8 text.
 std::size_t width(std::string_view text) {
@@ -86,11 +92,14 @@ void Console::report(std::string_view stage, double fraction) {
   const bool is_new = name != stage_;
   if (is_new) stage_ = name;
   if (quiet) return;
-  if (verbose && is_new) {
+  const bool has_bar = isatty(STDERR_FILENO) != 0;
+  if (verbose && (is_new || (!has_bar && Clock::now() - drawn_ >= kLineInterval))) {
     clear();
-    to_stderr(fmt::format("adamas: {:8.2f} s  {}\n", seconds(), visible_text(name)));
+    const std::string part = is_new ? "" : percentage(fraction);
+    to_stderr(fmt::format("adamas: {:8.2f} s  {}{}\n", seconds(), visible_text(is_new ? name : stage), part));
+    if (!has_bar) drawn_ = Clock::now();
   }
-  if (isatty(STDERR_FILENO) == 0 || Clock::now() - drawn_ < kBarInterval) return;
+  if (!has_bar || Clock::now() - drawn_ < kBarInterval) return;
   std::string bar;
   if (fraction >= 0) {
     const double part = std::clamp(fraction, 0.0, 1.0);

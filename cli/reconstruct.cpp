@@ -13,6 +13,7 @@
 #include "cli/simplification_options.h"
 #include "cli/surface_picture.h"
 #include "cli/usage_error.h"
+#include "core/base/loop_progress.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/dispersed.h"
@@ -158,6 +159,7 @@ Interfaces take_given(const Options& options, const SimplificationRequest& reque
 }
 
 void run(const Options& options, Session& session) {
+  const LoopProgress loops(session.console);
   if (options.output.empty() && options.picture.camera.file.empty() && session.json.empty())
     wrong_usage("nothing to write: expected -o, --picture or --json, found none");
   const SimplificationRequest request(options.simplification);

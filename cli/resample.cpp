@@ -12,6 +12,7 @@
 #include "cli/series_input.h"
 #include "cli/simplification_options.h"
 #include "cli/usage_error.h"
+#include "core/base/loop_progress.h"
 #include "core/io/array_file.h"
 #include "interfaces/resampling/output.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
@@ -108,6 +109,7 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
 }
 
 void run(Options& options, Session& session) {
+  const LoopProgress loops(session.console);
   const std::vector<SeriesEntry> steps = series_steps(options.inputs);
   if (!steps.empty()) return run_series(options, steps, session);
   if (const std::string option = series_option(options); !option.empty())

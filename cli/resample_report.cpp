@@ -170,17 +170,20 @@ std::vector<std::string> volume_lines(const ResampleFigures& m, const Resampler&
 /// Where volumes are not conserved, though the options ask for it; empty where they are.
 std::string conservation_line(const ResampleFigures& m, const Resampler& resampler) {
   if (!resampler.options().conserve) return {};
+  const double enough = kConserved * resampler.source().box.volume();
   const BodyFigures* worst = nullptr;
+  std::size_t count = 0;
   for (const BodyFigures& body : m.bodies) {
-    if (body.volume_input && (worst == nullptr || body.missing() > worst->missing())) worst = &body;
+    if (!body.volume_input || body.missing() <= enough) continue;
+    ++count;
+    if (worst == nullptr || body.missing() > worst->missing()) worst = &body;
   }
-  const double whole = resampler.source().box.volume();
-  if (worst == nullptr || worst->missing() <= kConserved * whole) return {};
+  if (worst == nullptr) return {};
   return fmt::format(
-      "volumes were not conserved: a body of '{}' at {} has {} instead of {}; interfaces may "
+      "volumes were not conserved: a body of '{}' at {} has {} instead of {}, the worst of {}; interfaces may "
       "not move by more than the interface error",
       resampler.source().materials[worst->material], place_text(worst->place), volume_text(worst->volume),
-      volume_text(*worst->volume_input));
+      volume_text(*worst->volume_input), count);
 }
 
 void print_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {

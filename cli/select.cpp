@@ -10,6 +10,7 @@
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
 #include "cli/usage_error.h"
+#include "core/base/loop_progress.h"
 #include "interfaces/selection/selection.h"
 
 namespace adamas {
@@ -154,6 +155,7 @@ Figures report(const Selection& selection, const SelectionTargets& targets, cons
 }
 
 void run(const Options& options, Session& session) {
+  const LoopProgress loops(session.console);
   Console& console = session.console;
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && session.json.empty()) {
     wrong_usage(

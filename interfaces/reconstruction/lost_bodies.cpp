@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/loop_progress.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/held_cells.h"
@@ -23,6 +24,7 @@ class LostBodySearch {
   std::vector<LostBody> run() {
     std::vector<LostBody> lost;
     for (const std::uint32_t site : values_.mixed()) {
+      if (site % 64 == 0) LoopProgress::check();
       for (const Entry& entry : values_.at(site)) {
         const MaterialId material = values_.material(entry.material);
         // Of several regions of a material one stands for it.

@@ -51,9 +51,11 @@ class InterfaceComparison {
 
   /// Another distance is wanted of what is measured from now on.
   void set_target(double target) { target_ = target; }
-  /// Measures what is shown now, so well that each triangle's distance is known to be within the target or
-  /// not. The mesh's materials are those of the source.
-  void measure(const InterfaceMesh& shown, const Progress& progress);
+  /// Measures what is shown now, with `each` so well that each triangle's distance is known to be within the
+  /// target or not; else only the greatest is known. The mesh's materials are those of the source.
+  void measure(const InterfaceMesh& shown, const Progress& progress, bool each = true);
+  /// No part is farther off than this, as it was measured.
+  [[nodiscard]] double greatest() const;
   /// Whether everything measured is within the target.
   [[nodiscard]] bool within() const;
   /// Makes the bounds as tight as reports want them, and measures the whole networks.
