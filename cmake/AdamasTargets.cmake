@@ -52,10 +52,7 @@ macro(adamas_set_flags)
     target_compile_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE})
     if(ADAMAS_SANITIZE MATCHES "undefined")
-      # The address sanitizer reports what these look for where it is used, and they are a sixth of the time to compile.
-      target_compile_options(
-        adamas_flags INTERFACE -fno-sanitize-recover=undefined
-                               -fno-sanitize=null,object-size,nonnull-attribute,returns-nonnull-attribute)
+      target_compile_options(adamas_flags INTERFACE -fno-sanitize-recover=undefined)
     endif()
   endif()
 endmacro()
