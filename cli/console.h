@@ -40,6 +40,11 @@ class Console final : public Progress {
   void note(fmt::format_string<Args...> format, Args&&... args) {
     if (!quiet) write_note(text<Args...>(format, args...));
   }
+  /// What a result does not have as the input has it, such as digits of numbers: a note whatever `quiet` says.
+  template <class... Args>
+  void note_loss(fmt::format_string<Args...> format, Args&&... args) {
+    write_note(text<Args...>(format, args...));
+  }
   /// What a result lacks since the input is damaged: a note whatever `quiet` says, and another exit status.
   template <class... Args>
   void note_damage(fmt::format_string<Args...> format, Args&&... args) {

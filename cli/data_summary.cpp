@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/store_options.h"
+#include "cli/volume_options.h"
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
@@ -170,7 +171,7 @@ Figures print_volume(VolumeReader reader, const std::string& path, const std::st
   print_grid(summary, session.console, figures);
   add_places(grid, figures);
   print_arrays(summary, session.console, figures);
-  if (const std::string note = reader.note(); !note.empty()) session.console.note("{}", note);
+  note_reading(reader, session.console);
   return figures;
 }
 

@@ -52,13 +52,13 @@ void print_volumes(const IdVector<MaterialId, std::string>& names, const IdVecto
 /// The least and the greatest value over all materials; of vectors, those of their lengths.
 std::pair<double, double> range_of(const Field& field) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  const auto add = [&](std::span<const float> values) {
+  const auto add = [&](const FieldValues& values) {
     const auto n = static_cast<std::size_t>(field.components);
     for (std::size_t i = 0; i + n <= values.size(); i += n) {
-      double value = static_cast<double>(values[i]);
+      double value = values[i];
       if (n > 1) {
         value = 0;
-        for (std::size_t c = 0; c < n; ++c) value = std::hypot(value, static_cast<double>(values[i + c]));
+        for (std::size_t c = 0; c < n; ++c) value = std::hypot(value, values[i + c]);
       }
       low = std::min(low, value);
       high = std::max(high, value);

@@ -129,7 +129,7 @@ void StoredSteps::close() {
   input_bytes_ += open_->reader().source().sample_file_bytes();
   // Of the times of one file there is mostly the same to say.
   const std::string note = open_->reader().note();
-  if (!note.empty() && note != last_note_) session_.console.note("{}", note);
+  if (note != last_note_) note_reading(open_->reader(), session_.console);
   last_note_ = note;
   if (const std::uint64_t infinite = open_->infinite(); infinite > 0) infinite_[opened_] = infinite;
   open_.reset();

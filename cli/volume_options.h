@@ -72,6 +72,10 @@ void declare_volume_output(const std::string& output, OutputSet& outputs);
 /// Takes one plane after another.
 using PlaneSink = std::function<void(std::span<const std::byte>)>;
 
+/// Says what a reader has to say of the samples that it has read; that some were changed whatever `quiet`
+/// says.
+void note_reading(const VolumeReader& reader, Console& console);
+
 /// Says what the output, one file or all of a series, does not keep of a grid: places, and the scale of
 /// samples.
 void note_lost(const std::string& output, const VolumeGrid& grid, Session& session);

@@ -38,12 +38,13 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
   }
 }
 
-void check_array(const std::string& source, const std::string& name, std::span<const float> values,
+template <class Values>
+void check_array(const std::string& source, const std::string& name, const Values& values,
                  std::size_t expected) {
   if (values.size() != expected) {
     fail("{}: array '{}': expected {} values, found {}", source, name, expected, values.size());
   }
-  const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
+  const auto bad = std::find_if(values.begin(), values.end(), [](auto v) { return !std::isfinite(v); });
   if (bad != values.end()) {
     fail("{}: array '{}': expected finite values, found {} at index {}", source, name, *bad,
          bad - values.begin());
@@ -96,9 +97,10 @@ void MultiMaterialData::check() const {
     check_array(source, materials[m], fractions[m], count);
   for (const Field& field : fields) {
     const std::size_t expected = count * static_cast<std::size_t>(field.components);
-    if (!field.per_material()) check_array(source, field.name, field.values, expected);
+    const auto check = [&](const auto& values) { check_array(source, field.name, values, expected); };
+    if (!field.per_material()) field.values.visit(check);
     for (const auto& values : field.material_values) {
-      if (!values.empty()) check_array(source, field.name, values, expected);
+      if (!values.empty()) values.visit(check);
     }
   }
 }

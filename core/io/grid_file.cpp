@@ -1,6 +1,7 @@
 #include "core/io/grid_file.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -53,6 +54,9 @@ void receive_numbers(ByteSource& source, GridArray& array) {
       break;
     case 3:
       array.values = source.get_vector<std::uint64_t>();
+      break;
+    case 4:
+      array.values = source.get_vector<double>();
       break;
     default:
       fail("array '{}': expected numbers, found none", array.name);
@@ -134,6 +138,26 @@ void interleave(GridArray& array) {
     }
   };
   std::visit(turn, array.values);
+}
+
+FieldValues GridArray::take_field() {
+  const auto is_exact = [this](const auto& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [this](const auto number) {
+      const double exact = value(number);
+      return std::isnan(exact) || static_cast<double>(static_cast<float>(exact)) == exact;
+    });
+  };
+  const bool floats = values.index() == 0 || (values.index() != 4 && std::visit(is_exact, values));
+  if (floats) return take_floats();
+  if (values.index() == 4) return std::move(std::get<4>(values));
+  std::vector<double> result;
+  result.reserve(size());
+  const auto add = [&](const auto& numbers) {
+    for (const auto number : numbers) result.push_back(value(number));
+  };
+  std::visit(add, values);
+  values = std::vector<float>();
+  return result;
 }
 
 std::vector<float> GridArray::take_floats() {

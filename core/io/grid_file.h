@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adamas/grid_data.h"
+#include "core/data/field_values.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas {
@@ -21,8 +22,8 @@ struct GridAxes {
   Vec3 origin;
 };
 
-/// An array of a grid file: whole numbers stay so, exactly, also those of double that float has not; all
-/// others become float.
+/// An array of a grid file, exactly: whole numbers stay so, also those of double that float has not; others
+/// are float where it has them all, else double.
 struct GridArray {
   std::string name;
   std::string type;  ///< as the file holds it: "uint8", "float64"
@@ -31,13 +32,15 @@ struct GridArray {
   std::vector<std::string> component_names{};  ///< one of each component, or none where the file has not all
   /// Whole numbers as the first of these types that holds all of them (set_numbers in grid_numbers.h).
   std::variant<std::vector<float>, std::vector<std::int32_t>, std::vector<std::int64_t>,
-               std::vector<std::uint64_t>>
+               std::vector<std::uint64_t>, std::vector<double>>
       values;
   double slope = 1, intercept = 0;  ///< of whole numbers: a value is slope * number + intercept
 
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   /// Whether its values are whole numbers.
-  [[nodiscard]] bool integral() const { return values.index() != 0 && !scaled(); }
+  [[nodiscard]] bool integral() const { return !has_fractions() && !scaled(); }
+  /// Whether its numbers are of float or double.
+  [[nodiscard]] bool has_fractions() const { return values.index() == 0 || values.index() == 4; }
   [[nodiscard]] std::size_t size() const {
     return std::visit([](const auto& v) { return v.size(); }, values);
   }
@@ -48,6 +51,8 @@ struct GridArray {
   }
   /// All values as float; the array is left empty.
   [[nodiscard]] std::vector<float> take_floats();
+  /// All values: as float where it has them all, else as double. The array is left empty.
+  [[nodiscard]] FieldValues take_field();
 };
 
 /// From all of one component after all of another to all of one site after all of another.

@@ -27,7 +27,7 @@ WholeValues whole_values(const GridArray& array) {
     for (const auto number : numbers) {
       const double value = array.value(number);
       // Scales are of no more digits than float has.
-      if (!is_whole<std::int64_t>(static_cast<float>(value))) {
+      if (!(array.scaled() ? is_whole<std::int64_t>(static_cast<float>(value)) : is_whole<std::int64_t>(value))) {
         result.other = value;
         return;
       }
@@ -43,7 +43,7 @@ void make_integral(const std::string& source, GridArray& array,
   WholeValues whole = whole_values(array);
   if (!whole.other) {
     array.values = std::move(whole.values);
-  } else if (array.values.index() == 0) {
+  } else if (array.has_fractions()) {
     fail("{}: labels '{}': expected whole numbers, found {} at index {}", source, array.name, *whole.other,
          whole.values.size());
   } else if (note) {

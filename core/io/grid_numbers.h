@@ -40,6 +40,17 @@ bool are_whole(const ForEach& for_each) {
   return whole && need;
 }
 
+/// Whether float has all of some numbers of double.
+template <class ForEach>
+bool are_floats(const ForEach& for_each) {
+  bool floats = true;
+  for_each([&floats](double number) {
+    floats = std::isnan(number) || static_cast<double>(static_cast<float>(number)) == number;
+    return floats;
+  });
+  return floats;
+}
+
 /// Sets the numbers of an array, `count` of them, in the first type that fits them. `for_each(take)` calls
 /// `take` with one after another until it says false.
 template <class Number, class ForEach>
@@ -59,6 +70,7 @@ void set_numbers(const ForEach& for_each, std::size_t count, GridArray& array) {
     return set(std::uint64_t{});
   } else if constexpr (std::is_same_v<Number, double>) {
     if (are_whole<std::int64_t, Number>(for_each)) return set(std::int64_t{});
+    if (!are_floats(for_each)) return set(double{});
   }
   set(float{});
 }

@@ -64,8 +64,8 @@ void set_directions(const GridAxes& axes, ImportedVolume& volume) {
 /// The type of a file's array where its numbers here are still of it, else float.
 StoredType kept_type(const GridArray& array) {
   const auto type = find_stored_type(array.type);
-  const bool whole = type && *type != StoredType::kFloat64;
-  return array.integral() && whole ? *type : StoredType::kFloat32;
+  if (type == StoredType::kFloat64) return *type;
+  return array.integral() && type ? *type : StoredType::kFloat32;
 }
 
 void send(const GridArray& array, StoredType type, ImportSink& sink) {

@@ -106,13 +106,13 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialDat
         std::size_t row = 0;
         for (const Field& field : data.fields) {
           const auto components = static_cast<std::size_t>(field.components);
-          const SiteArray<float>* given = &field.values;
+          const FieldValues* given = &field.values;
           if (field.per_material())
             given = m.value < field.material_values.size() ? &field.material_values[m] : nullptr;
           for (std::size_t c = 0; c < components; ++c, ++row) {
             const bool known = given != nullptr && !given->empty();
             sums[m].integral[row] +=
-                volume * (known ? static_cast<double>((*given)[site * components + c]) : kNothing);
+                volume * (known ? (*given)[site * components + c] : kNothing);
           }
         }
       }

@@ -98,5 +98,25 @@ TEST_F(RawData, AllMaterialsOfOneArray) {
                  {"--fractions: expected names of 2 materials, found 3"});
 }
 
+TEST_F(RawData, FieldsOfDoubleKeepAllDigits) {
+  std::string bytes;
+  for (int site = 0; site < 8 * 6 * 4; ++site) {
+    const double value = site == 0 ? 1000000001 : 1e39;
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  write("p.nrrd",
+        "NRRD0004\ntype: double\ndimension: 3\nsizes: 8 6 4\nspace: RAS\n"
+        "space directions: (0.5,0,0) (0,1,0) (0,0,2)\nspace origin: (1,1,1)\nendian: little\n"
+        "encoding: raw\n\n" +
+            bytes);
+  run_well({"resample", "--fraction", "a=w.nrrd", "--fraction-scale", "255", "--rest", "b", "--field", "p=p.nrrd",
+            "--cells", "-o", "m.vtu", "--json", "m.json"});
+  EXPECT_EQ(read_json("m.json")["fields"][0]["name"], "p");
+  run_well({"info", "--fraction", "a=w.nrrd", "--fraction-scale", "255", "--rest", "b", "--field", "p=p.nrrd",
+            "--cells", "--json", "i.json"});
+  EXPECT_EQ(read_json("i.json")["fields"][0]["min"], 1000000001.0);
+  EXPECT_EQ(read_json("i.json")["fields"][0]["max"], 1e39);
+}
+
 }  // namespace
 }  // namespace adamas::test

@@ -143,11 +143,17 @@ TEST_F(StoreFailures, ConvertedSamplesAreCountedOnce) {
     samples.append(reinterpret_cast<const char*>(&value), sizeof(value));
   }
   write("a.raw", samples);
-  const RunResult result = run({"store", "a.raw", "--dimensions", "10", "--type", "int32", "-o", "a.adm"});
-  EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.err.find("int32 samples are read as float32, 500 of them changed, by at most 1"),
-            std::string::npos)
-      << result.err;
+  // Digits that are lost are told, quiet or not.
+  for (const bool quiet : {false, true}) {
+    std::vector<std::string> store{"store",  "a.raw", "--dimensions", "10", "--type",
+                                   "int32",  "-o",    "a.adm",        "--overwrite"};
+    if (quiet) store.push_back("--quiet");
+    const RunResult result = run(store);
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.err.find("int32 samples are read as float32, 500 of them changed, by at most 1"),
+              std::string::npos)
+        << result.err;
+  }
 }
 
 TEST_F(StoreFailures, DiskFull) {

@@ -163,12 +163,12 @@ TEST(Fields, WithAScaleHaveItsValues) {
   options.plain = true;
   options.centering = Centering::kCells;
   const MultiMaterialData data = read_multi_material_data(scratch / "a.nii", options);
-  EXPECT_TRUE(data.fields.at(0).values == SiteArray<float>({3.5f, 4, 8}));
+  EXPECT_EQ(data.fields.at(0).values, (std::vector<float>{3.5f, 4, 8}));
   NiftiHeader header;
   header.put<std::int16_t>(40, {3, 3, 1, 1, 1, 1, 1, 1}).type(64, 8).put<float>(112, {1, -16777216});
   put_bytes(scratch / "d.nii", header.text() + bytes_of_values(std::vector<double>{16777217, 0.5, 0}));
-  EXPECT_TRUE(read_multi_material_data(scratch / "d.nii", options).fields.at(0).values ==
-              SiteArray<float>({1, -16777215.5f, -16777216}));
+  EXPECT_EQ(read_multi_material_data(scratch / "d.nii", options).fields.at(0).values,
+            (std::vector<double>{1, -16777215.5, -16777216}));
 }
 
 }  // namespace
