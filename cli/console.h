@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -40,10 +41,12 @@ class Console final : public Progress {
   void note(fmt::format_string<Args...> format, Args&&... args) {
     if (!quiet) write_note(text<Args...>(format, args...));
   }
-  /// What a result does not have as the input has it, such as digits of numbers: a note whatever `quiet` says.
+  /// What a result does not have as the input has it, such as digits of numbers: a note whatever `quiet` says,
+  /// once where the same is lost several times.
   template <class... Args>
   void note_loss(fmt::format_string<Args...> format, Args&&... args) {
-    write_note(text<Args...>(format, args...));
+    const std::string note = text<Args...>(format, args...);
+    if (losses_.insert(note).second) write_note(note);
   }
   /// What a result lacks since the input is damaged: a note whatever `quiet` says, and another exit status.
   template <class... Args>
@@ -95,6 +98,7 @@ class Console final : public Progress {
 
   Clock::time_point start_ = Clock::now(), drawn_{};
   std::string stage_;
+  std::set<std::string> losses_;
   bool bar_ = false, incomplete_ = false;
   int write_error_ = 0;  ///< errno of the first write to stdout that failed
 };

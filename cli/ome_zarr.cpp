@@ -146,8 +146,8 @@ RestoredSteps OmeZarr::write(StoreFile& file, const ZarrContent& content, PageCo
                              Session& session) {
   const VolumeGrid& volume = file.header().grid;
   if (volume.is_scaled())
-    session.console.note_loss("{}: values, {:.9g} times the samples plus {:.9g}, are written as float32",
-                              folder_.path().string(), volume.slope, volume.intercept);
+    session.console.note("{}: values, {:.9g} times the samples plus {:.9g}, are written as float32",
+                         folder_.path().string(), volume.slope, volume.intercept);
   RestoredSteps steps;
   folder_.fill([&] {
     // The finest level needs all pages that the others do.

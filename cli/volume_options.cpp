@@ -170,7 +170,7 @@ void declare_volume_output(const std::string& output, OutputSet& outputs) {
 void note_reading(const VolumeReader& reader, Console& console) {
   const std::string note = reader.note();
   if (note.empty()) return;
-  if (reader.changed() > 0) {
+  if (reader.loses_digits()) {
     console.note_loss("{}", note);
   } else {
     console.note("{}", note);
@@ -181,7 +181,7 @@ void note_lost(const std::string& output, const VolumeGrid& grid, Session& sessi
   if (const std::string lost = lost_places(output, grid); !lost.empty())
     session.console.note_loss("{}", lost);
   if (writes_values(output, grid)) {
-    session.console.note_loss(
+    session.console.note(
         "{}: values, {:.9g} times the samples plus {:.9g}, are written as float32: samples with their scale "
         "are written to .nii and .nii.gz only",
         output, grid.slope, grid.intercept);

@@ -72,7 +72,7 @@ void declare_volume_output(const std::string& output, OutputSet& outputs);
 /// Takes one plane after another.
 using PlaneSink = std::function<void(std::span<const std::byte>)>;
 
-/// Says what a reader has to say of the samples that it has read; that some were changed whatever `quiet`
+/// Says what a reader has to say of the samples that it has read; that digits were lost whatever `quiet`
 /// says.
 void note_reading(const VolumeReader& reader, Console& console);
 

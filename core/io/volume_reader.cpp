@@ -151,6 +151,10 @@ std::string VolumeReader::changes() const {
   return cut_off_ == 0 ? near : rounded == 0 ? far : near + ", " + far;
 }
 
+bool VolumeReader::loses_digits() const {
+  return changed_ > 0 && !(source_.scaled() && stored_bytes(source_.stored) <= 2);
+}
+
 std::string VolumeReader::note() const {
   std::string text = source_.remark;
   const std::string from = stored_name(source_.stored), to = sample_name(source_.grid.type);

@@ -50,6 +50,9 @@ class VolumeReader {
   /// most, but for those beyond the range of the type, which become its ends.
   [[nodiscard]] std::uint64_t changed() const { return changed_; }
   [[nodiscard]] double greatest_change() const { return greatest_change_; }
+  /// Whether numbers that differ in the file may have become equal: not where whole ones of at most two bytes
+  /// are only scaled.
+  [[nodiscard]] bool loses_digits() const;
   /// One line on the conversion, of the planes read so far; empty where the samples are as in the file.
   [[nodiscard]] std::string note() const;
 

@@ -111,7 +111,7 @@ TEST_F(RawData, FieldsOfDoubleKeepAllDigits) {
             bytes);
   run_well({"resample", "--fraction", "a=w.nrrd", "--fraction-scale", "255", "--rest", "b", "--field", "p=p.nrrd",
             "--cells", "-o", "m.vtu", "--json", "m.json"});
-  EXPECT_EQ(read_json("m.json")["fields"][0]["name"], "p");
+  EXPECT_TRUE(read_json("m.json")["fields"].contains("p"));
   run_well({"info", "--fraction", "a=w.nrrd", "--fraction-scale", "255", "--rest", "b", "--field", "p=p.nrrd",
             "--cells", "--json", "i.json"});
   EXPECT_EQ(read_json("i.json")["fields"][0]["min"], 1000000001.0);

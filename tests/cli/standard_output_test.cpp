@@ -28,7 +28,7 @@ TEST_F(StandardOutput, Texts) {
   // More than a buffer, of which the last part alone would be lost.
   expect_refused({"probe", "scene.vtr", "--line", "0,0,0..1,1,1,5000"});
   expect_refused({"man"});
-  expect_refused({"completion"});
+  expect_refused({"completion", "bash"});
   expect_refused({"--version"});
   expect_refused({"--help"});
   expect_refused({"resample", "--help"});
@@ -39,8 +39,9 @@ TEST_F(StandardOutput, ALimitOfTheSizeOfFiles) {
   RunOptions limited;
   limited.stdout_file = (folder() / "printed").string();
   limited.file_size_limit = 100;
-  for (const char* const text : {"man", "completion", "--help"})
-    expect_failure({text}, {"standard output: could not be written: "}, limited);
+  for (const std::vector<std::string>& text :
+       std::vector<std::vector<std::string>>{{"man"}, {"completion", "bash"}, {"--help"}})
+    expect_failure(text, {"standard output: could not be written: "}, limited);
 }
 
 TEST_F(StandardOutput, FilesGetNoName) {
