@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "cli/network_figures.h"
 #include "cli/option_values.h"
 #include "cli/picture_block.h"
 #include "cli/resampling_options.h"
@@ -63,11 +64,8 @@ void note_changed_bodies(const CutMeshReport& report, const ResampledMesh& mesh,
       notes.push_back(fmt::format("the cut mesh shows nothing of a body of '{}' of volume {}", material,
                                   volume_text(volume)));
     } else {
-      notes.push_back(fmt::format(
-          "the cut mesh shows a body of '{}' of volume {} in {} piece{} instead of {}, and its boundary has "
-          "the Euler characteristic {} instead of {}",
-          material, volume_text(volume), of_cut.pieces, of_cut.pieces == 1 ? "" : "s", of_mesh.pieces,
-          of_cut.euler, of_mesh.euler));
+      notes.push_back(fmt::format("the cut mesh shows a body of '{}' of volume {} {}", material,
+                                  volume_text(volume), topology_text(of_mesh, of_cut)));
     }
   }
   note_several(notes, {"body that it has lost or torn", "bodies that it has lost or torn"}, console);

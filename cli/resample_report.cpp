@@ -6,6 +6,7 @@
 
 #include "cli/figures.h"
 #include "cli/fraction_report.h"
+#include "cli/network_figures.h"
 #include "cli/several_notes.h"
 
 namespace adamas {
@@ -55,10 +56,8 @@ void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Conso
     if (body.lost) {
       notes.push_back("the mesh shows nothing of " + what);
     } else {
-      notes.push_back(fmt::format(
-          "the mesh shows {} in {} piece{}, and its boundary has the Euler characteristic {} instead of {}",
-          what, body.topology_mesh.pieces, body.topology_mesh.pieces == 1 ? "" : "s",
-          body.topology_mesh.euler, body.topology_input.euler));
+      notes.push_back(
+          fmt::format("the mesh shows {} {}", what, topology_text(body.topology_input, body.topology_mesh)));
     }
   }
   note_several(notes, {"body that is lost or torn", "bodies that are lost or torn"}, console);
@@ -180,10 +179,10 @@ std::string conservation_line(const ResampleFigures& m, const Resampler& resampl
   }
   if (worst == nullptr) return {};
   return fmt::format(
-      "volumes were not conserved: a body of '{}' at {} has {} instead of {}, the worst of {}; interfaces may "
+      "volumes were not conserved: a body of '{}' at {} has {:.2g} {} than {}, the worst of {}; interfaces may "
       "not move by more than the interface error",
-      resampler.source().materials[worst->material], place_text(worst->place), volume_text(worst->volume),
-      volume_text(*worst->volume_input), count);
+      resampler.source().materials[worst->material], place_text(worst->place), worst->missing(),
+      worst->volume < *worst->volume_input ? "less" : "more", volume_text(*worst->volume_input), count);
 }
 
 void print_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
