@@ -7,6 +7,7 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <span>
@@ -232,15 +233,26 @@ std::string no_value(const CLI::App& command, std::string_view last_word) {
   return {};
 }
 
+bool is_number(std::string_view text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, code] = std::from_chars(text.data(), end, value);
+  return code == std::errc() && stop == end;
+}
+
 /// A unit that a blank parts from its number, which would count as a file of input.
 void check_units(std::span<char* const> words) {
   for (std::size_t i = 1; i < words.size(); ++i) {
-    const std::string_view number = words[i - 1], unit = words[i];
+    std::string_view number = words[i - 1], unit = words[i];
+    std::string option = i >= 2 && words[i - 2][0] == '-' ? fmt::format("{}: ", words[i - 2]) : "";
+    if (const std::size_t equal = number.rfind('='); equal != number.npos) {
+      if (number[0] == '-') option = fmt::format("{}: ", number.substr(0, equal));
+      number.remove_prefix(equal + 1);
+    }
     const bool is_unit = std::ranges::find(kUnits, unit) != std::end(kUnits);
-    if (!is_unit || number.empty() || number.find_first_not_of("0123456789.,eE+-") != number.npos) continue;
+    if (!is_unit || !is_number(number)) continue;
     std::error_code unknown;
     if (std::filesystem::exists(unit, unknown)) continue;
-    const std::string option = i >= 2 && words[i - 2][0] == '-' ? fmt::format("{}: ", words[i - 2]) : "";
     throw UsageError(fmt::format("{}expected '{}{}' without a blank, found '{}' and '{}'", option, number,
                                  unit, number, unit));
   }

@@ -101,11 +101,13 @@ ReportTable runs_table(const ExperimentRecord& record, const std::vector<Experim
 /// The errors that were wanted and not reached, mesh by mesh.
 ReportTable unreached_table(const ExperimentRecord& record) {
   ReportTable table{"Errors that were not reached", {"mesh", "what, and why"}, {}};
-  for (const auto& [mesh, line] : unreached_of_meshes(record)) table.rows.push_back({mesh, line});
+  for (const auto& [mesh, run] : wanted_runs(record)) {
+    for (const std::string& line : run->unreached) table.rows.push_back({mesh, line});
+  }
   if (!record.series) return table;
-  for (std::size_t n = 0; n < record.series->steps.size(); ++n) {
-    for (const std::string& line : record.series->steps[n].run.unreached)
-      table.rows.push_back({"step " + std::to_string(n), line});
+  for (const SeriesStep& step : record.series->steps) {
+    for (const std::string& line : step.run.unreached)
+      table.rows.push_back({"step " + std::to_string(step.number), line});
   }
   return table;
 }
@@ -220,18 +222,15 @@ void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> unreached_of_meshes(const ExperimentRecord& record) {
-  std::vector<std::pair<std::string, std::string>> lines;
-  const auto add = [&lines](const std::string& mesh, const ExperimentRun& run) {
-    for (const std::string& line : run.unreached) lines.emplace_back(mesh, line);
-  };
-  add("interfaces", record.interfaces);
-  if (record.with_fields) add("with fields", *record.with_fields);
+std::vector<std::pair<std::string, const ExperimentRun*>> wanted_runs(const ExperimentRecord& record) {
+  std::vector<std::pair<std::string, const ExperimentRun*>> runs{{"interfaces", &record.interfaces}};
+  if (record.with_fields) runs.emplace_back("with fields", &*record.with_fields);
   for (const ExperimentRun& run : record.curve) {
     const double error = run.options.interface_error;
-    if (error != record.interfaces.options.interface_error) add("curve, " + number(error), run);
+    if (record.curve_is_given && error != record.interfaces.options.interface_error)
+      runs.emplace_back("curve, " + number(error), &run);
   }
-  return lines;
+  return runs;
 }
 
 Figures experiment_figures(const ExperimentRecord& record) {

@@ -56,6 +56,7 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
   run.json = resample_json(run.figures, resampler);
   run.json["seconds"] = run.seconds;
   run.unreached = unreached_lines(run.figures, resampler);
+  run.told = unreached_lines(run.figures, resampler, console.verbose);
   if (interfaces != nullptr) *interfaces = approximated_interfaces(resampler, console);
   if (mesh != nullptr) {
     *mesh = resampled_mesh(resampler);

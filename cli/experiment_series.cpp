@@ -32,7 +32,9 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
     Input input;
     const auto load = [&] {
       input =
-          load_input(from, console, [&request](const InputFacts& found) { request.resampling.check(found); });
+          load_input(from, console, [&request](const InputFacts& found) {
+        check_step([&] { request.resampling.check(found); });
+      });
     };
     if (!record.left_out.read(n, load)) continue;
     forms.check(step.file, *input.data);
@@ -64,6 +66,7 @@ void add_series(HtmlReport& report, const SeriesRecord& record, const std::strin
       fmt::format("{} steps, each resampled from the mesh of the one before. mesh.pvd has the meshes, "
                   "series.csv the figures.",
                   record.steps.size()));
+  for (const std::string& line : record.left_out.lines()) report.paragraph(line);
   if (!film.empty())
     report.film(read_file(folder / film), file_extension(film),
                 "The mesh in a plane over time: " + film + ".");

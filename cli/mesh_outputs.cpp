@@ -45,10 +45,6 @@ Figures distance_figures(const InterfaceCertificate& certificate) {
   return figures;
 }
 
-std::string distance_text(const InterfaceDistance& distance) {
-  return std::isinf(distance.upper) ? "none shown" : fmt::format("{:.4g}", distance.upper);
-}
-
 /// The bodies that the cut mesh has lost or torn, the greatest first.
 std::vector<CutMeshReport::ChangedBody> changed_bodies(const CutMeshReport& report) {
   std::vector<CutMeshReport::ChangedBody> changed = report.changed;
@@ -118,8 +114,8 @@ void print_report(const ConformingMesh& cut, const CutMeshReport& report,
       {"tetrahedra", std::to_string(cut.tetrahedra.size())},
       {"vertices", std::to_string(cut.points.size())},
       {"dihedral angles", fmt::format("{:.3g} to {:.4g} degrees", report.dihedral.min, report.dihedral.max)},
-      {"distance from the mesh's interfaces", distance_text(report.distance.networks)}};
-  if (from_input) rows.push_back({"interface error certified", distance_text(from_input->networks)});
+      {"distance from the mesh's interfaces", length_text(report.distance.networks.upper)}};
+  if (from_input) rows.push_back({"interface error certified", length_text(from_input->networks.upper)});
   console.print("\n");
   console.table(rows);
 }

@@ -23,37 +23,44 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kList = ".adamas-files";
-/// The first line of a list; lines "SIZE NAME" follow, with names from the folder on.
-constexpr std::string_view kListTitle = "Files of this folder that adamas wrote, with their sizes in bytes";
+/// The first line of a list, with the kind of folder behind it; lines "SIZE NAME" follow, with names from the
+/// folder on.
+constexpr std::string_view kListTitle = "Files that adamas wrote here, with their sizes in bytes, of ";
 
 std::string list_line(const fs::path& folder, const fs::path& file) {
   return fmt::format("{} {}", fs::file_size(file), file.lexically_relative(folder).generic_string());
 }
 
-void write_list(const fs::path& folder) {
+void write_list(const fs::path& folder, const std::string& kind) {
   std::vector<std::string> lines;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file()) lines.push_back(list_line(folder, entry.path()));
   }
   std::sort(lines.begin(), lines.end());
   OutputStream stream(folder / kList);
-  stream.write(fmt::format("{}\n{}\n", kListTitle, fmt::join(lines, "\n")));
+  stream.write(fmt::format("{}{}\n{}\n", kListTitle, kind, fmt::join(lines, "\n")));
   stream.finish();
 }
 
-/// The lines of the list in a folder; none where it has no list.
-std::set<std::string> listed(const fs::path& folder) {
+/// The list in a folder.
+struct FolderList {
+  std::string kind;  ///< of the folder; empty where it has no list
   std::set<std::string> lines;
+};
+
+FolderList read_list(const fs::path& folder) {
+  FolderList list;
   std::ifstream stream(folder / kList);
   std::string line;
-  if (!std::getline(stream, line) || line != kListTitle) return lines;
-  while (std::getline(stream, line)) lines.insert(line);
-  return lines;
+  if (!std::getline(stream, line) || !line.starts_with(kListTitle)) return list;
+  list.kind = line.substr(kListTitle.size());
+  while (std::getline(stream, line)) list.lines.insert(line);
+  return list;
 }
 
-/// A file of a folder that is not on its list, or a folder in it without such files; empty for none.
-fs::path unlisted(const fs::path& folder) {
-  const std::set<std::string> lines = listed(folder);
+/// A file of a folder that is not among the lines of its list, or a folder in it without such files; empty for
+/// none.
+fs::path unlisted(const fs::path& folder, const std::set<std::string>& lines) {
   std::set<fs::path> folders, above;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_directory() && !entry.is_symlink()) {
@@ -71,28 +78,13 @@ fs::path unlisted(const fs::path& folder) {
   return without_files == folders.end() ? fs::path() : *without_files;
 }
 
-void check_replaceable(const fs::path& path, const fs::path& place, bool overwrite) {
-  std::error_code code;
-  if (!fs::exists(place, code)) return;
-  if (!fs::is_directory(place, code)) fail("{}: expected an output folder, found a file", path.string());
-  if (fs::is_empty(place, code)) return;
-  if (!overwrite) {
-    fail("{}: expected a new or an empty folder, found one with files (--overwrite replaces an earlier run)",
-         path.string());
-  }
-  if (!fs::exists(place / kList, code))
-    fail("{}: expected the folder of an earlier run to replace, found one without its list {}", path.string(),
-         kList);
-  const fs::path other = unlisted(place);
-  if (!other.empty())
-    fail("{}: expected an earlier run's folder as it was written, found '{}', which is new or has changed",
-         path.string(), other.lexically_relative(place).string());
-}
-
 /// Where a path leads that is a link to a folder.
 fs::path followed(const fs::path& path) {
   std::error_code code;
-  return fs::is_symlink(path, code) && fs::is_directory(path, code) ? fs::canonical(path) : path;
+  if (!fs::is_symlink(path, code)) return fs::absolute(path);
+  if (!fs::is_directory(path, code))
+    fail("{}: expected a folder or the name of a new one, found a link that leads to none", path.string());
+  return fs::canonical(path);
 }
 
 fs::path without_slash(fs::path path) {
@@ -102,10 +94,13 @@ fs::path without_slash(fs::path path) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path path, bool overwrite)
-    : path_(without_slash(std::move(path))), place_(followed(path_)), overwrite_(overwrite) {
-  check_replaceable(path_, place_, overwrite_);
-  const fs::path above = place_.has_parent_path() ? place_.parent_path() : ".";
+OutputFolder::OutputFolder(std::string kind, fs::path path, bool overwrite)
+    : kind_(std::move(kind)),
+      path_(without_slash(std::move(path))),
+      place_(without_slash(followed(path_))),
+      overwrite_(overwrite) {
+  check_replaceable();
+  const fs::path above = place_.parent_path();
   std::error_code code;
   if (!fs::is_directory(above, code))
     fail("{}: expected an existing folder above, found none at {}", path_.string(), above.string());
@@ -127,6 +122,32 @@ OutputFolder::~OutputFolder() {
   if (!temporary_.empty()) fs::remove_all(temporary_, code);
 }
 
+void OutputFolder::check_replaceable() const {
+  std::error_code code;
+  if (!fs::exists(place_, code)) return;
+  if (!fs::is_directory(place_, code)) fail("{}: expected an output folder, found a file", path_.string());
+  if (fs::is_empty(place_, code)) return;
+  if (!overwrite_) {
+    fail("{}: expected a new or an empty folder, found one with files (--overwrite replaces an earlier run)",
+         path_.string());
+  }
+  const FolderList list = read_list(place_);
+  if (list.kind.empty())
+    fail("{}: expected the folder of an earlier run to replace, found one without its list {}",
+         path_.string(), kList);
+  if (list.kind != kind_)
+    fail("{}: expected the folder of {} to replace, found that of {}", path_.string(), kind_, list.kind);
+  fs::path other;
+  try {
+    other = unlisted(place_, list.lines);
+  } catch (const fs::filesystem_error& error) {
+    fail("{}: expected a folder that can be read: {}", path_.string(), error.code().message());
+  }
+  if (!other.empty())
+    fail("{}: expected an earlier run's folder as it was written, found '{}', which is new or has changed",
+         path_.string(), other.lexically_relative(place_).string());
+}
+
 void OutputFolder::fill(const std::function<void()>& work) const {
   try {
     work();
@@ -134,12 +155,14 @@ void OutputFolder::fill(const std::function<void()>& work) const {
     throw;
   } catch (const Error& e) {
     fail("{}", replaced(e.what(), temporary_.string(), path_.string()));
+  } catch (const fs::filesystem_error& e) {
+    fail("{}: {}", path_.string(), e.code().message());
   }
 }
 
 void OutputFolder::commit() {
-  fill([this] { write_list(temporary_); });
-  check_replaceable(path_, place_, overwrite_);
+  fill([this] { write_list(temporary_, kind_); });
+  check_replaceable();
   std::error_code code;
   const bool replace = fs::exists(place_, code);
   fs::path old;

@@ -14,10 +14,10 @@ namespace adamas {
 /// files and their sizes goes with it, `.adamas-files`, by which a later run knows what it may replace.
 class OutputFolder {
  public:
-  /// `overwrite`: a folder that is there is replaced, if it holds nothing but the files of its list. A link
-  /// to a folder stays one. Throws Error where the folder above is missing or read-only, where a file is in
+  /// `kind`: what it holds, "an experiment". `overwrite`: a folder of the same kind that is there is replaced,
+  /// if it holds nothing but the files of its list. A link to a folder stays one. Throws Error where the folder above is missing or read-only, where a file is in
   /// the way, and where the folder is there and neither empty nor to be replaced.
-  OutputFolder(std::filesystem::path path, bool overwrite);
+  OutputFolder(std::string kind, std::filesystem::path path, bool overwrite);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -32,6 +32,9 @@ class OutputFolder {
   void commit();
 
  private:
+  void check_replaceable() const;
+
+  std::string kind_;
   std::filesystem::path path_;
   std::filesystem::path place_;  ///< that path, or where it leads if it is a link
   std::filesystem::path temporary_;

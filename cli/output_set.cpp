@@ -151,16 +151,15 @@ void OutputSet::commit(const std::string& path) {
 }
 
 void OutputSet::commit() {
-  std::vector<std::filesystem::path> named;
+  std::vector<OutputFile*> named;
   try {
     // What refers to others, as the list of a series, is declared before them and gets its name behind them.
     for (auto each = files_.rbegin(); each != files_.rend(); ++each) {
       each->file->commit();
-      named.push_back(each->file->path());
+      named.push_back(each->file.get());
     }
   } catch (const Error&) {
-    std::error_code code;
-    for (const auto& path : named) std::filesystem::remove(path, code);
+    for (OutputFile* file : named) file->undo();
     throw;
   }
   files_.clear();

@@ -37,7 +37,7 @@ class OutputSet {
   /// Bytes written for a path.
   [[nodiscard]] std::size_t bytes(const std::string& path) const;
   /// Gives all outputs their names, the last that was declared first. Throws Error where one cannot have it;
-  /// then none has.
+  /// then each name is as it was.
   void commit();
   /// The same for one output alone, which is done then.
   void commit(const std::string& path);

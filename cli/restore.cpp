@@ -210,6 +210,8 @@ void run(const Options& options, Session& session) {
   const bool is_series = file_extension(options.output) == ".pvd";
   std::optional<OmeZarr> zarr;
   if (is_zarr(options.output)) {
+    session.outputs.protect(options.input.path);
+    session.outputs.check_outside("-o", options.output);
     zarr.emplace(options.output, options.overwrite);
   } else if (is_series) {
     session.outputs.declare("-o", options.output, {".pvd"});
@@ -217,7 +219,6 @@ void run(const Options& options, Session& session) {
     declare_volume_output(options.output, session.outputs);
   }
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
-  if (zarr) session.outputs.check_outside("-o", options.output);
   const Wanted wanted = find_wanted(options, *file, session);
   Written written;
   if (zarr) {

@@ -62,7 +62,13 @@ void note_shortfalls(const Selection& selection, const SelectionTargets& targets
   if (const auto& wanted = targets.interface_error) {
     const InterfaceCertificate* found = selection.certificate();
     const std::string what = "the interface error wanted";
-    note(what, found != nullptr ? found->networks.upper : selection.interface_error(), *wanted);
+    const double error = found != nullptr ? found->networks.upper : selection.interface_error();
+    const bool goes_further = found == nullptr && !selection.is_whole() && !selection.budget_spent();
+    if (goes_further && error > *wanted) {
+      console.note("the interface error is not known, since nothing is measured here: it is estimated at {:.4g}", error);
+    } else {
+      note(what, error, *wanted);
+    }
     if (found != nullptr && hierarchy.tree.materials.size() > 2)
       note(fmt::format("{} for the boundary of '{}'", what, hierarchy.tree.materials[found->worst_material]),
            found->materials.upper, *wanted);

@@ -129,7 +129,13 @@ void StoredSteps::close() {
   input_bytes_ += open_->reader().source().sample_file_bytes();
   // Of the times of one file there is mostly the same to say.
   const std::string note = open_->reader().note();
-  if (note != last_note_) note_reading(open_->reader(), session_.console);
+  if (note != last_note_) {
+    if (open_->reader().loses_digits()) {
+      losses_.emplace_back(open_->reader().greatest_change(), note);
+    } else if (!note.empty()) {
+      session_.console.note("{}", note);
+    }
+  }
   last_note_ = note;
   if (const std::uint64_t infinite = open_->infinite(); infinite > 0) infinite_[opened_] = infinite;
   open_.reset();
@@ -143,6 +149,8 @@ void StoredSteps::finish() {
                        fmt::format("{}: {} not finite: surfaces have holes there", steps_[step].name,
                                    samples == 1 ? "1 sample is" : fmt::format("{} samples are", samples)));
   note_several(worst_first(std::move(notes)), {"step", "steps"}, session_.console);
+  for (const std::string& line : several_lines(worst_first(std::move(losses_)), {"step", "steps"}, session_.console.verbose))
+    session_.console.note_loss("{}", line);
 }
 
 void StoredSteps::note_array(const InputStep& step, const VolumeSource& source) {

@@ -40,11 +40,15 @@ void note_steps(const std::string& path, const ViewOptions& options, Console& co
     console.note("{}: the first of {} steps; --step says which", path, steps);
 }
 
+void protect_files(const ViewOptions& options, OutputSet& outputs) {
+  for (const std::string& path : options.paths) outputs.protect(path);
+  if (!options.colour_by.empty()) outputs.protect(options.colour_by);
+}
+
 void open_files(const ViewOptions& options, ViewSession& view, Session& session) {
   DocumentOptions documents = document_options(options);
   documents.colour_by = options.colour_by;
   for (const std::string& path : options.paths) {
-    session.outputs.protect(path);
     try {
       view.open(path, documents, session.console);
       note_steps(path, options, session.console);
@@ -53,7 +57,6 @@ void open_files(const ViewOptions& options, ViewSession& view, Session& session)
       fail("{}", error.what());
     }
   }
-  if (!options.colour_by.empty()) session.outputs.protect(options.colour_by);
 }
 
 void restore_state(const ViewOptions& options, ViewSession& view) {
@@ -150,6 +153,7 @@ Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& vi
 }
 
 void run_offscreen(const ViewOptions& options, Session& session) {
+  protect_files(options, session.outputs);
   const PictureSize size = picture_size(options, {1024, 768});
   FlightOutput output(options, session.outputs);
   ViewSession view(size.width, size.height);
@@ -169,6 +173,7 @@ void run_offscreen(const ViewOptions& options, Session& session) {
 }
 
 void run_window(const ViewOptions& options, Session& session) {
+  protect_files(options, session.outputs);
   WindowOptions window;
   const PictureSize size = picture_size(options, {window.width, window.height});
   window.width = size.width;

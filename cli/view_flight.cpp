@@ -45,7 +45,8 @@ FlightOutput::FlightOutput(const ViewOptions& options, OutputSet& outputs)
   FramePlaces places;
   places.frames_per_second = film_rate(options);
   if (!options.frames.empty()) {
-    folder_.emplace(options.frames, options.overwrite);
+    outputs.check_outside("--frames", options.frames);
+    folder_.emplace("frames", options.frames, options.overwrite);
     places.folder = folder_->temporary();
   }
   if (!film_name_.empty()) {

@@ -1,7 +1,9 @@
 #include "core/base/output_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <system_error>
 
 #include "core/base/error.h"
@@ -47,7 +49,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
 
 OutputFile::~OutputFile() {
   std::error_code code;
-  if (!committed_) std::filesystem::remove(temporary_, code);
+  if (!committed_ || replaced_) std::filesystem::remove(temporary_, code);
 }
 
 void OutputFile::publish() {
@@ -58,9 +60,24 @@ void OutputFile::publish() {
 }
 
 void OutputFile::commit() {
-  publish();
+  if (committed_) return;
+  if (exchange()) {
+    replaced_ = true;
+  } else {
+    publish();
+  }
   committed_ = true;
-  names_.reset();
+}
+
+void OutputFile::undo() {
+  std::error_code code;
+  if (!replaced_ || !exchange()) std::filesystem::remove(path_, code);
+}
+
+bool OutputFile::exchange() const {
+  std::error_code code;
+  return std::filesystem::is_regular_file(std::filesystem::symlink_status(path_, code)) &&
+         ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0;
 }
 
 }  // namespace adamas

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 #include <span>
 #include <utility>
 
@@ -38,17 +39,22 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
   }
 }
 
+/// Squares of numbers are taken of fields.
+constexpr double kGreatestNumber = 1e150;
+
 template <class Values>
 void check_array(const std::string& source, const std::string& name, const Values& values,
                  std::size_t expected) {
   if (values.size() != expected) {
     fail("{}: array '{}': expected {} values, found {}", source, name, expected, values.size());
   }
-  const auto bad = std::find_if(values.begin(), values.end(), [](auto v) { return !std::isfinite(v); });
-  if (bad != values.end()) {
-    fail("{}: array '{}': expected finite values, found {} at index {}", source, name, *bad,
-         bad - values.begin());
-  }
+  const auto bad = std::find_if(values.begin(), values.end(), [](auto v) {
+    return !(std::abs(static_cast<double>(v)) <= kGreatestNumber);
+  });
+  if (bad == values.end()) return;
+  const std::string what =
+      std::isfinite(*bad) ? fmt::format("values of at most {}", kGreatestNumber) : "finite values";
+  fail("{}: array '{}': expected {}, found {} at index {}", source, name, what, *bad, bad - values.begin());
 }
 
 void check_labels(const MultiMaterialData& data) {

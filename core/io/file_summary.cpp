@@ -73,7 +73,8 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
     ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
                       array.components};
     std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
-    std::tie(item.min, item.max) = std::minmax({array.value(item.min), array.value(item.max)});
+    if (item.min <= item.max)
+      std::tie(item.min, item.max) = std::minmax({array.value(item.min), array.value(item.max)});
     summary.arrays.push_back(std::move(item));
   }
   return summary;

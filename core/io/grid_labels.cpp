@@ -25,10 +25,14 @@ WholeValues whole_values(const GridArray& array) {
   result.values.reserve(array.size());
   const auto take = [&](const auto& numbers) {
     for (const auto number : numbers) {
-      const double value = array.value(number);
-      // Scales are of no more digits than float has.
-      if (!(array.scaled() ? is_whole<std::int64_t>(static_cast<float>(value)) : is_whole<std::int64_t>(value))) {
-        result.other = value;
+      // Whole numbers of 64 bits are exact here.
+      const long double value = static_cast<long double>(array.slope) * static_cast<long double>(number) +
+                                static_cast<long double>(array.intercept);
+      // Scales are of no more digits than float has, which has halves below this.
+      constexpr long double kHalves = 1 << 22;
+      const bool rounded = array.scaled() && std::abs(value) < kHalves;
+      if (!(rounded ? is_whole<std::int64_t>(static_cast<float>(value)) : is_whole<std::int64_t>(value))) {
+        result.other = static_cast<double>(value);
         return;
       }
       result.values.push_back(static_cast<std::int64_t>(std::nearbyint(value)));
@@ -49,7 +53,7 @@ void make_integral(const std::string& source, GridArray& array,
   } else if (note) {
     note(fmt::format(
         "{}: labels '{}' are taken as they are stored, without the scale of the file (times {:.9g} "
-        "plus {:.9g}), which makes no whole numbers of them",
+        "plus {:.9g}), which makes no whole numbers of 64 bits of them",
         source, array.name, array.slope, array.intercept));
   }
   array.slope = 1;

@@ -27,11 +27,14 @@ class GridSet {
     stored_ = *stored;
     std::array<hsize_t, 4> size{};
     const int axes = H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
-    planar_ = axes == 4 && size[0] <= size[3];
+    const bool first_is_odd = size[0] != size[1] && size[1] == size[2] && size[2] == size[3],
+               last_is_odd = size[3] != size[2] && size[2] == size[1] && size[1] == size[0];
+    planar_ = axes == 4 && (first_is_odd || (!last_is_odd && size[0] <= size[3]));
     components_ = axes == 3 ? 1 : planar_ ? size[0] : size[3];
     const std::size_t first = planar_ ? 1 : 0;
     for (std::size_t axis = 0; axis < 3; ++axis) sizes_[axis] = size[first + 2 - axis];
     check_size();
+    check_layout();
   }
 
   [[nodiscard]] const Sizes& sizes() const { return sizes_; }
@@ -69,6 +72,13 @@ class GridSet {
       fail("{}: expected {} samples, found {} bytes of them", name_, count_, stored);
     if (components_ > std::numeric_limits<int>::max())
       fail("{}: expected fewer components, found {}", name_, components_);
+  }
+
+  void check_layout() const {
+    const Hdf5Handle layout(H5Dget_create_plist(set_.id()), H5Pclose);
+    if (!layout.good() || H5Pget_layout(layout.id()) == H5D_VIRTUAL ||
+        H5Pget_external_count(layout.id()) > 0)
+      fail("{}: expected samples in the file itself, found them in others", name_);
   }
 
   std::string path_, name_;

@@ -15,6 +15,7 @@ struct Listing {
   int axes;
   std::size_t most;
   std::vector<std::string> names;
+  bool too_deep;
 };
 
 }  // namespace
@@ -48,13 +49,18 @@ int hdf5_axes(hid_t place, const char* name) {
 }
 
 std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most) {
-  Listing listing{axes, most, {}};
+  constexpr std::ptrdiff_t kDeepest = 64;
+  Listing listing{axes, most, {}, false};
   const auto add = [](hid_t root, const char* name, const H5O_info_t* info, void* found) -> herr_t {
     auto& list = *static_cast<Listing*>(found);
+    const std::string_view path(name);
+    list.too_deep = std::count(path.begin(), path.end(), '/') > kDeepest;
+    if (list.too_deep) return 1;
     if (info->type == H5O_TYPE_DATASET && hdf5_axes(root, name) == list.axes) list.names.emplace_back(name);
     return list.names.size() < list.most ? 0 : 1;
   };
   H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, add, &listing);
+  if (listing.too_deep) fail("expected groups that are at most {} deep, found deeper ones", kDeepest);
   return listing.names;
 }
 

@@ -81,7 +81,7 @@ class Reader {
     progress_.step("check materials", 0.9);
     if (options_.region) crop(*options_.region, data_);
     data_.normalise();
-    data_.report.step = step_;
+    data_.report.step = step_.value_or(0);
     for (const std::string& field : options_.extensive) make_intensive(field, data_);
     data_.check();
     progress_.step("check materials", 1);
@@ -240,12 +240,25 @@ class Reader {
     data_.materials.push_back(name);
   }
 
+  /// Between one stored fraction and the next; 0 where they are no whole numbers, or a step is no small part.
+  [[nodiscard]] double step_of(const GridArray& array) const {
+    constexpr double kGreatestStep = 0.1;
+    const double step = array.has_fractions() ? 0 : std::abs(array.slope) / options_.fraction_scale;
+    return step <= kGreatestStep ? step : 0;
+  }
+
   void add_fraction(const std::string& name, GridArray array) {
     require_scalar(array, " (--fractions makes a material of each)");
+    const double step = step_of(array);
+    add_fraction(name, std::move(array), step);
+  }
+
+  void add_fraction(const std::string& name, GridArray array, double step) {
     add_material(name);
     if (data_.materials.size() == 1) data_.grid.centering = array.centering;
     const RectilinearGrid from{main_.nodes, array.centering};
-    if (array.integral()) step_ = 1 / options_.fraction_scale;
+    // Of several kinds of arrays none is told by steps.
+    step_ = !step_ || *step_ == step ? step : 0;
     std::vector<float> values = array.take_floats();
     if (from.centering != data_.grid.centering) values = average_to(data_.grid.centering, from, 1, values);
     if (options_.fraction_scale != 1) {
@@ -260,12 +273,13 @@ class Reader {
     const auto count = static_cast<std::size_t>(array.components);
     const std::vector<std::string> names = component_materials(name, array);
     const Centering centering = array.centering;
+    const double step = step_of(array);
     const std::vector<float> values = array.take_floats();
     for (std::size_t c = 0; c < count; ++c) {
       std::vector<float> of_one;
       of_one.reserve(values.size() / count);
       for (std::size_t at = c; at < values.size(); at += count) of_one.push_back(values[at]);
-      add_fraction(names[c], {array.name, array.type, centering, 1, {}, std::move(of_one)});
+      add_fraction(names[c], {array.name, array.type, centering, 1, {}, std::move(of_one)}, step);
     }
   }
 
@@ -324,7 +338,7 @@ class Reader {
   GridFile main_;
   std::vector<std::string> taken_;  // arrays of the main file that have found their use
   bool plain_ = false;
-  double step_ = 0;  // of FractionReport
+  std::optional<double> step_;  // of FractionReport
   MultiMaterialData data_;
 };
 

@@ -39,7 +39,7 @@ NrrdPlaces::Other NrrdPlaces::other_axis(const std::string& name) const {
   constexpr std::size_t kMostUnsaid = 9;
   const std::size_t last = sizes.size() - 1;
   const bool four = sizes.size() == 4;
-  Other other = is_other(0) ? Other::kFirst : is_other(last) ? Other::kLast : Other::kNone;
+  Other other = is_other(0) ? Other::kFirst : four && is_other(last) ? Other::kLast : Other::kNone;
   if (other == Other::kNone && four) {
     other = sizes[0] <= kMostUnsaid ? Other::kFirst : Other::kLast;
     if (sizes[0] > kMostUnsaid && sizes[last] > kMostUnsaid)

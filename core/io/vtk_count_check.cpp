@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
@@ -13,6 +14,10 @@
 namespace adamas {
 
 namespace {
+
+/// Tags with arrays in them, some of which have tags of their own.
+constexpr std::string_view kSections[] = {"PointData", "CellData", "FieldData", "Points", "Coordinates",
+                                          "Cells",     "Verts",    "Lines",     "Strips", "Polys"};
 
 /// Counts the values of arrays and compares them with what their piece has.
 class CountChecker {
@@ -31,7 +36,7 @@ class CountChecker {
         read_piece(tag);
       } else if (tag.name == "DataArray") {
         read_array(tag);
-      } else {
+      } else if (std::ranges::find(kSections, tag.name) != std::end(kSections)) {
         section_ = tag.name;
         coordinates_ = 0;
       }
@@ -52,7 +57,9 @@ class CountChecker {
         extent && extent->size() == 6) {
       std::uint64_t points = 1, cells = 1;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto steps = static_cast<std::uint64_t>((*extent)[2 * axis + 1] - (*extent)[2 * axis]);
+        // Of extents that are out of order the reader tells.
+        const auto steps =
+            static_cast<std::uint64_t>((*extent)[2 * axis + 1]) - static_cast<std::uint64_t>((*extent)[2 * axis]);
         nodes_.push_back(steps + 1);
         points *= steps + 1;
         // Where an axis has one point, it counts as a cell.

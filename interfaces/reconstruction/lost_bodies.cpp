@@ -23,8 +23,9 @@ class LostBodySearch {
 
   std::vector<LostBody> run() {
     std::vector<LostBody> lost;
+    std::size_t looked_at = 0;
     for (const std::uint32_t site : values_.mixed()) {
-      if (site % 64 == 0) LoopProgress::check();
+      if (looked_at++ % 64 == 0) LoopProgress::check();
       for (const Entry& entry : values_.at(site)) {
         const MaterialId material = values_.material(entry.material);
         // Of several regions of a material one stands for it.

@@ -138,7 +138,7 @@ bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
   const Distances originals = raise_torn_bodies();
   if (originals.empty()) return false;
   const auto measure = [&] {
-    shown = measure_shown();
+    shown = measure_shown(true);
     bodies_->measure(shown);
     return bodies_->faults(options_.interface_error);
   };

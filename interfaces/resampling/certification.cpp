@@ -123,13 +123,13 @@ std::vector<TetrahedronId> Resampler::split_in_order(const std::vector<Tetrahedr
 }
 
 /// Measures interfaces as the leaves show them now, once volumes agree.
-ExtractedInterfaces Resampler::measure_shown() {
+ExtractedInterfaces Resampler::measure_shown(bool each) {
   if (conserves_) conserve_volumes();
   ExtractedInterfaces extracted =
       extract_interfaces(source_.network->table(), cells(), source_.box, progress_);
   report("measuring interfaces");
   // Which triangles are too far matters only where cells may be split for it, or interfaces move less.
-  comparison_->measure(extracted.mesh, progress_, !budget_spent_ || options_.conserve);
+  comparison_->measure(extracted.mesh, progress_, each || !budget_spent_ || options_.conserve);
   return extracted;
 }
 

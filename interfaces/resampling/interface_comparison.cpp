@@ -113,6 +113,7 @@ void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& pr
         {directed_distance_bound(input.points, input.triangles, found.tree, options, progress),
          directed_distance_bound(found.points, found.triangles, input.tree, options, progress)});
   }
+  forget_far();
   if (each) find_far();
 }
 
@@ -124,9 +125,13 @@ double InterfaceComparison::greatest() const {
 
 bool InterfaceComparison::within() const { return greatest() <= target_; }
 
-void InterfaceComparison::find_far() {
+void InterfaceComparison::forget_far() {
   for (auto& side : far_) side.assign(mesh_.triangles.size(), 0.0);
   far_shown_.clear();
+  for (auto& points : far_junctions_) points.clear();
+}
+
+void InterfaceComparison::find_far() {
   for (std::size_t p = 0; p < material_parts_; ++p) {
     for (std::size_t i = 0; i < input_[p].numbers.size(); ++i) {
       const std::uint32_t t = input_[p].numbers[i];

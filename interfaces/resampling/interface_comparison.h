@@ -91,6 +91,7 @@ class InterfaceComparison {
 
   [[nodiscard]] Parts take_apart(const InterfaceMesh& mesh) const;
   void tighten(std::size_t part, double seen, const Progress& progress);
+  void forget_far();
   void find_far();
   [[nodiscard]] std::vector<Vec3> far_points(const Part& lines, const DistanceBound& bound,
                                              const ClosestPointTree& others) const;

@@ -255,7 +255,8 @@ class Resampler {
   bool split_for_all_volumes();
   bool refine_for_volumes();
   [[nodiscard]] RefinementEnd refine_what_fails();
-  [[nodiscard]] ExtractedInterfaces measure_shown();
+  /// `each`: whether triangles that are too far are looked for, where no cell may be split for them.
+  ExtractedInterfaces measure_shown(bool each = false);
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& leaves) const;
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves(const InterfaceMesh& shown) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_far_from_shown() const;

@@ -229,6 +229,13 @@ TEST_F(Experiment, ReplacesWhatItWroteAndNothingElse) {
   const std::string metrics = read("run/metrics.json");
   expect_wrong_usage({"experiment", "run/input.vtr", "-o", "run", "--interface-error", "10%", "--overwrite"},
                      {"expected a folder without the input, found run/input.vtr"});
+  // The folder of another command is none of its own.
+  run_well({"generate", "buckyball", "--dimensions", "4", "-o", "b.nrrd", "-q"});
+  run_well({"store", "b.nrrd", "-o", "b.adm", "-q"});
+  run_well({"restore", "b.adm", "-o", "b.zarr", "-q"});
+  auto over = again;
+  over[6] = "b.zarr";
+  expect_failure(over, {"b.zarr: expected the folder of an experiment to replace, found that of an OME-Zarr image"});
   const auto refuses = [&](const std::string& found) {
     expect_failure(again,
                    {"run: expected an earlier run's folder as it was written", "found '" + found + "'"});

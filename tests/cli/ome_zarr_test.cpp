@@ -123,8 +123,10 @@ TEST_F(OmeZarrOutput, FoldersThatAreThere) {
   expect_failure({"restore", "b.adm", "-o", "empty.zarr", "--overwrite"}, {"empty.zarr", "found 'labels'"});
   fs::remove(folder() / "empty.zarr/labels");
   fs::rename(folder() / "b.adm", folder() / "empty.zarr/b.adm");
-  expect_failure({"restore", "empty.zarr/b.adm", "-o", "empty.zarr", "--overwrite"},
-                 {"empty.zarr", "found 'b.adm'"});
+  expect_wrong_usage({"restore", "empty.zarr/b.adm", "-o", "empty.zarr", "--overwrite"},
+                     {"expected a folder without the input, found empty.zarr/b.adm"});
+  fs::create_directory_symlink("nowhere", folder() / "link.zarr");
+  expect_failure({"restore", "empty.zarr/b.adm", "-o", "link.zarr"}, {"link.zarr", "a link that leads to none"});
   expect_wrong_usage({"restore", "empty.zarr/b.adm", "-o", "b.vti", "--overwrite"}, {"--overwrite", "b.vti"});
 }
 

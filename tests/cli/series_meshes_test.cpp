@@ -263,18 +263,36 @@ TEST_F(Series, StepsThatDiffer) {
 
 TEST_F(Series, ExperimentsGoOnWithoutDamagedSteps) {
   make_series("3");
-  write("s_0001.vtr", "none");
-  const RunResult result = run({"experiment", "s.pvd", "--interface-error", "8%", "-o", "out"});
-  EXPECT_EQ(result.status, 3) << result.err;
-  EXPECT_NE(result.err.find("s_0001.vtr: "), std::string::npos) << result.err;
-  EXPECT_NE(result.err.find("step 1 is left out"), std::string::npos) << result.err;
-  const auto metrics = read_json("out/metrics.json");
-  EXPECT_EQ(metrics["damaged_steps"], std::vector<int>{1});
-  ASSERT_EQ(metrics["steps"].size(), 2u);
-  EXPECT_EQ(metrics["steps"][1]["step"], 2);
-  for (int step = 0; step < 3; ++step)
-    EXPECT_EQ(std::filesystem::exists(folder() / ("out/mesh_000" + std::to_string(step) + ".vtu")),
-              step != 1);
+  for (const int damaged : {1, 2}) {
+    const std::string number = std::to_string(damaged), file = "s_000" + number + ".vtr", out = "out" + number;
+    const std::string kept = read(file);
+    write(file, "none");
+    const RunResult result = run({"experiment", "s.pvd", "--interface-error", "8%", "-o", out});
+    EXPECT_EQ(result.status, 3) << result.err;
+    EXPECT_NE(result.err.find(file + ": "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("step " + number + " is left out"), std::string::npos) << result.err;
+    EXPECT_NE(read(out + "/report.html").find("step " + number + " is left out"), std::string::npos);
+    const auto metrics = read_json(out + "/metrics.json");
+    EXPECT_EQ(metrics["damaged_steps"], std::vector<int>{damaged});
+    ASSERT_EQ(metrics["steps"].size(), 2u);
+    EXPECT_EQ(metrics["steps"][1]["step"], 3 - damaged);
+    for (int step = 0; step < 3; ++step)
+      EXPECT_EQ(std::filesystem::exists(folder() / (out + "/mesh_000" + std::to_string(step) + ".vtu")),
+                step != damaged);
+    write(file, kept);
+  }
+}
+
+/// A step that is whole and lacks what is asked for is no damaged one.
+TEST_F(Series, AFieldThatAStepHasNotEndsTheRun) {
+  make_series("2");
+  std::string step = read("s_0001.vtr");
+  const std::string name = "mixed smooth";
+  for (std::size_t at = 0; (at = step.find(name, at)) != std::string::npos; at += name.size())
+    step.replace(at, name.size(), "mixed Smooth");
+  write("s_0001.vtr", step);
+  expect_failure({"slice", "s.pvd", "--plane", "z=0.15", "--field", "mixed smooth", "-o", "p_%d.svg"},
+                 {"s_0001.vtr", "mixed smooth"});
 }
 
 TEST_F(Series, WrongUsage) {

@@ -156,6 +156,24 @@ TEST_F(StoreFailures, ConvertedSamplesAreCountedOnce) {
   }
 }
 
+/// Of many inputs the worst is told, not each.
+TEST_F(StoreFailures, LostDigitsOfManyStepsAreOneLine) {
+  for (int n = 0; n < 4; ++n) {
+    std::string samples;
+    for (std::int32_t i = 0; i < 8; ++i) {
+      const std::int32_t value = (1 << (24 + n)) + i;
+      samples.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    }
+    write("s_" + std::to_string(n) + ".raw", samples);
+  }
+  const RunResult result =
+      run({"store", "s_%d.raw", "--dimensions", "2", "--type", "int32", "-o", "s.adm", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  ASSERT_EQ(result.err_lines().size(), 1u) << result.err;
+  EXPECT_NE(result.err.find("s_3.raw: int32 samples are read as float32"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("; and 3 more steps"), std::string::npos) << result.err;
+}
+
 TEST_F(StoreFailures, DiskFull) {
   make_ball("40");
   make_store();
