@@ -41,8 +41,8 @@ class Console final : public Progress {
   void note(fmt::format_string<Args...> format, Args&&... args) {
     if (!quiet) write_note(text<Args...>(format, args...));
   }
-  /// What a result does not have as the input has it, such as digits of numbers: a note whatever `quiet` says,
-  /// once where the same is lost several times.
+  /// What a result does not have as the input has it, such as digits of numbers: a note whatever `quiet`
+  /// says, once where the same is lost several times.
   template <class... Args>
   void note_loss(fmt::format_string<Args...> format, Args&&... args) {
     const std::string note = text<Args...>(format, args...);

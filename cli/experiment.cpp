@@ -85,7 +85,8 @@ class Experiment {
 
   const ExperimentOptions& options_;
   const ExperimentRequest& request_;
-  const std::vector<SeriesEntry>& steps_;  ///< of a series, whose last whole step is the input; empty for one file
+  const std::vector<SeriesEntry>&
+      steps_;  ///< of a series, whose last whole step is the input; empty for one file
   OutputFolder& folder_;
   Console& console_;
   Input input_;
@@ -132,9 +133,8 @@ void Experiment::load_last_step() {
   InputOptions from = options_.input;
   LeftOutSteps left_out;
   const auto load = [&] {
-    input_ = load_input(from, console_, [this](const InputFacts& found) {
-      check_step([&] { request_.check(found); });
-    });
+    input_ = load_input(from, console_,
+                        [this](const InputFacts& found) { check_step([&] { request_.check(found); }); });
   };
   for (std::size_t n = steps_.size(); n-- > 0;) {
     from.path = steps_[n].file;

@@ -31,8 +31,7 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
     from.path = step.file;
     Input input;
     const auto load = [&] {
-      input =
-          load_input(from, console, [&request](const InputFacts& found) {
+      input = load_input(from, console, [&request](const InputFacts& found) {
         check_step([&] { request.resampling.check(found); });
       });
     };

@@ -79,7 +79,8 @@ Figures own_attributes(const VolumeGrid& volume, const std::vector<double>& time
 
 bool is_zarr(const std::string& path) { return file_extension(folder_path(path)) == ".zarr"; }
 
-OmeZarr::OmeZarr(const std::string& path, bool overwrite) : folder_("an OME-Zarr image", folder_path(path), overwrite) {}
+OmeZarr::OmeZarr(const std::string& path, bool overwrite)
+    : folder_("an OME-Zarr image", folder_path(path), overwrite) {}
 
 void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
                                Session& session) const {

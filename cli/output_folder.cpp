@@ -58,8 +58,8 @@ FolderList read_list(const fs::path& folder) {
   return list;
 }
 
-/// A file of a folder that is not among the lines of its list, or a folder in it without such files; empty for
-/// none.
+/// A file of a folder that is not among the lines of its list, or a folder in it without such files; empty
+/// for none.
 fs::path unlisted(const fs::path& folder, const std::set<std::string>& lines) {
   std::set<fs::path> folders, above;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {

@@ -14,9 +14,10 @@ namespace adamas {
 /// files and their sizes goes with it, `.adamas-files`, by which a later run knows what it may replace.
 class OutputFolder {
  public:
-  /// `kind`: what it holds, "an experiment". `overwrite`: a folder of the same kind that is there is replaced,
-  /// if it holds nothing but the files of its list. A link to a folder stays one. Throws Error where the folder above is missing or read-only, where a file is in
-  /// the way, and where the folder is there and neither empty nor to be replaced.
+  /// `kind`: what it holds, "an experiment". `overwrite`: a folder of the same kind that is there is
+  /// replaced, if it holds nothing but the files of its list. A link to a folder stays one. Throws Error
+  /// where the folder above is missing or read-only, where a file is in the way, and where the folder is
+  /// there and neither empty nor to be replaced.
   OutputFolder(std::string kind, std::filesystem::path path, bool overwrite);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

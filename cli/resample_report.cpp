@@ -179,7 +179,8 @@ std::string conservation_line(const ResampleFigures& m, const Resampler& resampl
   }
   if (worst == nullptr) return {};
   return fmt::format(
-      "volumes were not conserved: a body of '{}' at {} has {:.2g} {} than {}, the worst of {}; interfaces may "
+      "volumes were not conserved: a body of '{}' at {} has {:.2g} {} than {}, the worst of {}; interfaces "
+      "may "
       "not move by more than the interface error",
       resampler.source().materials[worst->material], place_text(worst->place), worst->missing(),
       worst->volume < *worst->volume_input ? "less" : "more", volume_text(*worst->volume_input), count);

@@ -61,9 +61,8 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
     from.path = steps[n].file;
     Input read;
     const auto load = [&] {
-      read = load_input(from, console, [&](const InputFacts& found) {
-        check_step([&] { request.check(found); });
-      });
+      read = load_input(from, console,
+                        [&](const InputFacts& found) { check_step([&] { request.check(found); }); });
     };
     if (!record.left_out.read(n, load)) {
       if (meshes) meshes->leave_out(n, session.outputs);

@@ -65,7 +65,9 @@ void note_shortfalls(const Selection& selection, const SelectionTargets& targets
     const double error = found != nullptr ? found->networks.upper : selection.interface_error();
     const bool goes_further = found == nullptr && !selection.is_whole() && !selection.budget_spent();
     if (goes_further && error > *wanted) {
-      console.note("the interface error is not known, since nothing is measured here: it is estimated at {:.4g}", error);
+      console.note(
+          "the interface error is not known, since nothing is measured here: it is estimated at {:.4g}",
+          error);
     } else {
       note(what, error, *wanted);
     }

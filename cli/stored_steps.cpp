@@ -149,7 +149,8 @@ void StoredSteps::finish() {
                        fmt::format("{}: {} not finite: surfaces have holes there", steps_[step].name,
                                    samples == 1 ? "1 sample is" : fmt::format("{} samples are", samples)));
   note_several(worst_first(std::move(notes)), {"step", "steps"}, session_.console);
-  for (const std::string& line : several_lines(worst_first(std::move(losses_)), {"step", "steps"}, session_.console.verbose))
+  for (const std::string& line :
+       several_lines(worst_first(std::move(losses_)), {"step", "steps"}, session_.console.verbose))
     session_.console.note_loss("{}", line);
 }
 

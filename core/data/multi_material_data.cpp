@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <string>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "core/base/error.h"

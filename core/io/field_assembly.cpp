@@ -55,8 +55,7 @@ Part join(const std::vector<Part>& parts, const Triple& triple, const FieldName&
     vector.values = std::vector<float>(count);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t site = 0; 3 * site < count; ++site)
-      vector.values.set(3 * site + axis, part(axis)[site]);
+    for (std::size_t site = 0; 3 * site < count; ++site) vector.values.set(3 * site + axis, part(axis)[site]);
   }
   return vector;
 }
@@ -172,7 +171,9 @@ void make_intensive(const std::string& name, MultiMaterialData& data) {
             const double volume = grid.site_volume(i, j, k) * fraction(site);
             for (std::size_t c = 0; c < components; ++c) {
               auto& value = values[site * components + c];
-              value = volume > 0 ? static_cast<std::decay_t<decltype(value)>>(static_cast<double>(value) / volume) : 0;
+              value = volume > 0
+                          ? static_cast<std::decay_t<decltype(value)>>(static_cast<double>(value) / volume)
+                          : 0;
             }
           }
         }

@@ -98,7 +98,8 @@ GridFile read_grid_by_library(const std::filesystem::path& path);
 GridFile read_grid_with_vtk(const std::filesystem::path& path);
 
 /// All data sets of numbers of HDF5 along three axes, z slowest, and along four, of which the shorter one of
-/// the first and the last is that of components, or the only one of another length; all on the same grid. In a child process too.
+/// the first and the last is that of components, or the only one of another length; all on the same grid. In
+/// a child process too.
 GridFile read_hdf5_by_library(const std::filesystem::path& path);
 GridFile read_hdf5_grid(const std::filesystem::path& path);
 

@@ -58,8 +58,8 @@ class CountChecker {
       std::uint64_t points = 1, cells = 1;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         // Of extents that are out of order the reader tells.
-        const auto steps =
-            static_cast<std::uint64_t>((*extent)[2 * axis + 1]) - static_cast<std::uint64_t>((*extent)[2 * axis]);
+        const auto steps = static_cast<std::uint64_t>((*extent)[2 * axis + 1]) -
+                           static_cast<std::uint64_t>((*extent)[2 * axis]);
         nodes_.push_back(steps + 1);
         points *= steps + 1;
         // Where an axis has one point, it counts as a cell.

@@ -111,8 +111,7 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialDat
             given = m.value < field.material_values.size() ? &field.material_values[m] : nullptr;
           for (std::size_t c = 0; c < components; ++c, ++row) {
             const bool known = given != nullptr && !given->empty();
-            sums[m].integral[row] +=
-                volume * (known ? (*given)[site * components + c] : kNothing);
+            sums[m].integral[row] += volume * (known ? (*given)[site * components + c] : kNothing);
           }
         }
       }

@@ -103,7 +103,9 @@ std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
     const double missing = body.missing();
     if (options.conserve && missing > kConserved * resampler.source().box.volume() &&
         (!moved || missing > std::abs(moved->found - moved->wanted))) {
-      moved = {"the volume to be conserved" + whose, body.volume, *body.volume_input,
+      moved = {"the volume to be conserved" + whose,
+               body.volume,
+               *body.volume_input,
                {"interfaces may not move by more than the interface error", body.place}};
     }
   }

@@ -16,6 +16,7 @@ class Experiment : public ProgramTest {
     std::set<std::string> result;
     for (const auto& entry : std::filesystem::directory_iterator(folder() / name))
       result.insert(entry.path().filename().string());
+    EXPECT_EQ(result.erase(".adamas-files"), 1u);
     return result;
   }
   void expect_all_files() const;
@@ -235,7 +236,8 @@ TEST_F(Experiment, ReplacesWhatItWroteAndNothingElse) {
   run_well({"restore", "b.adm", "-o", "b.zarr", "-q"});
   auto over = again;
   over[6] = "b.zarr";
-  expect_failure(over, {"b.zarr: expected the folder of an experiment to replace, found that of an OME-Zarr image"});
+  expect_failure(
+      over, {"b.zarr: expected the folder of an experiment to replace, found that of an OME-Zarr image"});
   const auto refuses = [&](const std::string& found) {
     expect_failure(again,
                    {"run: expected an earlier run's folder as it was written", "found '" + found + "'"});

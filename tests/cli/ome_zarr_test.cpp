@@ -126,7 +126,8 @@ TEST_F(OmeZarrOutput, FoldersThatAreThere) {
   expect_wrong_usage({"restore", "empty.zarr/b.adm", "-o", "empty.zarr", "--overwrite"},
                      {"expected a folder without the input, found empty.zarr/b.adm"});
   fs::create_directory_symlink("nowhere", folder() / "link.zarr");
-  expect_failure({"restore", "empty.zarr/b.adm", "-o", "link.zarr"}, {"link.zarr", "a link that leads to none"});
+  expect_failure({"restore", "empty.zarr/b.adm", "-o", "link.zarr"},
+                 {"link.zarr", "a link that leads to none"});
   expect_wrong_usage({"restore", "empty.zarr/b.adm", "-o", "b.vti", "--overwrite"}, {"--overwrite", "b.vti"});
 }
 

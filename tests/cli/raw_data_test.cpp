@@ -109,8 +109,8 @@ TEST_F(RawData, FieldsOfDoubleKeepAllDigits) {
         "space directions: (0.5,0,0) (0,1,0) (0,0,2)\nspace origin: (1,1,1)\nendian: little\n"
         "encoding: raw\n\n" +
             bytes);
-  run_well({"resample", "--fraction", "a=w.nrrd", "--fraction-scale", "255", "--rest", "b", "--field", "p=p.nrrd",
-            "--cells", "-o", "m.vtu", "--json", "m.json"});
+  run_well({"resample", "--fraction", "a=w.nrrd", "--fraction-scale", "255", "--rest", "b", "--field",
+            "p=p.nrrd", "--cells", "-o", "m.vtu", "--json", "m.json"});
   EXPECT_TRUE(read_json("m.json")["fields"].contains("p"));
   run_well({"info", "--fraction", "a=w.nrrd", "--fraction-scale", "255", "--rest", "b", "--field", "p=p.nrrd",
             "--cells", "--json", "i.json"});

@@ -264,7 +264,8 @@ TEST_F(Series, StepsThatDiffer) {
 TEST_F(Series, ExperimentsGoOnWithoutDamagedSteps) {
   make_series("3");
   for (const int damaged : {1, 2}) {
-    const std::string number = std::to_string(damaged), file = "s_000" + number + ".vtr", out = "out" + number;
+    const std::string number = std::to_string(damaged), file = "s_000" + number + ".vtr",
+                      out = "out" + number;
     const std::string kept = read(file);
     write(file, "none");
     const RunResult result = run({"experiment", "s.pvd", "--interface-error", "8%", "-o", out});

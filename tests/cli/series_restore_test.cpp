@@ -202,7 +202,8 @@ TEST_F(SeriesRestore, SliceGoesOnWithTheOtherSteps) {
     ASSERT_GT(left_out.size(), 1u);
     EXPECT_EQ(result.status, 3) << result.err;
     ASSERT_EQ(result.err_lines().size(), 1u) << result.err;
-    EXPECT_NE(result.err.find("; and " + std::to_string(left_out.size() - 1) + " more step"), std::string::npos);
+    EXPECT_NE(result.err.find("; and " + std::to_string(left_out.size() - 1) + " more step"),
+              std::string::npos);
     EXPECT_TRUE(std::includes(lost.begin(), lost.end(), left_out.begin(), left_out.end()));
     EXPECT_EQ(read_json("j.json")["steps"].size() + left_out.size(), 20u);
     const auto made = files();

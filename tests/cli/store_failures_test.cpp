@@ -145,8 +145,8 @@ TEST_F(StoreFailures, ConvertedSamplesAreCountedOnce) {
   write("a.raw", samples);
   // Digits that are lost are told, quiet or not.
   for (const bool quiet : {false, true}) {
-    std::vector<std::string> store{"store", "a.raw", "--dimensions",            "10", "--type",
-                                   "int32", "-o",    quiet ? "q.adm" : "a.adm"};
+    std::vector<std::string> store{"store",  "a.raw", "--dimensions", "10",
+                                   "--type", "int32", "-o",           quiet ? "q.adm" : "a.adm"};
     if (quiet) store.push_back("--quiet");
     const RunResult result = run(store);
     EXPECT_EQ(result.status, 0);

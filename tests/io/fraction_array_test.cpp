@@ -106,6 +106,26 @@ TEST(FractionArray, OfVtkHasTheNamesOfItsComponents) {
                    "pass --fractions parts if the 3 components of 'parts' are the fractions of materials"));
 }
 
+/// The step between stored numbers is known of arrays that were found by their names and by components, and
+/// of no array where they are of several kinds.
+TEST(FractionArray, TellsTheStepOfWhatIsStored) {
+  const test::Scratch scratch;
+  const auto write = [&](const char* second) {
+    std::string text =
+        "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 2 0 1 0 1\"><Piece Extent=\"0 2 0 1 0 1\">"
+        "<CellData>";
+    text += "<DataArray type=\"UInt8\" Name=\"Volume Fraction for a\" format=\"ascii\">255 254</DataArray>";
+    text += std::string("<DataArray type=\"") + second +
+            "\" Name=\"Volume Fraction for b\" format=\"ascii\">0 1</DataArray>";
+    put_bytes(scratch / "s.vti", text + "</CellData></Piece></ImageData></VTKFile>");
+    MaterialDataOptions options;
+    options.fraction_scale = 255;
+    return read_multi_material_data(scratch / "s.vti", options).report.step;
+  };
+  EXPECT_EQ(write("UInt8"), 1 / 255.0);
+  EXPECT_EQ(write("Float32"), 0);
+}
+
 TEST(FractionArray, OfHdf5HasItsComponentsAlongTheShorterEnd) {
   const test::Scratch scratch;
   const std::vector<float> first = parts(true), last = parts(false), field(12, 7);

@@ -156,6 +156,23 @@ TEST(Labels, WithAScaleAreTheStoredNumbersElsewhere) {
   EXPECT_TRUE(says(told.notes[0], "labels 'a' are taken as they are stored"));
 }
 
+/// Beyond the digits of float, labels are neither rounded nor made one.
+TEST(Labels, WithAScaleAreNotMerged) {
+  const test::Scratch scratch;
+  const auto names = [&](std::int32_t first, float slope, float intercept) {
+    NiftiHeader header;
+    header.put<std::int16_t>(40, {3, 4, 1, 1, 1, 1, 1, 1}).type(8, 4).put<float>(112, {slope, intercept});
+    std::vector<std::int32_t> stored;
+    for (std::int32_t i = 0; i < 4; ++i) stored.push_back(first + i);
+    put_bytes(scratch / "a.nii", header.text() + bytes_of_values(stored));
+    return read_labels(scratch / "a.nii").names;
+  };
+  EXPECT_EQ(names(33554432, 0.5f, 0),
+            (std::vector<std::string>{"33554432", "33554433", "33554434", "33554435"}));
+  EXPECT_EQ(names(1 << 30, 2, 1),
+            (std::vector<std::string>{"2147483649", "2147483651", "2147483653", "2147483655"}));
+}
+
 TEST(Fields, WithAScaleHaveItsValues) {
   const test::Scratch scratch;
   write_scaled(scratch / "a.nii", {1, 2, 10}, 0.5f, 3);

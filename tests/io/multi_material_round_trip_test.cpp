@@ -64,7 +64,7 @@ TEST(MultiMaterialRoundTrip, FieldsOfDoubleStaySo) {
   std::vector<double> precise(data.grid.site_count()), beyond(precise.size());
   for (std::size_t i = 0; i < precise.size(); ++i) {
     precise[i] = 1000000001 + 0.5 * static_cast<double>(i);
-    beyond[i] = 1e300 / static_cast<double>(i + 1);
+    beyond[i] = 1e150 / static_cast<double>(i + 1);
   }
   data.fields[0].values = precise;
   data.fields[2].material_values[MaterialId(0)] = beyond;
@@ -176,8 +176,8 @@ TEST(MultiMaterialOptions, ExtensiveFieldsBecomeDensities) {
     for (std::size_t j = 0; j < read.grid.sites(1); ++j) {
       for (std::size_t i = 0; i < read.grid.sites(0); ++i) {
         const std::size_t site = read.grid.site_index(i, j, k);
-        total += read.fields[2].material_values[m][site] *
-                 static_cast<double>(read.fractions[m][site]) * read.grid.site_volume(i, j, k);
+        total += read.fields[2].material_values[m][site] * static_cast<double>(read.fractions[m][site]) *
+                 read.grid.site_volume(i, j, k);
         expected += data.fields[2].material_values[m][site];
       }
     }

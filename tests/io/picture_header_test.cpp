@@ -58,6 +58,11 @@ TEST(PictureHeader, OthersThatAreCutOff) {
       EXPECT_EQ(message.find("signal"), std::string::npos) << length << ": " << message;
     }
   }
+  // Runs of 20 and of 10 pixels.
+  put_bytes(scratch / "a.tga", tga(10, "\x93xyz"));
+  EXPECT_EQ(read_grid_file(scratch / "a.tga").arrays.size(), 1u);
+  put_bytes(scratch / "a.tga", tga(10, "\x89xyz"));
+  EXPECT_TRUE(says(error_of([&] { read_grid_file(scratch / "a.tga"); }), "expected 20 pixels, found 10"));
   put_bytes(scratch / "a.tga", tga(10, std::string(3, 'x')));
   EXPECT_TRUE(says(error_of([&] { read_grid_file(scratch / "a.tga"); }),
                    "expected 4 or more bytes for 5 x 4 pixels of 3, found 3"));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/io/grid_file.h"
+#include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "tests/io/volume_files.h"
 #include "tests/io/vtk_xml_text.h"
@@ -91,6 +92,20 @@ TEST(ValueCounts, OfMeshes) {
     EXPECT_TRUE(says(message(3, 1, 12, form), "array 'p': expected 4 values, found 3"));
     EXPECT_TRUE(says(message(4, 2, 12, form), "array 'c': expected 1 values, found 2"));
     EXPECT_TRUE(says(message(4, 1, 15, form), "array 'x': expected 4 x 3 values, found 15"));
+  }
+  // Tags within an array, and between arrays, are none of sections.
+  std::string text;
+  for (const char* part : {"<DataArray ", "<PointData>"}) {
+    message(9, 1, 12, XmlForm::kText);
+    text = read_file(scratch / "a.vtu");
+    const std::size_t at = text.find('>', text.find(part)) + 1;
+    text.insert(at, std::string(part) == "<PointData>"
+                        ? "<Array type=\"String\" Name=\"s\" format=\"ascii\" NumberOfTuples=\"0\"></Array>"
+                        : "<InformationKey name=\"k\" location=\"l\"></InformationKey>");
+    put_bytes(scratch / "a.vtu", text);
+    EXPECT_TRUE(says(error_of([&] { read_unstructured_mesh(scratch / "a.vtu"); }),
+                     "array 'p': expected 4 values, found 9"))
+        << part;
   }
 }
 
